@@ -1,0 +1,19 @@
+// Coulomb friction: a constant level against the motion.
+//
+//   F = f_c sign(v),  sign(v) = tanh(v / v_t)
+//
+// f_c [N] coulomb_force (times the level of friction.h), v_t [m/s] transition_velocity.
+// Why tanh: sign(v) jumps, so that an explicit integrator chatters and no integrator has an order;
+// below v_t the law is a damper of f_c / v_t instead. Valid for speeds well above v_t.
+// Source: Wang & Su 2008 use f_c sign(v).
+// Not modelled: stiction, memory before sliding (see dahl.c, lugre.c). A loaded device creeps at a
+// fraction of v_t instead of sticking.
+
+#include "friction.h"
+
+static double force(const InerterDevice* p, double x, double v, double z) {
+  (void)z;
+  return friction_level(p, x, v) * p->coulomb_force * friction_direction(p, v);
+}
+
+const FrictionLaw inerter_coulomb = {.force = force};

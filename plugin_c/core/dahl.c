@@ -1,0 +1,57 @@
+// Dahl friction: one bristle that bends before it slides.
+//
+//   z' = v sgn(u) |u|^m,  u = 1 - sigma0 z sgn(v) / f_c
+//   F  = sigma0 z
+//
+// z [m] bristle deflection, sigma0 [N/m] bristle_stiffness, f_c [N] coulomb_force (times the level
+// of friction.h), m dahl_exponent. Stored energy sigma0 z^2 / 2. |F| <= f_c once inside.
+// Source: Dahl 1968; eq. (4)-(6) of the hysteretic inerter paper.
+// Not modelled: breakaway above f_c, Stribeck effect (see lugre.c).
+
+#include "friction.h"
+
+// ratio of the bristle force to what it can bear, along the direction of motion: u above
+static double slack(const InerterDevice* p, double level, double v, double z) {
+  return 1 - p->bristle_stiffness * z * sign(v) / level;
+}
+
+static double rate(const InerterDevice* p, double x, double v, double z) {
+  double level = friction_level(p, x, v) * p->coulomb_force;
+  double u = slack(p, level, v, z);
+  return p->dahl_exponent == 1 ? v * u : v * sign(u) * pow(fabs(u), p->dahl_exponent);
+}
+
+// At constant v, u' = -(sigma0 |v| / f_c) sgn(u) |u|^m has a closed form for every m.
+static double step(const InerterDevice* p, double x, double v, double z, double h) {
+  double level = friction_level(p, x, v) * p->coulomb_force;
+  if (v == 0) {
+    return z;
+  }
+  double u = slack(p, level, v, z);
+  double path = p->bristle_stiffness * fabs(v) * h / level;
+  double m = p->dahl_exponent;
+  double decayed;
+  if (m == 1) {
+    // z + (1 - e^-path) (z_end - z), kept exact for short paths
+    return z - expm1(-path) * u * sign(v) * level / p->bristle_stiffness;
+  } else if (u == 0) {
+    decayed = 0;
+  } else {
+    double remaining = pow(fabs(u), 1 - m) - (1 - m) * path;
+    decayed = remaining > 0 ? pow(remaining, 1 / (1 - m)) : 0;
+  }
+  return z + (fabs(u) - decayed) * sign(u) * sign(v) * level / p->bristle_stiffness;
+}
+
+static double force(const InerterDevice* p, double x, double v, double z) {
+  (void)x;
+  (void)v;
+  return p->bristle_stiffness * z;
+}
+
+static double energy(const InerterDevice* p, double x, double z) {
+  (void)x;
+  return 0.5 * p->bristle_stiffness * z * z;
+}
+
+const FrictionLaw inerter_dahl = {rate, step, force, energy};

@@ -1,0 +1,60 @@
+// What a friction law gives to the device. One law, one file; the table in device.c lists them.
+
+#ifndef INERTER_CORE_FRICTION_H_
+#define INERTER_CORE_FRICTION_H_
+
+#include <math.h>
+
+#include "device.h"
+
+// A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
+// Laws without states leave rate, step and energy NULL.
+typedef struct FrictionLaw_ {
+  double (*rate)(const InerterDevice* p, double x, double v, double z);
+  double (*step)(const InerterDevice* p, double x, double v, double z, double h);
+  double (*force)(const InerterDevice* p, double x, double v, double z);
+  double (*energy)(const InerterDevice* p, double x, double z);
+} FrictionLaw;
+
+extern const FrictionLaw inerter_coulomb;
+extern const FrictionLaw inerter_stribeck;
+extern const FrictionLaw inerter_dahl;
+extern const FrictionLaw inerter_lugre;
+extern const FrictionLaw inerter_bouc_wen;
+extern const FrictionLaw inerter_brown_mcphee;
+
+// direction of sliding, smooth over the transition velocity
+static inline double friction_direction(const InerterDevice* p, double v) {
+  return tanh(v / p->transition_velocity);
+}
+
+// Factor on both friction levels: it differs between the directions and along the stroke.
+//   (1 + asymmetry sign(v)) max(0.001, 1 + gradient x + curvature x^2)
+// The floor keeps bristles from facing a yield level of zero.
+static inline double friction_level(const InerterDevice* p, double x, double v) {
+  double level = 1;
+  if (p->friction_asymmetry != 0) {
+    level += p->friction_asymmetry * friction_direction(p, v);
+  }
+  if (p->friction_gradient != 0 || p->friction_curvature != 0) {
+    level *= fmax(1e-3, 1 + (p->friction_gradient + p->friction_curvature * x) * x);
+  }
+  return level;
+}
+
+// Stribeck curve without direction: f_c + (f_s - f_c) exp(-(|v| / v_s)^exponent)
+static inline double friction_stribeck_curve(const InerterDevice* p, double v) {
+  double excess = p->static_force - p->coulomb_force;
+  if (excess == 0) {
+    return p->coulomb_force;
+  }
+  double ratio = fabs(v) / p->stribeck_velocity;
+  double power = p->stribeck_exponent == 2 ? ratio * ratio : pow(ratio, p->stribeck_exponent);
+  return p->coulomb_force + excess * exp(-power);
+}
+
+static inline double sign(double v) {
+  return (v > 0) - (v < 0);
+}
+
+#endif  // INERTER_CORE_FRICTION_H_

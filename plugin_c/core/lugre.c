@@ -1,0 +1,44 @@
+// LuGre friction: a bristle whose yield level follows the Stribeck curve.
+//
+//   z' = v - sigma0 |v| z / g(v),  g = f_c + (f_s - f_c) exp(-(|v| / v_s)^delta)
+//   F  = sigma0 z + sigma1 z'      (sigma2 v is the device's viscous term)
+//
+// z [m] bristle deflection; sigma0 [N/m] bristle_stiffness, sigma1 [N s/m] bristle_damping;
+// f_c, f_s [N] coulomb_force, static_force (times the level of friction.h); v_s [m/s]
+// stribeck_velocity; delta stribeck_exponent. Stored energy sigma0 z^2 / 2; steady sliding g(v).
+// Source: Canudas de Wit, Olsson, Astrom, Lischinsky 1995. The hysteretic inerter paper prints
+// |v| z / g without sigma0: its g is this g divided by sigma0.
+// Passive where sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed.
+// Not modelled: a sigma1 that falls with speed, hysteresis with non-local memory.
+
+#include "friction.h"
+
+static double yield_level(const InerterDevice* p, double x, double v) {
+  return friction_level(p, x, v) * friction_stribeck_curve(p, v);
+}
+
+static double rate(const InerterDevice* p, double x, double v, double z) {
+  double g = yield_level(p, x, v);
+  return v - p->bristle_stiffness * fabs(v) * z / g;
+}
+
+// exact at constant v: exponential decay towards sgn(v) g / sigma0
+static double step(const InerterDevice* p, double x, double v, double z, double h) {
+  double g = yield_level(p, x, v);
+  if (v == 0) {
+    return z;
+  }
+  double end = sign(v) * g / p->bristle_stiffness;
+  return z - expm1(-p->bristle_stiffness * fabs(v) * h / g) * (end - z);
+}
+
+static double force(const InerterDevice* p, double x, double v, double z) {
+  return p->bristle_stiffness * z + p->bristle_damping * rate(p, x, v, z);
+}
+
+static double energy(const InerterDevice* p, double x, double z) {
+  (void)x;
+  return 0.5 * p->bristle_stiffness * z * z;
+}
+
+const FrictionLaw inerter_lugre = {rate, step, force, energy};

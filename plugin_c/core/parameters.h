@@ -1,0 +1,64 @@
+// The parameters of a device, each declared here once: name, unit, default, bounds, meaning.
+// The C struct, the MJCF configuration, Python, the README table and every error text read this
+// list.
+
+#ifndef INERTER_CORE_PARAMETERS_H_
+#define INERTER_CORE_PARAMETERS_H_
+
+#include <math.h>
+
+// X(name, unit, default, lower, upper, bound, laws, meaning)
+//   default: NAN is derived from other parameters when it is not set.
+//   bound: CLOSED allows the lower bound itself, OPEN does not. Values are always finite.
+//   laws: the friction laws that read it; "" for the device itself.
+#define INERTER_PARAMETERS(X)                                                                      \
+  /* linear */                                                                                     \
+  X(inertance, "kg", 0, 0, INFINITY, CLOSED, "", "force per relative acceleration, b")             \
+  X(viscous, "N*s/m", 0, 0, INFINITY, CLOSED, "", "viscous damping, c (sigma2 of LuGre)")          \
+  X(stiffness, "N/m", 0, -INFINITY, INFINITY, CLOSED, "", "parallel stiffness, k")                 \
+  X(rest_length, "m", 0, -INFINITY, INFINITY, CLOSED, "", "length at which the springs are slack") \
+  /* other force laws */                                                                           \
+  X(quadratic_damping, "N*s^2/m^2", 0, 0, INFINITY, CLOSED, "", "force per v*abs(v), c2")          \
+  X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "",                                  \
+    "force per (x - rest_length)^3, k3")                                                           \
+  X(force_offset, "N", 0, -INFINITY, INFINITY, CLOSED, "", "constant force")                       \
+  X(load_friction, "1", 0, 0, 1, CLOSED, "", "friction per inertance force, mu")                   \
+  /* friction levels, shared by every law but Bouc-Wen */                                          \
+  X(coulomb_force, "N", 0, 0, INFINITY, CLOSED, "coulomb stribeck dahl lugre brown_mcphee",        \
+    "sliding friction level, f_c")                                                                 \
+  X(static_force, "N", NAN, 0, INFINITY, CLOSED, "stribeck lugre brown_mcphee",                    \
+    "breakaway level, f_s >= f_c; unset: f_c")                                                     \
+  X(stribeck_velocity, "m/s", 1e-2, 0, INFINITY, OPEN, "stribeck lugre brown_mcphee",              \
+    "speed at which f_s has fallen, v_s")                                                          \
+  X(stribeck_exponent, "1", 2, 0, 10, OPEN, "stribeck lugre", "shape of the fall from f_s to f_c") \
+  X(transition_velocity, "m/s", 1e-4, 0, INFINITY, OPEN, "", "width of sign(v) = tanh(v / width)") \
+  X(friction_asymmetry, "1", 0, -0.999, 0.999, CLOSED, "coulomb stribeck dahl lugre brown_mcphee", \
+    "relative rise of the level for v > 0, fall for v < 0")                                        \
+  X(friction_gradient, "1/m", 0, -INFINITY, INFINITY, CLOSED,                                      \
+    "coulomb stribeck dahl lugre brown_mcphee", "relative rise of the level per x")                \
+  X(friction_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED,                                   \
+    "coulomb stribeck dahl lugre brown_mcphee", "relative rise of the level per x^2")              \
+  /* bristles: Dahl and LuGre */                                                                   \
+  X(bristle_stiffness, "N/m", 1e5, 0, INFINITY, OPEN, "dahl lugre",                                \
+    "pre-sliding stiffness, sigma0")                                                               \
+  X(bristle_damping, "N*s/m", 0, 0, INFINITY, CLOSED, "lugre", "LuGre micro-damping, sigma1")      \
+  X(dahl_exponent, "1", 1, 0, 10, CLOSED, "dahl", "shape of the Dahl loop")                        \
+  /* Bouc-Wen */                                                                                   \
+  X(bw_alpha, "1", 1, 0, INFINITY, OPEN, "bouc_wen", "z' per v while elastic, alpha")              \
+  X(bw_beta, "m^-n", 0.5, -INFINITY, INFINITY, CLOSED, "bouc_wen", "hysteresis shape, beta")       \
+  X(bw_gamma, "m^-n", 0.5, -INFINITY, INFINITY, CLOSED, "bouc_wen", "hysteresis shape, gamma")     \
+  X(bw_exponent, "1", 1, 1, 20, CLOSED, "bouc_wen", "sharpness of yielding, n")                    \
+  X(bw_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "bouc_wen", "k0: F = A k0 x + (1 - A) k0 z")      \
+  X(bw_ratio, "1", 0, -INFINITY, INFINITY, CLOSED, "bouc_wen", "elastic share A")
+
+// the friction laws: X(identifier, number of states, meaning)
+#define INERTER_FRICTION_LAWS(X)                                       \
+  X(none, 0, "no friction")                                            \
+  X(coulomb, 0, "constant level against the motion")                   \
+  X(stribeck, 0, "level falls from f_s to f_c with speed")             \
+  X(dahl, 1, "bristle that yields at f_c: memory, no Stribeck effect") \
+  X(lugre, 1, "bristle with Stribeck effect and micro-damping")        \
+  X(bouc_wen, 1, "smooth hysteresis with an elastic share")            \
+  X(brown_mcphee, 0, "smooth Stribeck curve without states")
+
+#endif  // INERTER_CORE_PARAMETERS_H_

@@ -1,0 +1,17 @@
+// Stribeck friction: the level falls from breakaway to sliding as the speed grows.
+//
+//   F = [f_c + (f_s - f_c) exp(-(|v| / v_s)^delta)] sign(v),  sign(v) = tanh(v / v_t)
+//
+// f_c, f_s [N] coulomb_force, static_force (times the level of friction.h); v_s [m/s]
+// stribeck_velocity; delta stribeck_exponent; v_t [m/s] transition_velocity, to be well below v_s.
+// Source: the static characteristic of Canudas de Wit et al. 1995.
+// Not modelled: memory before sliding and frictional lag (see lugre.c).
+
+#include "friction.h"
+
+static double force(const InerterDevice* p, double x, double v, double z) {
+  (void)z;
+  return friction_level(p, x, v) * friction_stribeck_curve(p, v) * friction_direction(p, v);
+}
+
+const FrictionLaw inerter_stribeck = {.force = force};

@@ -1,0 +1,267 @@
+"""Diagnosis of bench records: displacement in, force out, what does the simulation lack?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from inerter.core import Device, parameters
+from inerter.diagnose import wording
+from inerter.diagnose.effects import EFFECTS, effects_of, submodel
+from inerter.diagnose.engines import simulate_engines
+from inerter.diagnose.preparation import Preparation, prepare
+from inerter.diagnose.result import (
+    Accuracy,
+    Diagnosis,
+    Finding,
+    ParameterValue,
+    RecordSummary,
+    RunCurves,
+)
+from inerter.diagnose.rivals import Standing, standing
+from inerter.diagnose.search import Scored, Search
+from inerter.diagnose.split import Split, blocks, split
+from inerter.diagnose.statistics import advantage, block_squares
+from inerter.diagnose.unexplained import unexplained
+from inerter.identify.bench import Run, scales, thin, whole
+from inerter.identify.coordinates import Scales
+from inerter.identify.fit import Fit, Model, Problem, force_along, parameter_errors
+from inerter.records import Record
+
+Progress = Callable[[str], None]
+
+# how surely an effect must help on the held-out data to be reported (standard errors)
+CONFIRMING_ADVANTAGE = 2.0
+# width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
+TRANSITION = 0.005
+
+
+def diagnose_bench(
+    records: Sequence[Record],
+    device: Device | None = None,
+    holdout: Sequence[str] = (),
+    progress: Progress = lambda text: None,
+) -> Diagnosis:
+    """What a simulation of the device lacks, on data it has not seen.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        One or several runs.
+    device : Device, optional
+        The user's own device; its stated parameters are held until the data contradict them. By
+        default the baseline is the ideal inerter with unknown inertance.
+    holdout : sequence of str
+        Names of runs to hold out.
+    progress : callable
+        Told what is being done, a line each.
+
+    Raises
+    ------
+    ValueError
+        Runs that cannot be split or do not move.
+    """
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _Bench(records, device, holdout, progress).run()
+
+
+def baseline_model(device: Device | None, sizes: Scales) -> Model:
+    """The model to start from: ideal inerter with free inertance, or the device as stated."""
+    transition = max(parameters()["transition_velocity"].initial, TRANSITION * sizes.velocity)
+    if device is None:
+        start = sizes.force / sizes.acceleration
+        return Model(
+            "none", {"inertance": start, "transition_velocity": transition}, ("inertance",)
+        )
+    values = {name: float(value) for name, value in device.given.items() if name != "friction"}
+    values.setdefault("transition_velocity", transition)
+    level = values.get("coulomb_force", 0.0)
+    if "static_force" in values:
+        values["static_excess"] = values.pop("static_force") - level
+    if "bristle_stiffness" in values:
+        values["presliding"] = level / values.pop("bristle_stiffness")
+    free = () if "inertance" in values else ("inertance",)
+    values.setdefault("inertance", sizes.force / sizes.acceleration)
+    return Model(device.friction, values, free)
+
+
+class _Bench:
+    """One diagnosis, step by step."""
+
+    def __init__(
+        self, records: Sequence[Record], device: Device | None, holdout: Sequence[str],
+        progress: Progress,
+    ) -> None:
+        self.all_records = list(records)
+        self.records = [
+            r for r in records if not any(w.code == "duplicate_record" for w in r.warnings)
+        ]
+        self.progress = progress
+        progress("smoothing: choosing the cut-off")
+        self.preparation: Preparation = prepare(self.records)
+        self.runs: list[Run] = [thin(motion) for motion in self.preparation.motions]
+        self.whole: list[Run] = [whole(motion) for motion in self.preparation.motions]
+        self.split: Split = split(self.runs, holdout)
+        held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
+        self.full = split(self.whole, held)
+        self.band = Problem(self.runs, self.split.holdout, scales(self.runs))
+        self.raw = Problem(self.whole, self.full.holdout, self.band.scales)
+        self.baseline = baseline_model(device, self.band.scales)
+        self.search = Search(self.runs, self.split, self.baseline, progress)
+
+    def run(self) -> Diagnosis:
+        """The whole procedure."""
+        before = self.search.problem.fit(self.baseline)
+        final = self.search.run()
+        final, standings = self._settle(final)
+        chain = self._chain(final.model)
+        while (weak := self._unconfirmed(chain)) is not None:
+            self.progress(f"{weak} is not confirmed on held-out data: dropped")
+            rest = [name for name, _ in effects_of(final.model, self.baseline) if name != weak]
+            fit = self.search.problem.fit(submodel(final.model, rest, self.baseline))
+            final = self.search.score("", None, fit)
+            chain = self._chain(final.model)
+        findings = self._findings(final.fit, chain, standings)
+        return self._diagnosis(before, final.fit, findings)
+
+    def _settle(self, final: Scored) -> tuple[Scored, dict[str, Standing]]:
+        """Compare every effect with its rivals; where they are equal, name the usual one."""
+        for _ in range(3):
+            standings = {}
+            swap = None
+            for effect, _ in effects_of(final.model, self.baseline):
+                standings[effect] = standing(self.search, final, effect)
+                swap = standings[effect].better
+                if swap is not None:
+                    break
+            if swap is None:
+                return final, standings
+            final = swap
+        return final, standings
+
+    def _chain(self, model: Model) -> list[tuple[str, str | None, Fit, Fit]]:
+        """The effects one after another, the most useful first: name, law, fit before and after."""
+        self.progress("measuring the gain of each effect")
+        left = effects_of(model, self.baseline)
+        fit = self.search.problem.fit(self.baseline)
+        masks = self.search.problem.masks
+        taken: list[str] = []
+        chain = []
+        while left:
+            trials = []
+            for effect, law in left:
+                names = [*taken, effect]
+                trial = self.search.problem.fit(submodel(model, names, self.baseline))
+                trials.append((trial.rmse(masks), effect, law, trial))
+            _, effect, law, after = min(trials, key=lambda trial: trial[0])
+            chain.append((effect, law, fit, after))
+            left = [pair for pair in left if pair[0] != effect]
+            taken.append(effect)
+            fit = after
+        return chain
+
+    def _unconfirmed(self, chain: list[tuple[str, str | None, Fit, Fit]]) -> str | None:
+        """The first effect of a chain that does not help on the held-out data."""
+        stretches = blocks(self.runs, self.band.masks)
+        for effect, _, before, after in reversed(chain):
+            squares = [
+                block_squares(self.band.residual(fit.model), stretches) for fit in (before, after)
+            ]
+            if (
+                squares[1].sum() >= squares[0].sum()
+                or advantage(squares[0], squares[1]) < CONFIRMING_ADVANTAGE
+            ):
+                return effect
+        return None
+
+    def _findings(
+        self, final: Fit, chain: list[tuple[str, str | None, Fit, Fit]],
+        standings: dict[str, Standing],
+    ) -> list[Finding]:
+        values = self._parameters(final)
+        findings = []
+        for effect, law, before, after in chain:
+            known = standings.get(effect)
+            named = {n: values[n] for n in EFFECTS[effect].parameters if n in values}
+            if effect == "sensor_delay":
+                named = {"delay": values["delay"]}
+            finding = Finding(
+                effect, law, known.confidence if known else 0.5, named,
+                self._raw_rmse(before.model), self._raw_rmse(after.model), "",
+                [r for r in known.rivals if r.confidence >= 0.005] if known else [],
+            )
+            findings.append(replace(finding, evidence=wording.evidence(finding)))
+        return sorted(findings, key=lambda finding: -finding.gain)
+
+    def _parameters(self, fit: Fit) -> dict[str, ParameterValue]:
+        units = {name: entry.unit for name, entry in parameters().items()} | {"delay": "s"}
+        return {
+            name: ParameterValue(value, error, units[name])
+            for name, (value, error) in parameter_errors(fit).items()
+        }
+
+    def _raw_rmse(self, model: Model) -> float:
+        residual = self.raw.residual(model)
+        square = sum(
+            float(np.sum(r[m] ** 2)) for r, m in zip(residual, self.raw.masks, strict=True)
+        )
+        return float(np.sqrt(square / sum(int(m.sum()) for m in self.raw.masks)))
+
+    def _accuracy(self, model: Model) -> Accuracy:
+        rmse = self._raw_rmse(model)
+        force = np.concatenate(
+            [run.force[m] for run, m in zip(self.whole, self.raw.masks, strict=True)]
+        )
+        given = model.device().given
+        return Accuracy(given, rmse, rmse / float(np.std(force)), model.delay)
+
+    def _diagnosis(self, before: Fit, final: Fit, findings: list[Finding]) -> Diagnosis:
+        baseline, extended = self._accuracy(before.model), self._accuracy(final.model)
+        floor = self.preparation.noise_floor
+        remains = unexplained(
+            self.runs, self.split, self.band.residual(final.model), floor, extended.rmse
+        )
+        self.progress("simulating the extended device in MuJoCo")
+        engines = simulate_engines(final.model, self.whole, self.raw.masks)
+        names = [r.name for r in self.records]
+        summaries = [
+            RecordSummary(
+                record.name,
+                record.samples,
+                record.sample_rate,
+                self.split.role(names.index(record.name)) if record in self.records else "unused",
+                [vars(w) for w in record.warnings],
+            )
+            for record in self.all_records
+        ]
+        diagnosis = Diagnosis(
+            summaries, baseline, findings, extended, floor, remains, engines, "",
+            self._parameters(final), self._method(), self._curves(before.model, final.model),
+        )
+        return replace(diagnosis, verdict=wording.verdict(diagnosis))
+
+    def _method(self) -> dict:
+        p = self.preparation
+        return {
+            "cutoff": p.cutoff,
+            "cutoffs_tried": [float(value) for value in p.cutoffs],
+            "force_error_at_cutoffs": [float(value) for value in p.errors],
+            "channels": ["displacement", *p.channels],
+            "split": self.split.description,
+            "held_out_samples": sum(int(mask.sum()) for mask in self.raw.masks),
+        }
+
+    def _curves(self, before: Model, after: Model) -> list[RunCurves]:
+        curves = []
+        for i, run in enumerate(self.whole):
+            curves.append(
+                RunCurves(
+                    run.name, self.split.role(i), run.time, run.displacement, run.velocity,
+                    run.acceleration, run.force, force_along(before, run), force_along(after, run),
+                    self.full.holdout[i], run.inner,
+                )
+            )
+        return curves

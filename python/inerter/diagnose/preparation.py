@@ -1,0 +1,129 @@
+"""Smoothing chosen from the data: the cut-off whose motion predicts the measured force best."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+from inerter.records import Record
+from inerter.records.motion import Motion, smooth
+
+Array = NDArray[np.float64]
+
+# the lowest cut-off that predicts the force this nearly as well as the best one is taken
+TOLERANCE = 0.005
+# ratio of neighbouring cut-offs tried, and the highest one [Hz]
+STEP = 1.3
+HIGHEST = 200.0
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """Smoothed motions and how they came about.
+
+    Attributes
+    ----------
+    cutoffs, errors : ndarray (m,)
+        Cut-offs tried [Hz] and the rms force error of a broad linear model on each [N].
+    channels : tuple of str
+        Measured channels used beside the displacement.
+    noise_floor : float
+        Rms of the force channel's noise, from its highest frequencies [N].
+    """
+
+    motions: list[Motion]
+    cutoff: float
+    cutoffs: Array
+    errors: Array
+    channels: tuple[str, ...]
+    noise_floor: float
+
+
+def prepare(records: Sequence[Record]) -> Preparation:
+    """Smooth every record at one cut-off, chosen so that the motion predicts the force best.
+
+    Too low a cut-off takes acceleration away, too high a one lets noise in; both make the force
+    error grow. The force is an independent witness of the acceleration, so no assumption about the
+    noise of the displacement is needed, and coloured noise does no harm.
+    """
+    rate = min(record.sample_rate for record in records)
+    lowest = max(4 * _dominant_frequency(record) for record in records)
+    highest = min(0.2 * rate, HIGHEST)
+    lowest = min(0.5 * lowest, highest / 2)
+    count = int(np.ceil(np.log(highest / lowest) / np.log(STEP))) + 1
+    cutoffs = np.geomspace(lowest, highest, count)
+    choices: list[tuple[str, ...]] = [()]
+    measured = tuple(
+        name
+        for name in ("velocity", "acceleration")
+        if all(getattr(record, name) is not None for record in records)
+    )
+    if measured:
+        choices.append(measured)
+    errors = np.array(
+        [
+            [_force_error([smooth(r, cutoff, use) for r in records]) for cutoff in cutoffs]
+            for use in choices
+        ]
+    )
+    best_choice = int(np.argmin(errors.min(axis=1)))
+    row = errors[best_choice]
+    index = int(np.flatnonzero(row <= row.min() * (1 + TOLERANCE))[0])
+    cutoff, use = float(cutoffs[index]), choices[best_choice]
+    return Preparation(
+        [smooth(record, cutoff, use) for record in records],
+        cutoff,
+        cutoffs,
+        row,
+        use,
+        _noise_floor(records),
+    )
+
+
+def _dominant_frequency(record: Record) -> float:
+    """Frequency below which half of the velocity's power lies [Hz]."""
+    x = record.displacement - np.mean(record.displacement)
+    power = np.abs(np.fft.rfft(x * np.hanning(x.size))) ** 2
+    frequency = np.fft.rfftfreq(x.size, record.sample_interval)
+    cumulative = np.cumsum(power * frequency**2 / (1 + (frequency / 20.0) ** 4))
+    return float(max(frequency[np.searchsorted(cumulative, 0.5 * cumulative[-1])], frequency[1]))
+
+
+def _force_error(motions: Sequence[Motion]) -> float:
+    """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory."""
+    x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
+    v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
+    columns, forces = [], []
+    for motion in motions:
+        x, v, a = motion.displacement, motion.velocity, motion.acceleration
+        rows = [a, v, x, np.ones_like(x), v * np.abs(v), np.tanh(v / (0.01 * v_rms))]
+        for share in (0.003, 0.03, 0.3):
+            bristle = Device(
+                friction="dahl", coulomb_force=1.0, bristle_stiffness=1 / (share * x_rms)
+            )
+            rows.append(bristle.along(motion.spacing, x, v, a)["friction"])
+        columns.append(np.array(rows).T[motion.inner])
+        forces.append(motion.force[motion.inner])
+    matrix, force = np.vstack(columns), np.concatenate(forces)
+    matrix = matrix / (np.std(matrix, axis=0) + np.abs(np.mean(matrix, axis=0)) + 1e-300)
+    gram, right = matrix.T @ matrix, matrix.T @ force
+    solution = np.linalg.lstsq(gram, right, rcond=1e-12)[0]
+    return float(np.sqrt(np.mean((force - matrix @ solution) ** 2)))
+
+
+def _noise_floor(records: Sequence[Record]) -> float:
+    """Rms of white noise on the force, from the upper third of its spectrum (median, robust).
+
+    A force channel that was filtered before it was stored has none there: then this is too low.
+    """
+    variances = []
+    for record in records:
+        force = record.force - np.mean(record.force)
+        window = np.hanning(force.size)
+        power = np.abs(np.fft.rfft(force * window)) ** 2 / np.sum(window**2)
+        variances.append(np.median(power[2 * power.size // 3 :]) / np.log(2))
+    return float(np.sqrt(np.mean(variances)))

@@ -1,0 +1,176 @@
+"""What a diagnosis says, and its JSON."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SCHEMA = "inerter.diagnosis/1"
+
+
+@dataclass(frozen=True)
+class ParameterValue:
+    """An identified value with its standard error."""
+
+    value: float
+    stderr: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another effect that could explain the same data, and how likely it is."""
+
+    effect: str
+    confidence: float
+    law: str | None = None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An effect that the simulation lacks.
+
+    rmse_before, rmse_after: rms force error on held-out data [N] before and after adding it;
+    confidence: share of resamples of the data in which it does better than without it and better
+    than every rival.
+    """
+
+    effect: str
+    law: str | None
+    confidence: float
+    parameters: dict[str, ParameterValue]
+    rmse_before: float
+    rmse_after: float
+    evidence: str
+    rivals: list[Rival]
+
+    @property
+    def gain(self) -> float:
+        """Share of the held-out rms error that it takes away."""
+        return 1 - self.rmse_after / self.rmse_before if self.rmse_before > 0 else 0.0
+
+    def json(self) -> dict[str, Any]:
+        """As in the contract."""
+        return {
+            "effect": self.effect,
+            "law": self.law,
+            "confidence": round(self.confidence, 4),
+            "parameters": {name: vars(value) for name, value in self.parameters.items()},
+            "rmse_before": self.rmse_before,
+            "rmse_after": self.rmse_after,
+            "gain": self.gain,
+            "evidence": self.evidence,
+            "rivals": [
+                {"effect": r.effect, "law": r.law, "confidence": round(r.confidence, 4)}
+                for r in self.rivals
+            ],
+        }
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """A device and its force error on held-out data [N]; nrmse: per standard deviation of force."""
+
+    device: dict[str, float | str]
+    rmse: float
+    nrmse: float
+    delay: float = 0.0
+
+    def json(self) -> dict[str, Any]:
+        """As in the contract."""
+        device: dict[str, float | str] = dict(self.device)
+        result: dict[str, Any] = {"device": device, "rmse": self.rmse, "nrmse": self.nrmse}
+        if self.delay:
+            result["channels"] = {"delay": self.delay}
+        return result
+
+
+@dataclass(frozen=True)
+class RecordSummary:
+    """One record, and how it was used."""
+
+    name: str
+    samples: int
+    sample_rate: float
+    role: str
+    warnings: list[dict[str, str]]
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """What remains after the extension."""
+
+    significant: bool
+    fraction: float
+    depends_on: list[str]
+    summary: str
+
+
+@dataclass(frozen=True)
+class RunCurves:
+    """Measured and simulated force of one run, for the report; arrays (n,), NaN-free.
+
+    inner: False near the ends where the motion is uncertain and nothing is judged.
+    """
+
+    name: str
+    role: str
+    time: Array
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    force: Array
+    baseline: Array
+    extended: Array
+    holdout: NDArray[np.bool_]
+    inner: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class TablePoints:
+    """A bench table with the amplitudes of both models, arrays (n,)."""
+
+    frequency: Array
+    acceleration: Array
+    force: Array
+    baseline: Array
+    extended: Array
+    holdout: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The outcome of a diagnosis."""
+
+    records: list[RecordSummary]
+    baseline: Accuracy
+    findings: list[Finding]
+    extended: Accuracy
+    noise_floor: float
+    unexplained: Unexplained
+    engines: dict[str, float | None]
+    verdict: str
+    parameters: dict[str, ParameterValue] = field(default_factory=dict)
+    method: dict[str, Any] = field(default_factory=dict)
+    curves: list[RunCurves] = field(default_factory=list)
+    points: TablePoints | None = None
+
+    def json(self) -> dict[str, Any]:
+        """The contract's diagnosis.json."""
+        return {
+            "schema": SCHEMA,
+            "records": [vars(record) for record in self.records],
+            "baseline": self.baseline.json(),
+            "findings": [finding.json() for finding in self.findings],
+            "extended": self.extended.json(),
+            "parameters": {name: vars(value) for name, value in self.parameters.items()},
+            "noise": {"rmse_floor": self.noise_floor},
+            "unexplained": vars(self.unexplained),
+            "engines": {name: {"rmse": rmse} for name, rmse in self.engines.items()},
+            "method": self.method,
+            "verdict": self.verdict,
+        }

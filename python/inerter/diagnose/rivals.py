@@ -1,0 +1,77 @@
+"""How sure a named effect is: what else could explain the same data, and how well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from inerter.diagnose.effects import candidates, effects_of, submodel
+from inerter.diagnose.result import Rival
+from inerter.diagnose.search import REQUIRED_GAIN, Scored, Search
+from inerter.diagnose.statistics import advantage, win_shares
+
+# where the data cannot tell two effects apart, the earlier one here is named
+PRECEDENCE = (
+    "inertance_error", "coulomb_friction", "viscous_friction", "force_offset",
+    "parallel_stiffness", "sensor_delay", "quadratic_damping", "hysteretic_friction",
+    "load_dependent_friction", "asymmetric_friction", "stribeck_friction",
+    "position_dependent_friction",
+)
+EQUAL_ADVANTAGE = 2.0
+EQUAL_LOSS = 0.005
+# rivals that are worth cross-validating
+SHORTLIST = 3
+
+
+@dataclass(frozen=True)
+class Standing:
+    """An effect's confidence, its rivals, and the rival to name instead, if any."""
+
+    confidence: float
+    rivals: list[Rival]
+    better: Scored | None
+
+
+def standing(search: Search, final: Scored, effect: str) -> Standing:
+    """Compare a model with what it would be with another effect in the place of one of its own."""
+    baseline, problem = search.baseline, search.problem
+    present = [name for name, _ in effects_of(final.model, baseline)]
+    rest = [name for name in present if name != effect]
+    without = search.score(effect, None, problem.fit(submodel(final.model, rest, baseline)))
+
+    trials = []
+    for candidate in candidates(without.model, problem.scales):
+        if candidate.effect != effect and candidate.effect not in rest:
+            search.progress(f"comparing {effect} with {candidate.effect}")
+            trials.append((candidate, search.fit(candidate)))
+    trials.sort(key=lambda pair: pair[1].rmse(problem.masks))
+    scored = []
+    for candidate, fit in trials:
+        if candidate.effect not in [s.effect for s in scored] and len(scored) < SHORTLIST:
+            scored.append(search.score(candidate.effect, candidate.law, fit))
+
+    # a rival with more parameters has to win by what the search asks of a richer model
+    handicap = 1 / (1 - REQUIRED_GAIN) ** 2
+    fair = [
+        s.squares * (handicap if len(s.model.free) > len(final.model.free) else 1.0)
+        for s in scored
+    ]
+    shares = win_shares([final.squares, without.squares, *fair])
+    rivals = [
+        Rival(s.effect, float(share), s.law)
+        for s, share in sorted(zip(scored, shares[2:], strict=True), key=lambda p: -p[1])
+    ]
+    better = next((s for s in scored if _takes_precedence(s, final, effect)), None)
+    return Standing(float(shares[0]), rivals, better)
+
+
+def _takes_precedence(rival: Scored, final: Scored, effect: str) -> bool:
+    """Whether a rival does as well with no more parameters and is the more usual cause."""
+    loss = np.sqrt(rival.squares.sum() / final.squares.sum()) - 1
+    return bool(
+        len(rival.model.free) <= len(final.model.free)
+        and PRECEDENCE.index(rival.effect) < PRECEDENCE.index(effect)
+        and loss < EQUAL_LOSS
+        and advantage(rival.squares, final.squares) < EQUAL_ADVANTAGE
+    )

@@ -1,0 +1,190 @@
+"""The search for what a model lacks: add the effect that predicts left-out data best, repeat, prune.
+
+Every decision is made on folds of the fit data that the model in question was not fitted to; the
+held-out data are not touched here. A richer model has to win by `REQUIRED_ADVANTAGE` standard errors
+over paired blocks and by `REQUIRED_GAIN` of the rms error; among candidates that do about equally
+well the one with the fewest parameters is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from inerter.diagnose.effects import Candidate, candidates, effects_of, without_effect
+from inerter.diagnose.split import Split, blocks
+from inerter.diagnose.statistics import Array, advantage, block_squares, win_shares
+from inerter.identify.bench import Run
+from inerter.identify.fit import Fit, Model, Problem
+
+# about one false alarm in 30,000 for each candidate tried on noise alone
+REQUIRED_ADVANTAGE = 4.0
+REQUIRED_GAIN = 0.01
+# how much a simpler candidate may lose against the best and still be taken
+TOLERATED_ADVANTAGE = 3.0
+TOLERATED_LOSS = 0.01
+# removing an effect that is worth less than this many standard errors
+KEEPING_ADVANTAGE = 3.0
+MOST_EFFECTS = 8
+# candidates that are worth cross-validating in one round
+SHORTLIST = 5
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A fitted candidate and its squared errors on left-out folds, per block."""
+
+    effect: str
+    law: str | None
+    fit: Fit
+    squares: Array
+
+    @property
+    def model(self) -> Model:
+        """The fitted model."""
+        return self.fit.model
+
+
+@dataclass(frozen=True)
+class Step:
+    """One effect added: the winner, and the share of resamples each rival would have won."""
+
+    chosen: Scored
+    rivals: list[tuple[str, str | None, float]]
+    confidence: float
+
+
+@dataclass
+class Search:
+    """A search over the fit data of a split."""
+
+    runs: Sequence[Run]
+    split: Split
+    baseline: Model
+    progress: Progress = lambda text: None
+    steps: list[Step] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.problem = Problem(self.runs, self.split.fit)
+        self.blocks = blocks(self.runs, self.problem.masks)
+        self._folds = [
+            Problem(
+                self.runs,
+                [f & ~left for f, left in zip(self.split.fit, fold, strict=True)],
+                self.problem.scales,
+            )
+            for fold in self.split.folds
+        ]
+
+    def run(self) -> Scored:
+        """Search from the baseline; the extended model, fitted to all fit data."""
+        current = self.score("baseline", None, self.problem.fit(self.baseline))
+        while len(self.steps) < MOST_EFFECTS:
+            step = self._best_step(current)
+            if step is None:
+                break
+            self.steps.append(step)
+            current = step.chosen
+        return self._prune(current)
+
+    def score(self, effect: str, law: str | None, fit: Fit) -> Scored:
+        """Squared errors of a fitted model on folds left out of its refits."""
+        if not fit.model.free:
+            return Scored(effect, law, fit, block_squares(fit.residual, self.blocks))
+        left_out = [np.zeros(run.force.size) for run in self.runs]
+        for problem, fold in zip(self._folds, self.split.folds, strict=True):
+            residual = problem.fit(fit.model, evaluations=12).residual
+            for target, values, mask in zip(left_out, residual, fold, strict=True):
+                target[mask] = values[mask]
+        return Scored(effect, law, fit, block_squares(left_out, self.blocks))
+
+    def fit(self, candidate: Candidate) -> Fit:
+        """Best fit over a candidate's starting points."""
+        starts = candidate.starts
+        if len(starts) > 1:
+            trials = [self.problem.fit(start, evaluations=8) for start in starts]
+            trials.sort(key=lambda fit: fit.rmse(self.problem.masks))
+            starts = tuple(trial.model for trial in trials[:2])
+        fits = [self.problem.fit(start) for start in starts]
+        return min(fits, key=lambda fit: fit.rmse(self.problem.masks))
+
+    def _best_step(self, current: Scored) -> Step | None:
+        """The effect to add next, or None."""
+        masks = self.problem.masks
+        fitted = []
+        for candidate in candidates(current.model, self.problem.scales):
+            self.progress(f"{len(self.steps) + 1}. effect: trying {candidate.effect}")
+            fitted.append((candidate, self.fit(candidate)))
+        fitted.sort(key=lambda pair: pair[1].rmse(masks))
+        if not fitted:
+            return None
+        floor = fitted[0][1].rmse(masks)
+        before = current.fit.rmse(masks)
+        worth = before - REQUIRED_GAIN * before
+        shortlist = [pair for pair in fitted if pair[1].rmse(masks) < worth][:SHORTLIST]
+
+        # simpler candidates that are nearly as good must have their chance
+        shortlist += [
+            pair
+            for pair in fitted
+            if pair not in shortlist and pair[1].rmse(masks) < floor * (1 + 5 * TOLERATED_LOSS)
+        ]
+        scored = []
+        for candidate, fit in shortlist:
+            self.progress(f"{len(self.steps) + 1}. effect: checking {candidate.effect}")
+            scored.append(self.score(candidate.effect, candidate.law, fit))
+        good = [s for s in scored if self._better(current, s)]
+        if not good:
+            return None
+        best = min(good, key=lambda s: s.squares.sum())
+        equal = [s for s in good if s is best or self._as_good(s, best)]
+        chosen = min(equal, key=lambda s: (len(s.model.free), s.squares.sum()))
+        return self._step(current, chosen, scored)
+
+    def _step(self, current: Scored, chosen: Scored, scored: list[Scored]) -> Step:
+        # a rival is another effect; laws of one effect compete within it
+        others = [s for s in scored if s.effect != chosen.effect]
+        shares = win_shares([chosen.squares, current.squares, *(s.squares for s in others)])
+        rivals = [
+            (other.effect, other.law, float(share))
+            for other, share in zip(others, shares[2:], strict=True)
+        ]
+        rivals.sort(key=lambda rival: -rival[2])
+        return Step(chosen, rivals, float(shares[0]))
+
+    def _better(self, simple: Scored, rich: Scored) -> bool:
+        gain = 1 - np.sqrt(rich.squares.sum() / simple.squares.sum())
+        return bool(
+            gain > REQUIRED_GAIN and advantage(simple.squares, rich.squares) > REQUIRED_ADVANTAGE
+        )
+
+    def _as_good(self, simple: Scored, best: Scored) -> bool:
+        """Whether a candidate loses so little against the best that fewer parameters decide."""
+        loss = np.sqrt(simple.squares.sum() / best.squares.sum()) - 1
+        return bool(
+            len(simple.model.free) < len(best.model.free)
+            and (
+                loss < TOLERATED_LOSS
+                or advantage(simple.squares, best.squares) < TOLERATED_ADVANTAGE
+            )
+        )
+
+    def _prune(self, current: Scored) -> Scored:
+        """Take away what the others have made unnecessary, the least important first."""
+        while True:
+            simpler = []
+            for effect, _ in effects_of(current.model, self.baseline):
+                for model in without_effect(current.model, effect, self.baseline):
+                    self.progress(f"checking whether {effect} is still needed")
+                    scored = self.score(effect, None, self.problem.fit(model))
+                    lost = advantage(scored.squares, current.squares)
+                    ratio = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
+                    if lost < KEEPING_ADVANTAGE or ratio < REQUIRED_GAIN / 2:
+                        simpler.append((ratio, scored))
+            if not simpler:
+                return current
+            current = min(simpler, key=lambda pair: pair[0])[1]

@@ -1,0 +1,118 @@
+"""What a diagnosis learns from and what it is judged on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identify.bench import Run
+
+Mask = NDArray[np.bool_]
+
+# a single record is cut into this many blocks, of which these are held out
+BLOCKS = 10
+HELD_OUT_BLOCKS = (3, 6, 8)
+
+
+@dataclass(frozen=True)
+class Split:
+    """Masks per run: samples to learn from, samples held out, and folds within the former."""
+
+    fit: list[Mask]
+    holdout: list[Mask]
+    folds: list[list[Mask]]
+    description: str
+
+    def role(self, i: int) -> str:
+        """Role of run i: "fit" or "holdout"."""
+        return "fit" if self.fit[i].any() else "holdout"
+
+
+def split(runs: Sequence[Run], holdout: Sequence[str] = ()) -> Split:
+    """Hold out whole runs where there are several, else blocks of the one.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    holdout : sequence of str
+        Names of runs to hold out; by default the run whose motion is nearest to the others', so
+        that it is judged on what can be learnt from them.
+
+    Raises
+    ------
+    ValueError
+        A name that no run has, or no run left to learn from.
+    """
+    names = [run.name for run in runs]
+    for name in holdout:
+        if name not in names:
+            raise ValueError(f"--holdout {name}: no such run; the runs are {', '.join(names)}")
+    if len(set(holdout)) == len(runs):
+        raise ValueError("--holdout names every run; leave at least one to learn from")
+    if holdout or len(runs) > 1:
+        held = {names.index(name) for name in holdout} or {_most_typical(runs)}
+        everything = [np.ones(run.force.size, bool) for run in runs]
+        fit = [m if i not in held else ~m for i, m in enumerate(everything)]
+        out = [m if i in held else ~m for i, m in enumerate(everything)]
+        text = "held out: " + ", ".join(names[i] for i in sorted(held))
+        return Split(fit, out, _folds(runs, fit), text)
+
+    # one record: blocks spread over it
+    edges = np.linspace(0, runs[0].force.size, BLOCKS + 1).astype(int)
+    out = np.zeros(runs[0].force.size, bool)
+    for block in HELD_OUT_BLOCKS:
+        out[edges[block] : edges[block + 1]] = True
+    blocks = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
+    text = f"held out: blocks {blocks} of {BLOCKS} of {names[0]}"
+    return Split([~out], [out], _folds(runs, [~out]), text)
+
+
+def _most_typical(runs: Sequence[Run]) -> int:
+    """The run whose amplitudes (displacement, velocity, acceleration) are nearest to the median."""
+    channels = ("displacement", "velocity", "acceleration")
+    sizes = np.log(
+        [[np.std(getattr(run, channel)) + 1e-300 for channel in channels] for run in runs]
+    )
+    return int(np.argmin(np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)))
+
+
+def _folds(runs: Sequence[Run], fit: list[Mask]) -> list[list[Mask]]:
+    """Masks of what each fold leaves out: a run each, or spread blocks where there are few runs."""
+    used = [i for i, mask in enumerate(fit) if mask.any()]
+    if len(used) >= 3:
+        groups = [used[start::5] for start in range(min(5, len(used)))]
+        return [
+            [mask if i in group else np.zeros_like(mask) for i, mask in enumerate(fit)]
+            for group in groups
+        ]
+    folds = []
+    for fold in range(4):
+        masks = []
+        for mask in fit:
+            index = np.flatnonzero(mask)
+            chosen = np.zeros_like(mask)
+            for part in np.array_split(index, 16)[fold::4]:
+                chosen[part] = True
+            masks.append(chosen)
+        folds.append(masks)
+    return folds
+
+
+def blocks(runs: Sequence[Run], masks: Sequence[Mask], count: int = 48) -> list[tuple[int, Mask]]:
+    """Stretches of consecutive masked samples, about `count` of them: (run, index array).
+
+    Residuals are correlated over milliseconds; sums over such stretches are nearly independent,
+    which is what the tests of `statistics` need.
+    """
+    total = sum(int(mask.sum()) for mask in masks)
+    length = max(total // count, 8)
+    found = []
+    for i, mask in enumerate(masks):
+        index = np.flatnonzero(mask)
+        if index.size:
+            parts = max(1, round(index.size / length))
+            found += [(i, part) for part in np.array_split(index, parts)]
+    return found

@@ -1,0 +1,50 @@
+"""Whether one model is better than another, beyond chance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def block_squares(
+    residual: Sequence[Array], blocks: Sequence[tuple[int, NDArray]]
+) -> Array:
+    """Sum of squared residuals over each block, shape (number of blocks,)."""
+    return np.array([float(np.sum(residual[i][index] ** 2)) for i, index in blocks])
+
+
+def advantage(simple: Array, rich: Array) -> float:
+    """How surely the second of two models has smaller errors: a t value over paired blocks.
+
+    The squared errors of neighbouring blocks differ in size (calm and busy stretches), so each
+    difference is divided by the root of their mean: a busy stretch does not decide alone.
+    """
+    weight = 1 / np.sqrt(simple + rich + 1e-12 * np.sum(simple + rich))
+    difference = (simple - rich) * weight
+    spread = np.std(difference, ddof=1) / np.sqrt(difference.size)
+    return float(np.mean(difference) / spread) if spread > 0 else 0.0
+
+
+def win_shares(squares: Sequence[Array], seed: int = 0, draws: int = 2000) -> Array:
+    """Share of block-bootstrap resamples in which each model has the smallest error.
+
+    Parameters
+    ----------
+    squares : sequence of ndarray (n,)
+        Block sums of squared errors of each model, the same blocks.
+
+    Returns
+    -------
+    ndarray (number of models,)
+        Shares that add up to 1.
+    """
+    table = np.array(squares)
+    random = np.random.default_rng(seed)
+    choice = random.integers(0, table.shape[1], (draws, table.shape[1]))
+    sums = table[:, choice].sum(axis=2)
+    winners = np.argmin(sums, axis=0)
+    return np.bincount(winners, minlength=table.shape[0]) / draws

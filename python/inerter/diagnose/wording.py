@@ -1,0 +1,106 @@
+"""The sentences of a diagnosis: evidence for a finding, and the verdict."""
+
+from __future__ import annotations
+
+from inerter.diagnose.effects import EFFECTS
+from inerter.diagnose.result import Diagnosis, Finding, ParameterValue
+
+_NAMES = {
+    "coulomb_force": "sliding level f_c",
+    "static_force": "breakaway level f_s",
+    "stribeck_velocity": "Stribeck velocity v_s",
+    "bristle_stiffness": "bristle stiffness sigma0",
+    "bristle_damping": "bristle damping sigma1",
+    "friction_asymmetry": "asymmetry",
+    "friction_gradient": "gradient along the stroke",
+    "friction_curvature": "curvature along the stroke",
+    "load_friction": "mu",
+    "bw_stiffness": "Bouc-Wen stiffness k0",
+    "bw_beta": "beta",
+    "bw_gamma": "gamma",
+    "viscous": "c",
+    "stiffness": "k",
+    "quadratic_damping": "c2",
+    "force_offset": "offset",
+    "delay": "delay",
+    "inertance": "b",
+}
+# words for effects in running text
+PLAIN = {
+    "inertance_error": "an inertance other than stated",
+    "viscous_friction": "viscous friction",
+    "coulomb_friction": "Coulomb friction",
+    "stribeck_friction": "Stribeck friction",
+    "hysteretic_friction": "friction with memory",
+    "asymmetric_friction": "friction that differs between the two directions",
+    "position_dependent_friction": "friction that changes along the stroke",
+    "load_dependent_friction": "friction that grows with the transmitted force",
+    "parallel_stiffness": "a parallel stiffness",
+    "force_offset": "a constant force",
+    "sensor_delay": "a delay between the force and the displacement channel",
+    "quadratic_damping": "quadratic damping",
+}
+_LAWS = {"dahl": "Dahl", "lugre": "LuGre", "bouc_wen": "Bouc-Wen"}
+
+
+def quantity(value: ParameterValue, digits: int = 3) -> str:
+    """Such as "113 ± 0.2 kg"."""
+    unit = "" if value.unit == "1" else f" {value.unit}"
+    return f"{value.value:.{digits}g} ± {value.stderr:.1g}{unit}"
+
+
+def effect_in_words(finding: Finding) -> str:
+    """Such as "friction with memory (Dahl)"."""
+    law = f" ({_LAWS[finding.law]})" if finding.law in _LAWS else ""
+    return PLAIN[finding.effect] + law
+
+
+def evidence(finding: Finding) -> str:
+    """One sentence: values, and what the effect does to the error on held-out data."""
+    values = ", ".join(
+        f"{_NAMES.get(name, name)} = {quantity(value)}"
+        for name, value in finding.parameters.items()
+    )
+    text = (
+        f"{values}: the rms force error on held-out data falls from {finding.rmse_before:.3g} N to "
+        f"{finding.rmse_after:.3g} N ({100 * finding.gain:.0f} %)"
+    )
+    likely = [rival for rival in finding.rivals if rival.confidence >= 0.05]
+    if likely:
+        others = " or ".join(PLAIN[rival.effect] for rival in likely[:2])
+        text += f"; {others} would explain these data nearly as well"
+    return text + "."
+
+
+def verdict(diagnosis: Diagnosis) -> str:
+    """One paragraph in plain words."""
+    before, after = diagnosis.baseline, diagnosis.extended
+    if not diagnosis.findings:
+        return (
+            f"The simulation is right as far as these data can tell: it misses the force by "
+            f"{before.rmse:.3g} N rms ({100 * before.nrmse:.1f} % of its variation) on held-out "
+            f"data, and no effect tried improves that. {diagnosis.unexplained.summary}"
+        )
+    first = diagnosis.findings[0]
+    others = [effect_in_words(finding) for finding in diagnosis.findings[1:]]
+    text = (
+        f"The simulation misses the measured force by {before.rmse:.3g} N rms "
+        f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause is "
+        f"{effect_in_words(first)}"
+    )
+    if others:
+        text += "; it also lacks " + ", ".join(others[:-1])
+        text += (" and " if others[:-1] else "") + others[-1]
+    text += (
+        f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms, "
+        f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {diagnosis.unexplained.summary}"
+    )
+    doubts = [
+        f"{effect_in_words(finding)} can hardly be told from {PLAIN[finding.rivals[0].effect]} "
+        f"({EFFECTS[finding.effect].taken_for})"
+        for finding in diagnosis.findings
+        if finding.rivals and finding.rivals[0].confidence >= 0.05
+    ]
+    if doubts:
+        text += " In these data " + "; ".join(doubts) + "."
+    return text

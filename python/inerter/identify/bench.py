@@ -1,0 +1,101 @@
+"""Bench data as a fit needs them: smoothed motions, the force in the same band, and masks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import rfftfreq
+
+from inerter.identify.coordinates import Scales
+from inerter.records.motion import Motion, filtered, lowpass, response
+
+Array = NDArray[np.float64]
+
+# samples per period of the cut-off that a fit works on; more add time and no information
+SAMPLES_PER_PERIOD = 12
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run, thinned to what its band needs.
+
+    Attributes
+    ----------
+    spacing : float
+        Sample spacing [s].
+    displacement, velocity, acceleration, force : ndarray (n,)
+        Smoothed motion, and the measured force through the same low-pass.
+    inner : ndarray of bool (n,)
+        False near the ends.
+    first_force : float
+        Mean measured force over the first 10 ms [N], which tells the state a run begins with.
+    """
+
+    name: str
+    start: float
+    spacing: float
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    force: Array
+    inner: NDArray[np.bool_]
+    first_force: float
+    cutoff: float
+
+    def lowpass(self, values: Array) -> Array:
+        """The smoother's low-pass at this run's rate, shape (n,) to (n,)."""
+        if "_response" not in self.__dict__:
+            frequency = rfftfreq(2 * values.size - 2, self.spacing)
+            object.__setattr__(self, "_response", response(frequency, self.cutoff))
+        return filtered(values, self.__dict__["_response"])
+
+    @property
+    def time(self) -> Array:
+        """Times of the samples [s], shape (n,)."""
+        return self.start + self.spacing * np.arange(self.force.size)
+
+
+def thin(motion: Motion, rate: float | None = None) -> Run:
+    """A run for fitting: force low-passed like the motion, thinned to the rate its band needs.
+
+    `rate` [Hz] overrides the rate; None takes `SAMPLES_PER_PERIOD` times the cut-off.
+    """
+    rate = rate or SAMPLES_PER_PERIOD * motion.cutoff
+    step = max(1, int(1 / (rate * motion.spacing)))
+    first = max(1, round(0.01 / motion.spacing))
+    force = lowpass(motion.force, motion.spacing, motion.cutoff)
+    return Run(
+        motion.name,
+        motion.start,
+        motion.spacing * step,
+        np.ascontiguousarray(motion.displacement[::step]),
+        np.ascontiguousarray(motion.velocity[::step]),
+        np.ascontiguousarray(motion.acceleration[::step]),
+        np.ascontiguousarray(force[::step]),
+        motion.inner[::step],
+        float(np.mean(motion.force[:first])),
+        motion.cutoff,
+    )
+
+
+def whole(motion: Motion) -> Run:
+    """A run at the record's own rate with the force as measured: what figures are reported on."""
+    first = max(1, round(0.01 / motion.spacing))
+    return Run(
+        motion.name, motion.start, motion.spacing, motion.displacement, motion.velocity,
+        motion.acceleration, motion.force, motion.inner, float(np.mean(motion.force[:first])),
+        np.inf,
+    )
+
+
+def scales(runs: Sequence[Run]) -> Scales:
+    """Typical sizes of the channels over all runs."""
+
+    def size(channel: str) -> float:
+        values = np.concatenate([getattr(run, channel) for run in runs])
+        return float(np.std(values)) or 1.0
+
+    return Scales(size("force"), size("displacement"), size("velocity"), size("acceleration"))

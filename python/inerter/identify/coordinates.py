@@ -1,0 +1,108 @@
+"""Coordinates of a fit: what is searched over, and how it becomes the parameters of a device.
+
+Most coordinates are parameters. Where a parameter's effect depends on another one, the coordinate is
+the combination that the data see:
+
+    static_excess   static_force - coulomb_force                     [N]
+    presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
+    bw_level        largest Bouc-Wen force, bw_stiffness * presliding (alpha = 1, n = 1)        [N]
+    bw_shape        beta / (beta + gamma)                             [-]
+    delay           time by which the force channel is late           [s], not a device parameter
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Typical sizes of a data set's channels: rms about the mean, SI units."""
+
+    force: float
+    displacement: float
+    velocity: float
+    acceleration: float
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """How one coordinate is searched: its typical size, bounds, and whether over its logarithm."""
+
+    size: float
+    lower: float
+    upper: float
+    logarithmic: bool = False
+
+    def encode(self, value: float) -> float:
+        """Coordinate value to search variable."""
+        if self.logarithmic:
+            return float(np.log(np.clip(value, self.lower, self.upper)))
+        return float(np.clip(value, self.lower, self.upper)) / self.size
+
+    def decode(self, variable: float) -> float:
+        """Search variable to coordinate value."""
+        if self.logarithmic:
+            return float(np.exp(np.clip(variable, np.log(self.lower), np.log(self.upper))))
+        return float(np.clip(variable * self.size, self.lower, self.upper))
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Bounds of the search variable."""
+        if self.logarithmic:
+            return float(np.log(self.lower)), float(np.log(self.upper))
+        return self.lower / self.size, self.upper / self.size
+
+
+# force per coordinate: these enter the force linearly, with these columns
+LINEAR = ("inertance", "viscous", "stiffness", "force_offset", "quadratic_damping")
+
+
+@functools.lru_cache(maxsize=512)
+def coordinate(name: str, scales: Scales) -> Coordinate:
+    """How a coordinate is searched, given the sizes of the data's channels."""
+    force, x, v, a = scales.force, scales.displacement, scales.velocity, scales.acceleration
+    infinity = np.inf
+    table = {
+        "inertance": Coordinate(force / a, 0, infinity),
+        "viscous": Coordinate(force / v, 0, infinity),
+        "stiffness": Coordinate(force / x, -infinity, infinity),
+        "force_offset": Coordinate(force, -infinity, infinity),
+        "quadratic_damping": Coordinate(force / v**2, 0, infinity),
+        "load_friction": Coordinate(0.1, 0, 0.95),
+        "coulomb_force": Coordinate(0.1 * force, 1e-6 * force, infinity),
+        "static_excess": Coordinate(0.1 * force, 0, infinity),
+        "stribeck_velocity": Coordinate(v, 1e-3 * v, 3 * v, logarithmic=True),
+        "presliding": Coordinate(x, 1e-5 * x, 3 * x, logarithmic=True),
+        "bristle_damping": Coordinate(0.1 * force / v, 0, infinity),
+        "friction_asymmetry": Coordinate(0.1, -0.95, 0.95),
+        "friction_gradient": Coordinate(0.1 / x, -3 / x, 3 / x),
+        "friction_curvature": Coordinate(0.1 / x**2, -3 / x**2, 3 / x**2),
+        "bw_level": Coordinate(0.1 * force, 1e-6 * force, infinity),
+        "bw_shape": Coordinate(0.5, 0.0, 5.0),
+        "delay": Coordinate(1e-3, -0.05, 0.05),
+    }
+    return table[name]
+
+
+def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
+    """Parameters of the device that coordinates stand for (without delay)."""
+    values = dict(coordinates)
+    values.pop("delay", None)
+    presliding = values.pop("presliding", None)
+    if (excess := values.pop("static_excess", None)) is not None:
+        values["static_force"] = values["coulomb_force"] + excess
+    if (level := values.pop("bw_level", None)) is not None and presliding is not None:
+        shape = values.pop("bw_shape")
+        values |= {
+            "bw_stiffness": level / presliding,
+            "bw_beta": shape / presliding,
+            "bw_gamma": (1 - shape) / presliding,
+        }
+    elif presliding is not None:
+        values["bristle_stiffness"] = values["coulomb_force"] / presliding
+    return values

@@ -1,0 +1,282 @@
+"""Bounded least squares of a device's force along measured motions, run on the C core."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from inerter.core import Device
+from inerter.identify.bench import Run, scales
+from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_values
+
+Array = NDArray[np.float64]
+Masks = Sequence[NDArray[np.bool_]]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A device and a channel delay as coordinates, and which of them are free.
+
+    Attributes
+    ----------
+    friction : str
+        Friction law.
+    values : mapping
+        Coordinates by name (see `coordinates`), SI units.
+    free : tuple of str
+        Names that a fit may change.
+    """
+
+    friction: str
+    values: Mapping[str, float]
+    free: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+
+    def device(self) -> Device:
+        """The device these coordinates stand for."""
+        return Device(friction=self.friction, **device_values(self.values))
+
+    @property
+    def delay(self) -> float:
+        """Time by which the force channel is late [s]."""
+        return self.values.get("delay", 0.0)
+
+    def adding(self, friction: str | None = None, **values: float) -> Model:
+        """The model with further free coordinates, under another friction law if given."""
+        names = tuple(name for name in values if name not in self.free)
+        return Model(friction or self.friction, {**self.values, **values}, self.free + names)
+
+    def without(self, names: Sequence[str], friction: str | None = None) -> Model:
+        """The model without some coordinates."""
+        return Model(
+            friction or self.friction,
+            {name: value for name, value in self.values.items() if name not in names},
+            tuple(name for name in self.free if name not in names),
+        )
+
+
+def delayed(force: Array, delay: float, spacing: float) -> Array:
+    """A force `delay` seconds later, by four-point Lagrange interpolation; ends held."""
+    if delay == 0:
+        return force
+    n = force.size
+    shift = delay / spacing
+    whole = int(np.floor(shift))
+    s = 1 - (shift - whole)  # position after sample i - whole - 1
+    index = np.arange(n) - whole - 1
+    weights = (
+        -s * (s - 1) * (s - 2) / 6,
+        (s + 1) * (s - 1) * (s - 2) / 2,
+        -(s + 1) * s * (s - 2) / 2,
+        (s + 1) * s * (s - 1) / 6,
+    )
+    return sum(
+        weight * force[np.clip(index + offset, 0, n - 1)]
+        for weight, offset in zip(weights, (-1, 0, 1, 2), strict=True)
+    )  # type: ignore[return-value]
+
+
+def first_state(device: Device, run: Run) -> float:
+    """State a run begins with, read off its first force, within what the friction law can hold."""
+    if device.nstate == 0:
+        return 0.0
+    return device.state_of_force(
+        run.displacement[0], run.velocity[0], run.acceleration[0], run.first_force
+    )
+
+
+def force_along(model: Model, run: Run) -> Array:
+    """Force that the model predicts for a run's force channel, shape (n,)."""
+    device = model.device()
+    along = device.along(
+        run.spacing, run.displacement, run.velocity, run.acceleration, first_state(device, run)
+    )
+    total = along["total"]
+    if np.isfinite(run.cutoff) and (device.friction != "none" or device.load_friction):
+        # friction is not linear in the motion: it has to pass the low-pass of the measured force
+        friction = along["friction"]
+        total = total - friction + run.lowpass(friction)
+    return delayed(total, model.delay, run.spacing)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model.
+
+    Attributes
+    ----------
+    residual : list of ndarray
+        Measured minus predicted force per run [N].
+    covariance : ndarray (p, p)
+        Of the free coordinates, robust against correlated residuals.
+    """
+
+    model: Model
+    residual: list[Array]
+    covariance: Array
+    evaluations: int
+
+    def rmse(self, masks: Masks) -> float:
+        """Root mean square residual over masked samples [N]."""
+        return rms(self.residual, masks)
+
+
+def rms(residual: Sequence[Array], masks: Masks) -> float:
+    """Root mean square over the masked samples of all runs."""
+    square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, masks, strict=True))
+    return float(np.sqrt(square / max(sum(int(m.sum()) for m in masks), 1)))
+
+
+class Problem:
+    """Runs, and which of their samples count."""
+
+    def __init__(self, runs: Sequence[Run], masks: Masks, sizes: Scales | None = None) -> None:
+        self.runs = list(runs)
+        self.masks = [mask & run.inner for mask, run in zip(masks, runs, strict=True)]
+        self.scales = sizes or scales(runs)
+
+    def with_masks(self, masks: Masks) -> Problem:
+        """The same runs with other samples counting."""
+        return Problem(self.runs, masks, self.scales)
+
+    def residual(self, model: Model) -> list[Array]:
+        """Measured minus predicted force of every run [N]."""
+        return [run.force - force_along(model, run) for run in self.runs]
+
+    def _masked(self, arrays: Sequence[Array]) -> Array:
+        return np.concatenate([a[m] for a, m in zip(arrays, self.masks, strict=True)])
+
+    def _column(self, name: str, model: Model, variables: Array, base: list[Array]) -> Array:
+        """Derivative of the residual by one search variable, over all samples of all runs."""
+        index = model.free.index(name)
+        how = coordinate(name, self.scales)
+        if name in LINEAR and not (name == "inertance" and "load_friction" in model.values):
+            columns = []
+            for run in self.runs:
+                v = run.velocity
+                column = {
+                    "inertance": run.acceleration,
+                    "viscous": v,
+                    "stiffness": run.displacement - model.values.get("rest_length", 0.0),
+                    "force_offset": np.ones_like(v),
+                    "quadratic_damping": v * np.abs(v),
+                }[name]
+                columns.append(-delayed(column, model.delay, run.spacing) * how.size)
+            return np.concatenate(columns)
+        step = 1e-4
+        if variables[index] + step > how.bounds[1]:
+            step = -step
+        moved = variables.copy()
+        moved[index] += step
+        there = self.residual(self._decode(model, moved))
+        return (np.concatenate(there) - np.concatenate(base)) / step
+
+    def _decode(self, model: Model, variables: Array) -> Model:
+        values = {
+            name: coordinate(name, self.scales).decode(variable)
+            for name, variable in zip(model.free, variables, strict=True)
+        }
+        return replace(model, values={**model.values, **values})
+
+    def fit(self, model: Model, evaluations: int = 40) -> Fit:
+        """Bounded least squares over the model's free coordinates, from its present values."""
+        how = [coordinate(name, self.scales) for name in model.free]
+        start = np.array([c.encode(model.values[n]) for c, n in zip(how, model.free, strict=True)])
+        lower, upper = np.array([c.bounds for c in how]).reshape(-1, 2).T
+        if not model.free:
+            return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
+        size = self.scales.force
+        cache: dict[bytes, list[Array]] = {}
+
+        def at(variables: Array) -> list[Array]:
+            key = variables.tobytes()
+            if key not in cache:
+                cache.clear()
+                cache[key] = self.residual(self._decode(model, variables))
+            return cache[key]
+
+        def jacobian(variables: Array) -> Array:
+            base, here = at(variables), self._decode(model, variables)
+            selected = np.concatenate(self.masks)
+            return np.column_stack(
+                [self._column(name, here, variables, base)[selected] for name in model.free]
+            ) / size
+
+        # strictly inside the bounds, as the trust region needs
+        inside = np.clip(
+            start,
+            np.where(np.isfinite(lower), lower + 1e-9, lower),
+            np.where(np.isfinite(upper), upper - 1e-9, upper),
+        )
+        solution = least_squares(
+            lambda variables: self._masked(at(variables)) / size,
+            inside,
+            jacobian,
+            bounds=(lower, upper),
+            xtol=1e-7,
+            ftol=1e-9,
+            gtol=1e-10,
+            max_nfev=evaluations,
+        )
+        fitted = self._decode(model, solution.x)
+        residual = at(solution.x)
+        covariance = self._covariance(fitted, solution.x, jacobian(solution.x) * size, residual)
+        return Fit(fitted, residual, covariance, int(solution.nfev))
+
+    def _covariance(
+        self, model: Model, variables: Array, jacobian: Array, residual: list[Array]
+    ) -> Array:
+        """Covariance of the free coordinates by the sandwich over blocks of samples.
+
+        Residuals of neighbouring samples are correlated, so the scores are summed over blocks
+        before their spread is taken (a cluster-robust estimate).
+        """
+        flat = self._masked(residual)
+        blocks = np.array_split(np.arange(flat.size), min(60, max(flat.size // 20, 2)))
+        scores = np.array([jacobian[block].T @ flat[block] for block in blocks])
+        bread = np.linalg.pinv(jacobian.T @ jacobian)
+        count = len(blocks)
+        covariance = bread @ (scores.T @ scores) @ bread * count / max(count - 1, 1)
+
+        # to coordinates: logarithms scale with the value
+        factor = np.array(
+            [
+                model.values[name] if (how := coordinate(name, self.scales)).logarithmic
+                else how.size
+                for name in model.free
+            ]
+        )
+        return covariance * np.outer(factor, factor)
+
+
+def parameter_errors(fit: Fit) -> dict[str, tuple[float, float]]:
+    """Value and standard error of every device parameter (and delay) that the fit decided."""
+    names = fit.model.free
+
+    def parameters(coordinates: Mapping[str, float]) -> dict[str, float]:
+        values = device_values(coordinates)
+        if "delay" in coordinates:
+            values["delay"] = coordinates["delay"]
+        return values
+
+    here = parameters(fit.model.values)
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0))
+    gradients: dict[str, Array] = {name: np.zeros(len(names)) for name in here}
+    for i, name in enumerate(names):
+        value = fit.model.values[name]
+        step = 1e-6 * (abs(value) or errors[i] or 1.0)
+        there = parameters({**fit.model.values, name: value + step})
+        for key in here:
+            gradients[key][i] = (there[key] - here[key]) / step
+    return {
+        key: (value, float(np.sqrt(max(gradients[key] @ fit.covariance @ gradients[key], 0))))
+        for key, value in here.items()
+        if np.any(gradients[key] != 0)
+    }

@@ -1,0 +1,190 @@
+"""From a measured record to displacement, velocity and acceleration on one uniform clock.
+
+The smoother is the minimiser of
+
+    sum (x - x_measured)^2 / s_x^2 + sum (v - v_measured)^2 / s_v^2 + ... + penalty * integral jerk^2
+
+solved in the frequency domain: a zero-phase low-pass with power response 1 / (1 + (f / f_c)^6), the
+smoothing spline of order five for uniform samples, which also weighs measured velocity and
+acceleration in where they are there. It is linear: the same low-pass applied to the force leaves
+every linear force law unbiased, however low the cut-off (`lowpass`).
+
+At both ends the record is continued as an odd function about its end point. That is right where the
+motion rests; elsewhere the result near the end depends on this guess, and `Motion.inner` leaves
+those samples out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
+from scipy.interpolate import make_interp_spline
+
+from inerter.records.record import Record
+
+Array = NDArray[np.float64]
+
+# samples within this many periods of the cut-off from an end are not used
+EDGE_PERIODS = 2.5
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A smoothed motion on a uniform clock, and the force beside it.
+
+    Attributes
+    ----------
+    start, spacing : float
+        Time of the first sample and between samples [s].
+    displacement, velocity, acceleration : ndarray (n,)
+        Smoothed [m, m/s, m/s^2].
+    force : ndarray (n,)
+        Measured force on the same clock [N], not smoothed.
+    cutoff : float
+        Cut-off of the smoother [Hz].
+    inner : ndarray of bool (n,)
+        False near the ends, where the smoother has to guess.
+    """
+
+    name: str
+    start: float
+    spacing: float
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    force: Array
+    cutoff: float
+    inner: NDArray[np.bool_]
+
+    @property
+    def time(self) -> Array:
+        """Times of the samples [s], shape (n,)."""
+        return self.start + self.spacing * np.arange(self.force.size)
+
+
+def uniform(record: Record) -> tuple[float, dict[str, Array]]:
+    """The record's channels on a uniform clock: sample spacing [s] and the channels.
+
+    Uniform records are returned as they are; others are interpolated by a cubic spline at the
+    median spacing.
+    """
+    channels = {"displacement": record.displacement, "force": record.force}
+    for name in ("velocity", "acceleration"):
+        if (values := getattr(record, name)) is not None:
+            channels[name] = values
+    steps = np.diff(record.time)
+    spacing = float((record.time[-1] - record.time[0]) / steps.size)
+    grid = record.time[0] + spacing * np.arange(record.time.size)
+    if np.max(np.abs(grid - record.time)) < 0.02 * spacing:
+        return spacing, channels
+    spacing = float(np.median(steps))
+    count = int((record.time[-1] - record.time[0]) / spacing + 1e-9) + 1
+    grid = record.time[0] + spacing * np.arange(count)
+    return spacing, {
+        name: make_interp_spline(record.time, values, k=3)(grid)
+        for name, values in channels.items()
+    }
+
+
+def response(frequency: Array, cutoff: float) -> Array:
+    """Amplitude response of the smoother at frequencies [Hz]."""
+    return 1 / (1 + (frequency / cutoff) ** 6)
+
+
+def _odd(values: Array) -> tuple[Array, Array]:
+    """The line through both ends, and the odd periodic continuation of what is above it."""
+    line = values[0] + (values[-1] - values[0]) * np.linspace(0, 1, values.size)
+    rest = values - line
+    return line, np.r_[rest, -rest[-2:0:-1]]
+
+
+def _even(values: Array) -> Array:
+    return np.r_[values, values[-2:0:-1]]
+
+
+def lowpass(values: Array, spacing: float, cutoff: float) -> Array:
+    """The smoother's low-pass applied to any channel, shape (n,) to (n,)."""
+    return filtered(values, response(rfftfreq(2 * values.size - 2, spacing), cutoff))
+
+
+def filtered(values: Array, response: Array) -> Array:
+    """A channel through a real response at the frequencies of its odd continuation."""
+    n = values.size
+    first, last = values[0], values[-1]
+    line = first + (last - first) / (n - 1) * np.arange(n)
+    wave = np.empty(2 * n - 2)
+    np.subtract(values, line, out=wave[:n])
+    np.negative(wave[n - 2 : 0 : -1], out=wave[n:])
+    return line + irfft(rfft(wave) * response, wave.size)[:n]
+
+
+def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) -> Motion:
+    """Smoothed motion of a record.
+
+    Parameters
+    ----------
+    record : Record
+        Bench record.
+    cutoff : float
+        Cut-off [Hz].
+    use : tuple of str
+        Measured channels to weigh in beside the displacement, where the record has them:
+        "velocity", "acceleration". Their weights come from the noise just above the cut-off.
+
+    Returns
+    -------
+    Motion
+    """
+    spacing, channels = uniform(record)
+    line, wave = _odd(channels["displacement"])
+    slope = (line[-1] - line[0]) / (spacing * (line.size - 1))
+    period = wave.size
+    frequency = rfftfreq(period, spacing)
+    s = 2j * np.pi * frequency
+
+    # each channel estimates the displacement's spectrum; weights are inverse noise powers
+    measured = [(rfft(wave), np.ones_like(s))]
+    if "velocity" in use and "velocity" in channels:
+        measured.append((rfft(_even(channels["velocity"] - slope)), s))
+    if "acceleration" in use and "acceleration" in channels:
+        measured.append((rfft(_odd_about_zero(channels["acceleration"])), s * s))
+    band = (frequency > 1.5 * cutoff) & (frequency < 4 * cutoff)
+    total = np.zeros_like(s)
+    weight_sum = np.zeros(s.size)
+    for spectrum, operator in measured:
+        noise = np.mean(np.abs(spectrum[band]) ** 2) if len(measured) > 1 and band.any() else 1.0
+        weight = 1 / max(float(noise), 1e-300)
+        total += weight * np.conj(operator) * spectrum
+        weight_sum += weight * np.abs(operator) ** 2
+    weight_sum[weight_sum == 0] = 1
+    estimate = total / weight_sum * response(frequency, cutoff)
+
+    n = line.size
+    displacement = irfft(estimate, period)[:n] + line
+    velocity = irfft(s * estimate, period)[:n] + slope
+    acceleration = irfft(s * s * estimate, period)[:n]
+    inner = np.ones(n, bool)
+    edge = int(np.ceil(EDGE_PERIODS / cutoff / spacing))
+    if not _at_rest(velocity, spacing):
+        inner[:edge] = False
+    if not _at_rest(velocity[::-1], spacing):
+        inner[n - edge :] = False
+    return Motion(
+        record.name, float(record.time[0]), spacing, displacement, velocity, acceleration,
+        channels["force"], cutoff, inner,
+    )
+
+
+def _at_rest(velocity: Array, spacing: float) -> bool:
+    """Whether a motion starts at rest: there its continuation is known and nothing is guessed."""
+    first = max(int(0.01 / spacing), 3)
+    return bool(np.max(np.abs(velocity[:first])) < 0.02 * np.std(velocity))
+
+
+def _odd_about_zero(values: Array) -> Array:
+    wave = np.r_[values, -values[-2:0:-1]]
+    wave[0] = wave[values.size - 1] = 0
+    return wave

@@ -1,0 +1,195 @@
+"""Records: what a bench or a vehicle measurement is once it has been read.
+
+All arrays are one-dimensional, float64, SI units and read-only. Sign convention: displacement is
+positive when the device gets longer, force is positive when it has to be pulled (tension), so an
+ideal inerter of inertance b shows ``force = +b * d2(displacement)/dt2``.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+WARNING_CODES = (
+    "duplicate_record",
+    "nonuniform_sampling",
+    "missing_samples",
+    "outliers",
+    "clipping",
+    "sign_flip",
+    "unit_suspect",
+    "constant_channel",
+)
+
+
+class RecordError(ValueError):
+    """A record that cannot be used; one line: file, column or line, what is wrong, what to do."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(" ".join(message.split()))
+
+
+@dataclass(frozen=True)
+class RecordWarning:
+    """Something about a usable record that the reader should know.
+
+    code: one of `WARNING_CODES`; text: one sentence.
+    """
+
+    code: str
+    text: str
+
+    def __post_init__(self) -> None:
+        if self.code not in WARNING_CODES:
+            raise ValueError(f"unknown warning code {self.code!r}; use one of {WARNING_CODES}")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Columns:
+    """Columns of equal length with a name and an origin: what all kinds of record share.
+
+    name: file stem, or ``stem:run``. source: the file, None for data made in memory.
+    extra: further numeric columns under the header they had, values as written (no conversion).
+    comments: the ``#`` lines that stood above the header, without the ``#``.
+    Raises ValueError when columns are not one-dimensional and equally long.
+    """
+
+    name: str
+    source: Path | None = None
+    extra: Mapping[str, Array] = field(default_factory=dict)
+    comments: tuple[str, ...] = ()
+    warnings: tuple[RecordWarning, ...] = ()
+
+    kind: ClassVar[str] = ""
+    required: ClassVar[tuple[str, ...]] = ()
+    optional: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        length = np.size(getattr(self, self.required[0]))
+
+        def locked(name: str, values: object) -> Array:
+            # arrays that are locked already, as in dataclasses.replace, need no copy
+            ready = isinstance(values, np.ndarray) and not values.flags.writeable
+            array = np.array(values, dtype=np.float64, copy=None if ready else True)
+            if array.shape != (length,):
+                raise ValueError(
+                    f"record {self.name!r}: {name!r} has shape {array.shape}, "
+                    f"{self.required[0]!r} has {length} values; give 1-d arrays of one length"
+                )
+            array.setflags(write=False)
+            return array
+
+        # a frozen dataclass is filled through object.__setattr__
+        for name in (*self.required, *self.optional):
+            values = getattr(self, name)
+            if values is not None:
+                object.__setattr__(self, name, locked(name, values))
+        extra = {name: locked(name, values) for name, values in self.extra.items()}
+        object.__setattr__(self, "extra", MappingProxyType(extra))
+        object.__setattr__(self, "comments", tuple(self.comments))
+        object.__setattr__(self, "warnings", tuple(self.warnings))
+
+    @property
+    def samples(self) -> int:
+        """Number of rows."""
+        return len(getattr(self, self.required[0]))
+
+    def channels(self) -> dict[str, Array]:
+        """The measured columns that are present, without time (or frequency), by name."""
+        names = (*self.required[1:], *self.optional)
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def warn(self, code: str, text: str) -> Self:
+        """The same record with one more warning."""
+        return dataclasses.replace(self, warnings=(*self.warnings, RecordWarning(code, text)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TimeRecord(Columns):
+    """Columns over time (s), strictly increasing; it may start anywhere."""
+
+    time: Array
+
+    @property
+    def sample_interval(self) -> float:
+        """Median interval, s; NaN for fewer than two samples."""
+        return float(np.median(np.diff(self.time))) if self.samples > 1 else float("nan")
+
+    @property
+    def sample_rate(self) -> float:
+        """One over the median interval, Hz."""
+        return 1.0 / self.sample_interval
+
+    @property
+    def duration(self) -> float:
+        """Last time minus first time, s."""
+        return float(self.time[-1] - self.time[0])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Record(TimeRecord):
+    """One run on a bench: time s, displacement m, force N; velocity m/s, acceleration m/s^2."""
+
+    displacement: Array
+    force: Array
+    velocity: Array | None = None
+    acceleration: Array | None = None
+
+    kind: ClassVar[str] = "bench"
+    required: ClassVar[tuple[str, ...]] = ("time", "displacement", "force")
+    optional: ClassVar[tuple[str, ...]] = ("velocity", "acceleration")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class VehicleRecord(TimeRecord):
+    """One drive: time s, road m, and any of the vehicle channels (m/s^2, m, N)."""
+
+    road: Array
+    body_acceleration: Array | None = None
+    wheel_acceleration: Array | None = None
+    suspension_travel: Array | None = None
+    tyre_force: Array | None = None
+
+    kind: ClassVar[str] = "vehicle"
+    required: ClassVar[tuple[str, ...]] = ("time", "road")
+    optional: ClassVar[tuple[str, ...]] = (
+        "body_acceleration",
+        "wheel_acceleration",
+        "suspension_travel",
+        "tyre_force",
+    )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BenchTable(Columns):
+    """Sine-sweep results: frequency Hz, amplitudes of force N and of acceleration m/s^2."""
+
+    frequency: Array
+    force_amplitude: Array
+    acceleration_amplitude: Array
+
+    kind: ClassVar[str] = "table"
+    required: ClassVar[tuple[str, ...]] = ("frequency", "force_amplitude", "acceleration_amplitude")
+
+
+AnyRecord = Record | VehicleRecord | BenchTable
+
+
+def share_one_clock(records: Sequence[TimeRecord]) -> bool:
+    """Whether no two runs overlap in time, so that slow changes run through all of them.
+
+    Runs that overlap each have a clock of their own. A run may begin at the very instant at which
+    another ends. The order of `records` does not matter; fewer than two share one clock.
+    """
+    spans = sorted((float(r.time[0]), float(r.time[-1])) for r in records)
+    return all(first[1] <= second[0] for first, second in itertools.pairwise(spans))

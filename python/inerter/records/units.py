@@ -1,0 +1,139 @@
+"""Units in column headers: ``displacement[mm]`` -> ("displacement", "mm") -> factor 0.001."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+import tokenize
+from dataclasses import dataclass
+from typing import Any
+
+from .record import RecordError
+
+_LENGTH = "m, mm, um, cm, in, ft"
+_FORCE = "N, kN, lbf, kgf"
+_SPEED = "m/s, mm/s, km/h, in/s"
+_ACCELERATION = "m/s^2, mm/s^2, g (standard gravity)"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a column of this name holds: its SI unit and the units worth naming in an error."""
+
+    meaning: str
+    unit: str
+    allowed: str
+
+
+LENGTH = Quantity("a length", "m", _LENGTH)
+FORCE = Quantity("a force", "N", _FORCE)
+SPEED = Quantity("a velocity", "m/s", _SPEED)
+ACCELERATION = Quantity("an acceleration", "m/s^2", _ACCELERATION)
+
+QUANTITIES: dict[str, Quantity] = {
+    "time": Quantity("a time", "s", "s, ms, us, min"),
+    "displacement": LENGTH,
+    "force": FORCE,
+    "velocity": SPEED,
+    "acceleration": ACCELERATION,
+    "frequency": Quantity("a frequency", "Hz", "Hz, kHz, rad/s, rpm"),
+    "force_amplitude": FORCE,
+    "acceleration_amplitude": ACCELERATION,
+    "road": LENGTH,
+    "body_acceleration": ACCELERATION,
+    "wheel_acceleration": ACCELERATION,
+    "suspension_travel": LENGTH,
+    "tyre_force": FORCE,
+}
+
+# spellings of test benches that pint reads otherwise (g is a gram, mil an angle) or not at all
+_GRAVITY = {"g": 1.0, "G": 1.0, "gn": 1.0, "g0": 1.0, "g_n": 1.0, "mg": 1e-3, "ug": 1e-6}
+_SPELLINGS = {"kp": "kgf", "mil": "thou", "mils": "thou", "sec": "s", "secs": "s", "lbs": "lbf"}
+
+
+def split_header(header: str) -> tuple[str, str | None]:
+    """Column name and unit of a header cell: ``" Force (kN) "`` -> ``("force", "kN")``.
+
+    The name is lower case with blanks and hyphens turned into ``_``; the unit stands in square or
+    round brackets at the end and is None where there is none.
+    """
+    text = header.strip().strip("\ufeff\"'").strip()
+    match = re.fullmatch(r"([^\[(]*?)\s*(?:\[([^\[\]]*)\]|\((.*)\))", text)
+    unit = None
+    if match is not None and match[1]:
+        text, unit = match[1], (match[2] if match[2] is not None else match[3]).strip() or None
+    return re.sub(r"[\s\-]+", "_", text.casefold()), unit
+
+
+def si_factor(name: str, unit: str | None, where: str) -> float:
+    """Factor from `unit` to the SI unit of the quantity `name` (a key of `QUANTITIES`).
+
+    where: file and column as they should stand in the error text.
+    Raises RecordError for a unit that is unknown or belongs to another quantity.
+    """
+    quantity = QUANTITIES[name]
+    if unit is None or unit == quantity.unit:
+        return 1.0
+    if quantity is ACCELERATION and unit in _GRAVITY:
+        return _GRAVITY[unit] * 9.80665
+    parsed = _parse(unit)
+    if parsed is None:
+        raise RecordError(
+            f"{where}: unknown unit {unit!r}{_closest(unit, quantity)}; "
+            f"{name} is {quantity.meaning}, write for example one of: {quantity.allowed}"
+        )
+    if parsed.dimensionality != _parse(quantity.unit).dimensionality:
+        raise RecordError(
+            f"{where}: unit {unit!r} is not {quantity.meaning}{_mass_hint(unit, quantity)}; "
+            f"write for example one of: {quantity.allowed}, or leave it out for {quantity.unit}"
+        )
+    base = _registry().Quantity(1.0, parsed).to_base_units()
+    factor = float(base.magnitude)
+    # a frequency stated as an angle per time: pint counts radians, a hertz is a whole turn
+    if name == "frequency" and "radian" in str(base.units):
+        factor /= 2.0 * math.pi
+    return factor
+
+
+@functools.cache
+def _registry() -> Any:
+    """The pint registry, made on the first unit that is not SI (it takes 0.3 s)."""
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@functools.cache
+def _parse(unit: str) -> Any:
+    """The pint unit, or None where pint knows none; ``m/s2``, ``m s-2`` and ``m·s^-2`` work."""
+    text = _SPELLINGS.get(unit, unit)
+    for sign in ("\u00b7", "\u22c5", "\u00d7"):
+        text = text.replace(sign, "*")
+    text = text.translate(str.maketrans("⁻⁰¹²³⁴", "-01234"))
+    if not re.fullmatch(r"[A-Za-zµμ°%Ω_0-9\s*/^().\-]+", text):
+        return None
+    text = re.sub(r"(?<=[A-Za-z])\.(?=[A-Za-z])", "*", text)
+    text = re.sub(r"(?<=[A-Za-z])(-?\d)(?!\d)", r"**\1", text)
+    # whatever pint makes of a text that is no unit, it is not a unit
+    known_failures = (ArithmeticError, AssertionError, AttributeError, KeyError, TypeError)
+    try:
+        return _registry().Unit(text)
+    except (*known_failures, ValueError, SyntaxError, tokenize.TokenError):
+        return None
+
+
+def _closest(unit: str, quantity: Quantity) -> str:
+    """`` (did you mean 'kN'?)`` where only the case or a blank differs."""
+    for known in re.split(r", ", quantity.allowed):
+        known = known.split(" ")[0]
+        if known.casefold() == unit.casefold().replace(" ", ""):
+            return f" (did you mean {known!r}?)"
+    return ""
+
+
+def _mass_hint(unit: str, quantity: Quantity) -> str:
+    """Masses are the usual slip in a force column."""
+    if quantity is FORCE and unit in {"kg", "g", "lb", "t"}:
+        return f" but a mass (did you mean {'lbf' if unit == 'lb' else 'kgf'!r}?)"
+    return ""

@@ -1,0 +1,62 @@
+"""Bouc-Wen hysteresis: an elastic branch beside a branch that yields.
+
+    z' = alpha v - beta |v| z |z|^(n-1) - gamma v |z|^n
+    F  = A k0 x + (1 - A) k0 z
+
+Symbols: z hysteretic displacement [m], alpha `bw_alpha` [-], beta `bw_beta` [m^-n],
+gamma `bw_gamma` [m^-n], n `bw_exponent` [-], k0 `bw_stiffness` [N/m], A `bw_ratio` [-],
+x the displacement itself. The paper's c0 is the device's `viscous`.
+Sign: tension positive; z grows with x.
+Range: n >= 1, alpha > 0. For beta + gamma > 0, z saturates at (alpha / (beta + gamma))^(1/n).
+Stored: A k0 x^2 / 2 + (1 - A) k0 z^2 / (2 alpha).
+Dissipated: (1 - A) k0 z (v - z' / alpha), never negative for 0 <= A <= 1, k0 >= 0 and
+beta >= |gamma|; the published set with A = 341.81 is outside this and is not passive.
+Source: Bouc 1967 and Wen 1976, as in "Modelling and identification of the hysteretic dynamics
+of inerters", eqs. (12)-(13), where the last term's exponent n is lost in print.
+Not modelled: degradation, pinching, rate dependence; the friction level of `level.py`.
+Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be rescaled with z.
+"""
+
+from __future__ import annotations
+
+from .parameters import FrictionParameters, Quantity
+
+STATES = 1
+
+
+def rate(
+    parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
+) -> Quantity:
+    """Rate of the hysteretic displacement z' [m/s]; arguments broadcast together."""
+    size = abs(state)
+    power = size ** (parameters.bw_exponent - 1.0)
+    hardening = parameters.bw_beta * abs(velocity) * state * power
+    shaping = parameters.bw_gamma * velocity * size * power
+    return parameters.bw_alpha * velocity - hardening - shaping
+
+
+def force(
+    parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
+) -> Quantity:
+    """Hysteretic force A k0 x + (1 - A) k0 z [N], tension positive."""
+    elastic = parameters.bw_ratio * displacement
+    yielding = (1.0 - parameters.bw_ratio) * state
+    return parameters.bw_stiffness * (elastic + yielding) + 0.0 * velocity
+
+
+def stored_energy(
+    parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
+) -> Quantity:
+    """Stored energy A k0 x^2 / 2 + (1 - A) k0 z^2 / (2 alpha) [J]."""
+    elastic = parameters.bw_ratio * displacement * displacement
+    yielding = (1.0 - parameters.bw_ratio) * state * state / parameters.bw_alpha
+    return 0.5 * parameters.bw_stiffness * (elastic + yielding) + 0.0 * velocity
+
+
+def dissipated_power(
+    parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
+) -> Quantity:
+    """Dissipated power (1 - A) k0 z (v - z' / alpha) [W]."""
+    bound = (1.0 - parameters.bw_ratio) * parameters.bw_stiffness * state
+    slip = velocity - rate(parameters, displacement, velocity, state) / parameters.bw_alpha
+    return bound * slip

@@ -1,0 +1,33 @@
+"""Friction level: how f_c and f_s change with direction and along the stroke.
+
+    level(x, v) = (1 + p tanh(v / v_t)) max(0.001, 1 + q x + r x^2)
+
+Symbols: x displacement [m] (itself, not minus the rest length), v velocity [m/s],
+p `friction_asymmetry` [-], q `friction_gradient` [1/m], r `friction_curvature` [1/m^2],
+v_t `transition_velocity` [m/s].
+Sign: p > 0 raises the level while the device lengthens; q > 0 raises it towards longer devices.
+Range: |p| < 1. The floor keeps laws with a bristle (Dahl, LuGre), which divide by the level, from
+dividing by zero.
+Source: this project's definition; the smallest form that tells direction from position.
+Not modelled: change with temperature, wear or load (load: see `load.py`); Bouc-Wen takes no level.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .parameters import FrictionParameters, Quantity
+
+
+def friction_level(
+    parameters: FrictionParameters, displacement: Quantity, velocity: Quantity
+) -> Quantity:
+    """Factor [-] on `coulomb_force` and `static_force`; shape of x and v broadcast together."""
+    level = 1.0
+    if parameters.friction_asymmetry != 0.0:
+        direction = np.tanh(velocity / parameters.transition_velocity)
+        level = 1.0 + parameters.friction_asymmetry * direction
+    if parameters.friction_gradient != 0.0 or parameters.friction_curvature != 0.0:
+        along = parameters.friction_gradient + parameters.friction_curvature * displacement
+        level = level * np.maximum(1e-3, 1.0 + along * displacement)
+    return level

@@ -1,0 +1,33 @@
+"""The branches beside inertance and friction: dampers, springs, offset.
+
+    F = c v + c2 v |v| + k (x - l0) + k3 (x - l0)^3 + f0
+
+Symbols: c `viscous` [N s/m], c2 `quadratic_damping` [N s^2/m^2], k `stiffness` [N/m],
+k3 `stiffness_cubic` [N/m^3], l0 `rest_length` [m], f0 `force_offset` [N].
+Sign: tension positive.
+Range: passive for c, c2 >= 0; the offset is work done from outside and counts as neither
+stored nor dissipated.
+Stored: k (x - l0)^2 / 2 + k3 (x - l0)^4 / 4. Dissipated: c v^2 + c2 |v|^3.
+Source: elementary; a published set's sigma2, c_d, c0 all are c.
+Not modelled: end stops, gas springs, frequency-dependent damping.
+"""
+
+from __future__ import annotations
+
+from .parameters import Quantity
+
+
+def spring_force(extension: Quantity, stiffness: float, stiffness_cubic: float) -> Quantity:
+    """Spring force [N] at the extension x - l0 [m]."""
+    return (stiffness + stiffness_cubic * extension * extension) * extension
+
+
+def spring_energy(extension: Quantity, stiffness: float, stiffness_cubic: float) -> Quantity:
+    """Energy [J] in the springs at the extension x - l0 [m]."""
+    square = extension * extension
+    return (0.5 * stiffness + 0.25 * stiffness_cubic * square) * square
+
+
+def damping_force(velocity: Quantity, viscous: float, quadratic_damping: float) -> Quantity:
+    """Damper force [N] at the velocity [m/s]."""
+    return (viscous + quadratic_damping * abs(velocity)) * velocity

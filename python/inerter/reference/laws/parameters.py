@@ -1,0 +1,116 @@
+"""The friction parameters, each declared once with its unit, default and bounds."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Quantity = float | NDArray[np.float64]
+"""A number, or an array of numbers that broadcasts against its neighbours."""
+
+FRICTION_LAWS = (
+    "none",
+    "coulomb",
+    "stribeck",
+    "dahl",
+    "lugre",
+    "bouc_wen",
+    "brown_mcphee",
+)
+
+
+def parameter(
+    default: float,
+    unit: str,
+    meaning: str,
+    *,
+    at_least: float | None = None,
+    above: float | None = None,
+) -> Any:
+    """Declare a dataclass field that carries unit, meaning and bounds as metadata."""
+    metadata = {"unit": unit, "meaning": meaning, "at_least": at_least, "above": above}
+    return field(default=default, metadata=metadata)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionParameters:
+    """Parameters of every friction law; a law reads the ones its docstring names.
+
+    Raises
+    ------
+    ValueError
+        A parameter is not finite or lies outside its bounds, the friction law is unknown,
+        or a law with a state lacks the level it divides by.
+    """
+
+    friction: str = "none"
+
+    coulomb_force: float = parameter(0.0, "N", "friction force at speed, f_c", at_least=0.0)
+    static_force: float = parameter(0.0, "N", "friction force at break-away, f_s", at_least=0.0)
+    stribeck_velocity: float = parameter(1e-2, "m/s", "speed scale of the fall", above=0.0)
+    stribeck_exponent: float = parameter(2.0, "-", "shape of the fall", above=0.0)
+    transition_velocity: float = parameter(1e-4, "m/s", "width of the smoothed sign", above=0.0)
+
+    bristle_stiffness: float = parameter(1e5, "N/m", "pre-sliding stiffness sigma0", above=0.0)
+    bristle_damping: float = parameter(0.0, "N s/m", "pre-sliding damping sigma1", at_least=0.0)
+    dahl_exponent: float = parameter(1.0, "-", "shape of the Dahl loop", above=0.0)
+
+    bw_alpha: float = parameter(1.0, "-", "initial slope dz/dx", above=0.0)
+    bw_beta: float = parameter(0.5, "m^-n", "loop width")
+    bw_gamma: float = parameter(0.5, "m^-n", "loop shape")
+    bw_exponent: float = parameter(1.0, "-", "sharpness n of the yield", at_least=1.0)
+    bw_stiffness: float = parameter(0.0, "N/m", "stiffness k0")
+    bw_ratio: float = parameter(0.0, "-", "share A of the elastic branch")
+
+    friction_asymmetry: float = parameter(0.0, "-", "level: difference between the directions")
+    friction_gradient: float = parameter(0.0, "1/m", "level: slope along the stroke")
+    friction_curvature: float = parameter(0.0, "1/m^2", "level: curvature along the stroke")
+
+    def __post_init__(self) -> None:
+        """Check what was given, see Raises."""
+        # the law's name first: every other message builds on it
+        if self.friction not in FRICTION_LAWS:
+            close = difflib.get_close_matches(str(self.friction), FRICTION_LAWS, n=1)
+            hint = f"; did you mean '{close[0]}'?" if close else ""
+            raise ValueError(
+                f"friction: '{self.friction}' is not one of {', '.join(FRICTION_LAWS)}{hint}"
+            )
+
+        # bounds, as declared
+        for declared in fields(self):
+            if not declared.metadata:
+                continue
+            value = getattr(self, declared.name)
+            unit = declared.metadata["unit"]
+            if not np.isfinite(value):
+                raise ValueError(f"{declared.name}: {value} {unit} is not finite; give a number")
+            at_least, above = declared.metadata["at_least"], declared.metadata["above"]
+            if at_least is not None and value < at_least:
+                raise ValueError(
+                    f"{declared.name}: {value} {unit} is below {at_least}; give at least that"
+                )
+            if above is not None and value <= above:
+                raise ValueError(
+                    f"{declared.name}: {value} {unit} must be above {above}; give a larger value"
+                )
+
+        # a law with a bristle divides by its friction level
+        if self.friction in ("dahl", "lugre") and self.coulomb_force <= 0.0:
+            raise ValueError(
+                f"coulomb_force: {self.coulomb_force} N leaves friction='{self.friction}' without "
+                "a level to slide at; give coulomb_force > 0, or friction='none'"
+            )
+        if self.friction == "lugre" and self.static_force <= 0.0:
+            raise ValueError(
+                f"static_force: {self.static_force} N lets the LuGre bristle vanish at rest; "
+                "give static_force > 0 (equal to coulomb_force for no Stribeck fall)"
+            )
+        if abs(self.friction_asymmetry) >= 1.0:
+            raise ValueError(
+                f"friction_asymmetry: {self.friction_asymmetry} makes one direction's level "
+                "zero or negative; keep it between -1 and 1"
+            )

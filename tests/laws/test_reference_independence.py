@@ -1,0 +1,35 @@
+"""The reference is a second telling: it must not lean on any other part of the package."""
+
+import ast
+from pathlib import Path
+
+import inerter.reference
+
+FOLDER = Path(inerter.reference.__file__).parent
+ALLOWED = {
+    "__future__", "collections", "dataclasses", "difflib", "itertools", "pathlib", "types",
+    "typing", "numpy", "scipy",
+}  # fmt: skip
+
+
+def imports(path: Path) -> list[tuple[int, str]]:
+    """Every imported module of a file as (level of relative import, name)."""
+    found: list[tuple[int, str]] = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [(0, alias.name) for alias in node.names]
+        if isinstance(node, ast.ImportFrom):
+            found.append((node.level, node.module or ""))
+    return found
+
+
+def test_reference_imports_nothing_of_the_core() -> None:
+    files = sorted(FOLDER.rglob("*.py"))
+    assert len(files) > 10
+    for path in files:
+        depth = len(path.relative_to(FOLDER).parts)
+        for level, name in imports(path):
+            if level:
+                assert level <= depth, f"{path.name} imports from outside reference/: {name}"
+            else:
+                assert name.split(".")[0] in ALLOWED, f"{path.name} imports {name}"
