@@ -4,10 +4,12 @@
 //   F  = A k0 x + (1 - A) k0 z
 //
 // z [m]; alpha [-] bw_alpha, beta, gamma [m^-n] bw_beta, bw_gamma, n bw_exponent; k0 [N/m]
-// bw_stiffness, A [-] bw_ratio. With beta + gamma > 0, |z| stays below (alpha / (beta +
-// gamma))^(1/n). Stored energy A k0 x^2 / 2 + (1 - A) k0 z^2 / (2 alpha). Source: Bouc 1967, Wen
-// 1976; eq. (12)-(13) of the hysteretic inerter paper. The parameters are redundant: scaling z
-// changes alpha, beta, gamma, k0 and leaves F alone. Not modelled: pinching, degradation.
+// bw_stiffness, A [-] bw_ratio. Stored energy A k0 x^2 / 2 + (1 - A) k0 z^2 / (2 alpha).
+// With beta >= 0 and beta + gamma > 0, |z| stays below (alpha / (beta + gamma))^(1/n); passive for
+// beta >= |gamma| and 0 <= A <= 1.
+// Source: Bouc 1967, Wen 1976; eq. (12)-(13) of the hysteretic inerter paper. The parameters are
+// redundant: scaling z changes alpha, beta, gamma, k0 and leaves F alone.
+// Not modelled: pinching, degradation.
 
 #include <float.h>
 
@@ -73,11 +75,15 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   if (n == 1 || limit <= 0) {
     return advance_through_zero(p, s, z, path);
   }
-  double yield = pow(p->bw_alpha / limit, 1 / n) / p->bw_alpha;
+  double bound = pow(p->bw_alpha / limit, 1 / n);
+  double yield = bound / p->bw_alpha;
   double count = ceil(fmin(4 * path / yield, 80));
   double part = fmin(path, 20 * yield) / fmax(count, 1);
   for (int i = 0; i < (int)count; i++) {
-    z = advance_through_zero(p, s, z, part);
+    double next = advance_through_zero(p, s, z, part);
+
+    // the tangent knows nothing of a sharp knee (large n) ahead: stop at the limit
+    z = s * z <= bound ? s * fmin(s * next, bound) : next;
   }
   return z;
 }

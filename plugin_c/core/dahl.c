@@ -5,6 +5,7 @@
 //
 // z [m] bristle deflection, sigma0 [N/m] bristle_stiffness, f_c [N] coulomb_force (times the level
 // of friction.h), m dahl_exponent. Stored energy sigma0 z^2 / 2. |F| <= f_c once inside.
+// Passive for every m.
 // Source: Dahl 1968; eq. (4)-(6) of the hysteretic inerter paper.
 // Not modelled: breakaway above f_c, Stribeck effect (see lugre.c).
 
@@ -30,17 +31,16 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   double u = slack(p, level, v, z);
   double path = p->bristle_stiffness * fabs(v) * h / level;
   double m = p->dahl_exponent;
-  double decayed;
+  double change;  // u(h) / u - 1, kept exact for short paths and for m near 1
   if (m == 1) {
-    // z + (1 - e^-path) (z_end - z), kept exact for short paths
-    return z - expm1(-path) * u * sign(v) * level / p->bristle_stiffness;
+    change = expm1(-path);
   } else if (u == 0) {
-    decayed = 0;
+    change = 0;
   } else {
-    double remaining = pow(fabs(u), 1 - m) - (1 - m) * path;
-    decayed = remaining > 0 ? pow(remaining, 1 / (1 - m)) : 0;
+    double growth = (m - 1) * path * pow(fabs(u), m - 1);
+    change = growth > -1 ? expm1(log1p(growth) / (1 - m)) : -1;
   }
-  return z + (fabs(u) - decayed) * sign(u) * sign(v) * level / p->bristle_stiffness;
+  return z - change * u * sign(v) * level / p->bristle_stiffness;
 }
 
 static double force(const InerterDevice* p, double x, double v, double z) {

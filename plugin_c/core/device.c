@@ -3,6 +3,7 @@
 #include "device.h"
 
 #include <ctype.h>
+#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,6 +83,36 @@ static int allowed(const InerterParameter* p, double value) {
          (p->lower_open ? value > p->lower : value >= p->lower);
 }
 
+// strtod that wants a decimal point whatever the program's locale
+static double number(const char* text, const char** end) {
+  const char* point = localeconv()->decimal_point;
+  size_t before = strcspn(text, "."), width = strlen(point);
+  char local[128];
+  char* stop;
+  *end = text;
+  if (!strcmp(point, ".")) {
+    double value = strtod(text, &stop);
+    *end = stop;
+    return value;
+  }
+  if (strstr(text, point) || strlen(text) + width >= sizeof(local)) {
+    return 0;
+  }
+
+  // the locale's point in place of ours
+  memcpy(local, text, before);
+  if (text[before]) {
+    memcpy(local + before, point, width);
+    strcpy(local + before + width, text + before + 1);
+  } else {
+    local[before] = 0;
+  }
+  double value = strtod(local, &stop);
+  size_t length = (size_t)(stop - local);
+  *end = text + (length > before ? length - width + 1 : length);
+  return value;
+}
+
 // set the friction law by name
 static int set_friction(InerterDevice* device, const char* text, char* message) {
   for (int i = 0; i < INERTER_NFRICTION; i++) {
@@ -109,8 +140,8 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
     if (strcmp(key, p->name)) {
       continue;
     }
-    char* end;
-    double value = strtod(text, &end);
+    const char* end;
+    double value = number(text, &end);
     int empty = end == text;
     while (isspace((unsigned char)*end)) {
       end++;
@@ -242,13 +273,17 @@ double inerter_state_of_force(const InerterDevice* device, double x, double v, d
   double at_zero = inerter_force(device, x, v, a, 0).total;
   double at_one = inerter_force(device, x, v, a, 1).total;
   double z = (force - at_zero) / (at_one - at_zero);
-
-  // a state cannot be beyond where a slow, endless slide in its direction leads
-  double limit = law_of(device)->step(device, x, z < 0 ? -1e-9 : 1e-9, 0, 1e15);
-  if (isnan(z) || (isfinite(limit) && fabs(z) > fabs(limit))) {
-    return isfinite(limit) ? limit : 0;
+  if (at_one == at_zero || isnan(z)) {
+    return 0;
   }
-  return z;
+
+  // a state cannot be beyond where an endless slide in its direction leads, slow or fast: slow has
+  // the Stribeck peak, fast the full asymmetry
+  double speed = (z < 0 ? -10 : 10) * device->transition_velocity;
+  double slow = law_of(device)->step(device, x, 1e-9 * speed, 0, 1e24 / fabs(speed));
+  double fast = law_of(device)->step(device, x, speed, 0, 1e15 / fabs(speed));
+  double limit = fmax(fabs(slow), fabs(fast));
+  return isfinite(limit) ? copysign(fmin(fabs(z), limit), z) : z;
 }
 
 //------------------------------ forces and energy -------------------------------------------------

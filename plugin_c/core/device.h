@@ -103,7 +103,8 @@ INERTER_API double inerter_state_step(const InerterDevice* device, double x, dou
                                       double h);
 
 // State at which the device has a given total force at x, v, a, within what its friction law can
-// hold; 0 without states. It tells the state that a measured run begins with.
+// hold; 0 where the force does not depend on a state. It tells the state that a measured run begins
+// with.
 INERTER_API double inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
                                           double force);
 

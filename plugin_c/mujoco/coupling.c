@@ -1,6 +1,7 @@
 // Where the inertance and the viscous damping live.
 //
-//   M(q) = M_bodies(q) + b J' J,   qfrc_bias = ... + b J' (dJ/dt v),   qfrc_passive = ... - c J' J v
+//   M(q) = M_bodies(q) + b J' J,   qfrc_bias = ... + b J' (dJ/dt v),   qfrc_passive = ... - c J' J
+//   v
 //
 // J: row of the actuator's moment arms, b = actuator_armature, c = actuator_damping. With the
 // inertance in the engine's own inertia matrix, contacts, limits, equality constraints, friction
@@ -159,20 +160,21 @@ static int merge(const InerterDevice* device, int index, mjtNum configured, cons
 
 // Derive again what depends on armature and damping: inverse weights, which actuators act on which
 // joint or tendon. The statistics stay as they are; no computation reads the mean inertia.
-static void derive(mjModel* m, mjData* d) {
+static void derive(mjModel* m) {
+  mjtSize nplugin = m->nplugin;
   int enableflags = m->opt.enableflags;
-  int nplugin = d->nplugin;
 
-  // d is still raw memory; no plugin instance of it may be touched
+  // in a workspace of its own, without plugins (this is inside an init) and with everything awake
+  m->nplugin = 0;
   m->opt.enableflags &= ~mjENBL_SLEEP;
-  d->nplugin = 0;
-  mj_resetData(m, d);
-  mj_setConst(m, d);
-  d->nplugin = nplugin;
+  mjData* workspace = mj_makeData(m);
+  mj_setConst(m, workspace);
+  mj_deleteData(workspace);
   m->opt.enableflags = enableflags;
+  m->nplugin = nplugin;
 }
 
-int coupling_place(const mjModel* m, mjData* d, int actuator, const InerterDevice* device,
+int coupling_place(const mjModel* m, int actuator, const InerterDevice* device,
                    char message[INERTER_MESSAGE_SIZE]) {
   if (m->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] != 0) {
     return 0;
@@ -205,7 +207,7 @@ int coupling_place(const mjModel* m, mjData* d, int actuator, const InerterDevic
   model->actuator_damping[actuator] = viscous;
   model->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] = 1;
   if (inertance != armature || viscous != damping) {
-    derive(model, d);
+    derive(model);
   }
   return 0;
 }

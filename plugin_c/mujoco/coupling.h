@@ -10,8 +10,8 @@ int coupling_check(const mjModel* m, int actuator, const InerterDevice* device,
                    char message[INERTER_MESSAGE_SIZE]);
 
 // Put inertance and viscous damping of the device into the model, once, while it is compiled.
-// d is the mjData under construction. Return 0, or -1 with a message.
-int coupling_place(const mjModel* m, mjData* d, int actuator, const InerterDevice* device,
+// Return 0, or -1 with a message.
+int coupling_place(const mjModel* m, int actuator, const InerterDevice* device,
                    char message[INERTER_MESSAGE_SIZE]);
 
 #endif  // INERTER_MUJOCO_COUPLING_H_

@@ -89,8 +89,10 @@ mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self
 }
 
 mjtNum instance_bias_acceleration(const mjModel* m, mjData* d, const Instance* self) {
+  // nobody reads the acceleration of a device without inertance, and the engine has none for
+  // tendons that wrap around geoms
   int i = self->actuator;
-  if (m->actuator_trntype[i] != mjTRN_TENDON) {
+  if (m->actuator_trntype[i] != mjTRN_TENDON || m->actuator_armature[i] == 0) {
     return 0;
   }
   mjtNum gear = m->actuator_gear[6 * m->actuator_outadr[i]];

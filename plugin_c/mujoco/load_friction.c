@@ -3,10 +3,10 @@
 //   F_i = phi_i |a_i|,  phi_i = mu_i b_i tanh(v_i / v_t)
 //   a_i = a0_i - sum_j W_ij F_j,  W = J M^-1 J',  a0 = J M^-1 f + dJ/dt v
 //
-// a_i [m/s^2] acceleration of device i, a0 the one without load friction, f all smooth forces, M the
-// inertia matrix with every inertance in it. The force depends on the acceleration that it causes.
-// One device in closed form: a = a0 / (1 + W phi sgn(a0)), with W b < 1 and mu <= 1; several by
-// going round until nothing changes (Gauss-Seidel; a contraction for the same reason).
+// a_i [m/s^2] acceleration of device i, a0 the one without load friction, f all smooth forces, M
+// the inertia matrix with every inertance in it. The force depends on the acceleration that it
+// causes. One device in closed form: a = a0 / (1 + W phi sgn(a0)), with W b < 1 and mu <= 1;
+// several by going round until nothing changes (Gauss-Seidel; a contraction for the same reason).
 // Why not the acceleration of the last step: friction then lags and feeds energy in.
 // Not modelled: what is unknown when the engine asks for actuator forces. That is the forces of
 // contacts, limits, equality constraints and friction loss, of plugins later in the model's list

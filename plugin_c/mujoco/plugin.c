@@ -13,7 +13,6 @@
 // its stages, else by the trapezoid.
 
 #include <mujoco/mujoco.h>
-
 #include <stdio.h>
 #include <string.h>
 
@@ -72,13 +71,15 @@ static int init(const mjModel* m, mjData* d, int instance) {
   if (count != 1) {
     snprintf(message, sizeof(message),
              "%d actuators refer to it; give every actuator an instance of its own", count);
-    instance_report(m, instance, count ? message : "no actuator refers to it; add <actuator><plugin "
-                                                   "plugin=\"inerter.device\" instance=\"...\" "
-                                                   "tendon=\"...\"/></actuator>");
+    instance_report(m, instance,
+                    count ? message
+                          : "no actuator refers to it; add <actuator><plugin "
+                            "plugin=\"inerter.device\" instance=\"...\" "
+                            "tendon=\"...\"/></actuator>");
     return -1;
   }
   if (coupling_check(m, actuator, &device, message) ||
-      coupling_place(m, d, actuator, &device, message)) {
+      coupling_place(m, actuator, &device, message)) {
     instance_report(m, instance, message);
     return -1;
   }
@@ -144,13 +145,13 @@ static mjtNum command(const mjModel* m, const mjData* d, int actuator) {
   int address = m->actuator_ctrladr[actuator];
   mjtNum ctrl = d->ctrl[address];
   if (m->actuator_delay[actuator]) {
-    const mjtNum* found = mj_readCtrl(m, d, actuator, d->time, &ctrl,
-                                      m->actuator_history[2 * actuator + 1]);
+    const mjtNum* found =
+        mj_readCtrl(m, d, actuator, d->time, &ctrl, m->actuator_history[2 * actuator + 1]);
     ctrl = found ? *found : ctrl;
   }
   if (m->actuator_ctrllimited[address] && !(m->opt.disableflags & mjDSBL_CLAMPCTRL)) {
-    ctrl = mju_clip(ctrl, m->actuator_ctrlrange[2 * address],
-                    m->actuator_ctrlrange[2 * address + 1]);
+    ctrl =
+        mju_clip(ctrl, m->actuator_ctrlrange[2 * address], m->actuator_ctrlrange[2 * address + 1]);
   }
   return mju_isBad(ctrl) ? 0 : ctrl;
 }
@@ -162,8 +163,8 @@ static void compute_force(const mjModel* m, mjData* d, int instance) {
   mjtNum power = 0;
   if (!instance_idle(m, d, self)) {
     self->state = state_now(m, d, self);
-    d->actuator_force[row] = command(m, d, self->actuator) -
-                             inerter_force_motion(&self->device, x, v, self->state);
+    d->actuator_force[row] =
+        command(m, d, self->actuator) - inerter_force_motion(&self->device, x, v, self->state);
     if (self->sensed) {
       InerterDevice device = instance_device(m, self);
       power = inerter_dissipated_power(&device, x, v, 0, self->state);
@@ -183,7 +184,7 @@ static void compute_force(const mjModel* m, mjData* d, int instance) {
 static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   if (capability & mjPLUGIN_ACTUATOR) {
     compute_force(m, d, instance);
-  } else if (capability & mjPLUGIN_SENSOR) {
+  } else if (capability & mjPLUGIN_SENSOR && instance_of(d, instance)->sensed) {
     sensor_compute(m, d, instance);
   }
 }
@@ -228,11 +229,12 @@ mjPLUGIN_LIB_INIT(inerter) {
   // mjModel and mjData differ between versions: refuse to read them with the wrong headers
   if (mj_version() != mjVERSION_HEADER) {
     int header = mjVERSION_HEADER;
-    mju_warning("inerter was compiled for MuJoCo %d.%d.%d, loaded is MuJoCo %s; inerter.device is "
-                "not available. Run `pip install mujoco==%d.%d.%d`, or install an inerter made for "
-                "MuJoCo %s",
-                header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString(),
-                header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString());
+    mju_warning(
+        "inerter was compiled for MuJoCo %d.%d.%d, loaded is MuJoCo %s; inerter.device is "
+        "not available. Run `pip install mujoco==%d.%d.%d`, or install an inerter made for "
+        "MuJoCo %s",
+        header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString(), header / 1000000,
+        header / 1000 % 1000, header % 1000, mj_versionString());
     return;
   }
 

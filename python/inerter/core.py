@@ -140,12 +140,11 @@ class Device:
             if library.inerter_set(
                 ctypes.byref(self._c), name.encode(), text.encode(), message
             ):
-                raise DeviceError(_with_suggestion(name, message.value.decode()))
+                raise DeviceError(_with_suggestion(name, _text(message)))
         if library.inerter_finish(ctypes.byref(self._c), message):
-            raise DeviceError(message.value.decode())
+            raise DeviceError(_text(message))
         self._given = {
-            name: value if isinstance(value, str) and name == "friction" else float(value)
-            for name, value in values.items()
+            name: self.friction if name == "friction" else getattr(self._c, name) for name in values
         }
 
     @property
@@ -297,6 +296,11 @@ def _motion(*channels: NDArray) -> list[NDArray[np.float64]]:
 
 def _pointer(array: NDArray[np.float64]) -> Any:
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+def _text(message: ctypes.Array[ctypes.c_char]) -> str:
+    # a long value is cut, perhaps within a character
+    return message.value.decode(errors="replace")
 
 
 def _with_suggestion(name: str, message: str) -> str:

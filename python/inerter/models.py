@@ -46,4 +46,6 @@ def _folder() -> Path:
         if folder.exists():
             return folder
     looked = " or ".join(str(folder) for folder in _FOLDERS)
-    raise ValueError(f"no models in {looked}; reinstall with `pip install --force-reinstall inerter`")
+    raise ValueError(
+        f"no models in {looked}; reinstall with `pip install --force-reinstall inerter`"
+    )

@@ -19,6 +19,7 @@ def device_mjcf(device: Device, name: str = "device", timestep: float = 1e-3) ->
     Parameters
     ----------
     device : Device
+        The device; what it was given becomes the configuration.
     name : str
         Name of the model.
     timestep : float
@@ -38,7 +39,7 @@ def device_mjcf(device: Device, name: str = "device", timestep: float = 1e-3) ->
     # what the user stated, and the number of states that follows
     instance = _only(root, "extension/plugin/instance")
     instance[:] = [
-        ElementTree.Element("config", key=key, value=value if isinstance(value, str) else repr(value))
+        ElementTree.Element("config", key=key, value=str(value))
         for key, value in device.given.items()
     ]
     if device.nstate:
@@ -72,6 +73,7 @@ def simulate_along(
     Parameters
     ----------
     device : Device
+        The device.
     h : float
         Sample spacing [s].
     x, v, a : array_like (n,)
@@ -91,7 +93,8 @@ def simulate_along(
     """
     x, v, a = (np.asarray(channel, dtype=float) for channel in (x, v, a))
     if x.ndim != 1 or x.shape != v.shape or x.shape != a.shape:
-        raise ValueError(f"x, v, a must be arrays of one length, not {x.shape}, {v.shape}, {a.shape}")
+        shapes = f"{x.shape}, {v.shape}, {a.shape}"
+        raise ValueError(f"x, v, a must be arrays of one length; their shapes are {shapes}")
     if not h > 0:
         raise ValueError(f"h is {h}: give a sample spacing > 0 s")
     load_plugin()

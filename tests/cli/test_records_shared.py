@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from inerter.records import check_records, read_records, share_one_clock
 
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "data"
+SHARED = Path(__file__).resolve().parents[2].parent / "shared" / "data"
 
 pytestmark = pytest.mark.skipif(
     not SHARED.is_dir(), reason="the measured records (../shared/data) are not on this machine"

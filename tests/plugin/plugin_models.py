@@ -21,7 +21,7 @@ SPRUNG, UNSPRUNG, TYRE = 181.75, 25.0, 120e3
 STRUT, DAMPER, INERTANCE = 60e3, 1500.0, 113.0
 
 # one device per friction law; levels that matter beside the damper's force
-FRICTION: dict[str, dict[str, float | str]] = {
+FRICTION: dict[str, dict[str, float]] = {
     "none": {},
     "coulomb": {"coulomb_force": 100, "transition_velocity": 2e-2},
     "stribeck": {
@@ -50,9 +50,7 @@ def plugin_actuator(
     config = "".join(f'<config key="{key}" value="{value}"/>' for key, value in keys.items())
     if "actdim" not in attributes and states:
         attributes += f' actdim="{states}"'
-    return (
-        f'<plugin name="{name}" plugin="inerter.device" {target} {attributes}>{config}</plugin>'
-    )
+    return f'<plugin name="{name}" plugin="inerter.device" {target} {attributes}>{config}</plugin>'
 
 
 def instance_actuator(
@@ -121,7 +119,7 @@ def simulate(
 
 @dataclass
 class Law:
-    """A friction law by its equations; `p` its parameters, `direction` a smooth sign."""
+    """A friction law by its equations; `p` its parameters."""
 
     name: str
     p: Mapping[str, float] = field(default_factory=dict)
@@ -162,7 +160,7 @@ class Law:
 
 
 def quarter_car_truth(
-    law: Law, times: NDArray[np.float64], *, inertance: float = INERTANCE, load: float = 0.0,
+    law: Law, times: NDArray, *, inertance: float = INERTANCE, load: float = 0.0,
     width: float = 1e-4, start: float = 0.3,
 ) -> NDArray[np.float64]:  # fmt: skip
     """Rows (zu, x, zu', x', z) at the times, by an adaptive implicit integration.

@@ -314,11 +314,19 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
     names = [name for name, _ in effects_of(model, baseline)]
     without = submodel(model, [name for name in names if name != effect], baseline)
     if effect in ("hysteretic_friction", "stribeck_friction"):
-        return [*_simpler_laws(model), without]
+        return [*simpler_laws(model), without]
     if effect in _MODULATIONS:
         # the variation of the level alone
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
+
+
+def stripped(model: Model, effect: str, baseline: Model) -> Model:
+    """The model without what is particular to an effect; a level that varies leaves the level."""
+    if effect in _MODULATIONS:
+        return model.without(EFFECTS[effect].coordinates)
+    names = [name for name, _ in effects_of(model, baseline) if name != effect]
+    return submodel(model, names, baseline)
 
 
 def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
@@ -355,12 +363,14 @@ def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
     return Model(bare.friction, {**bare.values, **stated}, bare.free + free)
 
 
-def _simpler_laws(model: Model) -> list[Model]:
+def simpler_laws(model: Model) -> list[Model]:
     """The model under each friction law with fewer parameters."""
     level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
     presliding = model.values.get("presliding")
     bare = model.without(LAW_COORDINATES, "none")
-    simpler = [bare.adding("coulomb", coulomb_force=level)]
+    simpler = []
+    if model.friction not in ("none", "coulomb"):
+        simpler.append(bare.adding("coulomb", coulomb_force=level))
     if model.friction in ("lugre", "bouc_wen") and presliding:
         simpler.append(bare.adding("dahl", coulomb_force=level, presliding=presliding))
     if model.friction == "lugre":

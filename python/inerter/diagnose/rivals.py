@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inerter.diagnose.effects import candidates, effects_of, submodel
+from inerter.diagnose.effects import candidates, effects_of, stripped
 from inerter.diagnose.result import Rival
-from inerter.diagnose.search import REQUIRED_GAIN, Scored, Search
+from inerter.diagnose.search import REQUIRED_GAIN, Scored, Search, parallel
 from inerter.diagnose.statistics import advantage, win_shares
 
 # where the data cannot tell two effects apart, the earlier one here is named
@@ -38,18 +38,23 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     baseline, problem = search.baseline, search.problem
     present = [name for name, _ in effects_of(final.model, baseline)]
     rest = [name for name in present if name != effect]
-    without = search.score(effect, None, problem.fit(submodel(final.model, rest, baseline)))
+    without = search.score(effect, None, problem.fit(stripped(final.model, effect, baseline)))
 
-    trials = []
-    for candidate in candidates(without.model, problem.scales):
-        if candidate.effect != effect and candidate.effect not in rest:
-            search.progress(f"comparing {effect} with {candidate.effect}")
-            trials.append((candidate, search.fit(candidate)))
-    trials.sort(key=lambda pair: pair[1].rmse(problem.masks))
-    scored = []
-    for candidate, fit in trials:
-        if candidate.effect not in [s.effect for s in scored] and len(scored) < SHORTLIST:
-            scored.append(search.score(candidate.effect, candidate.law, fit))
+    search.progress(f"comparing {effect} with what else could explain the data")
+    others = [
+        candidate
+        for candidate in candidates(without.model, problem.scales)
+        if candidate.effect != effect and candidate.effect not in rest
+    ]
+    trials = sorted(
+        zip(others, parallel(search.fit, others), strict=True),
+        key=lambda pair: pair[1].rmse(problem.masks),
+    )
+    best = {candidate.effect: (candidate, fit) for candidate, fit in reversed(trials)}
+    shortlist = sorted(best.values(), key=lambda pair: pair[1].rmse(problem.masks))[:SHORTLIST]
+    scored = parallel(
+        lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), shortlist
+    )
 
     # a rival with more parameters has to win by what the search asks of a richer model
     handicap = 1 / (1 - REQUIRED_GAIN) ** 2

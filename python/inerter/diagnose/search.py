@@ -1,37 +1,57 @@
 """The search for what a model lacks: add the effect that predicts left-out data best, repeat, prune.
 
 Every decision is made on folds of the fit data that the model in question was not fitted to; the
-held-out data are not touched here. A richer model has to win by `REQUIRED_ADVANTAGE` standard errors
-over paired blocks and by `REQUIRED_GAIN` of the rms error; among candidates that do about equally
-well the one with the fewest parameters is taken.
+held-out data are not touched here. Among candidates that do about equally well the one with the
+fewest parameters is taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
-from inerter.diagnose.effects import Candidate, candidates, effects_of, without_effect
+from inerter.diagnose.effects import (
+    Candidate,
+    candidates,
+    effects_of,
+    simpler_laws,
+    without_effect,
+)
 from inerter.diagnose.split import Split, blocks
 from inerter.diagnose.statistics import Array, advantage, block_squares, win_shares
 from inerter.identify.bench import Run
 from inerter.identify.fit import Fit, Model, Problem
 
-# about one false alarm in 30,000 for each candidate tried on noise alone
+# what a richer model must win by: standard errors over paired blocks, and share of the rms error.
+# 4 standard errors: about one false alarm in 30,000 candidates on noise alone. A gain many times
+# the smallest one cannot come from noise; there 2 guard against one lucky stretch.
 REQUIRED_ADVANTAGE = 4.0
 REQUIRED_GAIN = 0.01
+LARGE_ADVANTAGE = 2.0
+LARGE_GAIN = 0.05
 # how much a simpler candidate may lose against the best and still be taken
 TOLERATED_ADVANTAGE = 3.0
 TOLERATED_LOSS = 0.01
 # removing an effect that is worth less than this many standard errors
-KEEPING_ADVANTAGE = 3.0
+KEEPING_ADVANTAGE = 2.0
 MOST_EFFECTS = 8
 # candidates that are worth cross-validating in one round
 SHORTLIST = 5
 
 Progress = Callable[[str], None]
+S = TypeVar("S")
+T = TypeVar("T")
+
+
+def parallel(function: Callable[[S], T], items: Iterable[S]) -> list[T]:
+    """Results in order, worked out on all processors: the core and the transforms run unlocked."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(function, items))
 
 
 @dataclass(frozen=True)
@@ -88,7 +108,7 @@ class Search:
             if step is None:
                 break
             self.steps.append(step)
-            current = step.chosen
+            current = self._exchange(step.chosen)
         return self._prune(current)
 
     def score(self, effect: str, law: str | None, fit: Fit) -> Scored:
@@ -115,10 +135,9 @@ class Search:
     def _best_step(self, current: Scored) -> Step | None:
         """The effect to add next, or None."""
         masks = self.problem.masks
-        fitted = []
-        for candidate in candidates(current.model, self.problem.scales):
-            self.progress(f"{len(self.steps) + 1}. effect: trying {candidate.effect}")
-            fitted.append((candidate, self.fit(candidate)))
+        self.progress(f"effect {len(self.steps) + 1}: trying every candidate")
+        trials = list(candidates(current.model, self.problem.scales))
+        fitted = list(zip(trials, parallel(self.fit, trials), strict=True))
         fitted.sort(key=lambda pair: pair[1].rmse(masks))
         if not fitted:
             return None
@@ -133,10 +152,11 @@ class Search:
             for pair in fitted
             if pair not in shortlist and pair[1].rmse(masks) < floor * (1 + 5 * TOLERATED_LOSS)
         ]
-        scored = []
-        for candidate, fit in shortlist:
-            self.progress(f"{len(self.steps) + 1}. effect: checking {candidate.effect}")
-            scored.append(self.score(candidate.effect, candidate.law, fit))
+        names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
+        self.progress(f"effect {len(self.steps) + 1}: checking {names} on data left out")
+        scored = parallel(
+            lambda pair: self.score(pair[0].effect, pair[0].law, pair[1]), shortlist
+        )
         good = [s for s in scored if self._better(current, s)]
         if not good:
             return None
@@ -158,9 +178,9 @@ class Search:
 
     def _better(self, simple: Scored, rich: Scored) -> bool:
         gain = 1 - np.sqrt(rich.squares.sum() / simple.squares.sum())
-        return bool(
-            gain > REQUIRED_GAIN and advantage(simple.squares, rich.squares) > REQUIRED_ADVANTAGE
-        )
+        share = np.clip((gain - REQUIRED_GAIN) / (LARGE_GAIN - REQUIRED_GAIN), 0, 1)
+        required = REQUIRED_ADVANTAGE + share * (LARGE_ADVANTAGE - REQUIRED_ADVANTAGE)
+        return bool(gain > REQUIRED_GAIN and advantage(simple.squares, rich.squares) > required)
 
     def _as_good(self, simple: Scored, best: Scored) -> bool:
         """Whether a candidate loses so little against the best that fewer parameters decide."""
@@ -173,18 +193,47 @@ class Search:
             )
         )
 
+    def _exchange(self, current: Scored) -> Scored:
+        """Another friction law, alone or with one more effect, where that needs fewer parameters.
+
+        The law that is best on its own need not be the one that is best beside the effects found
+        since: a rich law stands in for a simple one with, say, viscous friction.
+        """
+        masks = self.problem.masks
+        trials = []
+        for model in simpler_laws(current.model):
+            trials.append(Candidate("exchange", None, (model,)))
+            for candidate in candidates(model, self.problem.scales):
+                if candidate.starts[0].friction == model.friction:
+                    trials.append(candidate)
+        spare = len(current.model.free)
+        trials = [trial for trial in trials if len(trial.starts[0].free) < spare]
+        fits = sorted(parallel(self.fit, trials), key=lambda fit: fit.rmse(masks))
+        limit = current.fit.rmse(masks) * (1 + TOLERATED_LOSS)
+        near = [fit for fit in fits if fit.rmse(masks) < limit][:2]
+        for scored in parallel(lambda fit: self.score("exchange", None, fit), near):
+            loss = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
+            if loss < TOLERATED_LOSS / 2:
+                return self._exchange(scored)
+        return current
+
     def _prune(self, current: Scored) -> Scored:
         """Take away what the others have made unnecessary, the least important first."""
         while True:
+            self.progress("checking that every effect is still needed")
+            models = [
+                (effect, model)
+                for effect, _ in effects_of(current.model, self.baseline)
+                for model in without_effect(current.model, effect, self.baseline)
+            ]
             simpler = []
-            for effect, _ in effects_of(current.model, self.baseline):
-                for model in without_effect(current.model, effect, self.baseline):
-                    self.progress(f"checking whether {effect} is still needed")
-                    scored = self.score(effect, None, self.problem.fit(model))
-                    lost = advantage(scored.squares, current.squares)
-                    ratio = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
-                    if lost < KEEPING_ADVANTAGE or ratio < REQUIRED_GAIN / 2:
-                        simpler.append((ratio, scored))
+            for scored in parallel(
+                lambda pair: self.score(pair[0], None, self.problem.fit(pair[1])), models
+            ):
+                lost = advantage(scored.squares, current.squares)
+                ratio = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
+                if lost < KEEPING_ADVANTAGE or ratio < REQUIRED_GAIN / 2:
+                    simpler.append((ratio, scored))
             if not simpler:
                 return current
             current = min(simpler, key=lambda pair: pair[0])[1]

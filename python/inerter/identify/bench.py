@@ -15,7 +15,7 @@ from inerter.records.motion import Motion, filtered, lowpass, response
 Array = NDArray[np.float64]
 
 # samples per period of the cut-off that a fit works on; more add time and no information
-SAMPLES_PER_PERIOD = 12
+SAMPLES_PER_PERIOD = 10
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,76 @@
+"""Plots that do not belong to one run: bench tables, and how the cut-off was chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from inerter.diagnose.result import TablePoints
+from inerter.report.palette import LIGHT
+from inerter.report.plotting import figure, line, points, positive
+
+
+def table_plots(table: TablePoints) -> dict[str, go.Figure]:
+    """Amplitude, ratio of force to acceleration, and residual, each against frequency."""
+
+    def ratio(force: np.ndarray) -> np.ndarray:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return force / table.acceleration
+
+    return {
+        "table-force": _against_frequency(table, "force amplitude [N]", lambda force: force),
+        "table-ratio": _against_frequency(table, "force / acceleration [kg]", ratio),
+        "table-error": _against_frequency(
+            table, "error [N]", lambda force: table.force - force, measured=False
+        ),
+    }
+
+
+def _against_frequency(
+    table: TablePoints, title: str, value: Callable[[np.ndarray], np.ndarray],
+    measured: bool = True,
+) -> go.Figure:
+    plot = figure("frequency [Hz]", title)
+    f = table.frequency
+    if len(f) and np.min(f) > 0 and np.max(f) / np.min(f) > 20:
+        plot.update_layout(xaxis={"type": "log"})
+    if measured:
+        points(plot, f[~table.holdout], value(table.force)[~table.holdout], "measured",
+               "measured", 9)
+        points(plot, f[table.holdout], value(table.force)[table.holdout], "measured",
+               "measured, held out", 10, symbol="circle-open", marker_line_width=2.5)
+    # a line through a model's values has a meaning only with one value per frequency
+    order = np.argsort(f, kind="stable")
+    joined = len(np.unique(f)) == len(f)
+    for name, color, force in (
+        ("before", "before", table.baseline), ("after", "after", table.extended)
+    ):
+        if joined:
+            line(plot, f[order], value(force)[order], color, name)
+        points(plot, f, value(force), color, name, 5)
+    return plot
+
+
+def cutoff_plot(method: dict[str, Any]) -> go.Figure | None:
+    """Force error against the smoothing cut-offs tried, the chosen one marked; None without."""
+    tried = np.asarray(method.get("cutoffs_tried") or [], float)
+    errors = np.asarray(method.get("force_error_at_cutoffs") or [], float)
+    if not len(tried) or len(tried) != len(errors):
+        return None
+    plot = figure("smoothing cut-off [Hz]", "force error of the trial [N]")
+    plot.update_layout(xaxis={"type": "log"}, yaxis={"rangemode": "tozero"})
+    x, y = positive(tried, errors)
+    line(plot, x, y, "measured", "error", 1.5)
+    points(plot, x, y, "measured", "error", 6)
+    chosen = method.get("cutoff")
+    if chosen is not None and np.isfinite(chosen) and len(x):
+        nearest = int(np.argmin(np.abs(np.log(x / chosen)))) if chosen > 0 else 0
+        points(plot, x[nearest : nearest + 1], y[nearest : nearest + 1], "after", "chosen", 12)
+        plot.add_annotation(
+            x=float(np.log10(x[nearest])), y=float(y[nearest]), text="chosen", showarrow=False,
+            yshift=-16, font={"color": LIGHT["after"], "size": 12},
+        )
+    return plot

@@ -1,0 +1,219 @@
+"""The HTML report: one file with everything in it, which loads nothing from anywhere."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, RecordSummary
+from inerter.report import text
+from inerter.report.files import write_atomic
+from inerter.report.other_plots import cutoff_plot, table_plots
+from inerter.report.palette import DARK, LIGHT
+from inerter.report.plotting import to_script
+from inerter.report.run_plots import LOOP_CYCLES, pictured, rmse, run_plots
+
+# entries of `method` that have a place of their own on the page
+_PLACED = ("cutoffs_tried", "force_error_at_cutoffs")
+_METHOD_WORDS = {
+    "cutoff": "smoothing cut-off [Hz]",
+    "channels": "motion taken from",
+    "split": "split",
+    "held_out_samples": "held-out samples",
+}
+ENGINES = {"mujoco": "MuJoCo", "exudyn": "Exudyn", "reference": "reference (SciPy)"}
+
+
+def write_report(diagnosis: Diagnosis, path: Path, device_toml: str, model_xml: str) -> None:
+    """Write the report of a diagnosis.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        With `curves` (time records) or `points` (tables) where pictures are wanted.
+    path : Path
+        The HTML file; replaced as a whole or not at all.
+    device_toml, model_xml : str
+        The extended device, to copy from the page.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written; nothing is left behind.
+    """
+    content = render_report(diagnosis, device_toml, model_xml)
+    # a lone surrogate in a file name must not cost the report
+    write_atomic(Path(path), content.encode("utf-8", "replace"))
+
+
+def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str:
+    """The report as HTML text; see `write_report`."""
+    runs = pictured(diagnosis.curves)
+    single = table_plots(diagnosis.points) if _has_points(diagnosis) else {}
+    cutoff = cutoff_plot(diagnosis.method)
+    if cutoff is not None:
+        single["cutoff"] = cutoff
+    plots = {"runs": [run_plots(run, len(runs)) for run in runs], "single": single}
+    return _template().render(
+        d=diagnosis,
+        headline=headline(diagnosis),
+        findings=[_finding(finding, diagnosis.baseline.rmse) for finding in diagnosis.findings],
+        runs=[_run_label(run) for run in runs],
+        unpictured=len(diagnosis.curves) - len(runs),
+        partly=any(run.holdout.any() and not run.holdout.all() for run in runs),
+        loop_cycles=LOOP_CYCLES,
+        table=_has_points(diagnosis),
+        cutoff=cutoff is not None,
+        parameters=_parameters(diagnosis),
+        friction=(
+            diagnosis.baseline.device.get("friction", "none"),
+            diagnosis.extended.device.get("friction", "none"),
+        ),
+        records=[_record(record, diagnosis) for record in diagnosis.records],
+        warned=any(record.warnings for record in diagnosis.records),
+        engines=_engines(diagnosis),
+        method=_method(diagnosis.method),
+        device_toml=device_toml,
+        model_xml=model_xml,
+        light=LIGHT,
+        dark=DARK,
+        palette=Markup(to_script({"light": LIGHT, "dark": DARK})),
+        plots=Markup(to_script(plots)),
+        plotly=Markup(_plotly()),
+        number=text.number,
+        percent=text.percent,
+    )
+
+
+def headline(diagnosis: Diagnosis) -> str:
+    """The outcome in one sentence."""
+    if not diagnosis.findings:
+        return "No lack of the simulation is to be seen in these data"
+    names = [text.finding_name(finding) for finding in diagnosis.findings]
+    return f"The simulation lacks {text.listed(names)}"
+
+
+@cache
+def _template() -> Any:
+    folder = Path(__file__).parent
+    environment = Environment(
+        loader=FileSystemLoader(folder), autoescape=True, undefined=StrictUndefined,
+        trim_blocks=True, lstrip_blocks=True,
+    )
+    return environment.get_template("page.html.j2")
+
+
+@cache
+def _plotly() -> str:
+    # the end of a script element must not stand inside it
+    return get_plotlyjs().replace("</script", "<\\/script").replace("<!--", "<\\!--")
+
+
+def _has_points(diagnosis: Diagnosis) -> bool:
+    return diagnosis.points is not None and len(diagnosis.points.frequency) > 0
+
+
+def _finding(finding: Finding, scale: float) -> dict[str, Any]:
+    def width(value: float) -> float:
+        # bars of all findings share the scale of the error before the first
+        full = max(scale, finding.rmse_before)
+        return round(min(100.0, max(0.0, 100 * value / full)), 2) if full > 0 else 0.0
+
+    return {
+        "name": text.finding_name(finding),
+        "key": finding.effect,
+        "confidence": text.confidence(finding.confidence),
+        "parameters": [
+            (name, text.parameter_meaning(name), text.with_error(value), _vague(value))
+            for name, value in finding.parameters.items()
+        ],
+        "before": finding.rmse_before,
+        "after": finding.rmse_after,
+        "before_width": width(finding.rmse_before),
+        "after_width": width(finding.rmse_after),
+        "gain": finding.gain,
+        "rivals": [
+            (text.effect_name(r.effect), r.law, text.confidence(r.confidence))
+            for r in finding.rivals
+        ],
+        "notes": text.effect_notes(finding.effect),
+        "evidence": finding.evidence,
+    }
+
+
+def _vague(value: ParameterValue) -> bool:
+    return value.stderr > 0.5 * abs(value.value)
+
+
+def _run_label(run: Any) -> dict[str, Any]:
+    part = "held out" if run.holdout.all() else "partly held out" if run.holdout.any() else "fitted"
+    return {
+        "name": run.name,
+        "part": part,
+        "before": rmse(run, run.baseline),
+        "after": rmse(run, run.extended),
+    }
+
+
+def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """Every parameter that either device has: before, after, and whether it was identified."""
+    before: dict[str, Any] = {"delay": diagnosis.baseline.delay, **diagnosis.baseline.device}
+    after: dict[str, Any] = {"delay": diagnosis.extended.delay, **diagnosis.extended.device}
+    rows = []
+    for name in dict.fromkeys([*diagnosis.parameters, *after, *before]):
+        old, new, found = before.get(name), after.get(name), diagnosis.parameters.get(name)
+        if name == "friction" or (name == "delay" and not (old or new or found)):
+            continue
+        suffix = text.unit(found.unit if found else text.parameter_unit(name))
+        rows.append(
+            {
+                "name": name,
+                "meaning": text.parameter_meaning(name),
+                "before": _value(old, suffix),
+                "after": text.with_error(found) if found else _value(new, suffix),
+                "how": "identified" if found else "as set" if new is not None else "left out",
+                "vague": found is not None and _vague(found),
+            }
+        )
+    return rows
+
+
+def _value(value: float | str | None, suffix: str) -> str:
+    if value is None or isinstance(value, str):
+        return value or text.UNKNOWN
+    return f"{text.number(value)} {suffix}".rstrip()
+
+
+def _record(record: RecordSummary, diagnosis: Diagnosis) -> dict[str, Any]:
+    row: dict[str, Any] = asdict(record) | {"before": None, "after": None}
+    for run in diagnosis.curves:
+        if run.name == record.name:
+            row |= {"before": rmse(run, run.baseline), "after": rmse(run, run.extended)}
+    row["role"] = {"fit": "fitted", "holdout": "held out"}.get(record.role, record.role)
+    return row
+
+
+def _engines(diagnosis: Diagnosis) -> list[tuple[str, float | None]]:
+    names = dict.fromkeys([*ENGINES, *diagnosis.engines])
+    return [(ENGINES.get(name, name), diagnosis.engines.get(name)) for name in names]
+
+
+def _method(method: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = []
+    for key, value in method.items():
+        if key in _PLACED:
+            continue
+        if isinstance(value, (list, tuple)):
+            shown = ", ".join(str(item) for item in value)
+        elif isinstance(value, float):
+            shown = text.number(value)
+        else:
+            shown = str(value)
+        rows.append((_METHOD_WORDS.get(key, key.replace("_", " ")), shown))
+    return rows

@@ -1,0 +1,126 @@
+"""The common style of the page's plots, and their way into the page."""
+
+from __future__ import annotations
+
+import html
+import json
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.report.palette import LIGHT
+
+FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
+# float32 resolves 1e-7 of a value; a time axis needs more when it starts late
+_SINGLE = 1e-6
+
+
+def figure(x_title: str, y_title: str, **layout: Any) -> go.Figure:
+    """An empty plot with titled axes."""
+    axis: dict[str, Any] = {
+        "gridcolor": LIGHT["grid"],
+        "linecolor": LIGHT["line"],
+        "zerolinecolor": LIGHT["line"],
+        "zerolinewidth": 1,
+        "tickfont": {"size": 11, "color": LIGHT["soft"]},
+        "automargin": True,
+        "exponentformat": "power",
+    }
+    title = {"font": {"size": 12, "color": LIGHT["soft"]}, "standoff": 6}
+    return go.Figure(
+        layout={
+            "template": go.layout.Template(),
+            "paper_bgcolor": "rgba(0,0,0,0)",
+            "plot_bgcolor": "rgba(0,0,0,0)",
+            "font": {"family": FONT, "size": 12, "color": LIGHT["text"]},
+            "margin": {"l": 8, "r": 10, "t": 8, "b": 8},
+            "showlegend": False,
+            "autosize": True,
+            "hoverlabel": {
+                "bgcolor": LIGHT["panel"],
+                "bordercolor": LIGHT["line"],
+                "font": {"color": LIGHT["text"]},
+            },
+            "xaxis": axis | {"title": title | {"text": x_title}},
+            "yaxis": axis | {"title": title | {"text": y_title}},
+            **layout,
+        }
+    )
+
+
+def line(
+    plot: go.Figure, x: ArrayLike, y: ArrayLike, color: str, name: str, width: float = 1.5,
+    **options: Any,
+) -> None:
+    """Add a line; samples that are not finite are left out."""
+    xs, ys = _finite(x, y)
+    plot.add_trace(
+        go.Scatter(
+            x=xs, y=ys, mode="lines", name=html.escape(name),
+            line={"color": LIGHT[color], "width": width},
+            hovertemplate="%{x:.4g}, %{y:.4g}", **options,
+        )
+    )
+
+
+def points(
+    plot: go.Figure, x: ArrayLike, y: ArrayLike, color: str, name: str, size: float = 3,
+    opacity: float = 1.0, symbol: str = "circle", **options: Any,
+) -> None:
+    """Add points; samples that are not finite are left out."""
+    xs, ys = _finite(x, y)
+    plot.add_trace(
+        go.Scatter(
+            x=xs, y=ys, mode="markers", name=html.escape(name), opacity=opacity,
+            marker={"color": LIGHT[color], "size": size, "symbol": symbol},
+            hovertemplate="%{x:.4g}, %{y:.4g}", **options,
+        )
+    )
+
+
+def positive(x: ArrayLike, y: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
+    """The pairs that a plot with two logarithmic axes can show."""
+    xs, ys = np.asarray(x, float), np.asarray(y, float)
+    keep = (xs > 0) & (ys > 0)
+    return xs[keep], ys[keep]
+
+
+def to_script(data: Any) -> str:
+    """JSON of plots (or plain data) that is safe inside a <script> element.
+
+    Raises
+    ------
+    ValueError
+        A number is not finite: JSON has no word for it.
+    """
+    text = json.dumps(_plain(data), allow_nan=False, separators=(",", ":"))
+    for character in "<>&\u2028\u2029":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return text
+
+
+def _plain(data: Any) -> Any:
+    if isinstance(data, go.Figure):
+        # arrays become base64, a third of the length of digits
+        made = data.to_dict()
+        return {"data": made["data"], "layout": made["layout"]}
+    if isinstance(data, dict):
+        return {key: _plain(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_plain(value) for value in data]
+    return data
+
+
+def _finite(x: ArrayLike, y: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
+    xs, ys = np.asarray(x, float), np.asarray(y, float)
+    keep = np.isfinite(xs) & np.isfinite(ys)
+    return _compact(xs[keep]), _compact(ys[keep])
+
+
+def _compact(values: NDArray[Any]) -> NDArray[Any]:
+    """Single precision where a plot cannot show the difference."""
+    size = float(np.max(np.abs(values))) if len(values) else 0.0
+    resolved = len(values) > 1 and float(np.ptp(values)) > 1e4 * _SINGLE * size
+    return values.astype(np.float32) if resolved and size < 1e30 else values

@@ -1,0 +1,150 @@
+"""The plots of one run: force over time, loops, and what the residual goes with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from scipy.signal import welch
+
+from inerter.diagnose.result import RunCurves
+from inerter.report import thinning
+from inerter.report.palette import LIGHT
+from inerter.report.plotting import figure, line, points, positive
+from inerter.report.thinning import Mask
+
+# what one page holds: runs with pictures, and samples per line when there are few runs
+PICTURED_RUNS = 12
+TIME_SAMPLES = 3000
+LOOP_SAMPLES = 1500
+CLOUD_SAMPLES = 500
+LOOP_CYCLES = 6
+BINS = 24
+
+BEFORE, AFTER = "before", "after"
+
+
+def pictured(curves: Sequence[RunCurves]) -> list[RunCurves]:
+    """The runs that get pictures, held-out ones first."""
+    return sorted(curves, key=lambda run: not run.holdout.any())[:PICTURED_RUNS]
+
+
+def judged(run: RunCurves) -> Mask:
+    """The samples that a run's figures are about: held out if any are, never near the ends."""
+    held = run.holdout & run.inner
+    return held if held.any() else run.inner if run.inner.any() else np.ones(len(run.time), bool)
+
+
+def rmse(run: RunCurves, force: np.ndarray) -> float:
+    """Rms force error over the judged samples [N]."""
+    mask = judged(run)
+    return float(np.sqrt(np.mean((run.force[mask] - force[mask]) ** 2)))
+
+
+def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
+    """Every plot of a run, by the name of its place in the page; `crowd`: runs on that page."""
+    share = min(1.0, 8 / crowd)
+    mask = judged(run)
+    return {
+        "time": _over_time(run, int(share * TIME_SAMPLES)),
+        **_loops(run, mask, int(share * LOOP_SAMPLES)),
+        **_clouds(run, mask, int(share * CLOUD_SAMPLES)),
+        "spectrum": _spectrum(run, mask),
+    }
+
+
+def _over_time(run: RunCurves, limit: int) -> go.Figure:
+    """Force above, residual below, one time axis."""
+    plot = figure("time [s]", "force [N]")
+    style = plot.layout.yaxis.to_plotly_json()  # type: ignore[attr-defined]
+    plot.update_layout(
+        yaxis={"domain": [0.44, 1.0]},
+        yaxis2=style | {"domain": [0.0, 0.36], "anchor": "x"},
+        xaxis={"anchor": "y2"},
+    )
+    plot.layout.yaxis2.title.text = "error [N]"  # type: ignore[attr-defined]
+    lines: list[tuple[str, np.ndarray, str, float, str]] = [
+        ("measured", run.force, "measured", 3.0, "y"),
+        (BEFORE, run.baseline, "before", 1.4, "y"),
+        (AFTER, run.extended, "after", 1.4, "y"),
+        ("error before", run.force - run.baseline, "before", 1.2, "y2"),
+        ("error after", run.force - run.extended, "after", 1.2, "y2"),
+    ]
+    for name, values, color, width, axis in lines:
+        keep = thinning.extremes(values, limit)
+        line(plot, run.time[keep], values[keep], color, name, width, yaxis=axis)
+    # where only a part of the run is held out, show which
+    if run.holdout.any() and not run.holdout.all():
+        plot.update_layout(
+            shapes=[
+                {
+                    "type": "rect", "xref": "x", "yref": "paper", "y0": 0, "y1": 1,
+                    "x0": float(run.time[first]), "x1": float(run.time[last]),
+                    "fillcolor": LIGHT["shade"], "opacity": 0.18, "line": {"width": 0},
+                    "layer": "below",
+                }
+                for first, last in thinning.stretches(run.holdout)[:100]
+            ]
+        )
+    return plot
+
+
+def _loops(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
+    part = thinning.longest_stretch(mask)
+    length = thinning.some_cycles(run.velocity[part], LOOP_CYCLES)
+    keep = part.start + thinning.evenly(length, limit)
+    plots = {}
+    for place, title, x in (
+        ("loop-displacement", "displacement [m]", run.displacement),
+        ("loop-velocity", "velocity [m/s]", run.velocity),
+    ):
+        plot = figure(title, "force [N]")
+        line(plot, x[keep], run.force[keep], "measured", "measured", 3.0)
+        line(plot, x[keep], run.baseline[keep], "before", BEFORE)
+        line(plot, x[keep], run.extended[keep], "after", AFTER)
+        plots[place] = plot
+    return plots
+
+
+def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
+    """Residual against the motion: some samples as points, the mean in each bin as a line."""
+    samples = np.flatnonzero(mask)
+    some = samples[thinning.evenly(len(samples), limit)]
+    plots = {}
+    for place, title, x in (
+        ("error-displacement", "displacement [m]", run.displacement),
+        ("error-velocity", "velocity [m/s]", run.velocity),
+        ("error-acceleration", "acceleration [m/s²]", run.acceleration),
+    ):
+        plot = figure(title, "error [N]")
+        for name, color, force in (
+            (BEFORE, "before", run.baseline), (AFTER, "after", run.extended)
+        ):
+            error = run.force - force
+            points(plot, x[some], error[some], color, name, 3, 0.28, hoverinfo="skip")
+            middle, mean = thinning.bin_means(x[samples], error[samples], BINS)
+            line(plot, middle, mean, color, f"{name}, mean", 2.4)
+        plots[place] = plot
+    return plots
+
+
+def _spectrum(run: RunCurves, mask: Mask) -> go.Figure:
+    plot = figure("frequency [Hz]", "density [N/√Hz]")
+    log: dict[str, Any] = {"type": "log", "dtick": 1, "minor": {"showgrid": False}}
+    plot.update_layout(xaxis=log, yaxis=log)
+    part = thinning.longest_stretch(mask)
+    count = part.stop - part.start
+    if count < 16:
+        return plot
+    rate = 1 / float(np.median(np.diff(run.time[part])))
+    for name, color, values, width in (
+        ("measured force", "measured", run.force, 3.0),
+        ("error before", "before", run.force - run.baseline, 1.5),
+        ("error after", "after", run.force - run.extended, 1.5),
+    ):
+        size = min(count, max(256, count // 4), 2048)
+        frequency, power = welch(values[part], rate, nperseg=size)
+        line(plot, *positive(frequency, np.sqrt(power)), color, name, width)
+    return plot

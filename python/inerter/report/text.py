@@ -1,0 +1,131 @@
+"""Numbers, units and names as people write them."""
+
+from __future__ import annotations
+
+import math
+
+from inerter.core import parameters
+from inerter.diagnose.effects import EFFECTS
+from inerter.diagnose.result import Finding, ParameterValue
+from inerter.diagnose.wording import PLAIN, effect_in_words
+
+_SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ")
+UNKNOWN = "–"
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """Such as "68.8", "65 600" or "1.2 × 10⁻⁵"; a dash where there is no finite number."""
+    if value is None or not math.isfinite(value):
+        return UNKNOWN
+    if value == 0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if magnitude < -3 or magnitude > 6:
+        return _scientific(value, magnitude, digits - 1)
+    return _plain(value, digits - 1 - magnitude)
+
+
+def percent(share: float | None) -> str:
+    """Such as "87 %"."""
+    if share is None or not math.isfinite(share):
+        return UNKNOWN
+    return f"{100 * share:.0f} %".replace("-", "−")
+
+
+def confidence(share: float) -> str:
+    """A percentage that never claims certainty."""
+    return "> 99 %" if share > 0.995 else "< 1 %" if share < 0.005 else percent(share)
+
+
+def unit(name: str) -> str:
+    """A unit in print: "N·s/m", "1/m²"; nothing for a pure number."""
+    if name in ("1", ""):
+        return ""
+    parts = name.replace("*", "·").split("^")
+    text = parts[0]
+    for part in parts[1:]:
+        power = part[: len(part) - len(part.lstrip("-0123456789n"))]
+        text += power.translate(_SUPERSCRIPT) + part[len(power) :]
+    return text
+
+
+def with_error(value: ParameterValue) -> str:
+    """A value to the last digit that its standard error allows, such as "65 600 ± 17 800 N/m"."""
+    suffix = f" {unit(value.unit)}" if unit(value.unit) else ""
+    error = value.stderr
+    if not math.isfinite(value.value):
+        return UNKNOWN
+    # an error of nothing is an error that the fit could not find
+    if not math.isfinite(error) or error <= 1e-9 * abs(value.value):
+        return f"{number(value.value)}{suffix} (error not known)"
+    top = math.floor(math.log10(max(abs(value.value), error)))
+    power = top if top < -3 or top > 6 else 0
+    scaled, scaled_error = value.value / 10.0**power, error / 10.0**power
+    decimals = 1 - math.floor(math.log10(scaled_error))
+    # no more than six digits, however sure the fit is
+    decimals = min(decimals, 5 - (top - power))
+    pair = f"{_plain(scaled, decimals)} ± {_plain(scaled_error, max(decimals, 0))}"
+    if power:
+        return f"({pair}) × 10{str(power).translate(_SUPERSCRIPT)}{suffix}"
+    return pair + suffix
+
+
+def effect_name(effect: str) -> str:
+    """An effect in words; the contract's name with spaces where there are none yet."""
+    return PLAIN.get(effect, effect.replace("_", " "))
+
+
+def finding_name(finding: Finding) -> str:
+    """An effect in words, with its law."""
+    if finding.effect in PLAIN:
+        return effect_in_words(finding)
+    law = f" ({finding.law})" if finding.law else ""
+    return effect_name(finding.effect) + law
+
+
+def effect_notes(effect: str) -> dict[str, str]:
+    """What an effect adds, its physical cause, what it is taken for and how to tell."""
+    known = EFFECTS.get(effect)
+    if known is None:
+        return {}
+    rival, _, experiment = known.taken_for.partition(": ")
+    return {
+        "meaning": known.meaning,
+        "cause": known.cause,
+        "rival": rival,
+        "experiment": experiment,
+    }
+
+
+def parameter_meaning(name: str) -> str:
+    """The core's one-line meaning of a parameter."""
+    if name == "delay":
+        return "lateness of the force channel"
+    known = parameters().get(name)
+    return known.meaning if known else ""
+
+
+def parameter_unit(name: str) -> str:
+    """The core's unit of a parameter."""
+    if name == "delay":
+        return "s"
+    known = parameters().get(name)
+    return known.unit if known else ""
+
+
+def listed(items: list[str]) -> str:
+    """Such as "a, b and c"."""
+    return " and ".join(filter(None, [", ".join(items[:-1]), items[-1] if items else ""]))
+
+
+def _plain(value: float, decimals: int) -> str:
+    # thin spaces between thousands, a true minus sign
+    text = f"{round(value, decimals):,.{max(decimals, 0)}f}"
+    whole = text.split(".")[0].replace("-", "").replace(",", "")
+    text = text.replace(",", "\u202f" if len(whole) > 4 else "")
+    return text.replace("-", "−")
+
+
+def _scientific(value: float, power: int, decimals: int) -> str:
+    mantissa = _plain(value / 10.0**power, decimals)
+    return f"{mantissa} × 10{str(power).translate(_SUPERSCRIPT)}"

@@ -1,0 +1,55 @@
+"""Does a device on the simulated test rig give the force that the core gives along a motion?"""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+from inerter import Device
+from inerter.rig import device_mjcf, simulate_along
+from plugin_models import FRICTION
+
+H = 1e-3
+T = np.arange(3000) * H
+# two tones, so that reversals have many amplitudes
+W1, W2 = 2 * np.pi * 2, 2 * np.pi * 5.3
+X = 5e-3 * np.sin(W1 * T) + 1e-3 * np.sin(W2 * T)
+V = 5e-3 * W1 * np.cos(W1 * T) + 1e-3 * W2 * np.cos(W2 * T)
+A = -5e-3 * W1**2 * np.sin(W1 * T) - 1e-3 * W2**2 * np.sin(W2 * T)
+
+
+def device(law: str) -> Device:
+    return Device(
+        inertance=113, viscous=40, stiffness=500, load_friction=0.03, friction=law, **FRICTION[law]
+    )
+
+
+@pytest.mark.parametrize("law", FRICTION)
+def test_the_rig_and_the_core_agree(law: str) -> None:
+    state = 1e-4 if device(law).nstate else 0.0
+    rig = simulate_along(device(law), H, X, V, A, state)
+    core = device(law).along(H, X, V, A, state)
+    for channel in ("total", "friction", "state"):
+        scale = np.abs(core[channel]).max() or 1.0
+        assert np.abs(rig[channel] - core[channel]).max() < 1e-8 * scale, channel
+
+
+@pytest.mark.parametrize("law", FRICTION)
+def test_the_written_model_is_the_device(law: str) -> None:
+    text = device_mjcf(device(law), "bench")
+    assert '<mujoco model="bench">' in text
+    model = mujoco.MjModel.from_xml_string(text)
+    assert model.actuator_armature[1] == 113
+    assert model.na == device(law).nstate
+    data = mujoco.MjData(model)
+    data.qpos[0], data.qvel[0], data.ctrl[0] = X[100], V[100], A[100]
+    mujoco.mj_forward(model, data)
+    expected = device(law).evaluate(X[100], V[100], A[100], 0.0)["total"][0]
+    assert data.sensordata[0] == pytest.approx(expected, rel=1e-8)
+
+
+def test_wrong_input_is_named() -> None:
+    with pytest.raises(ValueError, match="one length"):
+        simulate_along(device("none"), H, X, V[:-1], A)
+    with pytest.raises(ValueError, match="h is 0"):
+        simulate_along(device("none"), 0, X, V, A)
