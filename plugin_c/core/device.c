@@ -247,6 +247,11 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
 
 //------------------------------ states ------------------------------------------------------------
 
+// displacement that the laws see
+static double stretch_of(const InerterDevice* device, double length) {
+  return length - device->rest_length;
+}
+
 static const FrictionLaw* law_of(const InerterDevice* device) {
   return kFriction[device->friction].law;
 }
@@ -256,11 +261,11 @@ int inerter_nstate(const InerterDevice* device) {
 }
 
 double inerter_state_rate(const InerterDevice* device, double x, double v, double z) {
-  return inerter_nstate(device) ? law_of(device)->rate(device, x, v, z) : 0;
+  return inerter_nstate(device) ? law_of(device)->rate(device, stretch_of(device, x), v, z) : 0;
 }
 
 double inerter_state_step(const InerterDevice* device, double x, double v, double z, double h) {
-  return inerter_nstate(device) ? law_of(device)->step(device, x, v, z, h) : 0;
+  return inerter_nstate(device) ? law_of(device)->step(device, stretch_of(device, x), v, z, h) : 0;
 }
 
 double inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
@@ -280,7 +285,7 @@ double inerter_state_of_force(const InerterDevice* device, double x, double v, d
   // a state cannot be beyond where an endless slide in its direction leads, slow or fast: slow has
   // the Stribeck peak, fast the full asymmetry
   double speed = (z < 0 ? -10 : 10) * device->transition_velocity;
-  double slow = law_of(device)->step(device, x, 1e-9 * speed, 0, 1e24 / fabs(speed));
+  double slow = law_of(device)->step(device, x, copysign(1e-200, z), 0, 1e215);
   double fast = law_of(device)->step(device, x, speed, 0, 1e15 / fabs(speed));
   double limit = fmax(fabs(slow), fabs(fast));
   return isfinite(limit) ? copysign(fmin(fabs(z), limit), z) : z;
@@ -292,14 +297,32 @@ double inerter_friction_force(const InerterDevice* device, double x, double v, d
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
-  return law_of(device)->force(device, x, v, z);
+  return law_of(device)->force(device, stretch_of(device, x), v, z);
 }
 
 double inerter_force_motion(const InerterDevice* device, double x, double v, double z) {
-  double stretch = x - device->rest_length;
+  double stretch = stretch_of(device, x);
   double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
   double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
   return spring + damper + device->force_offset + inerter_friction_force(device, x, v, z);
+}
+
+double inerter_inertance(const InerterDevice* device, double x, double* slope) {
+  double linear = device->inertance_gradient, square = device->inertance_curvature;
+  double stretch = stretch_of(device, x);
+  double factor = 1 + (linear + square * stretch) * stretch;
+  int floored = factor < 0.01;
+  if (slope) {
+    *slope = floored ? 0 : device->inertance * (linear + 2 * square * stretch);
+  }
+  return device->inertance * (floored ? 0.01 : factor);
+}
+
+// b(x) a + b'(x) v^2 / 2
+static double inertance_force(const InerterDevice* device, double x, double v, double a) {
+  double slope;
+  double inertance = inerter_inertance(device, x, &slope);
+  return inertance * a + 0.5 * slope * v * v;
 }
 
 double inerter_load_factor(const InerterDevice* device, double v) {
@@ -309,7 +332,7 @@ double inerter_load_factor(const InerterDevice* device, double v) {
 InerterForce inerter_force(const InerterDevice* device, double x, double v, double a, double z) {
   InerterForce force;
   double load = inerter_load_factor(device, v);
-  force.inertance = device->inertance * a;
+  force.inertance = inertance_force(device, x, v, a);
   force.friction = inerter_friction_force(device, x, v, z) + load * fabs(force.inertance);
   force.total =
       force.inertance + inerter_force_motion(device, x, v, z) + load * fabs(force.inertance);
@@ -317,12 +340,12 @@ InerterForce inerter_force(const InerterDevice* device, double x, double v, doub
 }
 
 double inerter_stored_energy(const InerterDevice* device, double x, double v, double z) {
-  double stretch = x - device->rest_length;
+  double stretch = stretch_of(device, x);
   double square = stretch * stretch;
-  double energy = 0.5 * device->inertance * v * v +
+  double energy = 0.5 * inerter_inertance(device, x, NULL) * v * v +
                   (0.5 * device->stiffness + 0.25 * device->stiffness_cubic * square) * square;
   if (inerter_nstate(device)) {
-    energy += law_of(device)->energy(device, x, z);
+    energy += law_of(device)->energy(device, stretch, z);
   }
   return energy;
 }
@@ -330,15 +353,15 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, do
 double inerter_dissipated_power(const InerterDevice* device, double x, double v, double a,
                                 double z) {
   double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
-  double load = inerter_load_factor(device, v) * fabs(device->inertance * a);
+  double load = inerter_load_factor(device, v) * fabs(inertance_force(device, x, v, a));
   double power = (damper + load + inerter_friction_force(device, x, v, z)) * v;
 
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term
   if (inerter_nstate(device)) {
     const FrictionLaw* law = law_of(device);
-    double rate = law->rate(device, x, v, z);
+    double rate = law->rate(device, stretch_of(device, x), v, z);
     power -= 2 * law->energy(device, 0, 1) * z * rate;
-    power -= 2 * law->energy(device, 1, 0) * x * v;
+    power -= 2 * law->energy(device, 1, 0) * stretch_of(device, x) * v;
   }
   return power;
 }

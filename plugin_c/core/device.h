@@ -1,10 +1,12 @@
 // A device: inertance, viscous damping, stiffness, further force laws and one friction law.
 //
-//   F = b a + c v + c2 v|v| + k (x - l0) + k3 (x - l0)^3 + F_0 + F_friction + mu |b a| sign(v)
+//   F = b(x) a + b'(x) v^2 / 2 + c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction
+//       + mu |b(x) a + b'(x) v^2 / 2| sign(v),   b(x) = b max(0.01, 1 + gradient x + curvature x^2)
 //
-// x, v, a: displacement [m], velocity [m/s] and acceleration [m/s^2] of terminal 2 relative to
-// terminal 1, positive = longer. F [N]: the force that lengthens the device, tension positive.
-// For a rotational device read rad, N m and kg m^2.
+// The term with b' makes a varying inertance keep its kinetic energy b(x) v^2 / 2.
+// x, v, a: displacement [m] (length minus rest_length), velocity [m/s] and acceleration [m/s^2] of
+// terminal 2 relative to terminal 1, positive = longer. Functions take the length. F [N]: the force
+// that lengthens the device, tension positive. For a rotational device read rad, N m and kg m^2.
 //
 // This file and its neighbours are plain C17: no allocation, no globals, no simulator.
 
@@ -67,7 +69,7 @@ typedef struct InerterParameter_ {
 // parts of a force, in N
 typedef struct InerterForce_ {
   double total;
-  double inertance;  // b a
+  double inertance;  // b(x) a + b'(x) v^2 / 2
   double friction;   // friction law and load friction
 } InerterForce;
 
@@ -108,15 +110,18 @@ INERTER_API double inerter_state_step(const InerterDevice* device, double x, dou
 INERTER_API double inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
                                           double force);
 
-// All forces but those that depend on acceleration (b a and load friction).
+// All forces but those that depend on acceleration (inertance force, load friction).
 INERTER_API double inerter_force_motion(const InerterDevice* device, double x, double v, double z);
 
 // Force of the friction law alone (without load friction).
 INERTER_API double inerter_friction_force(const InerterDevice* device, double x, double v,
                                           double z);
 
+// Inertance at displacement x, b(x) [kg]; slope (if not NULL): b'(x) [kg/m].
+INERTER_API double inerter_inertance(const InerterDevice* device, double x, double* slope);
+
 // Load friction per inertance force magnitude at velocity v: mu sign(v), so that it adds
-// inerter_load_factor * |b a|.
+// inerter_load_factor * |inertance force|.
 INERTER_API double inerter_load_factor(const InerterDevice* device, double v);
 
 // All forces.

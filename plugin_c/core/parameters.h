@@ -16,13 +16,16 @@
   X(inertance, "kg", 0, 0, INFINITY, CLOSED, "", "force per relative acceleration, b")             \
   X(viscous, "N*s/m", 0, 0, INFINITY, CLOSED, "", "viscous damping, c (sigma2 of LuGre)")          \
   X(stiffness, "N/m", 0, -INFINITY, INFINITY, CLOSED, "", "parallel stiffness, k")                 \
-  X(rest_length, "m", 0, -INFINITY, INFINITY, CLOSED, "", "length at which the springs are slack") \
+  X(rest_length, "m", 0, -INFINITY, INFINITY, CLOSED, "", "length at which x is 0")                \
   /* other force laws */                                                                           \
   X(quadratic_damping, "N*s^2/m^2", 0, 0, INFINITY, CLOSED, "", "force per v*abs(v), c2")          \
-  X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "",                                  \
-    "force per (x - rest_length)^3, k3")                                                           \
+  X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "", "force per x^3, k3")             \
   X(force_offset, "N", 0, -INFINITY, INFINITY, CLOSED, "", "constant force")                       \
   X(load_friction, "1", 0, 0, 1, CLOSED, "", "friction per inertance force, mu")                   \
+  X(inertance_gradient, "1/m", 0, -INFINITY, INFINITY, CLOSED, "",                                 \
+    "relative rise of the inertance per x")                                                        \
+  X(inertance_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED, "",                              \
+    "relative rise of the inertance per x^2")                                                      \
   /* friction levels, shared by every law but Bouc-Wen */                                          \
   X(coulomb_force, "N", 0, 0, INFINITY, CLOSED, "coulomb stribeck dahl lugre brown_mcphee",        \
     "sliding friction level, f_c")                                                                 \

@@ -1,13 +1,15 @@
 // Where the inertance and the viscous damping live.
 //
-//   M(q) = M_bodies(q) + b J' J,   qfrc_bias = ... + b J' (dJ/dt v),   qfrc_passive = ... - c J' J
-//   v
+//   M = M_bodies + b J'J,   qfrc_bias += b J' (dJ/dt v),   qfrc_passive -= c J'J v
 //
-// J: row of the actuator's moment arms, b = actuator_armature, c = actuator_damping. With the
-// inertance in the engine's own inertia matrix, contacts, limits, equality constraints, friction
-// loss, implicit integrators, inverse dynamics and derivatives all see the right effective mass.
+// J: row of the actuator's moment arms, v = qvel, b = actuator_armature, c = actuator_damping. With
+// the inertance in the engine's own inertia matrix, contacts, limits, equality constraints,
+// friction loss, implicit integrators, inverse dynamics and derivatives all see the right effective
+// mass. What varies of the inertance along the stroke is a force (acceleration_forces.c).
+//
 // Why not a force -b a: a is not known before the forces are; the acceleration of the last step in
 // its place diverges as soon as b exceeds the effective mass.
+//
 // Not modelled: an inertance between two branches of the kinematic tree. The engine stores M in the
 // sparsity of the tree and drops what falls outside without a word; it is refused here.
 

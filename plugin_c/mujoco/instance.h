@@ -15,13 +15,13 @@ enum { MAXSTAGE = 4 };
 // What an mjData keeps of an instance between the callbacks of one step. Everything that has to
 // survive a step is in mjData.act and mjData.plugin_state.
 typedef struct Instance_ {
-  InerterDevice device;    // inertance, viscous: 0, the engine integrates them; rest_length: 0
-  mjtNum rest_length;      // actuator length at which the displacement is 0
-  int actuator;            // index of the actuator
-  int sensed;              // 1: a sensor reads this instance
-  int solves_load;         // 1: solves the load friction of every instance of the model
-  double state;            // state at the last evaluation
-  double power[MAXSTAGE];  // dissipated power at the last evaluations, newest last [W]
+  InerterDevice device;     // inertance, viscous: 0, the engine integrates them; rest_length: 0
+  mjtNum rest_length;       // actuator length at which the displacement is 0
+  int actuator;             // index of the actuator
+  int sensed;               // 1: a sensor reads this instance
+  int solves_acceleration;  // 1: finds the acceleration forces of every instance of the model
+  double state;             // state at the last evaluation
+  double power[MAXSTAGE];   // dissipated power at the last evaluations, newest last [W]
 } Instance;
 
 static inline Instance* instance_of(const mjData* d, int instance) {

@@ -6,6 +6,7 @@
 //
 // The actuator's force is everything but b a and c v, which the engine integrates (coupling.c):
 //   actuator_force = ctrl - (F - b a - c v)
+// What of F depends on the acceleration beside b a is solved for (acceleration_forces.c).
 // The friction state z is mjData.act. RK4 integrates it through act_dot. The other integrators take
 // one step of z by the law's own unconditionally stable formula, at the velocity that the step has
 // just found: a bristle driven by the old velocity would be an explicit spring.
@@ -16,10 +17,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mujoco/acceleration_forces.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupling.h"
 #include "mujoco/instance.h"
-#include "mujoco/load_friction.h"
 #include "mujoco/sensor.h"
 
 static const char kName[] = "inerter.device";
@@ -40,21 +41,21 @@ static int count_sensor_values(const mjModel* m, int instance, int sensor) {
   return sensor_size(bad ? 0 : inerter_nstate(&device));
 }
 
-// whether an instance is the last of this plugin in a model with load friction
-static int last_with_load(const mjModel* m, int instance) {
-  int load = 0;
+// whether an instance is the last of this plugin, in a model where one needs the acceleration
+static int solves_acceleration(const mjModel* m, int instance) {
+  int needed = 0;
   for (int k = 0; k < m->nplugin; k++) {
     if (m->plugin[k] != m->plugin[instance]) {
       continue;
     }
     InerterDevice device;
     char message[INERTER_MESSAGE_SIZE];
-    load |= !configuration_read(m, k, &device, message) && device.load_friction > 0;
+    needed |= !configuration_read(m, k, &device, message) && acceleration_forces_needed(&device);
     if (k > instance) {
       return 0;
     }
   }
-  return load;
+  return needed;
 }
 
 static int init(const mjModel* m, mjData* d, int instance) {
@@ -93,7 +94,7 @@ static int init(const mjModel* m, mjData* d, int instance) {
   self->rest_length = device.rest_length;
   self->actuator = actuator;
   self->sensed = instance_sensed(m, instance);
-  self->solves_load = last_with_load(m, instance);
+  self->solves_acceleration = solves_acceleration(m, instance);
   d->plugin_data[instance] = (uintptr_t)self;
   return 0;
 }
@@ -167,6 +168,7 @@ static void compute_force(const mjModel* m, mjData* d, int instance) {
         command(m, d, self->actuator) - inerter_force_motion(&self->device, x, v, self->state);
     if (self->sensed) {
       InerterDevice device = instance_device(m, self);
+      device.load_friction = 0;  // its heat is added where its force is found
       power = inerter_dissipated_power(&device, x, v, 0, self->state);
     }
   }
@@ -176,8 +178,8 @@ static void compute_force(const mjModel* m, mjData* d, int instance) {
     memmove(self->power, self->power + 1, (MAXSTAGE - 1) * sizeof(*self->power));
     self->power[MAXSTAGE - 1] = power;
   }
-  if (self->solves_load) {
-    load_friction_solve(m, d, instance);
+  if (self->solves_acceleration) {
+    acceleration_forces_solve(m, d, instance);
   }
 }
 

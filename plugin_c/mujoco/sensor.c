@@ -22,10 +22,11 @@ void sensor_compute(const mjModel* m, mjData* d, int instance) {
     a += d->actuator_moment[k] * d->qacc[d->moment_colind[k]];
   }
 
-  // a disabled actuator is its inertance and damping alone: the engine keeps those
+  // a disabled actuator is its constant inertance and damping alone: the engine keeps those
   InerterForce force = inerter_force(&device, x, v, a, z);
   if (instance_idle(m, d, self)) {
     force.friction = 0;
+    force.inertance = device.inertance * a;
     force.total = force.inertance + device.viscous * v;
   }
 

@@ -1,4 +1,4 @@
-"""Where the shipped MJCF models are."""
+"""Where the shipped models and records are."""
 
 from __future__ import annotations
 
@@ -39,6 +39,11 @@ def model_path(name: str, file: str = "model.xml") -> Path:
         files = ", ".join(sorted(found.name for found in folder.iterdir()))
         raise ValueError(f"model {name!r} has no file {file!r}; it has {files}")
     return path
+
+
+def data_path(file: str) -> Path:
+    """Path of a shipped record."""
+    return Path(__file__).parent / "data" / file
 
 
 def _folder() -> Path:

@@ -57,7 +57,7 @@ def test_level_separates_direction_and_position() -> None:
     assert friction_level(device, 0.02, 1.0) == pytest.approx(1.3 * 1.12)
     assert friction_level(device, 0.02, -1.0) == pytest.approx(0.7 * 1.12)
     assert friction_level(device, -0.02, 0.0) == pytest.approx(0.72)
-    assert friction_level(device, 1.0, 1.0) == 0.0
+    assert friction_level(device, 1.0, 1.0) == pytest.approx(1.3e-3)  # the floor
 
 
 def test_arrays_and_numbers_agree() -> None:

@@ -161,22 +161,27 @@ class Law:
 
 def quarter_car_truth(
     law: Law, times: NDArray, *, inertance: float = INERTANCE, load: float = 0.0,
-    width: float = 1e-4, start: float = 0.3,
+    width: float = 1e-4, gradient: float = 0.0, curvature: float = 0.0, start: float = 0.3,
 ) -> NDArray[np.float64]:  # fmt: skip
     """Rows (zu, x, zu', x', z) at the times, by an adaptive implicit integration.
 
-    m_u zu'' = u - k_t zu,  m_s (zu'' + x'') = -u,  u = k x + c v + b x'' + F + mu |b x''| sign(v)
+    m_u zu'' = u - k_t zu,  m_s (zu'' + x'') = -u,  u = k x + c v + F + N + mu |N| sign(v)
+    N = B x'' + B' v^2 / 2,  B = b (1 + gradient x + curvature x^2)
     """
     w = 1 / SPRUNG + 1 / UNSPRUNG
 
     def slope(_: float, y: NDArray[np.float64]) -> list[float]:
         zu, x, vu, v, z = y
         rest = STRUT * x + DAMPER * v + law.force(x, v, z)
+        varying = inertance * (1 + gradient * x + curvature * x * x)
+        rate = inertance * (gradient + 2 * curvature * x) * v * v / 2
+        # x'' = free - w (N + mu |N| t), which is linear once the sign of N is known
         free = TYRE * zu / UNSPRUNG - w * rest
-        # x'' (1 + w b) + w mu b tanh(v) |x''| = free
-        factor = 1 + w * inertance * (1 + load * np.tanh(v / width) * np.sign(free))
-        a = free / factor
-        u = rest + inertance * (a + load * np.tanh(v / width) * abs(a))
+        n = (varying * free + rate) / (1 + w * varying)
+        share = 1 + load * np.tanh(v / width) * np.sign(n)
+        n = (varying * free + rate) / (1 + w * varying * share)
+        a = free - w * share * n
+        u = rest + share * n
         return [vu, v, (u - TYRE * zu) / UNSPRUNG, a, law.rate(v, z)]
 
     result = solve_ivp(

@@ -95,3 +95,18 @@ def test_load_friction_converges(friction: str) -> None:
         error = errors(keys, integrator, truth)
         assert np.log2(error[0] / error[-1]) / (len(STEPS) - 1) > order, error
         assert error[0] < coarse
+
+
+@pytest.mark.parametrize("load", [0.0, 0.2])
+def test_a_varying_inertance_converges(load: float) -> None:
+    shape = {"gradient": 40.0, "curvature": 3000.0}
+    truth = quarter_car_truth(Law("none"), TIMES, load=load, width=2e-2, **shape)
+    keys = {
+        "inertance": INERTANCE, "load_friction": load, "transition_velocity": 2e-2,
+        **{f"inertance_{name}": value for name, value in shape.items()},
+    }  # fmt: skip
+    assert np.abs(truth - quarter_car_truth(Law("none"), TIMES)).max() > 1e-2
+    for integrator, order, coarse in (("RK4", 1.8 if load else 3.7, 1e-4), ("Euler", 0.9, 0.04)):
+        error = errors(keys, integrator, truth)
+        assert np.log2(error[0] / error[-1]) / (len(STEPS) - 1) > order, error
+        assert error[0] < coarse, error

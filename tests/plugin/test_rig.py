@@ -20,7 +20,13 @@ A = -5e-3 * W1**2 * np.sin(W1 * T) - 1e-3 * W2**2 * np.sin(W2 * T)
 
 def device(law: str) -> Device:
     return Device(
-        inertance=113, viscous=40, stiffness=500, load_friction=0.03, friction=law, **FRICTION[law]
+        inertance=113,
+        viscous=40,
+        stiffness=500,
+        load_friction=0.03,
+        inertance_gradient=20,
+        friction=law,
+        **FRICTION[law],
     )
 
 

@@ -53,7 +53,12 @@ def energies(model: mujoco.MjModel, duration: float) -> tuple[np.ndarray, np.nda
 @pytest.mark.parametrize("load", [0.0, 0.1])
 def test_energy_is_conserved_under_rk4(law: str, load: float) -> None:
     model = car(
-        law, 'timestep="2.5e-4" integrator="RK4"', load_friction=load, transition_velocity=0.02
+        law,
+        'timestep="2.5e-4" integrator="RK4"',
+        load_friction=load,
+        transition_velocity=0.02,
+        inertance_gradient=30 if load else 0,
+        inertance_curvature=2000 if load else 0,
     )
     mechanical, heat = energies(model, 0.5)
     start = mechanical[0]

@@ -1,0 +1,67 @@
+"""Diagnosis: what a simulation gets wrong, named, added and measured on data it has not seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from inerter.core import Device
+from inerter.device_file import read_device
+from inerter.diagnose.bench import diagnose_bench
+from inerter.diagnose.result import Diagnosis, Finding
+from inerter.diagnose.table import diagnose_table
+from inerter.mjcf import device_of_model
+from inerter.records import BenchTable, Record, RecordError, read_records
+
+__all__ = ["Diagnosis", "Finding", "diagnose", "diagnose_bench", "diagnose_table"]
+
+
+def diagnose(
+    records: Sequence[str | Path],
+    device: Path | Device | None = None,
+    model: Path | None = None,
+    holdout: Sequence[str] = (),
+    progress: Callable[[str], None] = lambda text: None,
+) -> Diagnosis:
+    """Diagnose records from files.
+
+    Parameters
+    ----------
+    records : sequence of str or Path
+        Files, folders or globs: bench records or bench tables, not both.
+    device : Path or Device, optional
+        The user's own device as baseline.
+    model : Path, optional
+        A MuJoCo model whose `inerter.device` is the baseline; not together with `device`.
+    holdout : sequence of str
+        Names of runs to hold out.
+    progress : callable
+        Told what is being done.
+
+    Raises
+    ------
+    RecordError, DeviceError, ValueError
+        The input cannot be used; the message says what and why.
+    """
+    if device is not None and model is not None:
+        raise ValueError("--device and --model are both given; the baseline can be only one")
+    baseline = read_device(device) if isinstance(device, Path) else device
+    if model is not None:
+        baseline = device_of_model(model)
+    progress("reading the records")
+    read = read_records(records)
+    tables = [record for record in read if isinstance(record, BenchTable)]
+    bench = [record for record in read if isinstance(record, Record)]
+    if len(bench) == len(read):
+        return diagnose_bench(bench, baseline, holdout, progress)
+    if len(tables) == len(read):
+        if holdout:
+            raise ValueError("--holdout names runs, and a table has none; leave it out")
+        return diagnose_table(tables, baseline, progress)
+    kinds = ", ".join(f"{record.name} ({record.kind})" for record in read)
+    if tables and bench:
+        raise RecordError(f"records of different kinds: {kinds}; give one kind at a time")
+    raise RecordError(
+        f"vehicle records are read but not diagnosed yet: {kinds}; give bench records "
+        "(time, displacement, force) or tables"
+    )

@@ -20,7 +20,7 @@ LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre")
 # coordinates that belong to a friction law and leave with it
 LAW_COORDINATES = (
     "coulomb_force", "static_excess", "stribeck_velocity", "presliding", "bristle_damping",
-    "bw_level", "bw_shape",
+    "bw_level", "bw_shape", "bw_exponent",
 )
 LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
 
@@ -77,7 +77,7 @@ EFFECTS = {
         Effect(
             "hysteretic_friction", LAW_COORDINATES,
             ("coulomb_force", "static_force", "stribeck_velocity", "bristle_stiffness",
-             "bristle_damping", "bw_stiffness", "bw_beta", "bw_gamma"),
+             "bristle_damping", "bw_stiffness", "bw_beta", "bw_gamma", "bw_exponent"),
             "friction with memory: it builds up over a pre-sliding distance and stays at rest",
             "elastic asperities, seals and preloaded balls that bend before they slide",
             "parallel stiffness or backlash: repeat with strokes shorter than the pre-sliding "
@@ -117,6 +117,13 @@ EFFECTS = {
             "filters or clocks that differ between the channels",
             "series elasticity and viscous friction: they change with amplitude or with "
             "frequency, a delay does not",
+        ),
+        Effect(
+            "variable_inertance", ("inertance_gradient", "inertance_curvature"),
+            ("inertance", "inertance_gradient", "inertance_curvature"),
+            "b depends on displacement: b(x) a + b'(x) v^2 / 2",
+            "a ratio that varies along the stroke: rack and pinion, eccentric gear, moving fluid",
+            "parallel stiffness: repeat at twice the frequency, the inertance force grows fourfold",
         ),
         Effect(
             "quadratic_damping", ("quadratic_damping",), ("quadratic_damping",), "c2 v |v|",
@@ -230,9 +237,15 @@ def _hysteretic(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]
             effect,
             "bouc_wen",
             tuple(
-                bare.adding("bouc_wen", bw_level=level, presliding=distance, bw_shape=shape)
+                bare.adding(
+                    "bouc_wen",
+                    bw_level=level,
+                    presliding=distance,
+                    bw_shape=shape,
+                    bw_exponent=1.2,
+                )
                 for distance in ((pre,) if pre else (0.01 * x, 0.1 * x, 0.5 * x))
-                for shape in (0.5, 1.0)
+                for shape in (0.6, 1.0)
             ),
         )
 
@@ -271,6 +284,7 @@ _BUILDERS: dict[str, Callable[[str, Model, Scales], Iterator[Candidate]]] = {
     "force_offset": _free("force_offset"),
     "sensor_delay": _free("delay"),
     "quadratic_damping": _free("quadratic_damping"),
+    "variable_inertance": _free("inertance_gradient", "inertance_curvature"),
 }
 
 _LAW_EFFECT = {
@@ -283,7 +297,7 @@ _LAW_EFFECT = {
 _MODULATIONS = ("asymmetric_friction", "position_dependent_friction")
 _SIMPLE = (
     "viscous_friction", "load_dependent_friction", "parallel_stiffness", "force_offset",
-    "sensor_delay", "quadratic_damping",
+    "sensor_delay", "quadratic_damping", "variable_inertance",
 )
 
 

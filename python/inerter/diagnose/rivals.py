@@ -16,12 +16,12 @@ PRECEDENCE = (
     "inertance_error", "coulomb_friction", "viscous_friction", "force_offset",
     "parallel_stiffness", "sensor_delay", "quadratic_damping", "hysteretic_friction",
     "load_dependent_friction", "asymmetric_friction", "stribeck_friction",
-    "position_dependent_friction",
+    "position_dependent_friction", "variable_inertance",
 )
 EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005
 # rivals that are worth cross-validating
-SHORTLIST = 3
+SHORTLIST = 4
 
 
 @dataclass(frozen=True)
@@ -41,19 +41,18 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     without = search.score(effect, None, problem.fit(stripped(final.model, effect, baseline)))
 
     search.progress(f"comparing {effect} with what else could explain the data")
+    law = dict(effects_of(final.model, baseline))[effect]
     others = [
         candidate
         for candidate in candidates(without.model, problem.scales)
-        if candidate.effect != effect and candidate.effect not in rest
+        if (candidate.effect, candidate.law) != (effect, law) and candidate.effect not in rest
     ]
     trials = sorted(
         zip(others, parallel(search.fit, others), strict=True),
         key=lambda pair: pair[1].rmse(problem.masks),
     )
-    best = {candidate.effect: (candidate, fit) for candidate, fit in reversed(trials)}
-    shortlist = sorted(best.values(), key=lambda pair: pair[1].rmse(problem.masks))[:SHORTLIST]
     scored = parallel(
-        lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), shortlist
+        lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), trials[:SHORTLIST]
     )
 
     # a rival with more parameters has to win by what the search asks of a richer model
@@ -67,7 +66,9 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         Rival(s.effect, float(share), s.law)
         for s, share in sorted(zip(scored, shares[2:], strict=True), key=lambda p: -p[1])
     ]
-    better = next((s for s in scored if _takes_precedence(s, final, effect)), None)
+    better = next(
+        (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect)), None
+    )
     return Standing(float(shares[0]), rivals, better)
 
 

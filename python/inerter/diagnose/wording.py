@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from inerter.diagnose.effects import EFFECTS
-from inerter.diagnose.result import Diagnosis, Finding, ParameterValue
+from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival
 
 _NAMES = {
     "coulomb_force": "sliding level f_c",
@@ -24,6 +24,9 @@ _NAMES = {
     "force_offset": "offset",
     "delay": "delay",
     "inertance": "b",
+    "inertance_gradient": "gradient of b along the stroke",
+    "inertance_curvature": "curvature of b along the stroke",
+    "bw_exponent": "n",
 }
 # words for effects in running text
 PLAIN = {
@@ -39,6 +42,7 @@ PLAIN = {
     "force_offset": "a constant force",
     "sensor_delay": "a delay between the force and the displacement channel",
     "quadratic_damping": "quadratic damping",
+    "variable_inertance": "an inertance that changes along the stroke",
 }
 _LAWS = {"dahl": "Dahl", "lugre": "LuGre", "bouc_wen": "Bouc-Wen"}
 
@@ -55,6 +59,11 @@ def effect_in_words(finding: Finding) -> str:
     return PLAIN[finding.effect] + law
 
 
+def _rival_in_words(rival: Rival) -> str:
+    law = f" ({_LAWS[rival.law]})" if rival.law in _LAWS else ""
+    return PLAIN[rival.effect] + law
+
+
 def evidence(finding: Finding) -> str:
     """One sentence: values, and what the effect does to the error on held-out data."""
     values = ", ".join(
@@ -67,7 +76,7 @@ def evidence(finding: Finding) -> str:
     )
     likely = [rival for rival in finding.rivals if rival.confidence >= 0.05]
     if likely:
-        others = " or ".join(PLAIN[rival.effect] for rival in likely[:2])
+        others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
     return text + "."
 
@@ -96,10 +105,13 @@ def verdict(diagnosis: Diagnosis) -> str:
         f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {diagnosis.unexplained.summary}"
     )
     doubts = [
-        f"{effect_in_words(finding)} can hardly be told from {PLAIN[finding.rivals[0].effect]} "
+        f"{effect_in_words(finding)} can hardly be told from "
+        f"{_rival_in_words(finding.rivals[0])} "
         f"({EFFECTS[finding.effect].taken_for})"
         for finding in diagnosis.findings
-        if finding.rivals and finding.rivals[0].confidence >= 0.05
+        if finding.rivals
+        and finding.rivals[0].confidence >= 0.05
+        and finding.rivals[0].effect != finding.effect
     ]
     if doubts:
         text += " In these data " + "; ".join(doubts) + "."

@@ -5,8 +5,8 @@ the combination that the data see:
 
     static_excess   static_force - coulomb_force                     [N]
     presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
-    bw_level        largest Bouc-Wen force, bw_stiffness * presliding (alpha = 1, n = 1)        [N]
-    bw_shape        beta / (beta + gamma)                             [-]
+    bw_level        largest Bouc-Wen force, bw_stiffness * presliding (alpha = 1)        [N]
+    bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
     delay           time by which the force channel is late           [s], not a device parameter
 """
 
@@ -69,6 +69,8 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
     infinity = np.inf
     table = {
         "inertance": Coordinate(force / a, 0, infinity),
+        "inertance_gradient": Coordinate(0.1 / x, -3 / x, 3 / x),
+        "inertance_curvature": Coordinate(0.1 / x**2, -3 / x**2, 3 / x**2),
         "viscous": Coordinate(force / v, 0, infinity),
         "stiffness": Coordinate(force / x, -infinity, infinity),
         "force_offset": Coordinate(force, -infinity, infinity),
@@ -84,6 +86,7 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "friction_curvature": Coordinate(0.1 / x**2, -3 / x**2, 3 / x**2),
         "bw_level": Coordinate(0.1 * force, 1e-6 * force, infinity),
         "bw_shape": Coordinate(0.5, 0.0, 5.0),
+        "bw_exponent": Coordinate(1.0, 1.0, 6.0),
         "delay": Coordinate(1e-3, -0.05, 0.05),
     }
     return table[name]
@@ -98,10 +101,11 @@ def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
         values["static_force"] = values["coulomb_force"] + excess
     if (level := values.pop("bw_level", None)) is not None and presliding is not None:
         shape = values.pop("bw_shape")
+        limit = presliding ** -values.get("bw_exponent", 1.0)
         values |= {
             "bw_stiffness": level / presliding,
-            "bw_beta": shape / presliding,
-            "bw_gamma": (1 - shape) / presliding,
+            "bw_beta": shape * limit,
+            "bw_gamma": (1 - shape) * limit,
         }
     elif presliding is not None:
         values["bristle_stiffness"] = values["coulomb_force"] / presliding

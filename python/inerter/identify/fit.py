@@ -41,7 +41,8 @@ class Model:
 
     def device(self) -> Device:
         """The device these coordinates stand for."""
-        return Device(friction=self.friction, **device_values(self.values))
+        values = {name: float(value) for name, value in device_values(self.values).items()}
+        return Device(friction=self.friction, **values)
 
     @property
     def delay(self) -> float:
@@ -157,7 +158,10 @@ class Problem:
         """Derivative of the residual by one search variable, over all samples of all runs."""
         index = model.free.index(name)
         how = coordinate(name, self.scales)
-        if name in LINEAR and not (name == "inertance" and "load_friction" in model.values):
+        entangled = ("load_friction", "inertance_gradient", "inertance_curvature")
+        if name in LINEAR and not (
+            name == "inertance" and any(other in model.values for other in entangled)
+        ):
             columns = []
             for run in self.runs:
                 v = run.velocity

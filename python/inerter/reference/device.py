@@ -1,8 +1,11 @@
 """The device: an inertance with everything that stands beside it.
 
-    F = b a + c v + c2 v |v| + k (x - l0) + k3 (x - l0)^3 + f0 + F_friction + F_load
+    F = F_b + c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_load
+    F_b = b(x) a + b'(x) v^2 / 2,  b(x) = b max(0.01, 1 + q x + r x^2)
 
-Sign: x = x2 - x1, positive = longer; F is the force that lengthens the device (tension positive)
+The second part of F_b keeps the kinetic energy b(x) v^2 / 2; q `inertance_gradient` [1/m],
+r `inertance_curvature` [1/m^2].
+Sign: x = x2 - x1 (length minus rest_length), positive = longer; F is the force that lengthens the device (tension positive)
 and acts on the bodies as -F along the line. By hand: b = 2 kg, a = 3 m/s^2 gives F = +6 N.
 Each term's law, range and source stand in its own file in `laws/`.
 Not modelled: anything in series with the inertance (shaft twist, backlash, compressible fluid).
@@ -21,7 +24,7 @@ from .laws import FRICTION, FrictionParameters, Quantity, load, parallel, parame
 class ReferenceDevice(FrictionParameters):
     """All parameters of one device; SI units, every default harmless.
 
-    Arguments of the methods: x [m], v [m/s], a [m/s^2], z [m] are numbers or arrays that
+    Arguments of the methods: x [m] the length, from which `rest_length` is taken, v [m/s], a [m/s^2], z [m] are numbers or arrays that
     broadcast together; results have their common shape. `z` is the friction law's state; a law
     without one (`nstate == 0`) ignores it.
 
@@ -32,11 +35,13 @@ class ReferenceDevice(FrictionParameters):
     """
 
     inertance: float = parameter(0.0, "kg", "inertance b", at_least=0.0)
+    inertance_gradient: float = parameter(0.0, "1/m", "relative rise of b per x")
+    inertance_curvature: float = parameter(0.0, "1/m^2", "relative rise of b per x^2")
     viscous: float = parameter(0.0, "N s/m", "linear damping c")
     quadratic_damping: float = parameter(0.0, "N s^2/m^2", "quadratic damping c2")
     stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
     stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
-    rest_length: float = parameter(0.0, "m", "displacement l0 at which the springs are slack")
+    rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")
     force_offset: float = parameter(0.0, "N", "constant force f0")
     load_friction: float = parameter(
         0.0, "-", "friction share mu of the inertance force", at_least=0.0
@@ -58,7 +63,23 @@ class ReferenceDevice(FrictionParameters):
 
     def force(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
         """Total force F [N], tension positive."""
-        return self.inertance * a + self.load_friction_force(v, a) + self.rest_force(x, v, z)
+        carried = self.inertance_force(x, v, a)
+        return carried + self.load_friction_force(v, carried) + self.rest_force(x, v, z)
+
+    def inertance_at(self, x: Quantity) -> tuple[Quantity, Quantity]:
+        """Inertance b(x) [kg] and its slope b'(x) [kg/m]."""
+        stretch = x - self.rest_length
+        factor = 1.0 + (self.inertance_gradient + self.inertance_curvature * stretch) * stretch
+        slope = self.inertance_gradient + 2.0 * self.inertance_curvature * stretch
+        return (
+            self.inertance * np.maximum(0.01, factor),
+            self.inertance * np.where(factor < 0.01, 0.0, slope),
+        )
+
+    def inertance_force(self, x: Quantity, v: Quantity, a: Quantity) -> Quantity:
+        """The force through the inertance F_b [N]."""
+        inertance, slope = self.inertance_at(x)
+        return inertance * a + 0.5 * slope * v * v
 
     def rest_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """The part of F [N] that does not depend on the acceleration."""
@@ -68,12 +89,12 @@ class ReferenceDevice(FrictionParameters):
 
     def friction_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Force of the friction law alone [N], without load friction and without `viscous`."""
-        return FRICTION[self.friction].force(self, x, v, z)
+        return FRICTION[self.friction].force(self, x - self.rest_length, v, z)
 
-    def load_friction_force(self, v: Quantity, a: Quantity) -> Quantity:
-        """Load-dependent friction mu |b a| tanh(v / v_t) [N]."""
+    def load_friction_force(self, v: Quantity, carried: Quantity) -> Quantity:
+        """Load-dependent friction mu |F_b| tanh(v / v_t) [N], F_b the force carried."""
         return load.force(
-            self.inertance * a,
+            carried,
             v,
             load_friction=self.load_friction,
             transition_velocity=self.transition_velocity,
@@ -98,17 +119,20 @@ class ReferenceDevice(FrictionParameters):
         if self.inertance == 0.0:
             raise ValueError("inertance: 0 kg gives no acceleration for a force; give more than 0")
         remainder = force - self.rest_force(x, v, z)
-        return remainder / (self.inertance * (1.0 + self.load_share(v) * np.sign(remainder)))
+        carried = remainder / (1.0 + self.load_share(v) * np.sign(remainder))
+        inertance, slope = self.inertance_at(x)
+        return (carried - 0.5 * slope * v * v) / inertance
 
     def state_rate(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Rate z' of the friction law's state [m/s]; zero for a law without one."""
-        return FRICTION[self.friction].rate(self, x, v, z)
+        return FRICTION[self.friction].rate(self, x - self.rest_length, v, z)
 
     def stored_energy(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Kinetic, spring and bristle energy [J]."""
-        kinetic = 0.5 * self.inertance * v * v
-        spring = parallel.spring_energy(x - self.rest_length, self.stiffness, self.stiffness_cubic)
-        return kinetic + spring + FRICTION[self.friction].stored_energy(self, x, v, z)
+        kinetic = 0.5 * self.inertance_at(x)[0] * v * v
+        stretch = x - self.rest_length
+        spring = parallel.spring_energy(stretch, self.stiffness, self.stiffness_cubic)
+        return kinetic + spring + FRICTION[self.friction].stored_energy(self, stretch, v, z)
 
     def dissipated_power(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0
@@ -118,8 +142,8 @@ class ReferenceDevice(FrictionParameters):
         The work of `force_offset` is external and counts as neither stored nor dissipated.
         """
         damper = parallel.damping_force(v, self.viscous, self.quadratic_damping) * v
-        friction = FRICTION[self.friction].dissipated_power(self, x, v, z)
-        return damper + friction + self.load_friction_force(v, a) * v
+        friction = FRICTION[self.friction].dissipated_power(self, x - self.rest_length, v, z)
+        return damper + friction + self.load_friction_force(v, self.inertance_force(x, v, a)) * v
 
     def parameters(self) -> dict[str, float | str]:
         """Every parameter by name, defaults included."""

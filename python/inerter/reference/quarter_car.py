@@ -117,7 +117,7 @@ class QuarterCar:
             strut = self.stiffness * x + self.damping * v
         elif self.layout == "S2":
             rest = self.stiffness * x + self.damping * v + float(self.device.rest_force(x, v, z))
-            strut = rest + self._inertial_force(rest, v, tyre, body_force)
+            strut = rest + self._inertial_force(x, v, rest, tyre, body_force)
             tail = [float(self.device.state_rate(x, v, z))]
         else:
             y, y_rate = float(state[4]), float(state[5])
@@ -137,12 +137,19 @@ class QuarterCar:
         ]
         return np.array((head + tail)[: self.nstate])
 
-    def _inertial_force(self, rest: float, v: float, tyre: float, body_force: float) -> float:
-        """S2: the device's force that depends on the acceleration, b a + mu |b a| t [N]."""
+    def _inertial_force(
+        self, x: float, v: float, rest: float, tyre: float, body_force: float
+    ) -> float:
+        """S2: the device's force that depends on the acceleration, F_b + mu |F_b| t [N].
+
+        F_b = b a + s with s = b' v^2 / 2, and a = free - mobility * force.
+        """
         mobility = 1.0 / self.sprung_mass + 1.0 / self.unsprung_mass
         free = body_force / self.sprung_mass + tyre / self.unsprung_mass - mobility * rest
-        gain = self.device.inertance * (1.0 + float(self.device.load_share(v)) * np.sign(free))
-        return float(gain * free / (1.0 + mobility * gain))
+        inertance, slope = (float(value) for value in self.device.inertance_at(x))
+        push = inertance * free + 0.5 * slope * v * v
+        share = 1.0 + float(self.device.load_share(v)) * np.sign(push)
+        return float(share * push / (1.0 + mobility * inertance * share))
 
     def simulate(
         self,

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 
 from inerter.diagnose.result import TablePoints
 from inerter.report.palette import LIGHT
-from inerter.report.plotting import figure, line, points, positive
+from inerter.report.plotting import figure, line, log_axis, points, positive
 
 
 def table_plots(table: TablePoints) -> dict[str, go.Figure]:
@@ -36,7 +36,7 @@ def _against_frequency(
     plot = figure("frequency [Hz]", title)
     f = table.frequency
     if len(f) and np.min(f) > 0 and np.max(f) / np.min(f) > 20:
-        plot.update_layout(xaxis={"type": "log"})
+        plot.update_layout(xaxis=log_axis(f))
     if measured:
         points(plot, f[~table.holdout], value(table.force)[~table.holdout], "measured",
                "measured", 9)
@@ -61,7 +61,7 @@ def cutoff_plot(method: dict[str, Any]) -> go.Figure | None:
     if not len(tried) or len(tried) != len(errors):
         return None
     plot = figure("smoothing cut-off [Hz]", "force error of the trial [N]")
-    plot.update_layout(xaxis={"type": "log"}, yaxis={"rangemode": "tozero"})
+    plot.update_layout(xaxis=log_axis(tried), yaxis={"rangemode": "tozero"})
     x, y = positive(tried, errors)
     line(plot, x, y, "measured", "error", 1.5)
     points(plot, x, y, "measured", "error", 6)

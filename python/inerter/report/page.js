@@ -8,10 +8,7 @@
   const picker = document.getElementById("run");
   // a finger that scrolls the page must not zoom a plot
   const coarse = window.matchMedia("(pointer: coarse)").matches;
-  const config = {
-    responsive: true, displaylogo: false, displayModeBar: coarse ? false : "hover",
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "zoomIn2d", "zoomOut2d"],
-  };
+  const config = { responsive: true, displaylogo: false, displayModeBar: false };
 
   // plots come in light colours; exchange each for its partner
   const partners = {};

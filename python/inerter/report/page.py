@@ -11,13 +11,21 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, RecordSummary
+from inerter.diagnose.result import (
+    Diagnosis,
+    Finding,
+    ParameterValue,
+    RecordSummary,
+    RunCurves,
+    TablePoints,
+)
 from inerter.report import text
 from inerter.report.files import write_atomic
 from inerter.report.other_plots import cutoff_plot, table_plots
 from inerter.report.palette import DARK, LIGHT
 from inerter.report.plotting import to_script
-from inerter.report.run_plots import LOOP_CYCLES, pictured, rmse, run_plots
+from inerter.report.run_plots import LOOP_CYCLES, run_plots
+from inerter.report.runs import part_held_out, pictured, rmse, role
 
 # entries of `method` that have a place of their own on the page
 _PLACED = ("cutoffs_tried", "force_error_at_cutoffs")
@@ -55,7 +63,8 @@ def write_report(diagnosis: Diagnosis, path: Path, device_toml: str, model_xml: 
 def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str:
     """The report as HTML text; see `write_report`."""
     runs = pictured(diagnosis.curves)
-    single = table_plots(diagnosis.points) if _has_points(diagnosis) else {}
+    table = _table(diagnosis)
+    single = table_plots(table) if table else {}
     cutoff = cutoff_plot(diagnosis.method)
     if cutoff is not None:
         single["cutoff"] = cutoff
@@ -68,7 +77,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         unpictured=len(diagnosis.curves) - len(runs),
         partly=any(run.holdout.any() and not run.holdout.all() for run in runs),
         loop_cycles=LOOP_CYCLES,
-        table=_has_points(diagnosis),
+        table=table is not None,
         cutoff=cutoff is not None,
         parameters=_parameters(diagnosis),
         friction=(
@@ -87,6 +96,8 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         plots=Markup(to_script(plots)),
         plotly=Markup(_plotly()),
         number=text.number,
+        tidy=text.tidy,
+        count=text.count,
         percent=text.percent,
     )
 
@@ -115,8 +126,8 @@ def _plotly() -> str:
     return get_plotlyjs().replace("</script", "<\\/script").replace("<!--", "<\\!--")
 
 
-def _has_points(diagnosis: Diagnosis) -> bool:
-    return diagnosis.points is not None and len(diagnosis.points.frequency) > 0
+def _table(diagnosis: Diagnosis) -> TablePoints | None:
+    return diagnosis.points if diagnosis.points and len(diagnosis.points.frequency) else None
 
 
 def _finding(finding: Finding, scale: float) -> dict[str, Any]:
@@ -142,20 +153,28 @@ def _finding(finding: Finding, scale: float) -> dict[str, Any]:
             (text.effect_name(r.effect), r.law, text.confidence(r.confidence))
             for r in finding.rivals
         ],
-        "notes": text.effect_notes(finding.effect),
+        "notes": _notes(finding),
         "evidence": finding.evidence,
     }
+
+
+def _notes(finding: Finding) -> dict[str, str]:
+    notes = text.effect_notes(finding.effect)
+    said = text.finding_name(finding).lower().split()
+    # a meaning that only repeats the name is not worth a line
+    if all(word in (*said, "level") for word in notes.get("meaning", "").lower().split()):
+        notes.pop("meaning", None)
+    return notes
 
 
 def _vague(value: ParameterValue) -> bool:
     return value.stderr > 0.5 * abs(value.value)
 
 
-def _run_label(run: Any) -> dict[str, Any]:
-    part = "held out" if run.holdout.all() else "partly held out" if run.holdout.any() else "fitted"
+def _run_label(run: RunCurves) -> dict[str, Any]:
     return {
         "name": run.name,
-        "part": part,
+        "part": part_held_out(run),
         "before": rmse(run, run.baseline),
         "after": rmse(run, run.extended),
     }
@@ -195,7 +214,7 @@ def _record(record: RecordSummary, diagnosis: Diagnosis) -> dict[str, Any]:
     for run in diagnosis.curves:
         if run.name == record.name:
             row |= {"before": rmse(run, run.baseline), "after": rmse(run, run.extended)}
-    row["role"] = {"fit": "fitted", "holdout": "held out"}.get(record.role, record.role)
+    row["role"] = role(record, diagnosis)
     return row
 
 
@@ -211,6 +230,8 @@ def _method(method: dict[str, Any]) -> list[tuple[str, str]]:
             continue
         if isinstance(value, (list, tuple)):
             shown = ", ".join(str(item) for item in value)
+        elif isinstance(value, int):
+            shown = text.count(value)
         elif isinstance(value, float):
             shown = text.number(value)
         else:

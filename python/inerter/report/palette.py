@@ -29,7 +29,7 @@ DARK = {
     "grid": "#2b333d",
     "text": "#e7ebf0",
     "soft": "#a3aeba",
-    "measured": "#98a3b0",
+    "measured": "#c3ccd6",
     "before": "#ff9a57",
     "after": "#45b8ea",
     "shade": "#56687a",

@@ -87,6 +87,18 @@ def positive(x: ArrayLike, y: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
     return xs[keep], ys[keep]
 
 
+def log_axis(x: ArrayLike) -> dict[str, Any]:
+    """A logarithmic axis marked at 1, 2, 5, 10, 20, ..., or in decades when those are many."""
+    values = np.asarray(x, float)
+    values = values[np.isfinite(values) & (values > 0)]
+    if not len(values):
+        return {"type": "log"}
+    powers = range(int(np.floor(np.log10(values.min()))), int(np.ceil(np.log10(values.max()))) + 1)
+    steps = (1, 2, 5) if len(powers) <= 4 else (1,)
+    marks = [step * 10.0**power for power in powers for step in steps]
+    return {"type": "log", "tickvals": marks, "ticktext": [f"{mark:g}" for mark in marks]}
+
+
 def to_script(data: Any) -> str:
     """JSON of plots (or plain data) that is safe inside a <script> element.
 
@@ -105,12 +117,13 @@ def _plain(data: Any) -> Any:
     if isinstance(data, go.Figure):
         # arrays become base64, a third of the length of digits
         made = data.to_dict()
-        return {"data": made["data"], "layout": made["layout"]}
+        return _plain({"data": made["data"], "layout": made["layout"]})
     if isinstance(data, dict):
         return {key: _plain(value) for key, value in data.items()}
-    if isinstance(data, list):
+    if isinstance(data, (list, tuple)):
         return [_plain(value) for value in data]
-    return data
+    # plotly leaves empty arrays as they are
+    return data.tolist() if isinstance(data, np.ndarray) else data
 
 
 def _finite(x: ArrayLike, y: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:

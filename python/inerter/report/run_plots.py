@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,34 +12,18 @@ from inerter.diagnose.result import RunCurves
 from inerter.report import thinning
 from inerter.report.palette import LIGHT
 from inerter.report.plotting import figure, line, points, positive
+from inerter.report.runs import judged
 from inerter.report.thinning import Mask
 
-# what one page holds: runs with pictures, and samples per line when there are few runs
-PICTURED_RUNS = 12
+# samples per line when there are few runs
 TIME_SAMPLES = 3000
 LOOP_SAMPLES = 1500
 CLOUD_SAMPLES = 500
 LOOP_CYCLES = 6
+LOOP_STRETCHES = 3
 BINS = 24
 
 BEFORE, AFTER = "before", "after"
-
-
-def pictured(curves: Sequence[RunCurves]) -> list[RunCurves]:
-    """The runs that get pictures, held-out ones first."""
-    return sorted(curves, key=lambda run: not run.holdout.any())[:PICTURED_RUNS]
-
-
-def judged(run: RunCurves) -> Mask:
-    """The samples that a run's figures are about: held out if any are, never near the ends."""
-    held = run.holdout & run.inner
-    return held if held.any() else run.inner if run.inner.any() else np.ones(len(run.time), bool)
-
-
-def rmse(run: RunCurves, force: np.ndarray) -> float:
-    """Rms force error over the judged samples [N]."""
-    mask = judged(run)
-    return float(np.sqrt(np.mean((run.force[mask] - force[mask]) ** 2)))
 
 
 def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
@@ -73,7 +56,8 @@ def _over_time(run: RunCurves, limit: int) -> go.Figure:
         ("error after", run.force - run.extended, "after", 1.2, "y2"),
     ]
     for name, values, color, width, axis in lines:
-        keep = thinning.extremes(values, limit)
+        real = np.flatnonzero(np.isfinite(values))
+        keep = real[thinning.extremes(values[real], limit)]
         line(plot, run.time[keep], values[keep], color, name, width, yaxis=axis)
     # where only a part of the run is held out, show which
     if run.holdout.any() and not run.holdout.all():
@@ -92,20 +76,34 @@ def _over_time(run: RunCurves, limit: int) -> go.Figure:
 
 
 def _loops(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
-    part = thinning.longest_stretch(mask)
-    length = thinning.some_cycles(run.velocity[part], LOOP_CYCLES)
-    keep = part.start + thinning.evenly(length, limit)
+    parts = thinning.stretches(mask)[:LOOP_STRETCHES]
+    keeps = []
+    for first, last in parts:
+        length = thinning.some_cycles(run.velocity[first : last + 1], LOOP_CYCLES // len(parts))
+        keeps.append(first + thinning.evenly(length, limit // len(parts)))
     plots = {}
     for place, title, x in (
         ("loop-displacement", "displacement [m]", run.displacement),
         ("loop-velocity", "velocity [m/s]", run.velocity),
     ):
         plot = figure(title, "force [N]")
-        line(plot, x[keep], run.force[keep], "measured", "measured", 3.0)
-        line(plot, x[keep], run.baseline[keep], "before", BEFORE)
-        line(plot, x[keep], run.extended[keep], "after", AFTER)
+        _room(plot, np.concatenate([x[keep] for keep in keeps]))
+        for name, force, width in (
+            ("measured", run.force, 3.0), (BEFORE, run.baseline, 1.5), (AFTER, run.extended, 1.5)
+        ):
+            for keep in keeps:
+                line(plot, x[keep], force[keep], name, name, width)
         plots[place] = plot
     return plots
+
+
+def _room(plot: go.Figure, x: np.ndarray) -> None:
+    """Some room left and right, so that a loop's turning points are not cut off."""
+    size = float(np.ptp(x))
+    if np.isfinite(size) and size > 0:
+        plot.update_layout(
+            xaxis={"range": [float(x.min()) - 0.04 * size, float(x.max()) + 0.04 * size]}
+        )
 
 
 def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
@@ -124,7 +122,8 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
         ):
             error = run.force - force
             points(plot, x[some], error[some], color, name, 3, 0.28, hoverinfo="skip")
-            middle, mean = thinning.bin_means(x[samples], error[samples], BINS)
+            real = samples[np.isfinite(error[samples])]
+            middle, mean = thinning.bin_means(x[real], error[real], BINS)
             line(plot, middle, mean, color, f"{name}, mean", 2.4)
         plots[place] = plot
     return plots
@@ -132,7 +131,7 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
 
 def _spectrum(run: RunCurves, mask: Mask) -> go.Figure:
     plot = figure("frequency [Hz]", "density [N/√Hz]")
-    log: dict[str, Any] = {"type": "log", "dtick": 1, "minor": {"showgrid": False}}
+    log: dict[str, Any] = {"type": "log", "dtick": 1, "tickformat": "~g"}
     plot.update_layout(xaxis=log, yaxis=log)
     part = thinning.longest_stretch(mask)
     count = part.stop - part.start
@@ -144,6 +143,8 @@ def _spectrum(run: RunCurves, mask: Mask) -> go.Figure:
         ("error before", "before", run.force - run.baseline, 1.5),
         ("error after", "after", run.force - run.extended, 1.5),
     ):
+        if not np.isfinite(values[part]).all():
+            continue
         size = min(count, max(256, count // 4), 2048)
         frequency, power = welch(values[part], rate, nperseg=size)
         line(plot, *positive(frequency, np.sqrt(power)), color, name, width)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from inerter.core import parameters
 from inerter.diagnose.effects import EFFECTS
@@ -19,22 +20,28 @@ def number(value: float | None, digits: int = 3) -> str:
         return UNKNOWN
     if value == 0:
         return "0"
-    magnitude = math.floor(math.log10(abs(value)))
+    # the power of ten after rounding: 999.99 is 1000
+    magnitude = int(f"{value:.{digits - 1}e}".partition("e")[2])
     if magnitude < -3 or magnitude > 6:
         return _scientific(value, magnitude, digits - 1)
     return _plain(value, digits - 1 - magnitude)
 
 
+def count(value: int) -> str:
+    """A whole number with spaces between its thousands."""
+    return _plain(value, 0)
+
+
 def percent(share: float | None) -> str:
-    """Such as "87 %"."""
+    """Such as "87 %", kept on one line."""
     if share is None or not math.isfinite(share):
         return UNKNOWN
-    return f"{100 * share:.0f} %".replace("-", "−")
+    return f"{100 * share:.0f}\u00a0%".replace("-", "−")
 
 
 def confidence(share: float) -> str:
     """A percentage that never claims certainty."""
-    return "> 99 %" if share > 0.995 else "< 1 %" if share < 0.005 else percent(share)
+    return ">\u00a099\u00a0%" if share > 0.995 else "<\u00a01\u00a0%" if share < 0.005 else percent(share)
 
 
 def unit(name: str) -> str:
@@ -64,10 +71,15 @@ def with_error(value: ParameterValue) -> str:
     decimals = 1 - math.floor(math.log10(scaled_error))
     # no more than six digits, however sure the fit is
     decimals = min(decimals, 5 - (top - power))
-    pair = f"{_plain(scaled, decimals)} ± {_plain(scaled_error, max(decimals, 0))}"
+    pair = f"{_plain(scaled, decimals)} ± {_plain(scaled_error, decimals)}"
     if power:
         return f"({pair}) × 10{str(power).translate(_SUPERSCRIPT)}{suffix}"
     return pair + suffix
+
+
+def tidy(sentence: str) -> str:
+    """A text whose numbers stay on one line with their units."""
+    return re.sub(r"(?<=\d) (?=(?:%|[A-Za-z]{1,3})(?:[^A-Za-z]|$))", "\u00a0", sentence)
 
 
 def effect_name(effect: str) -> str:

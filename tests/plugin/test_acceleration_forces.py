@@ -1,4 +1,7 @@
-"""Is load friction mu |b a| sign(v) solved with the acceleration that it causes?"""
+"""Are forces that depend on the acceleration solved with the acceleration that they cause?
+
+Load friction mu |N| sign(v) and a varying inertance, N = b(x) a + b'(x) v^2 / 2.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +13,19 @@ from plugin_models import instance_actuator
 WIDTH = 1e-2
 
 
-def arm(devices: dict[str, tuple[float, float]]) -> str:
-    """Two hinges and a slide in space, with devices (b, mu) by actuator target."""
+def arm(devices: dict[str, tuple[float, float, float]]) -> str:
+    """Two hinges and a slide in space, with devices (b, mu, gradient) by actuator target."""
     texts = [
         instance_actuator(
-            {"inertance": b, "load_friction": mu, "transition_velocity": WIDTH}, target, f"d{i}"
+            {
+                "inertance": b, "load_friction": mu, "transition_velocity": WIDTH,
+                "inertance_gradient": gradient,
+            },
+            target,
+            f"d{i}",
         )
-        for i, (target, (b, mu)) in enumerate(devices.items())
-    ]
+        for i, (target, (b, mu, gradient)) in enumerate(devices.items())
+    ]  # fmt: skip
     return f"""
 <mujoco>
   <extension><plugin plugin="inerter.device">{"".join(t[0] for t in texts)}</plugin></extension>
@@ -47,19 +55,21 @@ def arm(devices: dict[str, tuple[float, float]]) -> str:
 </mujoco>"""
 
 
+CABLE, ELBOW, SLIDE = 'tendon="cable"', 'joint="elbow"', 'joint="slide" gear="2"'
 DEVICES = {
-    "one on a tendon": {'tendon="cable"': (2.0, 0.4)},
-    "one on a joint with gear": {'joint="slide" gear="2"': (1.0, 0.9)},
-    "three together": {
-        'tendon="cable"': (2.0, 0.4), 'joint="elbow"': (0.5, 0.7), 'joint="slide"': (1.0, 1.0),
-    },
-    "with and without": {'joint="elbow"': (0.5, 0.0), 'tendon="cable"': (2.0, 0.4)},
-}  # fmt: skip
+    "load, tendon": {CABLE: (2.0, 0.4, 0.0)},
+    "load, joint with gear": {SLIDE: (1.0, 0.9, 0.0)},
+    "load, three": {CABLE: (2.0, 0.4, 0.0), ELBOW: (0.5, 0.7, 0.0), SLIDE: (1.0, 1.0, 0.0)},
+    "load, one of two": {ELBOW: (0.5, 0.0, 0.0), CABLE: (2.0, 0.4, 0.0)},
+    "varying, tendon": {CABLE: (2.0, 0.0, -0.7)},
+    "varying, three": {CABLE: (2.0, 0.0, 1.5), ELBOW: (0.5, 0.0, -0.8), SLIDE: (1.0, 0.0, 2.0)},
+    "both, three": {CABLE: (2.0, 0.5, 1.5), ELBOW: (0.5, 0.9, -0.8), SLIDE: (1.0, 0.7, 2.0)},
+}
 
 
 @pytest.mark.parametrize("devices", DEVICES.values(), ids=DEVICES)
 @pytest.mark.parametrize("seed", range(4))
-def test_friction_belongs_to_the_acceleration_that_results(devices: dict, seed: int) -> None:
+def test_the_force_belongs_to_the_acceleration_that_results(devices: dict, seed: int) -> None:
     model = mujoco.MjModel.from_xml_string(arm(devices))
     data = mujoco.MjData(model)
     rng = np.random.default_rng(seed)
@@ -69,17 +79,20 @@ def test_friction_belongs_to_the_acceleration_that_results(devices: dict, seed: 
     data.xfrc_applied[2] = rng.normal(0, 5, 6)
     data.ctrl[-1] = 7  # limited to 1 N m
     mujoco.mj_forward(model, data)
-    friction = 0.0
-    for i, (_, mu) in enumerate(devices.values()):
-        total, inertance, shown, *_ = data.sensor(f"d{i}").data
-        v = data.actuator(f"d{i}").velocity[0]
+    largest = 0.0
+    for i, (b, mu, gradient) in enumerate(devices.values()):
+        total, inertance, friction, *_ = data.sensor(f"d{i}").data
+        x, v = data.actuator(f"d{i}").length[0], data.actuator(f"d{i}").velocity[0]
         expected = mu * abs(inertance) * np.tanh(v / WIDTH)
-        assert shown == pytest.approx(expected, rel=1e-9, abs=1e-9)
-        assert total == pytest.approx(inertance + shown, rel=1e-12)
-        # what the actuator applies is the friction that the sensor shows
-        assert data.actuator(f"d{i}").force[0] == pytest.approx(-expected, rel=1e-9, abs=1e-9)
-        friction = max(friction, abs(expected))
-    assert friction > 0.05
+        assert friction == pytest.approx(expected, rel=1e-9, abs=1e-9)
+        assert total == pytest.approx(inertance + friction, rel=1e-12)
+        # the actuator applies what the inertia matrix does not hold: all but b a
+        factor = max(0.01, 1 + gradient * x)
+        rest = 0.5 * b * gradient * v**2 * (factor > 0.01)
+        a = (inertance - rest) / (b * factor)
+        assert data.actuator(f"d{i}").force[0] == pytest.approx(b * a - total, rel=1e-8, abs=1e-8)
+        largest = max(largest, abs(b * a - total))
+    assert largest > 0.05
 
 
 def test_one_mass_by_hand() -> None:

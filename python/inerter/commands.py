@@ -1,0 +1,145 @@
+"""The commands of `inerter`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from inerter.core import DeviceError, parameters
+from inerter.diagnose import Diagnosis, diagnose
+from inerter.diagnose.output import write_outputs
+from inerter.models import data_path
+from inerter.plugin import plugin_path
+from inerter.records import RecordError
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    help="Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong.",
+)
+out = Console()
+notes = Console(stderr=True)
+
+
+def run() -> None:
+    """Run the command line."""
+    app()
+
+
+def _refuse(message: str) -> NoReturn:
+    """End with one clear line and status 2: the input cannot be used."""
+    print(f"inerter: {' '.join(message.split())}", file=sys.stderr)
+    raise typer.Exit(2)
+
+
+@contextmanager
+def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """A line that says what is being done, on a terminal's stderr."""
+    if quiet or not notes.is_terminal:
+        yield lambda text: None
+        return
+    with notes.status("starting") as status:
+        yield lambda text: status.update(text)
+
+
+@app.command("diagnose")
+def diagnose_command(
+    record: Annotated[
+        list[str], typer.Argument(help="Records: files, folders or globs; several are several runs.")
+    ],
+    device: Annotated[
+        Path | None,
+        typer.Option(help="Your own device (device.toml): held until the data contradict it."),
+    ] = None,
+    model: Annotated[
+        Path | None,
+        typer.Option(help="A MuJoCo model whose inerter.device is the baseline, like --device."),
+    ] = None,
+    holdout: Annotated[
+        list[str] | None, typer.Option(help="Name of a run to hold out; may be given again.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/diagnosis"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print diagnosis.json alone on stdout.")
+    ] = False,
+) -> None:
+    """What does the simulation of a device get wrong, what is the cause, how much does it cost?
+
+    Writes diagnosis.json, report.html, device.toml and model.xml.
+    """
+    _diagnose(record, device, model, holdout or [], out_dir, as_json)
+
+
+def _diagnose(
+    record: list[str],
+    device: Path | None,
+    model: Path | None,
+    holdout: list[str],
+    folder: Path,
+    as_json: bool,
+) -> Diagnosis:
+    try:
+        with _progress(as_json) as progress:
+            result = diagnose(record, device, model, holdout, progress)
+            write_outputs(result, folder)
+    except (RecordError, DeviceError, ValueError) as error:
+        _refuse(str(error))
+    except OSError as error:
+        _refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(json.dumps(result.json(), indent=2))
+    else:
+        from inerter.report.terminal import print_summary
+
+        print_summary(result, out)
+        out.print(f"Written to {folder}: report.html, diagnosis.json, device.toml, model.xml")
+    return result
+
+
+@app.command()
+def demo(
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/demo"
+    ),
+) -> None:
+    """Diagnose the two shipped records: a time record and a table of amplitudes."""
+    from inerter.report.figures import loop_figure
+
+    out.print("A table measured on a ball-screw inerter at 12 frequencies:\n", style="bold")
+    _diagnose([str(data_path("ball_screw_table.csv"))], None, None, [], out_dir / "table", False)
+    out.print("\nA bench record (synthetic; its hidden effect is not named in the file):\n",
+              style="bold")
+    record = str(data_path("bench_record.csv"))
+    result = _diagnose([record], None, None, [], out_dir, False)
+    loop_figure(result, out_dir / "loops.png")
+
+
+@app.command("plugin-path")
+def plugin_path_command() -> None:
+    """Path of the MuJoCo plugin library, for C programs and `simulate`."""
+    print(plugin_path())
+
+
+@app.command("parameters")
+def parameters_command() -> None:
+    """Every parameter of a device: name, unit, default, range, meaning."""
+    table = Table("name", "unit", "default", "range", "friction laws", "meaning")
+    for p in parameters().values():
+        lower = f"{'>' if p.lower_open else '>='} {p.lower:g}" if p.lower > -1e300 else ""
+        upper = f"<= {p.upper:g}" if p.upper < 1e300 else ""
+        default = "derived" if p.initial != p.initial else f"{p.initial:g}"
+        bounds = " ".join(part for part in (lower, upper) if part) or "any"
+        table.add_row(p.name, p.unit, default, bounds, " ".join(p.laws) or "-", p.meaning)
+    out.print(table)

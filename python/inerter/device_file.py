@@ -1,0 +1,104 @@
+"""device.toml: a device in a file, as the diagnosis writes it and reads it back.
+
+    [device]
+    inertance = 113.0           # SI units, or a text with a unit: "113 kg"
+    friction = "lugre"
+    coulomb_force = "10 N"
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+
+from inerter.core import Device, DeviceError, parameters
+
+SCHEMA = "inerter.device/1"
+
+
+def read_device(path: Path) -> Device:
+    """The device in a file.
+
+    Raises
+    ------
+    DeviceError
+        The file cannot be read, or a value in it cannot be used; names the file and the key.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise DeviceError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
+    except UnicodeDecodeError:
+        raise DeviceError(f"{path}: not UTF-8 text; give a TOML file") from None
+    except tomllib.TOMLDecodeError as error:
+        raise DeviceError(f"{path}: not TOML ({error}); correct the line") from None
+    table = content.get("device")
+    if not isinstance(table, dict):
+        raise DeviceError(
+            f"{path}: no [device] table; write one, with keys such as inertance = 113.0"
+        )
+    values: dict[str, float | str] = {}
+    for key, value in table.items():
+        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+            raise DeviceError(f"{path}: {key} is {value!r}; give a number, or a text with a unit")
+        if isinstance(value, str) and key != "friction":
+            value = _with_unit(path, key, value)
+        values[key] = value
+    try:
+        return Device(**values)
+    except DeviceError as error:
+        raise DeviceError(f"{path}: {error}") from None
+
+
+def _with_unit(path: Path, key: str, text: str) -> float:
+    """A text with a unit in the parameter's SI unit."""
+    import pint
+
+    if key not in parameters():
+        raise DeviceError(f"{path}: {key} is not a parameter of the device")
+    unit = parameters()[key].unit
+    registry = pint.get_application_registry()
+    wanted = "" if unit == "1" else unit.replace("m^-n", "dimensionless")
+    try:
+        value = registry.Quantity(text).to(wanted)
+    except Exception as error:
+        raise DeviceError(
+            f'{path}: {key} is "{text}"; give a number, or a text in {unit} ({error})'
+        ) from None
+    return float(value.magnitude)
+
+
+def device_text(
+    device: Device,
+    comments: Mapping[str, str] | None = None,
+    delay: float = 0.0,
+    title: str = "",
+) -> str:
+    """The text of a device.toml.
+
+    Parameters
+    ----------
+    comments : mapping, optional
+        A comment for a parameter, such as its standard error.
+    delay : float
+        Time by which the force channel of the record was late [s]; not part of the device.
+    title : str
+        Comment for the first line.
+    """
+    comments = comments or {}
+    lines = [f"# {line}" for line in title.splitlines()]
+    lines += [f'schema = "{SCHEMA}"', "", "[device]"]
+    for name, value in device.given.items():
+        text = f'"{value}"' if isinstance(value, str) else repr(float(value))
+        if isinstance(value, float) and not math.isfinite(value):
+            continue
+        note = comments.get(name, "" if name == "friction" else parameters()[name].unit)
+        lines.append(f"{name} = {text}" + (f"  # {note}" if note and note != "1" else ""))
+    if delay:
+        lines += [
+            "", "# of the measurement, not of the device: the force channel is late by this time",
+            "[channels]", f"force_delay = {delay!r}  # s",
+        ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,270 @@
+"""Diagnosis of a bench table: amplitudes of force and acceleration at a list of frequencies.
+
+A model's amplitude is that of the fundamental of its force along x = X sin(w t) in steady state. The
+errors of such tables grow with the force, so fits and decisions use relative errors; a constant force
+and a delay leave no trace in amplitudes and cannot be found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from inerter.core import Device, parameters
+from inerter.diagnose import wording
+from inerter.diagnose.effects import EFFECTS, candidates, effects_of
+from inerter.diagnose.result import (
+    Accuracy,
+    Diagnosis,
+    Finding,
+    ParameterValue,
+    RecordSummary,
+    Rival,
+    TablePoints,
+    Unexplained,
+)
+from inerter.diagnose.statistics import advantage, win_shares
+from inerter.identify.coordinates import Scales, coordinate
+from inerter.identify.fit import Fit, Model, parameter_errors
+from inerter.records import BenchTable
+from inerter.rig import simulate_along
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+# effects that leave a trace in amplitudes and have few enough parameters for a table
+TRIED = (
+    "inertance_error", "viscous_friction", "coulomb_friction", "parallel_stiffness",
+    "quadratic_damping", "load_dependent_friction",
+)
+SAMPLES_PER_PERIOD = 400
+REQUIRED_ADVANTAGE = 3.0
+REQUIRED_GAIN = 0.1
+HELD_OUT_EVERY = 4
+
+
+def amplitude(device: Device, frequency: float, acceleration: float) -> float:
+    """Amplitude of the force's fundamental [N] at a frequency [Hz] and acceleration [m/s^2]."""
+    wave = _sine(frequency, acceleration)
+    return _fundamental(device.along(*wave)["total"])
+
+
+def _sine(frequency: float, acceleration: float) -> tuple[float, Array, Array, Array]:
+    omega = 2 * np.pi * frequency
+    phase = 2 * np.pi * np.arange(3 * SAMPLES_PER_PERIOD) / SAMPLES_PER_PERIOD
+    size = acceleration / omega**2
+    return (
+        1 / (frequency * SAMPLES_PER_PERIOD),
+        size * np.sin(phase),
+        size * omega * np.cos(phase),
+        -acceleration * np.sin(phase),
+    )
+
+
+def _fundamental(force: Array) -> float:
+    last = force[-SAMPLES_PER_PERIOD:]
+    return float(2 / SAMPLES_PER_PERIOD * np.abs(np.fft.rfft(last)[1]))
+
+
+class _Table:
+    """Points of one or several tables."""
+
+    def __init__(self, tables: Sequence[BenchTable]) -> None:
+        join = np.concatenate
+        order = np.argsort(join([table.frequency for table in tables]), kind="stable")
+        self.frequency = join([table.frequency for table in tables])[order]
+        self.force = join([table.force_amplitude for table in tables])[order]
+        self.acceleration = join([table.acceleration_amplitude for table in tables])[order]
+        if np.any(self.frequency <= 0) or np.any(self.force <= 0) or np.any(self.acceleration <= 0):
+            raise ValueError(
+                f"{tables[0].name}: a table needs frequencies and amplitudes above 0; "
+                "remove the rows that are 0"
+            )
+        omega = 2 * np.pi * self.frequency
+        self.scales = Scales(
+            float(np.std(self.force)) or float(self.force[0]),
+            float(np.sqrt(np.mean((self.acceleration / omega**2) ** 2) / 2)),
+            float(np.sqrt(np.mean((self.acceleration / omega) ** 2) / 2)),
+            float(np.sqrt(np.mean(self.acceleration**2) / 2)),
+        )
+        self.holdout = np.zeros(self.force.size, bool)
+        self.holdout[HELD_OUT_EVERY // 2 :: HELD_OUT_EVERY] = True
+
+    def predict(self, model: Model) -> Array:
+        """Force amplitudes of a model [N], shape (n,)."""
+        device = model.device()
+        return np.array(
+            [amplitude(device, f, a) for f, a in zip(self.frequency, self.acceleration, strict=True)]
+        )
+
+    def error(self, model: Model) -> Array:
+        """Relative errors, measured minus model, shape (n,)."""
+        return (self.force - self.predict(model)) / self.force
+
+    def fit(self, model: Model, mask: NDArray[np.bool_]) -> Fit:
+        """Least squares of the relative errors over masked points."""
+        how = [coordinate(name, self.scales) for name in model.free]
+        if not how:
+            return Fit(model, [self.error(model)], np.zeros((0, 0)), 1)
+
+        def at(variables: Array) -> Model:
+            values = {n: c.decode(x) for n, c, x in zip(model.free, how, variables, strict=True)}
+            return replace(model, values={**model.values, **values})
+
+        start = [c.encode(model.values[n]) for n, c in zip(model.free, how, strict=True)]
+        bounds = np.array([c.bounds for c in how]).T
+        inside = np.clip(start, bounds[0] + 1e-9, bounds[1] - 1e-9)
+        solution = least_squares(
+            lambda variables: self.error(at(variables))[mask], inside, bounds=bounds
+        )
+        freedom = max(int(mask.sum()) - len(how), 1)
+        size = np.array([
+            model.values[n] if c.logarithmic else c.size
+            for n, c in zip(model.free, how, strict=True)
+        ])
+        covariance = (
+            np.linalg.pinv(solution.jac.T @ solution.jac)
+            * (2 * solution.cost / freedom) * np.outer(size, size)
+        )
+        best = at(solution.x)
+        return Fit(best, [self.error(best)], covariance, int(solution.nfev))
+
+    def left_out(self, model: Model) -> Array:
+        """Squared relative errors of every fit point when it is left out, shape (points,)."""
+        squares = []
+        for i in np.flatnonzero(~self.holdout):
+            mask = ~self.holdout
+            mask[i] = False
+            squares.append(float(self.fit(model, mask).residual[0][i] ** 2))
+        return np.array(squares)
+
+    def rmse(self, model: Model) -> float:
+        """Rms force error on held-out points [N]."""
+        residual = (self.force - self.predict(model))[self.holdout]
+        return float(np.sqrt(np.mean(residual**2)))
+
+
+def diagnose_table(
+    tables: Sequence[BenchTable],
+    device: Device | None = None,
+    progress: Progress = lambda text: None,
+) -> Diagnosis:
+    """What a simulation lacks, from amplitudes at a list of frequencies.
+
+    Raises
+    ------
+    ValueError
+        Amplitudes or frequencies that are not above zero.
+    """
+    table = _Table(tables)
+    fit_mask = ~table.holdout
+    start = float(np.mean(table.force / table.acceleration))
+    if device is None:
+        baseline = Model("none", {"inertance": start}, ("inertance",))
+    else:
+        values = {k: float(v) for k, v in device.given.items() if k != "friction"}
+        free = () if "inertance" in values else ("inertance",)
+        baseline = Model(device.friction, {"inertance": start, **values}, free)
+    before = table.fit(baseline, fit_mask)
+    fit, squares = before, table.left_out(before.model)
+    findings: list[Finding] = []
+    while len(findings) < 3:
+        progress(f"effect {len(findings) + 1}: trying every candidate")
+        step = _best(table, fit, squares)
+        if step is None:
+            break
+        effect, after, after_squares, confidence, rivals = step
+        rmse_before, rmse_after = table.rmse(fit.model), table.rmse(after.model)
+        if rmse_after >= rmse_before:
+            break
+        fit, squares = after, after_squares
+        findings.append(
+            Finding(effect, None, confidence, {}, rmse_before, rmse_after, "", rivals)
+        )
+    values = _parameters(fit)
+    findings = [
+        replace(f, parameters={n: values[n] for n in EFFECTS[f.effect].parameters if n in values})
+        for f in findings
+    ]
+    findings = [replace(f, evidence=wording.evidence(f)) for f in findings]
+    findings.sort(key=lambda finding: -finding.gain)
+    return _diagnosis(tables, table, before, fit, findings, values)
+
+
+def _best(
+    table: _Table, fit: Fit, squares: Array
+) -> tuple[str, Fit, Array, float, list[Rival]] | None:
+    tried = []
+    for candidate in candidates(fit.model, table.scales):
+        present = [name for name, _ in effects_of(fit.model, fit.model)]
+        if candidate.effect in TRIED and candidate.effect not in present:
+            after = table.fit(candidate.starts[0], ~table.holdout)
+            tried.append((candidate.effect, after, table.left_out(after.model)))
+    good = [
+        one for one in tried
+        if advantage(squares, one[2]) > REQUIRED_ADVANTAGE
+        and 1 - np.sqrt(one[2].sum() / squares.sum()) > REQUIRED_GAIN
+    ]
+    if not good:
+        return None
+    effect, after, best = min(good, key=lambda one: one[2].sum())
+    others = [one for one in tried if one[0] != effect]
+    shares = win_shares([best, squares, *(one[2] for one in others)])
+    rivals = [
+        Rival(one[0], float(share)) for one, share in zip(others, shares[2:], strict=True)
+        if share > 0.005
+    ]
+    return effect, after, best, float(shares[0]), sorted(rivals, key=lambda r: -r.confidence)
+
+
+def _parameters(fit: Fit) -> dict[str, ParameterValue]:
+    units = {name: entry.unit for name, entry in parameters().items()}
+    return {
+        name: ParameterValue(value, error, units[name])
+        for name, (value, error) in parameter_errors(fit).items()
+    }
+
+
+def _diagnosis(
+    tables: Sequence[BenchTable], table: _Table, before: Fit, fit: Fit,
+    findings: list[Finding], values: dict[str, ParameterValue],
+) -> Diagnosis:
+    spread = float(np.std(table.force[table.holdout])) or 1.0
+
+    def accuracy(model: Model) -> Accuracy:
+        rmse = table.rmse(model)
+        return Accuracy(model.device().given, rmse, rmse / spread)
+
+    extended = accuracy(fit.model)
+    relative = float(np.sqrt(np.mean(fit.residual[0] ** 2)))
+    remains = Unexplained(
+        False, 0.0, [],
+        f"The amplitudes scatter by {100 * relative:.1f} % about the model; a table cannot tell "
+        "noise from structure further, a time record can.",
+    )
+    device = fit.model.device()
+    engine = np.array([
+        _fundamental(simulate_along(device, *_sine(f, a))["total"])
+        for f, a in zip(table.frequency, table.acceleration, strict=True)
+    ])
+    mujoco = float(np.sqrt(np.mean((table.force - engine)[table.holdout] ** 2)))
+    points = TablePoints(
+        table.frequency, table.acceleration, table.force, table.predict(before.model),
+        table.predict(fit.model), table.holdout,
+    )
+    held = ", ".join(f"{f:g}" for f in table.frequency[table.holdout])
+    diagnosis = Diagnosis(
+        [
+            RecordSummary(t.name, t.samples, 0.0, "fit", [vars(w) for w in t.warnings])
+            for t in tables
+        ],
+        accuracy(before.model), findings, extended, relative * float(np.mean(table.force)),
+        remains, {"mujoco": mujoco, "exudyn": None, "reference": None}, "", values,
+        {"split": f"held out: the points at {held} Hz", "held_out_samples": int(table.holdout.sum())},
+        [], points,
+    )
+    return replace(diagnosis, verdict=wording.verdict(diagnosis))

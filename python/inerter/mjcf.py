@@ -1,0 +1,48 @@
+"""Devices in MuJoCo models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import mujoco
+
+from inerter.core import Device, DeviceError
+from inerter.plugin import load_plugin
+
+
+def device_of_model(path: Path) -> Device:
+    """The device of a model that has exactly one `inerter.device`.
+
+    Raises
+    ------
+    DeviceError
+        The model cannot be read, has no device or several, or its device cannot be.
+    """
+    load_plugin()
+    if not path.is_file():
+        raise DeviceError(f"{path}: no such file; check the path")
+    try:
+        text = mujoco.MjSpec.from_file(str(path)).to_xml()
+    except ValueError as error:
+        raise DeviceError(f"{path}: {' '.join(str(error).split())}") from None
+
+    # a device is configured in its actuator, or in an instance that its actuator names
+    root = ElementTree.fromstring(text)
+    plugins = [
+        holder
+        for element in root.iter("plugin")
+        if element.get("plugin") == "inerter.device"
+        for holder in (element, *element.findall("instance"))
+        if holder.find("config") is not None
+    ]
+    if len(plugins) != 1:
+        raise DeviceError(
+            f"{path}: {len(plugins)} configured inerter.device in the model, 1 is needed; give a "
+            "device.toml with --device instead"
+        )
+    values = {config.get("key", ""): config.get("value", "") for config in plugins[0].iter("config")}
+    try:
+        return Device(**values)
+    except DeviceError as error:
+        raise DeviceError(f"{path}: {error}") from None

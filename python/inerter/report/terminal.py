@@ -1,0 +1,94 @@
+"""A diagnosis in the terminal."""
+
+from __future__ import annotations
+
+from rich.console import Console, Group, RenderableType
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+from inerter.diagnose.result import Diagnosis
+from inerter.report import text
+from inerter.report.runs import role
+
+
+def print_summary(diagnosis: Diagnosis, console: Console) -> None:
+    """Print `summary` on a console."""
+    console.print(summary(diagnosis))
+
+
+def summary(diagnosis: Diagnosis) -> RenderableType:
+    """Verdict, findings, and records with their warnings, to print with rich."""
+    before, after = diagnosis.baseline.rmse, diagnosis.extended.rmse
+    numbers = Text.assemble(
+        "rms force error on held-out data  ",
+        (f"{text.number(before)} N", "bold yellow"), " → ",
+        (f"{text.number(after)} N", "bold cyan"),
+        f"   ({text.percent(1 - after / before if before > 0 else 0.0)} less)",
+    )
+    parts: list[RenderableType] = [
+        Panel(
+            Group(numbers, Text(), _plain(diagnosis.verdict)),
+            title="Diagnosis", title_align="left",
+        )
+    ]
+    if diagnosis.findings:
+        parts.append(_findings(diagnosis))
+    parts.append(_records(diagnosis))
+    return Group(*parts)
+
+
+def _findings(diagnosis: Diagnosis) -> Table:
+    table = _table("What the simulation lacks")
+    table.add_column("effect", ratio=3)
+    table.add_column("parameters", ratio=4)
+    table.add_column("error [N]", justify="right", no_wrap=True)
+    table.add_column("gain", justify="right", no_wrap=True)
+    table.add_column("confidence", justify="right", no_wrap=True)
+    for finding in diagnosis.findings:
+        effect = Text(text.finding_name(finding), style="bold")
+        likely = [rival for rival in finding.rivals if rival.confidence >= 0.05]
+        if likely:
+            names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
+            effect.append(f"\nor {names}", style="dim not bold")
+        values = "\n".join(
+            f"{name} {text.with_error(value)}" for name, value in finding.parameters.items()
+        )
+        table.add_row(
+            effect,
+            _plain(values),
+            f"{text.number(finding.rmse_before)} → {text.number(finding.rmse_after)}",
+            text.percent(finding.gain),
+            text.confidence(finding.confidence),
+        )
+    return table
+
+
+def _records(diagnosis: Diagnosis) -> Table:
+    table = _table("Records")
+    table.add_column("record", ratio=3)
+    table.add_column("role", no_wrap=True)
+    table.add_column("samples", justify="right", no_wrap=True)
+    table.add_column("rate [Hz]", justify="right", no_wrap=True)
+    table.add_column("warnings", ratio=5)
+    for record in diagnosis.records:
+        warnings = "\n".join(f"{w['code']}: {w['text']}" for w in record.warnings)
+        table.add_row(
+            _plain(record.name),
+            _plain(role(record, diagnosis)),
+            text.count(record.samples),
+            text.number(record.sample_rate, 4),
+            _plain(warnings, "yellow"),
+        )
+    return table
+
+
+def _table(title: str) -> Table:
+    return Table(title=title, title_justify="left", title_style="bold", box=None, padding=(0, 2),
+                 header_style="dim", expand=True)
+
+
+def _plain(words: str, style: str = "") -> Text:
+    # names come from files: no markup, and no control sequences to the terminal
+    shown = "".join(c if c.isprintable() or c in "\n\u00a0\u202f" else "\ufffd" for c in words)
+    return Text(shown, style=style)

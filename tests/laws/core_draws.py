@@ -1,0 +1,147 @@
+"""Random devices and states for the core's tests, and how large a rounding error may be."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from inerter.reference import ReferenceDevice, friction_level
+from numpy.typing import NDArray
+
+LAWS = ("none", "coulomb", "stribeck", "dahl", "lugre", "bouc_wen", "brown_mcphee")
+MEMORY = ("dahl", "lugre", "bouc_wen")
+
+Parameters = dict[str, Any]
+Array = NDArray[np.float64]
+
+
+def around(rng: np.random.Generator, middle: float, decades: float = 1.0) -> float:
+    """A positive number, log-uniform over `decades` to either side of `middle`."""
+    return float(middle * 10.0 ** rng.uniform(-decades, decades))
+
+
+def draw_friction(rng: np.random.Generator, law: str, wide: float = 1.0) -> Parameters:
+    """Parameters of a friction law; `wide` stretches the decades they are drawn from."""
+    if law == "none":
+        return {"friction": law}
+    if law == "bouc_wen":
+        n = float(rng.choice([1.0, 1.5, 2.0, 3.0, rng.uniform(1.0, 5.0)]))
+        alpha, limit = around(rng, 1.0, wide), around(rng, 1e-3, wide)
+        total = alpha / limit**n
+        return {
+            "friction": law,
+            "bw_alpha": alpha,
+            "bw_beta": total * (share := float(rng.uniform(0.1, 1.0))),
+            "bw_gamma": total * (1.0 - share),
+            "bw_exponent": n,
+            "bw_stiffness": around(rng, 1e4, wide),
+            "bw_ratio": float(rng.uniform(-0.5, 1.5)),
+        }
+
+    level = around(rng, 20.0, wide)
+    drawn: Parameters = {"friction": law, "coulomb_force": level}
+    if law != "dahl":
+        drawn["static_force"] = level * float(rng.uniform(1.0, 5.0))
+    if law in ("stribeck", "lugre", "brown_mcphee"):
+        drawn["stribeck_velocity"] = around(rng, 1e-2, wide)
+    if law in ("stribeck", "lugre"):
+        drawn["stribeck_exponent"] = float(rng.choice([1.0, 2.0, rng.uniform(0.2, 5.0)]))
+    if law in ("dahl", "lugre"):
+        drawn["bristle_stiffness"] = around(rng, 1e5, 2.0 * wide)
+    if law == "lugre":
+        drawn["bristle_damping"] = float(rng.choice([0.0, around(rng, 100.0, wide)]))
+    if law == "dahl":
+        drawn["dahl_exponent"] = float(rng.choice([0.5, 1.0, 2.0, rng.uniform(0.3, 4.0)]))
+    if law == "coulomb":
+        del drawn["static_force"]
+    return drawn
+
+
+def draw_levels(rng: np.random.Generator) -> Parameters:
+    """A friction level that differs between directions and along the stroke."""
+    return {
+        "transition_velocity": around(rng, 1e-4, 2.0),
+        "friction_asymmetry": float(rng.uniform(-0.9, 0.9)),
+        "friction_gradient": float(rng.normal(0.0, 10.0)),
+        "friction_curvature": float(rng.normal(0.0, 100.0)),
+    }
+
+
+def draw_branches(rng: np.random.Generator, wide: float = 1.0) -> Parameters:
+    """Everything beside the friction law; springs of either sign."""
+    return {
+        "inertance": around(rng, 100.0, wide),
+        "inertance_gradient": float(rng.normal(0.0, 5.0)),
+        "inertance_curvature": float(rng.normal(0.0, 50.0)),
+        "viscous": around(rng, 50.0, wide),
+        "quadratic_damping": around(rng, 50.0, wide),
+        "stiffness": around(rng, 1e4, wide) * float(rng.choice([-1.0, 1.0])),
+        "stiffness_cubic": around(rng, 1e6, wide) * float(rng.choice([-1.0, 1.0])),
+        "rest_length": float(rng.normal(0.0, 0.05)),
+        "force_offset": float(rng.normal(0.0, 30.0)),
+        "load_friction": float(rng.uniform(0.0, 0.9)),
+    }
+
+
+def state_limit(p: Parameters) -> float:
+    """Deflection [m] beyond which a slide cannot lead, at a friction level of 1."""
+    if p["friction"] == "bouc_wen":
+        return (p["bw_alpha"] / (p["bw_beta"] + p["bw_gamma"])) ** (1.0 / p["bw_exponent"])
+    return p.get("static_force", p["coulomb_force"]) / p["bristle_stiffness"]
+
+
+def draw_points(
+    rng: np.random.Generator, count: int, reach: float, wide: float = 2.0
+) -> tuple[Array, Array, Array, Array]:
+    """Random x, v, a, z of either sign, a tenth of each zero; z within twice `reach`."""
+
+    def spread(middle: float) -> Array:
+        size = middle * 10.0 ** rng.uniform(-wide, wide, count)
+        return size * rng.choice([-1.0, 1.0], count) * (rng.random(count) > 0.1)
+
+    z = rng.uniform(-2.0, 2.0, count) * reach * (rng.random(count) > 0.1)
+    return spread(1e-2), spread(1e-1), spread(5.0), z
+
+
+def magnitudes(device: ReferenceDevice, x: Array, v: Array, a: Array, z: Array) -> dict[str, Array]:
+    """Sum of the sizes of the terms of each quantity: what its rounding error is measured by."""
+    stretch, size, speed = abs(x - device.rest_length), abs(z), abs(v)
+    factor = 1.0 + (device.inertance_gradient + device.inertance_curvature * x) * x
+    slope = abs(device.inertance_gradient) + 2.0 * abs(device.inertance_curvature * x)
+    inertia = device.inertance * np.maximum(0.01, factor)
+    inertance = inertia * abs(a) + 0.5 * device.inertance * slope * v**2
+    load = device.load_friction * inertance
+    damper = (device.viscous + device.quadratic_damping * speed) * speed
+    spring = (abs(device.stiffness) + abs(device.stiffness_cubic) * stretch**2) * stretch
+    energy = 0.5 * inertia * v**2 + spring * stretch
+
+    # state, its rate and what it carries
+    rate = np.zeros_like(x)
+    if device.friction == "bouc_wen":
+        shape = abs(device.bw_beta) + abs(device.bw_gamma)
+        rate = speed * (device.bw_alpha + shape * size**device.bw_exponent)
+        yielding = device.bw_stiffness * abs(1.0 - device.bw_ratio) * size
+        elastic = device.bw_stiffness * abs(device.bw_ratio * x)
+        friction = yielding + elastic
+        energy += elastic * abs(x) + yielding * size / device.bw_alpha
+        stored = yielding * rate / device.bw_alpha + elastic * speed
+    elif device.nstate:
+        level = np.asarray(friction_level(device, x, v)) * device.coulomb_force
+        overload = device.bristle_stiffness * size / level
+        exponent = device.dahl_exponent if device.friction == "dahl" else 1.0
+        rate = speed * (1.0 + overload) ** exponent
+        damping = device.bristle_damping if device.friction == "lugre" else 0.0
+        friction = device.bristle_stiffness * size + damping * rate
+        energy += device.bristle_stiffness * size**2
+        stored = device.bristle_stiffness * size * rate
+    else:
+        friction = abs(np.asarray(device.friction_force(x, v, z)))
+        stored = np.zeros_like(x)
+    return {
+        "inertance": inertance,
+        "friction": friction + load,
+        "total": inertance + load + friction + damper + spring + abs(device.force_offset),
+        "state_rate": rate,
+        "stored_energy": energy,
+        "dissipated_power": (damper + load + friction) * speed + stored,
+    }

@@ -1,0 +1,148 @@
+"""Devices along a sampled motion: converges to the reference, keeps rate independence, threads."""
+
+import numpy as np
+import pytest
+from core_draws import LAWS, MEMORY, Parameters, draw_branches, draw_friction
+from inerter.core import Device, along_many
+from inerter.reference import Motion, ReferenceDevice, response, sine_motion, sum_of_sines
+
+MOTION = sum_of_sines([1e-3, 4e-4], [1.0, 2.7], [0.3, 1.1])
+
+FRICTION: dict[str, Parameters] = {
+    "dahl": {"coulomb_force": 20.0, "bristle_stiffness": 5e4},
+    "dahl, exponent 2": {"coulomb_force": 20.0, "bristle_stiffness": 5e4, "dahl_exponent": 2.0},
+    "lugre": {
+        "coulomb_force": 20.0, "static_force": 26.0, "stribeck_velocity": 5e-3,
+        "bristle_stiffness": 5e4, "bristle_damping": 100.0,
+    },
+    "bouc_wen": {"bw_stiffness": 5e4, "bw_beta": 2000.0, "bw_gamma": 500.0, "bw_ratio": 0.1},
+    "bouc_wen, exponent 2": {
+        "bw_stiffness": 5e4, "bw_beta": 4e6, "bw_gamma": 2e6, "bw_exponent": 2.0,
+    },
+    "dahl, level along the stroke": {
+        "coulomb_force": 20.0, "bristle_stiffness": 5e4, "friction_gradient": 100.0,
+        "friction_curvature": 2e4,
+    },
+}  # fmt: skip
+
+
+def sampled(motion: Motion, h: float, end: float) -> tuple[np.ndarray, ...]:
+    t: np.ndarray = np.arange(round(end / h) + 1) * h
+    return t, *(
+        np.asarray(f(t)) for f in (motion.displacement, motion.velocity, motion.acceleration)
+    )
+
+
+@pytest.mark.parametrize("name", FRICTION)
+def test_along_is_second_order_in_the_sample_spacing(name: str) -> None:
+    p = FRICTION[name] | {"friction": name.split(",")[0], "inertance": 80.0, "viscous": 10.0}
+    t, *_ = sampled(MOTION, 4e-3, 2.0)
+    exact = response(ReferenceDevice(**p), MOTION, t, rtol=1e-11).force
+    size = np.max(abs(exact))
+
+    errors = []
+    for fine in (1, 2, 4, 8, 16):
+        _, x, v, a = sampled(MOTION, 4e-3 / fine, 2.0)
+        found = Device(**p).along(4e-3 / fine, x, v, a)["total"][::fine]
+        errors.append(np.sqrt(np.mean((found - exact) ** 2)) / size)
+    order = np.log2(errors[0] / errors[-1]) / 4.0
+    assert order > 1.8, errors
+    assert errors[-1] < 1e-4, errors
+
+
+@pytest.mark.parametrize("law", [law for law in LAWS if law not in MEMORY])
+def test_along_without_memory_is_the_force_at_each_sample(law: str) -> None:
+    rng = np.random.default_rng(1)
+    p = draw_friction(rng, law) | draw_branches(rng)
+    t, x, v, a = sampled(MOTION, 1e-3, 1.0)
+    found = Device(**p).along(1e-3, x, v, a)
+    exact = response(ReferenceDevice(**p), MOTION, t).force
+    np.testing.assert_allclose(found["total"], exact, rtol=1e-12, atol=1e-12 * np.max(abs(exact)))
+    assert not found["state"].any()
+
+
+@pytest.mark.parametrize("name", [name for name in FRICTION if not name.startswith("lugre")])
+@pytest.mark.parametrize("slower", [1e-3, 1e3])
+def test_dahl_and_bouc_wen_do_not_know_the_speed(name: str, slower: float) -> None:
+    p = FRICTION[name] | {"friction": name.split(",")[0]}
+    _, x, v, a = sampled(MOTION, 1e-3, 2.0)
+    device = Device(**p)
+    one = device.along(1e-3, x, v, a)
+    other = device.along(1e-3 * slower, x, v / slower, a / slower**2)
+    np.testing.assert_allclose(other["friction"], one["friction"], atol=1e-11)
+
+
+def test_lugre_does_know_the_speed() -> None:
+    p = FRICTION["lugre"] | {"friction": "lugre"}
+    _, x, v, a = sampled(MOTION, 1e-3, 2.0)
+    one = Device(**p).along(1e-3, x, v, a)["friction"]
+    other = Device(**p).along(1.0, x, v / 1e3, a / 1e6)["friction"]
+    assert np.max(abs(other - one)) > 5.0
+
+
+def test_dahl_loop_closed_form() -> None:
+    # the steady loop between -A and A: exponentials, tip at tanh(A sigma0 / f_c)
+    reach, amplitude = 4e-4, 1e-3
+    device = Device(friction="dahl", coulomb_force=20.0, bristle_stiffness=5e4)
+    _, x, v, a = sampled(sine_motion(amplitude, 1.0), 1.0 / 4096.0, 5.0)
+    force = device.along(1.0 / 4096.0, x, v, a)["friction"][-4096:]
+    x, v = x[-4096:], v[-4096:]
+    tip = np.tanh(amplitude / reach)
+    up = 1.0 - (1.0 + tip) * np.exp(-(x + amplitude) / reach)
+    down = -1.0 + (1.0 + tip) * np.exp((x - amplitude) / reach)
+    np.testing.assert_allclose(force, 20.0 * np.where(v > 0.0, up, down), atol=2e-5)
+
+
+def test_bouc_wen_without_gamma_is_dahl() -> None:
+    _, x, v, a = sampled(MOTION, 1e-3, 2.0)
+    dahl = Device(friction="dahl", coulomb_force=20.0, bristle_stiffness=5e4)
+    other = Device(friction="bouc_wen", bw_stiffness=5e4, bw_beta=2500.0, bw_gamma=0.0)
+    np.testing.assert_allclose(
+        dahl.along(1e-3, x, v, a)["friction"], other.along(1e-3, x, v, a)["friction"], atol=1e-10
+    )
+
+
+@pytest.mark.parametrize("law", MEMORY)
+def test_a_run_can_be_cut_in_two(law: str) -> None:
+    # the state at the cut, handed on, continues the run bit for bit
+    device = Device(friction=law, **FRICTION[law])
+    _, x, v, a = sampled(MOTION, 1e-3, 1.0)
+    whole = device.along(1e-3, x, v, a, state=1e-4)
+    cut = 400
+    tail = device.along(1e-3, x[cut:], v[cut:], a[cut:], state=float(whole["state"][cut]))
+    for name in ("total", "friction", "state"):
+        np.testing.assert_array_equal(tail[name], whole[name][cut:])
+
+
+@pytest.mark.parametrize("threads", [None, 1, 2, 3, 7, 64])
+def test_along_many_is_along_bit_for_bit(threads: int | None) -> None:
+    rng = np.random.default_rng(2)
+    drawn = [draw_friction(rng, law) | draw_branches(rng) for law in LAWS for _ in range(3)]
+    devices = [Device(**p) for p in drawn]
+    _, x, v, a = sampled(MOTION, 1e-3, 0.5)
+    together = along_many(devices, 1e-3, x, v, a, threads=threads)
+    assert together.shape == (len(devices), x.size)
+    for row, device in zip(together, devices, strict=True):
+        np.testing.assert_array_equal(row, device.along(1e-3, x, v, a)["total"])
+
+
+def test_along_many_of_nothing() -> None:
+    x = np.zeros(5)
+    assert along_many([], 1e-3, x, x, x).shape == (0, 5)
+    device = Device(inertance=1.0)
+    assert along_many([device], 1e-3, x[:0], x[:0], x[:0]).shape == (1, 0)
+
+
+def test_channels_of_other_lengths_are_refused() -> None:
+    x = np.zeros(5)
+    with pytest.raises(ValueError, match=r"\(5,\), \(4,\), \(5,\)"):
+        Device(inertance=1.0).along(1e-3, x, x[:4], x)
+    with pytest.raises(ValueError, match="one length"):
+        along_many([Device(inertance=1.0)], 1e-3, x, x, x.reshape(1, 5))
+
+
+def test_channels_of_any_kind_of_array_are_read() -> None:
+    device = Device(inertance=2.0, stiffness=3.0)
+    x = np.array([0, 1, 2, 3])
+    found = device.along(0.1, x[::2], x[::2].astype(np.float32), x[::-2])["total"]
+    np.testing.assert_array_equal(found, 3.0 * x[::2] + 2.0 * x[::-2])

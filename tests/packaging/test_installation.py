@@ -1,0 +1,193 @@
+"""What `pip install inerter` promises: the plugin is there, imports are light, errors help."""
+
+import importlib.metadata
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import inerter
+import inerter.core
+import inerter.plugin
+import mujoco
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+MODEL = """
+<mujoco>
+  <extension><plugin plugin="inerter.device"/></extension>
+  <worldbody><body><joint name="slide" type="slide"/><geom size="0.1" mass="1"/></body></worldbody>
+  <actuator>
+    <plugin plugin="inerter.device" joint="slide"><config key="inertance" value="2"/></plugin>
+  </actuator>
+</mujoco>
+"""
+
+
+def run(script: str, *flags: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a script in a fresh interpreter, away from the checkout."""
+    return subprocess.run(
+        [sys.executable, *flags, "-c", script],
+        capture_output=True, text=True, check=False, cwd=Path(sys.prefix), timeout=120,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def project() -> dict[str, Any]:
+    with (ROOT / "pyproject.toml").open("rb") as file:
+        return tomllib.load(file)
+
+
+# ------------------------------ the plugin ------------------------------
+
+
+def test_importing_mujoco_is_enough() -> None:
+    done = run(
+        f"import mujoco, sys\nmodel = mujoco.MjModel.from_xml_string('''{MODEL}''')\n"
+        "assert model.nplugin == 1\n"
+        "assert 'scipy' not in sys.modules\n",
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+
+
+def test_the_entry_point_is_registered_once() -> None:
+    (entry,) = importlib.metadata.entry_points(group="mujoco.plugins", name="inerter")
+    assert entry.value == "inerter.plugin:load_plugin"
+    assert entry.load() is inerter.load_plugin
+
+
+def test_loading_again_does_nothing() -> None:
+    done = run("import inerter, mujoco\ninerter.load_plugin()\ninerter.load_plugin()\n")
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_library_is_where_it_is_said_to_be() -> None:
+    path = inerter.plugin_path()
+    assert path.is_file()
+    assert path.is_relative_to(Path(inerter.__file__).parent)
+
+
+# ------------------------------ light imports ------------------------------
+
+HEAVY = (
+    "scipy", "polars", "pyarrow", "plotly", "matplotlib", "pydantic", "typer", "rich", "jinja2",
+    "pint", "tomlkit", "exudyn",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("module", ["inerter", "inerter.plugin", "inerter.core", "mujoco"])
+def test_the_lab_is_imported_only_where_it_is_used(module: str) -> None:
+    # every MuJoCo process of the machine pays for what the plugin imports
+    done = run(f"import sys, {module}\nprint(*sys.modules)\n")
+    assert done.returncode == 0, done.stderr
+    assert "inerter.plugin" in done.stdout.split()
+    assert not set(HEAVY) & set(done.stdout.split())
+
+
+def test_the_core_works_without_the_lab() -> None:
+    # as after `pip install inerter` without extras: the lab's packages cannot be imported
+    done = run(
+        "import sys\n"
+        f"sys.modules.update(dict.fromkeys({HEAVY!r}))\n"
+        "import numpy as np, inerter\n"
+        "device = inerter.Device(inertance=2.0, friction='coulomb', coulomb_force=1.0)\n"
+        "x = np.zeros(3)\n"
+        "assert device.along(0.1, x, x, x + 3.0)['total'].tolist() == [6.0] * 3\n"
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_no_warning_on_import() -> None:
+    done = run("import inerter, inerter.plugin", "-W", "error")
+    assert done.returncode == 0, done.stderr
+
+
+# ------------------------------ versions ------------------------------
+
+
+def test_one_mujoco_version_everywhere(project: dict[str, Any]) -> None:
+    version = inerter.plugin.MUJOCO_VERSION
+    assert f"mujoco-core=={version}" in project["build-system"]["requires"]
+    assert f"mujoco=={version}" in project["project"]["dependencies"]
+    assert mujoco.mj_versionString() == version
+    required = importlib.metadata.requires("inerter") or []
+    assert f"mujoco=={version}" in required
+
+
+def test_one_version_of_the_package(project: dict[str, Any]) -> None:
+    version = project["project"]["version"]
+    assert inerter.__version__ == version
+    assert importlib.metadata.version("inerter") == version
+
+
+@pytest.mark.parametrize("found", ["3.9.1", "4.0.1", "4.1.0", "5.0.0"])
+def test_another_mujoco_is_refused(monkeypatch: pytest.MonkeyPatch, found: str) -> None:
+    monkeypatch.setattr(mujoco, "mj_versionString", lambda: found)
+    monkeypatch.setattr(inerter.plugin, "_loaded", False)
+    with pytest.raises(ImportError) as caught:
+        inerter.load_plugin()
+    message = str(caught.value)
+    assert f"compiled for MuJoCo {inerter.plugin.MUJOCO_VERSION}" in message
+    assert f"installed is MuJoCo {found}" in message
+    assert f"pip install mujoco=={inerter.plugin.MUJOCO_VERSION}" in message
+
+
+# ------------------------------ a broken installation ------------------------------
+
+
+def test_a_missing_plugin_is_an_import_error(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(inerter.core, "LIBRARY_FOLDER", tmp_path)
+    monkeypatch.setattr(inerter.plugin, "_loaded", False)
+    for call in (inerter.plugin_path, inerter.load_plugin):
+        with pytest.raises(ImportError, match=r"inerter_mujoco.* is missing: reinstall with `pip"):
+            call()
+
+
+def test_a_missing_core_is_an_import_error() -> None:
+    # in a fresh interpreter: this one has the library loaded
+    done = run(
+        "import pathlib, inerter.core as core\n"
+        "core.LIBRARY_FOLDER = pathlib.Path('nowhere')\n"
+        "core._library.cache_clear()\n"
+        "try:\n"
+        "    core.Device(inertance=1.0)\n"
+        "except ImportError as error:\n"
+        "    print(error)\n"
+    )
+    assert "inerter_core" in done.stdout, done.stderr
+    assert "is missing: reinstall with `pip" in done.stdout
+
+
+# ------------------------------ what is shipped ------------------------------
+
+
+@pytest.mark.skipif(not (ROOT / "mjcf_models").is_dir(), reason="the checkout has no models")
+def test_every_model_of_the_checkout_is_installed() -> None:
+    from inerter.models import model_names, model_path
+
+    folders = sorted(path.parent.name for path in (ROOT / "mjcf_models").glob("*/model.xml"))
+    assert model_names() == folders
+    for name in folders:
+        for file in (ROOT / "mjcf_models" / name).iterdir():
+            installed = model_path(name, file.name)
+            assert installed.read_bytes() == file.read_bytes(), installed
+
+
+def test_every_source_file_of_the_package_is_installed() -> None:
+    source, installed = ROOT / "python" / "inerter", Path(inerter.__file__).parent
+    for file in sorted(source.rglob("*")):
+        if file.is_dir() or "__pycache__" in file.parts or file.parent.name == "lib":
+            continue
+        assert (installed / file.relative_to(source)).is_file(), file.name
+
+
+def test_the_command_is_installed() -> None:
+    scripts = importlib.metadata.entry_points(group="console_scripts", name="inerter")
+    (command,) = scripts
+    assert callable(command.load())
