@@ -30,42 +30,33 @@ static double rate(const InerterDevice* p, double x, double v, double z) {
   return fabs(v) * slope(p, sign(v), z, &derivative);
 }
 
-// exponential step along a path of length `path` within one sign of z; exact for n = 1
-static double advance(const InerterDevice* p, double s, double z, double path) {
-  double derivative;
-  double value = slope(p, s, z, &derivative);
-  double exponent = derivative * path;
-  double growth =
-      fabs(exponent) < 1e-8 ? path * (1 + 0.5 * exponent) : expm1(exponent) / derivative;
-  return z + growth * value;
+// (e^x - 1) / x
+static double growth(double x) {
+  return fabs(x) < 1e-8 ? 1 + 0.5 * x : expm1(x) / x;
 }
 
-// one step along a path, the change of slope at z = 0 found on the way
-static double advance_through_zero(const InerterDevice* p, double s, double z, double path) {
+// Exponential step along a path in direction s: exact where the slope is linear in z, that is for
+// n = 1 within one sign of z. The change of slope at z = 0 is found on the way.
+static double advance(const InerterDevice* p, double s, double z, double path) {
+  double derivative;
   if (z * s < 0) {
-    double next = advance(p, s, z, path);
+    double value = slope(p, s, z, &derivative);
+    double next = z + path * growth(derivative * path) * value;
     if (next * s < 0) {
       return next;
     }
 
-    // length of the path to z = 0, then on from there
-    double low = 0, high = path;
-    for (int i = 0; i < 60 && high - low > 1e-15 * path; i++) {
-      double middle = 0.5 * (low + high);
-      if (advance(p, s, z, middle) * s < 0) {
-        low = middle;
-      } else {
-        high = middle;
-      }
-    }
-    path -= high;
+    // unloading ends on this step: z = 0 where e^(derivative * path) = 1 - derivative * z / value
+    double x = -derivative * z / value;
+    path -= fabs(x) < 1e-8 ? -z / value : log1p(x) / derivative;
     z = 0;
   }
-  return advance(p, s, z == 0 ? s * DBL_MIN : z, path);
+  double value = slope(p, s, z == 0 ? s * DBL_MIN : z, &derivative);
+  return z + fmax(path, 0) * growth(derivative * fmax(path, 0)) * value;
 }
 
-// Exact for n = 1; second order for other n, with sub-steps of a quarter of the yield distance, so
-// that a long step ends at the limit of z instead of beyond it.
+// Exact for n = 1. Second order for other n: sub-steps of a quarter of the yield distance as long
+// as the slope changes, then one that ends at the limit of z, which the linearisation never passes.
 static double step(const InerterDevice* p, double x, double v, double z, double h) {
   (void)x;
   double s = sign(v);
@@ -73,19 +64,14 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   double n = p->bw_exponent;
   double limit = p->bw_beta + p->bw_gamma;
   if (n == 1 || limit <= 0) {
-    return advance_through_zero(p, s, z, path);
+    return advance(p, s, z, path);
   }
-  double bound = pow(p->bw_alpha / limit, 1 / n);
-  double yield = bound / p->bw_alpha;
-  double count = ceil(fmin(4 * path / yield, 80));
-  double part = fmin(path, 20 * yield) / fmax(count, 1);
-  for (int i = 0; i < (int)count; i++) {
-    double next = advance_through_zero(p, s, z, part);
-
-    // the tangent knows nothing of a sharp knee (large n) ahead: stop at the limit
-    z = s * z <= bound ? s * fmin(s * next, bound) : next;
+  double part = 0.25 * pow(p->bw_alpha / limit, 1 / n) / p->bw_alpha;
+  for (int i = 0; i < 16 && path > part; i++) {
+    z = advance(p, s, z, part);
+    path -= part;
   }
-  return z;
+  return advance(p, s, z, path);
 }
 
 static double force(const InerterDevice* p, double x, double v, double z) {

@@ -1,7 +1,9 @@
 """What `pip install inerter` promises: the plugin is there, imports are light, errors help."""
 
+import ast
 import importlib.metadata
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -191,3 +193,36 @@ def test_the_command_is_installed() -> None:
     scripts = importlib.metadata.entry_points(group="console_scripts", name="inerter")
     (command,) = scripts
     assert callable(command.load())
+
+
+def test_every_import_is_a_declared_dependency(project: dict[str, Any]) -> None:
+    # a package that only some other package brings along may be gone tomorrow
+    extras = project["project"]["optional-dependencies"]
+    stated = [*project["project"]["dependencies"], *extras["lab"], *extras["exudyn"]]
+    declared = {canonical(requirement) for requirement in stated} | {"inerter"}
+    providers = importlib.metadata.packages_distributions()
+    undeclared: dict[str, list[str]] = {}
+    for file in sorted((ROOT / "python" / "inerter").rglob("*.py")):
+        for module in imported(file) - set(sys.stdlib_module_names):
+            names = {canonical(name) for name in providers.get(module, [module])}
+            if not names & declared:
+                undeclared.setdefault(module, []).append(file.name)
+    assert undeclared == {}
+
+
+def canonical(requirement: str) -> str:
+    """Name of a distribution in its canonical spelling."""
+    found = re.match(r"[A-Za-z0-9._-]+", requirement)
+    assert found
+    return re.sub(r"[-_.]+", "-", found.group()).lower()
+
+
+def imported(file: Path) -> set[str]:
+    """Top-level modules that a file imports, wherever in it."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
+            names.add(node.module.split(".")[0])
+    return names

@@ -172,11 +172,15 @@ def _level(model: Model, sizes: Scales) -> float:
     return model.values.get("coulomb_force") or 0.1 * sizes.force
 
 
+def _width(model: Model) -> dict[str, float]:
+    # how sharp sign(v) looks depends on the velocity's noise: it is fitted along
+    return {"transition_velocity": model.values["transition_velocity"]}
+
+
 def _coulomb(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if model.friction == "none":
-        yield Candidate(
-            effect, None, (model.adding("coulomb", coulomb_force=_level(model, sizes)),)
-        )
+        start = model.adding("coulomb", coulomb_force=_level(model, sizes), **_width(model))
+        yield Candidate(effect, None, (start,))
     elif model.friction in LEVEL_LAWS and "coulomb_force" not in model.free:
         yield Candidate(effect, None, (model.adding(coulomb_force=_level(model, sizes)),))
 
@@ -193,6 +197,7 @@ def _stribeck(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
                     coulomb_force=level,
                     static_excess=0.5 * level,
                     stribeck_velocity=ratio * sizes.velocity,
+                    **_width(model),
                 )
                 for ratio in (0.03, 0.1, 0.4)
             ),
@@ -257,10 +262,8 @@ def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate
         if model.friction in LEVEL_LAWS and not all(name in model.free for name in names):
             yield Candidate(effect, None, (model.adding(**zero),))
         elif model.friction == "none":
-            level = _level(model, sizes)
-            yield Candidate(
-                effect, None, (model.adding("coulomb", coulomb_force=level, **zero),)
-            )
+            zero |= {"coulomb_force": _level(model, sizes), **_width(model)}
+            yield Candidate(effect, None, (model.adding("coulomb", **zero),))
 
     return build
 
@@ -359,7 +362,7 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
         names.update(LAW_COORDINATES)
         if kept_modulations and baseline.friction == "none":
             bare = _restored(model.without(tuple(names), "none"), names, baseline)
-            return bare.adding("coulomb", coulomb_force=level)
+            return bare.adding("coulomb", coulomb_force=level, **_width(bare))
         friction = baseline.friction
         if friction == "none":
             names.update(LEVEL_COORDINATES)
@@ -384,10 +387,11 @@ def simpler_laws(model: Model) -> list[Model]:
     bare = model.without(LAW_COORDINATES, "none")
     simpler = []
     if model.friction not in ("none", "coulomb"):
-        simpler.append(bare.adding("coulomb", coulomb_force=level))
+        simpler.append(bare.adding("coulomb", coulomb_force=level, **_width(bare)))
     if model.friction in ("lugre", "bouc_wen") and presliding:
         simpler.append(bare.adding("dahl", coulomb_force=level, presliding=presliding))
     if model.friction == "lugre":
         names = ("coulomb_force", "static_excess", "stribeck_velocity")
-        simpler.append(bare.adding("stribeck", **{name: model.values[name] for name in names}))
+        values = {name: model.values[name] for name in names} | _width(bare)
+        simpler.append(bare.adding("stribeck", **values))
     return simpler

@@ -116,14 +116,20 @@ def _force_error(motions: Sequence[Motion]) -> float:
 
 
 def _noise_floor(records: Sequence[Record]) -> float:
-    """Rms of white noise on the force, from the upper third of its spectrum (median, robust).
+    """Rms of white noise on the force, from the upper third of its spectrum.
 
-    A force channel that was filtered before it was stored has none there: then this is too low.
+    Median over short segments, so that the few with a reversal of friction do not count. A force
+    channel that was filtered before it was stored has no noise there: then this is too low.
     """
-    variances = []
+    length, variances = 128, []
+    window = np.hanning(length)
     for record in records:
-        force = record.force - np.mean(record.force)
-        window = np.hanning(force.size)
-        power = np.abs(np.fft.rfft(force * window)) ** 2 / np.sum(window**2)
-        variances.append(np.median(power[2 * power.size // 3 :]) / np.log(2))
-    return float(np.sqrt(np.mean(variances)))
+        usable = record.force.size // length * length
+        segments = record.force[:usable].reshape(-1, length)
+        if not segments.size:
+            continue
+        straight = segments - segments.mean(axis=1, keepdims=True)
+        power = np.abs(np.fft.rfft(straight * window, axis=1)) ** 2 / np.sum(window**2)
+        upper = np.median(power[:, 2 * power.shape[1] // 3 : -1], axis=0)
+        variances.append(np.mean(upper) / np.log(2))
+    return float(np.sqrt(np.mean(variances))) if variances else 0.0

@@ -58,7 +58,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     # a rival with more parameters has to win by what the search asks of a richer model
     handicap = 1 / (1 - REQUIRED_GAIN) ** 2
     fair = [
-        s.squares * (handicap if len(s.model.free) > len(final.model.free) else 1.0)
+        s.squares * (handicap if s.model.complexity > final.model.complexity else 1.0)
         for s in scored
     ]
     shares = win_shares([final.squares, without.squares, *fair])
@@ -76,7 +76,7 @@ def _takes_precedence(rival: Scored, final: Scored, effect: str) -> bool:
     """Whether a rival does as well with no more parameters and is the more usual cause."""
     loss = np.sqrt(rival.squares.sum() / final.squares.sum()) - 1
     return bool(
-        len(rival.model.free) <= len(final.model.free)
+        rival.model.complexity <= final.model.complexity
         and PRECEDENCE.index(rival.effect) < PRECEDENCE.index(effect)
         and loss < EQUAL_LOSS
         and advantage(rival.squares, final.squares) < EQUAL_ADVANTAGE

@@ -162,7 +162,7 @@ class Search:
             return None
         best = min(good, key=lambda s: s.squares.sum())
         equal = [s for s in good if s is best or self._as_good(s, best)]
-        chosen = min(equal, key=lambda s: (len(s.model.free), s.squares.sum()))
+        chosen = min(equal, key=lambda s: (s.model.complexity, s.squares.sum()))
         return self._step(current, chosen, scored)
 
     def _step(self, current: Scored, chosen: Scored, scored: list[Scored]) -> Step:
@@ -186,7 +186,7 @@ class Search:
         """Whether a candidate loses so little against the best that fewer parameters decide."""
         loss = np.sqrt(simple.squares.sum() / best.squares.sum()) - 1
         return bool(
-            len(simple.model.free) < len(best.model.free)
+            simple.model.complexity < best.model.complexity
             and (
                 loss < TOLERATED_LOSS
                 or advantage(simple.squares, best.squares) < TOLERATED_ADVANTAGE
@@ -206,8 +206,8 @@ class Search:
             for candidate in candidates(model, self.problem.scales):
                 if candidate.starts[0].friction == model.friction:
                     trials.append(candidate)
-        spare = len(current.model.free)
-        trials = [trial for trial in trials if len(trial.starts[0].free) < spare]
+        spare = current.model.complexity
+        trials = [trial for trial in trials if trial.starts[0].complexity < spare]
         fits = sorted(parallel(self.fit, trials), key=lambda fit: fit.rmse(masks))
         limit = current.fit.rmse(masks) * (1 + TOLERATED_LOSS)
         near = [fit for fit in fits if fit.rmse(masks) < limit][:2]

@@ -163,12 +163,15 @@ def diagnose_table(
     table = _Table(tables)
     fit_mask = ~table.holdout
     start = float(np.mean(table.force / table.acceleration))
+    transition = parameters()["transition_velocity"].initial
     if device is None:
-        baseline = Model("none", {"inertance": start}, ("inertance",))
+        baseline = Model(
+            "none", {"inertance": start, "transition_velocity": transition}, ("inertance",)
+        )
     else:
         values = {k: float(v) for k, v in device.given.items() if k != "friction"}
         free = () if "inertance" in values else ("inertance",)
-        baseline = Model(device.friction, {"inertance": start, **values}, free)
+        baseline = Model(device.friction, {"inertance": start, "transition_velocity": transition, **values}, free)
     before = table.fit(baseline, fit_mask)
     fit, squares = before, table.left_out(before.model)
     findings: list[Finding] = []

@@ -17,6 +17,9 @@ from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_valu
 Array = NDArray[np.float64]
 Masks = Sequence[NDArray[np.bool_]]
 
+# free coordinates that make up for how a law is smoothed, and name no effect
+NUISANCES = ("transition_velocity",)
+
 
 @dataclass(frozen=True)
 class Model:
@@ -49,18 +52,30 @@ class Model:
         """Time by which the force channel is late [s]."""
         return self.values.get("delay", 0.0)
 
+    @property
+    def complexity(self) -> int:
+        """Number of free coordinates that say something about the device."""
+        return sum(name not in NUISANCES for name in self.free)
+
     def adding(self, friction: str | None = None, **values: float) -> Model:
         """The model with further free coordinates, under another friction law if given."""
+        law = friction or self.friction
         names = tuple(name for name in values if name not in self.free)
-        return Model(friction or self.friction, {**self.values, **values}, self.free + names)
+        return Model(law, {**self.values, **values}, _useful(self.free + names, law))
 
     def without(self, names: Sequence[str], friction: str | None = None) -> Model:
         """The model without some coordinates."""
-        return Model(
-            friction or self.friction,
-            {name: value for name, value in self.values.items() if name not in names},
-            tuple(name for name in self.free if name not in names),
-        )
+        law = friction or self.friction
+        free = tuple(name for name in self.free if name not in names)
+        values = {name: value for name, value in self.values.items() if name not in names}
+        return Model(law, values, _useful(free, law))
+
+
+def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
+    # only laws without memory read the width of sign(v)
+    if friction in ("coulomb", "stribeck"):
+        return free
+    return tuple(name for name in free if name not in NUISANCES)
 
 
 def delayed(force: Array, delay: float, spacing: float) -> Array:

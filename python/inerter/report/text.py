@@ -41,7 +41,9 @@ def percent(share: float | None) -> str:
 
 def confidence(share: float) -> str:
     """A percentage that never claims certainty."""
-    return ">\u00a099\u00a0%" if share > 0.995 else "<\u00a01\u00a0%" if share < 0.005 else percent(share)
+    if share > 0.995:
+        return ">\u00a099\u00a0%"
+    return "<\u00a01\u00a0%" if share < 0.005 else percent(share)
 
 
 def unit(name: str) -> str:

