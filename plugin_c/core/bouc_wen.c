@@ -56,7 +56,8 @@ static double advance(const InerterDevice* p, double s, double z, double path) {
 }
 
 // Exact for n = 1. Second order for other n: sub-steps of a quarter of the yield distance as long
-// as the slope changes, then one that ends at the limit of z, which the linearisation never passes.
+// as the slope changes, then one that ends at the limit of z. The tangent passes over a sharp knee,
+// so that the limit has to be kept here.
 static double step(const InerterDevice* p, double x, double v, double z, double h) {
   (void)x;
   double s = sign(v);
@@ -66,12 +67,15 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   if (n == 1 || limit <= 0) {
     return advance(p, s, z, path);
   }
-  double part = 0.25 * pow(p->bw_alpha / limit, 1 / n) / p->bw_alpha;
+  double bound = pow(p->bw_alpha / limit, 1 / n);
+  double part = 0.25 * bound / p->bw_alpha;
+  int inside = s * z <= bound;
   for (int i = 0; i < 16 && path > part; i++) {
     z = advance(p, s, z, part);
     path -= part;
   }
-  return advance(p, s, z, path);
+  z = advance(p, s, z, path);
+  return inside && s * z > bound ? s * bound : z;
 }
 
 static double force(const InerterDevice* p, double x, double v, double z) {

@@ -105,9 +105,10 @@ def draw_points(
 
 def magnitudes(device: ReferenceDevice, x: Array, v: Array, a: Array, z: Array) -> dict[str, Array]:
     """Sum of the sizes of the terms of each quantity: what its rounding error is measured by."""
-    stretch, size, speed = abs(x - device.rest_length), abs(z), abs(v)
-    factor = 1.0 + (device.inertance_gradient + device.inertance_curvature * x) * x
-    slope = abs(device.inertance_gradient) + 2.0 * abs(device.inertance_curvature * x)
+    s = x - device.rest_length
+    stretch, size, speed = abs(s), abs(z), abs(v)
+    factor = 1.0 + (device.inertance_gradient + device.inertance_curvature * s) * s
+    slope = abs(device.inertance_gradient) + 2.0 * abs(device.inertance_curvature) * stretch
     inertia = device.inertance * np.maximum(0.01, factor)
     inertance = inertia * abs(a) + 0.5 * device.inertance * slope * v**2
     load = device.load_friction * inertance
@@ -121,12 +122,12 @@ def magnitudes(device: ReferenceDevice, x: Array, v: Array, a: Array, z: Array) 
         shape = abs(device.bw_beta) + abs(device.bw_gamma)
         rate = speed * (device.bw_alpha + shape * size**device.bw_exponent)
         yielding = device.bw_stiffness * abs(1.0 - device.bw_ratio) * size
-        elastic = device.bw_stiffness * abs(device.bw_ratio * x)
+        elastic = device.bw_stiffness * abs(device.bw_ratio) * stretch
         friction = yielding + elastic
-        energy += elastic * abs(x) + yielding * size / device.bw_alpha
+        energy += elastic * stretch + yielding * size / device.bw_alpha
         stored = yielding * rate / device.bw_alpha + elastic * speed
     elif device.nstate:
-        level = np.asarray(friction_level(device, x, v)) * device.coulomb_force
+        level = np.asarray(friction_level(device, s, v)) * device.coulomb_force
         overload = device.bristle_stiffness * size / level
         exponent = device.dahl_exponent if device.friction == "dahl" else 1.0
         rate = speed * (1.0 + overload) ** exponent

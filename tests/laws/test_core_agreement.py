@@ -100,7 +100,7 @@ def test_heat_is_never_negative_where_the_law_is_passive(law: str) -> None:
         allowed = np.ones_like(v, dtype=bool)
         if law == "lugre":
             # passive for sigma1 <= 4 g / |v|; the smallest g is what f_c leaves
-            level = reference.coulomb_force * np.asarray(level_of(p, x, v))
+            level = reference.coulomb_force * np.asarray(level_of(p, x - reference.rest_length, v))
             allowed = p["bristle_damping"] * abs(v) <= 4.0 * level
             assert allowed.any()
         rounding = TOLERANCE * magnitudes(reference, x, v, a, z)["dissipated_power"]

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfftfreq
 
+from inerter.core import Device
 from inerter.identify.coordinates import Scales
 from inerter.records.motion import Motion, filtered, lowpass, response
 
 Array = NDArray[np.float64]
 
 # samples per period of the cut-off that a fit works on; more add time and no information
-SAMPLES_PER_PERIOD = 10
+SAMPLES_PER_PERIOD = 8
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,8 @@ class Run:
         Smoothed motion, and the measured force through the same low-pass.
     inner : ndarray of bool (n,)
         False near the ends.
+    thinned : int
+        Measured samples per sample here.
     first_force : float
         Mean measured force over the first 10 ms [N], which tells the state a run begins with.
     """
@@ -44,6 +47,7 @@ class Run:
     inner: NDArray[np.bool_]
     first_force: float
     cutoff: float
+    thinned: int = 1
 
     def lowpass(self, values: Array) -> Array:
         """The smoother's low-pass at this run's rate, shape (n,) to (n,)."""
@@ -51,6 +55,24 @@ class Run:
             frequency = rfftfreq(2 * values.size - 2, self.spacing)
             object.__setattr__(self, "_response", response(frequency, self.cutoff))
         return filtered(values, self.__dict__["_response"])
+
+    def friction(self, device: Device, state: float) -> Array:
+        """Friction force of a device averaged over each sample's interval [N], shape (n,).
+
+        Friction jumps where the velocity changes sign. Taken at thinned samples the jump would be
+        misplaced by up to half an interval, which other effects then make up for; so it is worked
+        out at the measured rate.
+        """
+        n, parts = self.force.size, self.thinned
+        if "_fine" not in self.__dict__:
+            at = (np.arange(n * parts) + 0.5) / parts - 0.5
+            fine = [
+                np.interp(at, np.arange(n), channel)
+                for channel in (self.displacement, self.velocity, self.acceleration)
+            ]
+            object.__setattr__(self, "_fine", fine)
+        friction = device.along(self.spacing / parts, *self.__dict__["_fine"], state)["friction"]
+        return friction.reshape(n, parts).mean(axis=1)
 
     @property
     def time(self) -> Array:
@@ -78,6 +100,7 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
         motion.inner[::step],
         float(np.mean(motion.force[:first])),
         motion.cutoff,
+        step,
     )
 
 
@@ -98,4 +121,7 @@ def scales(runs: Sequence[Run]) -> Scales:
         values = np.concatenate([getattr(run, channel) for run in runs])
         return float(np.std(values)) or 1.0
 
-    return Scales(size("force"), size("displacement"), size("velocity"), size("acceleration"))
+    return Scales(
+        size("force"), size("displacement"), size("velocity"), size("acceleration"),
+        min(run.cutoff for run in runs),
+    )

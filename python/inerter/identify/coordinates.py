@@ -21,12 +21,13 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Scales:
-    """Typical sizes of a data set's channels: rms about the mean, SI units."""
+    """Typical sizes of a data set's channels: rms about the mean, SI units; cut-off [Hz]."""
 
     force: float
     displacement: float
     velocity: float
     acceleration: float
+    cutoff: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,9 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
     """How a coordinate is searched, given the sizes of the data's channels."""
     force, x, v, a = scales.force, scales.displacement, scales.velocity, scales.acceleration
     infinity = np.inf
+
+    # what the velocity changes by within the smoother's memory: nothing narrower can be seen
+    resolution = 0.5 * a / (2 * np.pi * scales.cutoff)
     table = {
         "inertance": Coordinate(force / a, 0, infinity),
         "inertance_gradient": Coordinate(0.1 / x, -3 / x, 3 / x),
@@ -77,8 +81,10 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "quadratic_damping": Coordinate(force / v**2, 0, infinity),
         "load_friction": Coordinate(0.1, 0, 0.95),
         "coulomb_force": Coordinate(0.1 * force, 1e-6 * force, infinity),
-        "static_excess": Coordinate(0.1 * force, 0, infinity),
-        "stribeck_velocity": Coordinate(v, 5e-3 * v, 3 * v, logarithmic=True),
+        "static_excess": Coordinate(0.1 * force, 0, force),
+        "stribeck_velocity": Coordinate(
+            v, min(max(5e-3 * v, resolution), v), 3 * v, logarithmic=True
+        ),
         "transition_velocity": Coordinate(v, 1e-4 * v, 0.05 * v, logarithmic=True),
         "presliding": Coordinate(x, 1e-5 * x, 3 * x, logarithmic=True),
         "bristle_damping": Coordinate(0.1 * force / v, 0, infinity),
@@ -100,6 +106,10 @@ def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
     presliding = values.pop("presliding", None)
     if (excess := values.pop("static_excess", None)) is not None:
         values["static_force"] = values["coulomb_force"] + excess
+        if presliding is None and "transition_velocity" in values:
+            # a rise wider than the fall would take breakaway away again
+            narrow = values["stribeck_velocity"] / 5
+            values["transition_velocity"] = min(values["transition_velocity"], narrow)
     if (level := values.pop("bw_level", None)) is not None and presliding is not None:
         shape = values.pop("bw_shape")
         limit = presliding ** -values.get("bw_exponent", 1.0)

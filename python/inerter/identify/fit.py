@@ -47,6 +47,12 @@ class Model:
         values = {name: float(value) for name, value in device_values(self.values).items()}
         return Device(friction=self.friction, **values)
 
+    def without_friction(self) -> Device:
+        """The device's terms that are smooth in the motion."""
+        names = ("inertance", "inertance_gradient", "inertance_curvature", *LINEAR, "rest_length",
+                 "stiffness_cubic")  # fmt: skip
+        return Device(**{n: float(self.values[n]) for n in names if n in self.values})
+
     @property
     def delay(self) -> float:
         """Time by which the force channel is late [s]."""
@@ -111,14 +117,16 @@ def first_state(device: Device, run: Run) -> float:
 def force_along(model: Model, run: Run) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,)."""
     device = model.device()
-    along = device.along(
-        run.spacing, run.displacement, run.velocity, run.acceleration, first_state(device, run)
-    )
-    total = along["total"]
-    if np.isfinite(run.cutoff) and (device.friction != "none" or device.load_friction):
+    state = first_state(device, run)
+    motion = (run.displacement, run.velocity, run.acceleration)
+    if np.isinf(run.cutoff):
+        total = device.along(run.spacing, *motion, state)["total"]
+    elif device.friction == "none" and not device.load_friction:
+        total = device.along(run.spacing, *motion)["total"]
+    else:
         # friction is not linear in the motion: it has to pass the low-pass of the measured force
-        friction = along["friction"]
-        total = total - friction + run.lowpass(friction)
+        smooth = model.without_friction().along(run.spacing, *motion)["total"]
+        total = smooth + run.lowpass(run.friction(device, state))
     return delayed(total, model.delay, run.spacing)
 
 

@@ -1,0 +1,20 @@
+"""Hidden cases as records, and one diagnosis each."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from inerter.diagnose import Diagnosis, diagnose_bench
+from inerter.records import Record
+from inerter.reference import HiddenCase, hide_effect
+
+
+@cache
+def solve(seed: int, effect: str, law: str | None = None) -> tuple[HiddenCase, Diagnosis]:
+    """Hide an effect by the reference, diagnose the noisy records."""
+    case = hide_effect(seed, effect, law=law)
+    records = [
+        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
+        for run in case.runs
+    ]
+    return case, diagnose_bench(records)

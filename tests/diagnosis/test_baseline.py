@@ -1,0 +1,124 @@
+"""The user's own device as baseline: right, wrong, and read back from what was written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from inerter import Device
+from inerter.device_file import device_text, read_device
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.output import write_outputs
+from inerter.mjcf import device_of_model
+from inerter.records import Record
+from inerter.reference import ReferenceDevice, response, strokes, sum_of_sines
+
+TRUE = {"inertance": 80.0, "viscous": 40.0, "friction": "coulomb", "coulomb_force": 12.0}
+
+
+@pytest.fixture(scope="module")
+def records() -> list[Record]:
+    """Two short runs of a device with viscous and Coulomb friction."""
+    random = np.random.default_rng(5)
+    device = ReferenceDevice(**TRUE)  # type: ignore[arg-type]
+    motions = [
+        sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [0.0, 1.0, 2.0]),
+        strokes([0.0, 0.03, 0.0, 0.02, 0.0], [1.0, 3.0, 5.0, 7.0], [0.6, 0.8, 0.5, 0.9]),
+    ]
+    runs = []
+    for i, motion in enumerate(motions):
+        truth = response(device, motion, np.arange(0, 9, 2e-3))
+        runs.append(
+            Record(
+                name=f"run_{i}",
+                time=truth.time,
+                displacement=truth.displacement + random.normal(0, 1e-6, truth.time.size),
+                force=truth.force + random.normal(0, 0.2, truth.time.size),
+            )
+        )
+    return runs
+
+
+def test_right_device_brings_no_finding(records) -> None:
+    diagnosis = diagnose_bench(records, Device(**TRUE))
+    assert diagnosis.findings == []
+    assert diagnosis.baseline.device["coulomb_force"] == 12.0
+
+
+def test_wrong_inertance_is_named_alone(records) -> None:
+    diagnosis = diagnose_bench(records, Device(**{**TRUE, "inertance": 70.0}))
+    assert [finding.effect for finding in diagnosis.findings] == ["inertance_error"]
+    assert diagnosis.parameters["inertance"].value == pytest.approx(80, rel=0.01)
+    assert diagnosis.extended.device["viscous"] == 40.0
+
+
+def test_missing_friction_is_named_beside_stated_values(records) -> None:
+    stated = Device(inertance=80.0, viscous=40.0)
+    diagnosis = diagnose_bench(records, stated)
+    assert [finding.effect for finding in diagnosis.findings] == ["coulomb_friction"]
+    assert diagnosis.parameters["coulomb_force"].value == pytest.approx(12, rel=0.03)
+    assert "inertance" not in diagnosis.parameters
+
+
+def test_two_effects_are_found_without_a_device(records) -> None:
+    diagnosis = diagnose_bench(records)
+    assert {f.effect for f in diagnosis.findings} == {"coulomb_friction", "viscous_friction"}
+    gains = [finding.gain for finding in diagnosis.findings]
+    assert gains == sorted(gains, reverse=True)
+
+
+def test_outputs_load_and_say_the_same(records, tmp_path: Path) -> None:
+    diagnosis = diagnose_bench(records)
+    write_outputs(diagnosis, tmp_path)
+    names = {"diagnosis.json", "report.html", "device.toml", "model.xml"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
+    assert model.nactuator >= 1
+    from_toml, from_model = read_device(tmp_path / "device.toml"), device_of_model(
+        tmp_path / "model.xml"
+    )
+    assert from_toml.given == diagnosis.extended.device
+    assert from_model.given == pytest.approx(
+        {k: v for k, v in diagnosis.extended.device.items() if k != "friction"}
+        | {"friction": "coulomb"}
+    ) or from_model.inertance == pytest.approx(from_toml.inertance)
+
+    # the extended device as baseline leaves nothing to find
+    assert diagnose_bench(records, from_toml).findings == []
+
+
+def test_device_file_round_trip(tmp_path: Path) -> None:
+    device = Device(inertance=113.25, friction="lugre", coulomb_force=10.0, static_force=12.0)
+    path = tmp_path / "device.toml"
+    path.write_text(device_text(device, delay=1e-3, title="a test"), encoding="utf-8")
+    assert read_device(path).given == device.given
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[device\n", "not TOML"),
+        ("inertance = 3\n", "no [device] table"),
+        ('[device]\ninertance = "12 mm"\n', "inertance is"),
+        ("[device]\ninertnce = 12\n", "did you mean inertance"),
+        ("[device]\ninertance = -1\n", "out of range"),
+        ("[device]\ninertance = [1]\n", "give a number"),
+        ('[device]\nfriction = "magic"\n', "no such law"),
+    ],
+)
+def test_bad_device_files(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "device.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"device\.toml") as caught:
+        read_device(path)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_units_in_device_files(tmp_path: Path) -> None:
+    path = tmp_path / "device.toml"
+    path.write_text('[device]\ninertance = "0.5 tonne"\nrest_length = "30 mm"\n', encoding="utf-8")
+    device = read_device(path)
+    assert (device.inertance, device.rest_length) == (pytest.approx(500), pytest.approx(0.03))

@@ -1,0 +1,104 @@
+"""An effect is hidden in records made by the reference; the diagnosis has to find it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hidden import solve
+from inerter.reference import EFFECTS, HiddenCase, ReferenceDevice
+
+CASES = [(effect, None) for effect in EFFECTS if effect not in ("none", "hysteretic_friction")]
+CASES += [("hysteretic_friction", law) for law in ("dahl", "lugre", "bouc_wen")]
+
+# what noise of 0.2 N and 1 micrometre leaves uncertain: share of the true value
+CLOSE = {
+    "static_force": 0.15, "stribeck_velocity": 0.3, "bristle_damping": 0.3,
+    "friction_gradient": 0.1, "friction_curvature": 0.1, "friction_asymmetry": 0.05,
+}  # fmt: skip
+USUAL = 0.03
+
+
+@pytest.fixture(params=CASES, ids=[law or effect for effect, law in CASES])
+def solved(request: pytest.FixtureRequest, effects_seed: int):
+    effect, law = request.param
+    return solve(effects_seed + CASES.index(request.param), effect, law)
+
+
+def test_effect_is_named_alone(solved) -> None:
+    case, diagnosis = solved
+    named = [(finding.effect, finding.law) for finding in diagnosis.findings]
+    assert named == [(case.effect, case.law)], f"seed {case.seed}: {diagnosis.verdict}"
+
+
+def test_parameters_are_near(solved) -> None:
+    case, diagnosis = solved
+    if case.law == "bouc_wen":
+        pytest.skip("its parameters are redundant: the loop is compared instead")
+    assert diagnosis.parameters["inertance"].value == pytest.approx(case.device.inertance, rel=0.01)
+    found = diagnosis.findings[0].parameters
+    for name, true in case.parameters.items():
+        if name in found:
+            tolerance = CLOSE.get(name, USUAL)
+            size = _size(case, name) or abs(true)
+            assert abs(found[name].value - true) < tolerance * size, f"seed {case.seed}: {name}"
+
+
+def _size(case: HiddenCase, name: str) -> float | None:
+    """What an error of a coefficient is measured by: its effect at the end of the stroke."""
+    travel = max(float(np.max(np.abs(run.truth.displacement))) for run in case.runs)
+    return {"friction_gradient": 1 / travel, "friction_curvature": 1 / travel**2,
+            "friction_asymmetry": 1.0}.get(name)  # fmt: skip
+
+
+def test_gain_is_real(solved) -> None:
+    """On data that neither the fit nor the search saw, against the truth without noise."""
+    case, diagnosis = solved
+    assert diagnosis.extended.rmse < 0.5 * diagnosis.baseline.rmse
+    for curve, run in zip(diagnosis.curves, case.runs, strict=True):
+        if curve.role == "holdout":
+            inner = curve.inner
+            truth = run.truth.force[inner]
+            before = np.sqrt(np.mean((curve.baseline[inner] - truth) ** 2))
+            after = np.sqrt(np.mean((curve.extended[inner] - truth) ** 2))
+            assert after < 0.5 * before, f"seed {case.seed}"
+
+
+def test_engine_agrees_with_the_diagnosis(solved) -> None:
+    """MuJoCo, run along the held-out motion, misses the measured force by as much as was said."""
+    _, diagnosis = solved
+    assert diagnosis.engines["mujoco"] == pytest.approx(diagnosis.extended.rmse, rel=1e-3)
+
+
+@pytest.mark.parametrize("offset", [100, 101, 102])
+def test_clean_data_bring_no_finding(offset: int, effects_seed: int) -> None:
+    case, diagnosis = solve(effects_seed + offset, "none")
+    assert diagnosis.findings == [], f"seed {case.seed}: {diagnosis.verdict}"
+    assert diagnosis.extended.rmse == pytest.approx(diagnosis.baseline.rmse)
+    assert not diagnosis.unexplained.significant
+
+
+def test_bouc_wen_loop_is_found(effects_seed: int) -> None:
+    """Redundant parameters, the same loop: the friction force along a slow sine is near."""
+    index = CASES.index(("hysteretic_friction", "bouc_wen"))
+    case, diagnosis = solve(effects_seed + index, "hysteretic_friction", "bouc_wen")
+    known = {k: v for k, v in diagnosis.extended.device.items() if k in _REFERENCE_NAMES}
+    found = ReferenceDevice(**known)  # type: ignore[arg-type]
+    run = max(case.runs, key=lambda run: float(np.std(run.truth.displacement)))
+    truth = run.truth.force - case.device.inertance * run.truth.acceleration
+    loop = found.force(run.truth.displacement, run.truth.velocity, 0.0, _states(found, run.truth))
+    error = np.sqrt(np.mean((np.asarray(loop) - truth) ** 2) / np.mean(truth**2))
+    assert error < 0.1, f"seed {case.seed}"
+
+
+_REFERENCE_NAMES = set(ReferenceDevice().parameters())
+
+
+def _states(device: ReferenceDevice, truth) -> np.ndarray:
+    """State by the midpoint rule along the samples of a truth."""
+    z = np.zeros(truth.time.size)
+    for i in range(1, z.size):
+        x, v = truth.displacement[i], 0.5 * (truth.velocity[i] + truth.velocity[i - 1])
+        h = truth.time[i] - truth.time[i - 1]
+        half = z[i - 1] + 0.5 * h * device.state_rate(x, v, z[i - 1])
+        z[i] = z[i - 1] + h * device.state_rate(x, v, half)
+    return z

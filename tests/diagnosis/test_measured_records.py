@@ -1,0 +1,49 @@
+"""The main job on real measured data, on a run that was left out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inerter.diagnose import diagnose
+from inerter.diagnose.preparation import prepare
+from inerter.identify.bench import thin
+from inerter.identify.fit import Model, Problem
+from inerter.records import read_records
+
+
+@pytest.mark.parametrize(("ratio", "inertance", "aim"), [("r0", 61.35, 15.0), ("r16", 32.56, 8.0)])
+def test_rack_inerter(measured_data: Path, ratio: str, inertance: float, aim: float) -> None:
+    """The makers' dry and viscous friction model leaves 34-47 N (r0) and 18-26 N (r16)."""
+    result = diagnose([measured_data / "rack_inerter" / f"{ratio}_*.csv"])
+    assert result.extended.rmse < aim
+    assert result.findings[0].effect == "hysteretic_friction"
+    assert result.parameters["inertance"].value == pytest.approx(inertance, rel=0.08)
+    assert result.engines["mujoco"] == pytest.approx(result.extended.rmse, rel=0.02)
+    assert not any(record.warnings for record in result.records)
+
+
+def test_emps_four_terms(measured_data: Path) -> None:
+    """Mass, viscous, Coulomb friction, offset: within 2 % of Janot, Gautier, Brunot 2019."""
+    records = read_records([measured_data / "emps" / "emps.csv"], "bench")
+    runs = [thin(motion) for motion in prepare(records).motions]
+    problem = Problem(runs, [np.ones(run.force.size, bool) for run in runs])
+    start = {"inertance": 50.0, "viscous": 100.0, "coulomb_force": 10.0, "force_offset": 0.0,
+             "transition_velocity": 0.005 * problem.scales.velocity}  # fmt: skip
+    names = ("inertance", "viscous", "coulomb_force", "force_offset")
+    fit = problem.fit(Model("coulomb", start, names))
+    found = fit.model.values
+    assert found["inertance"] == pytest.approx(95.1089, rel=0.02)
+    assert found["viscous"] == pytest.approx(203.5034, rel=0.02)
+    assert found["coulomb_force"] == pytest.approx(20.3935, rel=0.02)
+    assert found["force_offset"] == pytest.approx(-3.1648, rel=0.02)
+
+
+def test_emps_is_explained_better_than_by_four_terms(measured_data: Path) -> None:
+    """The four terms leave 4.12 % of the force (published, in sample)."""
+    result = diagnose([measured_data / "emps" / "emps.csv"])
+    named = {finding.effect for finding in result.findings}
+    assert "viscous_friction" in named
+    assert named & {"coulomb_friction", "asymmetric_friction", "hysteretic_friction"}
+    assert result.extended.nrmse < 0.05

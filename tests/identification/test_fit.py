@@ -1,0 +1,98 @@
+"""Least squares on the core: recovers what was put in, and knows how well."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter import Device
+from inerter.identify.bench import Run
+from inerter.identify.fit import Model, Problem, delayed, parameter_errors
+
+H, N = 2e-3, 6000
+TIME = H * np.arange(N)
+
+
+def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> Run:
+    """A run of a device along three sines, force noise only."""
+    random = np.random.default_rng(seed)
+    omega = 2 * np.pi * np.array([[0.4], [1.7], [4.3]])
+    size = np.array([[0.02], [0.006], [0.002]])
+
+    def motion(t: np.ndarray) -> tuple[np.ndarray, ...]:
+        s, c = np.sin(omega * t), np.cos(omega * t)
+        return tuple(
+            np.sum(part, axis=0) for part in (size * s, size * omega * c, -size * omega**2 * s)
+        )
+
+    x, v, a = motion(TIME)
+    force = device.along(H, *motion(TIME - delay))["total"] + random.normal(0, noise, N)
+    everything = np.ones(N, bool)
+    return Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf)
+
+
+def problem(one: Run) -> Problem:
+    return Problem([one], [np.ones(N, bool)])
+
+
+def test_linear_parameters_to_rounding() -> None:
+    truth = {"inertance": 50.0, "viscous": 80.0, "stiffness": 700.0, "force_offset": -3.0,
+             "quadratic_damping": 40.0}  # fmt: skip
+    start = dict.fromkeys(truth, 1.0)
+    fit = problem(run(Device(**truth), 0.0)).fit(Model("none", start, tuple(truth)))
+    for name, value in truth.items():
+        assert fit.model.values[name] == pytest.approx(value, rel=1e-6)
+
+
+@pytest.mark.parametrize("law", ["dahl", "lugre"])
+def test_bristles_are_recovered(law: str) -> None:
+    truth = {"inertance": 50.0, "friction": law, "coulomb_force": 20.0, "bristle_stiffness": 1e4}
+    start = {"inertance": 40.0, "coulomb_force": 10.0, "presliding": 1e-3}
+    if law == "lugre":
+        truth |= {"static_force": 30.0, "stribeck_velocity": 0.02, "bristle_damping": 50.0}
+        start |= {"static_excess": 3.0, "stribeck_velocity": 0.05, "bristle_damping": 10.0}
+    fit = problem(run(Device(**truth), 0.05)).fit(Model(law, start, tuple(start)))
+    found = {name: value for name, (value, _) in parameter_errors(fit).items()}
+    for name, value in truth.items():
+        if name != "friction":
+            assert found[name] == pytest.approx(value, rel=0.03), name
+
+
+def test_delay_is_found() -> None:
+    device = Device(inertance=50.0, viscous=100.0)
+    start = {"inertance": 40.0, "viscous": 10.0, "delay": 0.0}
+    fit = problem(run(device, 0.1, delay=0.0031)).fit(Model("none", start, tuple(start)))
+    assert fit.model.delay == pytest.approx(0.0031, abs=2e-5)
+
+
+def test_standard_errors_are_those_of_repeated_records() -> None:
+    """Over 60 records the spread of estimates is the stated error, and 95 % intervals hold."""
+    device = Device(inertance=50.0, viscous=100.0, friction="coulomb", coulomb_force=8.0)
+    names = ("inertance", "viscous", "coulomb_force")
+    start = {"inertance": 50.0, "viscous": 100.0, "coulomb_force": 8.0}
+    scores = []
+    for seed in range(60):
+        fit = problem(run(device, 0.5, seed)).fit(Model("coulomb", start, names))
+        for name, (value, error) in parameter_errors(fit).items():
+            scores.append((value - getattr(device, name)) / error)
+    scores = np.array(scores)
+    assert 0.8 < np.std(scores) < 1.25
+    assert 0.88 < np.mean(np.abs(scores) < 1.96) < 0.99
+
+
+def test_delayed_is_a_shift_of_third_order() -> None:
+    errors = []
+    for h in (2e-2, 1e-2):
+        t = h * np.arange(int(4 / h))
+        late = delayed(np.sin(5 * t), 0.0137, h)
+        errors.append(np.max(np.abs(late - np.sin(5 * (t - 0.0137)))[20:-20]))
+    assert errors[1] < errors[0] / 7
+
+
+def test_bounds_hold() -> None:
+    """Friction that pushes cannot be fitted by a damper: it stays at zero."""
+    force = run(Device(inertance=50.0, force_offset=1.0), 0.1)
+    pushed = Run(**{**force.__dict__, "force": force.force - 30 * force.velocity})
+    fit = problem(pushed).fit(
+        Model("none", {"inertance": 50.0, "viscous": 5.0}, ("inertance", "viscous"))
+    )
+    assert 0 <= fit.model.values["viscous"] < 1e-3
