@@ -36,7 +36,7 @@ def test_amplitude_of_coulomb_friction_is_four_over_pi() -> None:
 @pytest.mark.parametrize(
     ("added", "effect", "name", "value"),
     [
-        ({"coulomb": 8.0}, "coulomb_friction", "coulomb_force", 8.0),
+        ({"coulomb": 3.0}, "coulomb_friction", "coulomb_force", 3.0),
         ({"stiffness": 9e3}, "parallel_stiffness", "stiffness", 9e3),
         ({"viscous": 900.0}, "viscous_friction", "viscous", 900.0),
     ],

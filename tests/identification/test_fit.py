@@ -27,7 +27,7 @@ def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> Run:
     x, v, a = motion(TIME)
     force = device.along(H, *motion(TIME - delay))["total"] + random.normal(0, noise, N)
     everything = np.ones(N, bool)
-    return Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf)
+    return Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf, ~everything)
 
 
 def problem(one: Run) -> Problem:

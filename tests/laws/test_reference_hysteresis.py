@@ -186,6 +186,3 @@ def test_initial_state_and_bad_times() -> None:
     assert held.force[-1] == pytest.approx(5.0, rel=1e-12)
     with pytest.raises(ValueError, match="increase"):
         response(device, sine_motion(1e-3, 1.0), [0.0, 0.0])
-    steep = ReferenceDevice(friction="dahl", coulomb_force=LEVEL, friction_gradient=2e3)
-    with pytest.raises(ValueError, match="friction level"):
-        response(steep, sine_motion(1e-3, 1.0), np.linspace(0.0, 1.0, 50))

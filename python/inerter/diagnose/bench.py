@@ -88,6 +88,18 @@ def baseline_model(device: Device | None, sizes: Scales) -> Model:
     return Model(device.friction, values, free)
 
 
+def _refuse_unusable(records: Sequence[Record]) -> None:
+    """A run that says nothing about a device is a mistake."""
+    for record in records:
+        for name, what in (("displacement", "does not move"), ("force", "does not change")):
+            values = getattr(record, name)
+            if np.ptp(values) == 0:
+                raise ValueError(
+                    f"{record.name}: column '{name}' {what} ({values[0]:g} throughout); leave this "
+                    "run out"
+                )
+
+
 class _Bench:
     """One diagnosis, step by step."""
 
@@ -100,10 +112,17 @@ class _Bench:
             r for r in records if not any(w.code == "duplicate_record" for w in r.warnings)
         ]
         self.progress = progress
+        _refuse_unusable(self.records)
         progress("smoothing: choosing the cut-off")
         self.preparation: Preparation = prepare(self.records)
         self.runs: list[Run] = [thin(motion) for motion in self.preparation.motions]
         self.whole: list[Run] = [whole(motion) for motion in self.preparation.motions]
+        for run in self.runs:
+            if run.inner.sum() < 50:
+                raise ValueError(
+                    f"{run.name}: {run.time[-1] - run.start:.3g} s are too short; a record has to "
+                    f"last many times the smoother's memory of {1 / run.cutoff:.2g} s"
+                )
         self.split: Split = split(self.runs, holdout)
         held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
         self.full = split(self.whole, held)

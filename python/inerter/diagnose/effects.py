@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import Model
+from inerter.identify.fit import Fit, Model
 
 # laws whose levels can differ with direction and position
 LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre")
@@ -20,7 +22,7 @@ LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre")
 # coordinates that belong to a friction law and leave with it
 LAW_COORDINATES = (
     "coulomb_force", "static_excess", "stribeck_velocity", "presliding", "bristle_damping",
-    "bw_level", "bw_shape", "bw_exponent",
+    "bw_level", "bw_shape", "bw_exponent", "bw_ratio",
 )
 LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
 
@@ -77,7 +79,7 @@ EFFECTS = {
         Effect(
             "hysteretic_friction", LAW_COORDINATES,
             ("coulomb_force", "static_force", "stribeck_velocity", "bristle_stiffness",
-             "bristle_damping", "bw_stiffness", "bw_beta", "bw_gamma", "bw_exponent"),
+             "bristle_damping", "bw_stiffness", "bw_beta", "bw_gamma", "bw_exponent", "bw_ratio"),
             "friction with memory: it builds up over a pre-sliding distance and stays at rest",
             "elastic asperities, seals and preloaded balls that bend before they slide",
             "parallel stiffness or backlash: repeat with strokes shorter than the pre-sliding "
@@ -132,6 +134,24 @@ EFFECTS = {
         ),
     )
 }
+
+
+# coordinates whose being zero means that the effect is absent, where not all of them do
+_AMPLITUDES = {
+    "stribeck_friction": ("static_excess",),
+    "hysteretic_friction": ("coulomb_force", "bw_level"),
+    "inertance_error": (),
+}
+
+
+def is_distinct(effect: str, fit: Fit, required: float) -> bool:
+    """Whether a fitted effect differs from none by some standard errors of its coordinates."""
+    names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
+    errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
+    known = [name for name in names if name in errors]
+    return not known or any(
+        abs(fit.model.values[name]) > required * errors[name] for name in known
+    )
 
 
 @dataclass(frozen=True)
@@ -248,6 +268,7 @@ def _hysteretic(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]
                     presliding=distance,
                     bw_shape=shape,
                     bw_exponent=1.2,
+                    **({} if "stiffness" in model.values else {"bw_ratio": 0.0}),
                 )
                 for distance in ((pre,) if pre else (0.01 * x, 0.1 * x, 0.5 * x))
                 for shape in (0.6, 1.0)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.records import Record
-from inerter.records.motion import Motion, smooth
+from inerter.records.motion import Motion, smooth, white_noise
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class Preparation:
     channels : tuple of str
         Measured channels used beside the displacement.
     noise_floor : float
-        Rms of the force channel's noise, from its highest frequencies [N].
+        Rms of the force channel's white noise [N].
     """
 
     motions: list[Motion]
@@ -80,7 +80,7 @@ def prepare(records: Sequence[Record]) -> Preparation:
         cutoffs,
         row,
         use,
-        _noise_floor(records),
+        float(np.sqrt(np.mean([white_noise(record.force) ** 2 for record in records]))),
     )
 
 
@@ -113,23 +113,3 @@ def _force_error(motions: Sequence[Motion]) -> float:
     gram, right = matrix.T @ matrix, matrix.T @ force
     solution = np.linalg.lstsq(gram, right, rcond=1e-12)[0]
     return float(np.sqrt(np.mean((force - matrix @ solution) ** 2)))
-
-
-def _noise_floor(records: Sequence[Record]) -> float:
-    """Rms of white noise on the force, from the upper third of its spectrum.
-
-    Median over short segments, so that the few with a reversal of friction do not count. A force
-    channel that was filtered before it was stored has no noise there: then this is too low.
-    """
-    length, variances = 128, []
-    window = np.hanning(length)
-    for record in records:
-        usable = record.force.size // length * length
-        segments = record.force[:usable].reshape(-1, length)
-        if not segments.size:
-            continue
-        straight = segments - segments.mean(axis=1, keepdims=True)
-        power = np.abs(np.fft.rfft(straight * window, axis=1)) ** 2 / np.sum(window**2)
-        upper = np.median(power[:, 2 * power.shape[1] // 3 : -1], axis=0)
-        variances.append(np.mean(upper) / np.log(2))
-    return float(np.sqrt(np.mean(variances))) if variances else 0.0

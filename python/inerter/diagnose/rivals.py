@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inerter.diagnose.effects import candidates, effects_of, stripped
+from inerter.diagnose.effects import candidates, effects_of, is_distinct, stripped
 from inerter.diagnose.result import Rival
-from inerter.diagnose.search import REQUIRED_GAIN, Scored, Search, parallel
+from inerter.diagnose.search import REQUIRED_DISTINCTION, RICH_LAWS, Scored, Search, parallel
 from inerter.diagnose.statistics import advantage, win_shares
 
 # where the data cannot tell two effects apart, the earlier one here is named
@@ -22,6 +22,8 @@ EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005
 # rivals that are worth cross-validating
 SHORTLIST = 4
+# share of the rms error by which a rival with more parameters has to be better
+HANDICAP = 0.03
 
 
 @dataclass(frozen=True)
@@ -45,18 +47,21 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     others = [
         candidate
         for candidate in candidates(without.model, problem.scales)
-        if (candidate.effect, candidate.law) != (effect, law) and candidate.effect not in rest
+        if (candidate.effect, candidate.law) != (effect, law)
+        and candidate.effect not in rest
+        and (law is not None or candidate.law not in RICH_LAWS)
     ]
-    trials = sorted(
-        zip(others, parallel(search.fit, others), strict=True),
-        key=lambda pair: pair[1].rmse(problem.masks),
-    )
+    trials = [
+        (candidate, fit)
+        for candidate, fit in search.fit_all(others, without.fit)
+        if is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION)
+    ]
     scored = parallel(
         lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), trials[:SHORTLIST]
     )
 
-    # a rival with more parameters has to win by what the search asks of a richer model
-    handicap = 1 / (1 - REQUIRED_GAIN) ** 2
+    # a rival with more parameters has to win by more than such a one can by chance
+    handicap = 1 / (1 - HANDICAP) ** 2
     fair = [
         s.squares * (handicap if s.model.complexity > final.model.complexity else 1.0)
         for s in scored

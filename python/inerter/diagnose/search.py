@@ -19,12 +19,13 @@ from inerter.diagnose.effects import (
     Candidate,
     candidates,
     effects_of,
+    is_distinct,
     simpler_laws,
     without_effect,
 )
 from inerter.diagnose.split import Split, blocks
 from inerter.diagnose.statistics import Array, advantage, block_squares, win_shares
-from inerter.identify.bench import Run
+from inerter.identify.bench import Run, head, head_size
 from inerter.identify.fit import Fit, Model, Problem
 
 # what a richer model must win by: standard errors over paired blocks, and share of the rms error.
@@ -34,14 +35,21 @@ REQUIRED_ADVANTAGE = 4.0
 REQUIRED_GAIN = 0.01
 LARGE_ADVANTAGE = 2.0
 LARGE_GAIN = 0.05
+# standard errors by which an effect's own parameter must differ from none
+REQUIRED_DISTINCTION = 3.0
 # how much a simpler candidate may lose against the best and still be taken
 TOLERATED_ADVANTAGE = 3.0
+LARGE_TOLERATED_ADVANTAGE = 6.0
 TOLERATED_LOSS = 0.01
 # removing an effect that is worth less than this many standard errors
 KEEPING_ADVANTAGE = 2.0
 MOST_EFFECTS = 8
 # candidates that are worth cross-validating in one round
 SHORTLIST = 5
+# share of every run on which the starting points of a fit are compared
+STARTING_SHARE = 0.3
+# laws that are tried only where memory is to be seen
+RICH_LAWS = ("lugre", "bouc_wen")
 
 Progress = Callable[[str], None]
 S = TypeVar("S")
@@ -91,6 +99,11 @@ class Search:
     def __post_init__(self) -> None:
         self.problem = Problem(self.runs, self.split.fit)
         self.blocks = blocks(self.runs, self.problem.masks)
+        self._part = Problem(
+            [head(run, STARTING_SHARE) for run in self.runs],
+            [m[: head_size(run, STARTING_SHARE)] for m, run in zip(self.split.fit, self.runs, strict=True)],
+            self.problem.scales,
+        )
         self._folds = [
             Problem(
                 self.runs,
@@ -123,22 +136,39 @@ class Search:
         return Scored(effect, law, fit, block_squares(left_out, self.blocks))
 
     def fit(self, candidate: Candidate) -> Fit:
-        """Best fit over a candidate's starting points."""
+        """Best fit over a candidate's starting points, which are compared on part of the data."""
         starts = candidate.starts
         if len(starts) > 1:
-            trials = [self.problem.fit(start, evaluations=8) for start in starts]
-            trials.sort(key=lambda fit: fit.rmse(self.problem.masks))
+            masks = self._part.masks
+            trials = [self._part.fit(start, evaluations=10) for start in starts]
+            trials.sort(key=lambda fit: fit.rmse(masks))
             starts = tuple(trial.model for trial in trials[:2])
         fits = [self.problem.fit(start) for start in starts]
         return min(fits, key=lambda fit: fit.rmse(self.problem.masks))
+
+    def fit_all(self, trials: Sequence[Candidate], current: Fit) -> list[tuple[Candidate, Fit]]:
+        """Fits of candidates, the best first.
+
+        The laws with many parameters are tried where the simple law with memory, Dahl's, does
+        better than friction without memory, or is in the model already.
+        """
+        masks = self.problem.masks
+        rich = [t for t in trials if t.law in RICH_LAWS]
+        plain = [t for t in trials if t.law not in RICH_LAWS]
+        fitted = list(zip(plain, parallel(self.fit, plain), strict=True))
+        error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
+        memory = error.get(("hysteretic_friction", "dahl"))
+        others = [current.rmse(masks), *(e for key, e in error.items() if key[1] is None)]
+        if memory is None or memory < (1 - REQUIRED_GAIN) * min(others):
+            fitted += zip(rich, parallel(self.fit, rich), strict=True)
+        return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
 
     def _best_step(self, current: Scored) -> Step | None:
         """The effect to add next, or None."""
         masks = self.problem.masks
         self.progress(f"effect {len(self.steps) + 1}: trying every candidate")
         trials = list(candidates(current.model, self.problem.scales))
-        fitted = list(zip(trials, parallel(self.fit, trials), strict=True))
-        fitted.sort(key=lambda pair: pair[1].rmse(masks))
+        fitted = self.fit_all(trials, current.fit)
         if not fitted:
             return None
         floor = fitted[0][1].rmse(masks)
@@ -157,7 +187,11 @@ class Search:
         scored = parallel(
             lambda pair: self.score(pair[0].effect, pair[0].law, pair[1]), shortlist
         )
-        good = [s for s in scored if self._better(current, s)]
+        good = [
+            s
+            for s in scored
+            if self._better(current, s) and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION)
+        ]
         if not good:
             return None
         best = min(good, key=lambda s: s.squares.sum())
@@ -187,10 +221,8 @@ class Search:
         loss = np.sqrt(simple.squares.sum() / best.squares.sum()) - 1
         return bool(
             simple.model.complexity < best.model.complexity
-            and (
-                loss < TOLERATED_LOSS
-                or advantage(simple.squares, best.squares) < TOLERATED_ADVANTAGE
-            )
+            and advantage(simple.squares, best.squares)
+            < (LARGE_TOLERATED_ADVANTAGE if loss < TOLERATED_LOSS else TOLERATED_ADVANTAGE)
         )
 
     def _exchange(self, current: Scored) -> Scored:

@@ -43,6 +43,9 @@ def win_shares(squares: Sequence[Array], seed: int = 0, draws: int = 2000) -> Ar
         Shares that add up to 1.
     """
     table = np.array(squares)
+
+    # as in `advantage`: a busy stretch does not decide alone
+    table = table / np.sqrt(table.mean(axis=0) + 1e-12 * table.sum())
     random = np.random.default_rng(seed)
     choice = random.integers(0, table.shape[1], (draws, table.shape[1]))
     sums = table[:, choice].sum(axis=2)

@@ -27,6 +27,7 @@ _NAMES = {
     "inertance_gradient": "gradient of b along the stroke",
     "inertance_curvature": "curvature of b along the stroke",
     "bw_exponent": "n",
+    "bw_ratio": "elastic share A",
 }
 # words for effects in running text
 PLAIN = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 # samples per period of the cut-off that a fit works on; more add time and no information
 SAMPLES_PER_PERIOD = 8
+# a velocity within this many standard deviations of its noise may be none
+REST = 4
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,8 @@ class Run:
         Smoothed motion, and the measured force through the same low-pass.
     inner : ndarray of bool (n,)
         False near the ends.
+    resting : ndarray of bool (n,)
+        True in rests, where the velocity is noise: friction without memory is zero there.
     thinned : int
         Measured samples per sample here.
     first_force : float
@@ -47,6 +51,7 @@ class Run:
     inner: NDArray[np.bool_]
     first_force: float
     cutoff: float
+    resting: NDArray[np.bool_]
     thinned: int = 1
 
     def lowpass(self, values: Array) -> Array:
@@ -66,9 +71,10 @@ class Run:
         n, parts = self.force.size, self.thinned
         if "_fine" not in self.__dict__:
             at = (np.arange(n * parts) + 0.5) / parts - 0.5
+            velocity = np.where(self.resting, 0.0, self.velocity)
             fine = [
                 np.interp(at, np.arange(n), channel)
-                for channel in (self.displacement, self.velocity, self.acceleration)
+                for channel in (self.displacement, velocity, self.acceleration)
             ]
             object.__setattr__(self, "_fine", fine)
         friction = device.along(self.spacing / parts, *self.__dict__["_fine"], state)["friction"]
@@ -100,8 +106,19 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
         motion.inner[::step],
         float(np.mean(motion.force[:first])),
         motion.cutoff,
+        _resting(motion)[::step],
         step,
     )
+
+
+def _resting(motion: Motion) -> NDArray[np.bool_]:
+    """Stretches longer than the smoother's memory in which the velocity is within its noise."""
+    slow = np.abs(motion.velocity) < REST * motion.velocity_noise
+    edges = np.flatnonzero(np.diff(np.r_[False, slow, False].astype(int)))
+    resting = np.zeros(slow.size, bool)
+    for begin, end in edges.reshape(-1, 2):
+        resting[begin:end] = (end - begin) * motion.spacing > 1 / motion.cutoff
+    return resting
 
 
 def whole(motion: Motion) -> Run:
@@ -110,8 +127,20 @@ def whole(motion: Motion) -> Run:
     return Run(
         motion.name, motion.start, motion.spacing, motion.displacement, motion.velocity,
         motion.acceleration, motion.force, motion.inner, float(np.mean(motion.force[:first])),
-        np.inf,
+        np.inf, np.zeros(motion.force.size, bool),
     )
+
+
+def head_size(run: Run, share: float) -> int:
+    """Number of samples in the first part of a run."""
+    return max(int(share * run.force.size), min(200, run.force.size))
+
+
+def head(run: Run, share: float) -> Run:
+    """The first part of a run."""
+    n = head_size(run, share)
+    arrays = ("displacement", "velocity", "acceleration", "force", "inner", "resting")
+    return replace(run, **{name: getattr(run, name)[:n] for name in arrays})
 
 
 def scales(runs: Sequence[Run]) -> Scales:

@@ -5,7 +5,7 @@ the combination that the data see:
 
     static_excess   static_force - coulomb_force                     [N]
     presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
-    bw_level        largest Bouc-Wen force, bw_stiffness * presliding (alpha = 1)        [N]
+    bw_level        largest hysteretic Bouc-Wen force (alpha = 1)                      [N]
     bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
     delay           time by which the force channel is late           [s], not a device parameter
 """
@@ -93,6 +93,7 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "friction_curvature": Coordinate(0.1 / x**2, -3 / x**2, 3 / x**2),
         "bw_level": Coordinate(0.1 * force, 1e-6 * force, infinity),
         "bw_shape": Coordinate(0.5, 0.0, 5.0),
+        "bw_ratio": Coordinate(0.1, -0.5, 0.9),
         "bw_exponent": Coordinate(1.0, 1.0, 6.0),
         "delay": Coordinate(1e-3, -0.05, 0.05),
     }
@@ -114,7 +115,7 @@ def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
         shape = values.pop("bw_shape")
         limit = presliding ** -values.get("bw_exponent", 1.0)
         values |= {
-            "bw_stiffness": level / presliding,
+            "bw_stiffness": level / presliding / (1 - values.get("bw_ratio", 0.0)),
             "bw_beta": shape * limit,
             "bw_gamma": (1 - shape) * limit,
         }

@@ -47,6 +47,8 @@ class Motion:
         Cut-off of the smoother [Hz].
     inner : ndarray of bool (n,)
         False near the ends, where the smoother has to guess.
+    velocity_noise : float
+        Rms noise of the velocity [m/s] that white noise on the displacement leaves.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Motion:
     force: Array
     cutoff: float
     inner: NDArray[np.bool_]
+    velocity_noise: float
 
     @property
     def time(self) -> Array:
@@ -174,8 +177,32 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         inner[n - edge :] = False
     return Motion(
         record.name, float(record.time[0]), spacing, displacement, velocity, acceleration,
-        channels["force"], cutoff, inner,
+        channels["force"], cutoff, inner, _velocity_noise(channels["displacement"], spacing, cutoff),
     )
+
+
+def white_noise(values: Array) -> float:
+    """Rms of white noise on a channel, from the upper third of its spectrum.
+
+    Median over short segments, so that the few with something sudden do not count. A channel that
+    was filtered before it was stored has no noise there: then this is too low.
+    """
+    length = 128
+    usable = values.size // length * length
+    if not usable:
+        return 0.0
+    segments = values[:usable].reshape(-1, length)
+    ends = segments[:, :1] + (segments[:, -1:] - segments[:, :1]) * np.linspace(0, 1, length)
+    window = np.hanning(length)
+    power = np.abs(rfft((segments - ends) * window, axis=1)) ** 2 / np.sum(window**2)
+    upper = np.median(power[:, 2 * power.shape[1] // 3 : -1], axis=0)
+    return float(np.sqrt(np.mean(upper) / np.log(2)))
+
+
+def _velocity_noise(displacement: Array, spacing: float, cutoff: float) -> float:
+    """Integral of (2 pi f)^2 response^2 over white noise of the displacement [m/s]."""
+    density = white_noise(displacement) ** 2 * 2 * spacing
+    return float(2 * np.pi * np.sqrt(density * cutoff**3 * np.pi / 12))
 
 
 def _at_rest(velocity: Array, spacing: float) -> bool:
