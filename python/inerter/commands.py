@@ -55,7 +55,8 @@ def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
 @app.command("diagnose")
 def diagnose_command(
     record: Annotated[
-        list[str], typer.Argument(help="Records: files, folders or globs; several are several runs.")
+        list[str],
+        typer.Argument(help="Records: files, folders or globs; several are several runs."),
     ],
     device: Annotated[
         Path | None,
@@ -119,8 +120,9 @@ def demo(
 
     out.print("A table measured on a ball-screw inerter at 12 frequencies:\n", style="bold")
     _diagnose([str(data_path("ball_screw_table.csv"))], None, None, [], out_dir / "table", False)
-    out.print("\nA bench record (synthetic; its hidden effect is not named in the file):\n",
-              style="bold")
+    out.print(
+        "\nA bench record (synthetic; its hidden effect is not named in the file):\n", style="bold"
+    )
     record = str(data_path("bench_record.csv"))
     result = _diagnose([record], None, None, [], out_dir, False)
     loop_figure(result, out_dir / "loops.png")

@@ -66,7 +66,9 @@ def library_path(stem: str) -> Path:
 def _library() -> ctypes.CDLL:
     path = library_path("inerter_core")
     if not path.exists():
-        raise ImportError(f"{path} is missing: reinstall with `pip install --force-reinstall inerter`")
+        raise ImportError(
+            f"{path} is missing: reinstall with `pip install --force-reinstall inerter`"
+        )
     library = ctypes.CDLL(os.fspath(path))
     library.inerter_parameter.restype = ctypes.POINTER(_CParameter)
     library.inerter_friction_name.restype = ctypes.c_char_p
@@ -76,7 +78,10 @@ def _library() -> ctypes.CDLL:
         function.restype = ctypes.c_double
         function.argtypes = [ctypes.c_void_p] + [ctypes.c_double] * 4
     library.inerter_along.argtypes = [
-        ctypes.c_void_p, ctypes.c_int, ctypes.c_double, *[ctypes.c_void_p] * 7
+        ctypes.c_void_p,
+        ctypes.c_int,
+        ctypes.c_double,
+        *[ctypes.c_void_p] * 7,
     ]
     return library
 
@@ -137,9 +142,7 @@ class Device:
         library.inerter_default(ctypes.byref(self._c))
         for name, value in values.items():
             text = value if isinstance(value, str) else repr(float(value))
-            if library.inerter_set(
-                ctypes.byref(self._c), name.encode(), text.encode(), message
-            ):
+            if library.inerter_set(ctypes.byref(self._c), name.encode(), text.encode(), message):
                 raise DeviceError(_with_suggestion(name, _text(message)))
         if library.inerter_finish(ctypes.byref(self._c), message):
             raise DeviceError(_text(message))
@@ -189,14 +192,23 @@ class Device:
         dict of arrays (n,)
             total, inertance, friction [N]; state_rate; stored_energy [J]; dissipated_power [W].
         """
-        names = ("total", "inertance", "friction", "state_rate", "stored_energy", "dissipated_power")
+        names = (
+            "total",
+            "inertance",
+            "friction",
+            "state_rate",
+            "stored_energy",
+            "dissipated_power",
+        )
         x, v, a, z = (
             np.ascontiguousarray(value, dtype=float)
             for value in np.broadcast_arrays(*np.atleast_1d(x, v, a, z))
         )
         result = np.empty((len(names), x.size))
         _library().inerter_evaluate(
-            ctypes.byref(self._c), x.size, *(_pointer(value) for value in (x, v, a, z)),
+            ctypes.byref(self._c),
+            x.size,
+            *(_pointer(value) for value in (x, v, a, z)),
             _pointer(result),
         )
         return dict(zip(names, result.reshape(len(names), *x.shape), strict=True))
@@ -232,8 +244,16 @@ class Device:
         result = np.empty((3, x.size))
         at, row = result.ctypes.data, result.strides[0]
         _library().inerter_along(
-            ctypes.byref(self._c), x.size, h, x.ctypes.data, v.ctypes.data, a.ctypes.data,
-            ctypes.byref(ctypes.c_double(state)), at, at + row, at + 2 * row,
+            ctypes.byref(self._c),
+            x.size,
+            h,
+            x.ctypes.data,
+            v.ctypes.data,
+            a.ctypes.data,
+            ctypes.byref(ctypes.c_double(state)),
+            at,
+            at + row,
+            at + 2 * row,
         )
         total, friction, states = result
         return {"total": total, "friction": friction, "state": states}
@@ -251,7 +271,8 @@ def along_many(
 
     Parameters
     ----------
-    devices : sequence of m devices
+    devices : sequence of Device
+        m devices.
     h : float
         Sample spacing [s].
     x, v, a : ndarray (n,)
@@ -271,8 +292,14 @@ def along_many(
 
     def run(first: int, count: int) -> None:
         _library().inerter_along_many(
-            ctypes.byref(array, first * size), count, x.size, ctypes.c_double(h),
-            _pointer(x), _pointer(v), _pointer(a), _pointer(total[first:]),
+            ctypes.byref(array, first * size),
+            count,
+            x.size,
+            ctypes.c_double(h),
+            _pointer(x),
+            _pointer(v),
+            _pointer(a),
+            _pointer(total[first:]),
         )
 
     workers = min(threads or os.cpu_count() or 1, len(devices)) or 1

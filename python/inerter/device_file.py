@@ -1,9 +1,9 @@
 """device.toml: a device in a file, as the diagnosis writes it and reads it back.
 
-    [device]
-    inertance = 113.0           # SI units, or a text with a unit: "113 kg"
-    friction = "lugre"
-    coulomb_force = "10 N"
+[device]
+inertance = 113.0           # SI units, or a text with a unit: "113 kg"
+friction = "lugre"
+coulomb_force = "10 N"
 """
 
 from __future__ import annotations
@@ -80,6 +80,8 @@ def device_text(
 
     Parameters
     ----------
+    device : Device
+        What to write.
     comments : mapping, optional
         A comment for a parameter, such as its standard error.
     delay : float
@@ -98,7 +100,9 @@ def device_text(
         lines.append(f"{name} = {text}" + (f"  # {note}" if note and note != "1" else ""))
     if delay:
         lines += [
-            "", "# of the measurement, not of the device: the force channel is late by this time",
-            "[channels]", f"force_delay = {delay!r}  # s",
+            "",
+            "# of the measurement, not of the device: the force channel is late by this time",
+            "[channels]",
+            f"force_delay = {delay!r}  # s",
         ]
     return "\n".join(lines) + "\n"

@@ -41,7 +41,9 @@ def device_of_model(path: Path) -> Device:
             f"{path}: {len(plugins)} configured inerter.device in the model, 1 is needed; give a "
             "device.toml with --device instead"
         )
-    values = {config.get("key", ""): config.get("value", "") for config in plugins[0].iter("config")}
+    values = {
+        config.get("key", ""): config.get("value", "") for config in plugins[0].iter("config")
+    }
     try:
         return Device(**values)
     except DeviceError as error:

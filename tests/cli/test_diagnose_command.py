@@ -27,11 +27,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         size = np.array([[8.0], [1.5]])
         x = np.sum(size * np.sin(omega * t), axis=0)
         force = 5 - 60e-3 * np.sum(size * omega**2 * np.sin(omega * t), axis=0)
-        rows = np.column_stack([
-            t, x + random.normal(0, 1e-3, t.size), (force + random.normal(0, 0.1, t.size)) / 1e3
-        ])
+        rows = np.column_stack(
+            [t, x + random.normal(0, 1e-3, t.size), (force + random.normal(0, 0.1, t.size)) / 1e3]
+        )
         np.savetxt(
-            folder / f"run_{i}.csv", rows, delimiter=",", comments="",
+            folder / f"run_{i}.csv",
+            rows,
+            delimiter=",",
+            comments="",
             header="time,displacement[mm],force[kN]",
         )
     return folder

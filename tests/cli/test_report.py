@@ -54,9 +54,17 @@ def run(name: str, samples: int = 900, held: bool = False, part: bool = False) -
     if part:
         holdout[samples // 3 : samples // 2] = True
     return RunCurves(
-        name, "holdout" if held else "fit", time, x, v, a,
-        100 * a + 40 * np.sign(v) + noise, 95 * a, 100 * a + 40 * np.tanh(v / 0.002),
-        holdout, np.ones(samples, bool),
+        name,
+        "holdout" if held else "fit",
+        time,
+        x,
+        v,
+        a,
+        100 * a + 40 * np.sign(v) + noise,
+        95 * a,
+        100 * a + 40 * np.tanh(v / 0.002),
+        holdout,
+        np.ones(samples, bool),
     )
 
 
@@ -64,8 +72,14 @@ def diagnosis(*curves: RunCurves, **changes: Any) -> Diagnosis:
     """A diagnosis by hand: Coulomb friction found."""
     warnings = [{"code": "outliers", "text": "3 samples <b>stand out</b> & more"}]
     finding = Finding(
-        "coulomb_friction", None, 0.998, {"coulomb_force": ParameterValue(40.0, 0.4, "N")},
-        40.0, 1.1, "f_c = 40 N", [Rival("hysteretic_friction", 0.06, "dahl")],
+        "coulomb_friction",
+        None,
+        0.998,
+        {"coulomb_force": ParameterValue(40.0, 0.4, "N")},
+        40.0,
+        1.1,
+        "f_c = 40 N",
+        [Rival("hysteretic_friction", 0.06, "dahl")],
     )
     parameters = {"inertance": ParameterValue(100.0, 0.5, "kg"), **finding.parameters}
     made = Diagnosis(
@@ -79,9 +93,12 @@ def diagnosis(*curves: RunCurves, **changes: Any) -> Diagnosis:
         "The simulation misses the measured force by 40 N rms.",
         parameters,
         {
-            "cutoff": 20.0, "cutoffs_tried": [5.0, 10.0, 20.0, 40.0],
-            "force_error_at_cutoffs": [9.0, 4.0, 2.0, 6.0], "split": "held out: b",
-            "channels": ["displacement"], "held_out_samples": 900,
+            "cutoff": 20.0,
+            "cutoffs_tried": [5.0, 10.0, 20.0, 40.0],
+            "force_error_at_cutoffs": [9.0, 4.0, 2.0, 6.0],
+            "split": "held out: b",
+            "channels": ["displacement"],
+            "held_out_samples": 900,
         },
         list(curves),
     )
@@ -352,8 +369,16 @@ def test_values_to_the_last_digit_that_counts(value: ParameterValue, shown: str)
 
 @pytest.mark.parametrize(
     ("value", "shown"),
-    [(999.99, "1000"), (0.0017, "0.00170"), (1.2e-5, "1.20 × 10⁻⁵"), (0, "0"), (None, "–"),
-     (float("inf"), "–"), (-68.77, "−68.8"), (24841.0, "24\u202f800")],
+    [
+        (999.99, "1000"),
+        (0.0017, "0.00170"),
+        (1.2e-5, "1.20 × 10⁻⁵"),
+        (0, "0"),
+        (None, "–"),
+        (float("inf"), "–"),
+        (-68.77, "−68.8"),
+        (24841.0, "24\u202f800"),
+    ],
 )
 def test_numbers(value: float | None, shown: str) -> None:
     assert text.number(value) == shown
@@ -415,13 +440,28 @@ def browse(folder: Path, page: str, width: int, *flags: str) -> dict[str, int]:
     file.write_text(_FRAME.format(width=width, page=html.escape(page)), encoding="utf-8")
     result = subprocess.run(
         [
-            BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
-            "--no-first-run", "--disable-background-networking", "--disable-component-update",
-            "--disable-sync", f"--user-data-dir={folder / 'profile'}", "--window-size=1400,1000",
-            "--enable-logging=stderr", "--v=0", "--virtual-time-budget=8000", *flags,
-            "--dump-dom", file.as_uri(),
+            BROWSER,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-quic",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            f"--user-data-dir={folder / 'profile'}",
+            "--window-size=1400,1000",
+            "--enable-logging=stderr",
+            "--v=0",
+            "--virtual-time-budget=8000",
+            *flags,
+            "--dump-dom",
+            file.as_uri(),
         ],
-        capture_output=True, text=True, timeout=120, check=False,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert [row for row in result.stderr.splitlines() if "CONSOLE" in row] == []
     found = re.search(r'data-found="([^"]*)"', result.stdout)

@@ -76,8 +76,9 @@ def test_outputs_load_and_say_the_same(records, tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == names
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
     assert model.nactuator >= 1
-    from_toml, from_model = read_device(tmp_path / "device.toml"), device_of_model(
-        tmp_path / "model.xml"
+    from_toml, from_model = (
+        read_device(tmp_path / "device.toml"),
+        device_of_model(tmp_path / "model.xml"),
     )
     assert from_toml.given == diagnosis.extended.device
     assert from_model.given == pytest.approx(

@@ -23,7 +23,9 @@ def table(noise: float, **added: float | str) -> BenchTable:
     random = np.random.default_rng(3)
     force = np.hypot(in_phase, quadrature) * (1 + noise * random.normal(size=omega.size))
     return BenchTable(
-        name="table", frequency=FREQUENCY, force_amplitude=force,
+        name="table",
+        frequency=FREQUENCY,
+        force_amplitude=force,
         acceleration_amplitude=omega**2 * x,
     )
 

@@ -18,11 +18,10 @@ def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> Run:
     omega = 2 * np.pi * np.array([[0.4], [1.7], [4.3]])
     size = np.array([[0.02], [0.006], [0.002]])
 
-    def motion(t: np.ndarray) -> tuple[np.ndarray, ...]:
+    def motion(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         s, c = np.sin(omega * t), np.cos(omega * t)
-        return tuple(
-            np.sum(part, axis=0) for part in (size * s, size * omega * c, -size * omega**2 * s)
-        )
+        x, v, a = (part.sum(axis=0) for part in (size * s, size * omega * c, -size * omega**2 * s))
+        return x, v, a
 
     x, v, a = motion(TIME)
     force = device.along(H, *motion(TIME - delay))["total"] + random.normal(0, noise, N)

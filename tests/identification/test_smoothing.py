@@ -11,8 +11,8 @@ H, N = 1e-3, 8000
 TIME = H * np.arange(N)
 
 
-def record(x: np.ndarray, time: np.ndarray = TIME, **channels: np.ndarray) -> Record:
-    return Record(name="r", time=time, displacement=x, force=np.zeros(time.size), **channels)
+def record(x: np.ndarray, time: np.ndarray = TIME, velocity: np.ndarray | None = None) -> Record:
+    return Record(name="r", time=time, displacement=x, force=np.zeros(time.size), velocity=velocity)
 
 
 @pytest.mark.parametrize("frequency", [0.5, 3.0, 7.0])
@@ -48,7 +48,7 @@ def test_noise_gain_is_the_integral_of_the_response() -> None:
 
 
 def test_linear_laws_are_unbiased_however_low_the_cutoff() -> None:
-    """b a of the smoothed motion is the low-passed b a: an inertance fit has no bias."""
+    """The smoothed motion gives the low-passed b a: an inertance fit has no bias."""
     phase = np.random.default_rng(2).uniform(0, 2 * np.pi, 12)
     frequency = np.arange(1, 13) * 0.6
     omega = 2 * np.pi * frequency[:, None]

@@ -104,7 +104,10 @@ class _Bench:
     """One diagnosis, step by step."""
 
     def __init__(
-        self, records: Sequence[Record], device: Device | None, holdout: Sequence[str],
+        self,
+        records: Sequence[Record],
+        device: Device | None,
+        holdout: Sequence[str],
         progress: Progress,
     ) -> None:
         self.all_records = list(records)
@@ -197,7 +200,9 @@ class _Bench:
         return None
 
     def _findings(
-        self, final: Fit, chain: list[tuple[str, str | None, Fit, Fit]],
+        self,
+        final: Fit,
+        chain: list[tuple[str, str | None, Fit, Fit]],
         standings: dict[str, Standing],
     ) -> list[Finding]:
         values = self._parameters(final)
@@ -208,8 +213,13 @@ class _Bench:
             if effect == "sensor_delay":
                 named = {"delay": values["delay"]}
             finding = Finding(
-                effect, law, known.confidence if known else 0.5, named,
-                self._raw_rmse(before.model), self._raw_rmse(after.model), "",
+                effect,
+                law,
+                known.confidence if known else 0.5,
+                named,
+                self._raw_rmse(before.model),
+                self._raw_rmse(after.model),
+                "",
                 [r for r in known.rivals if r.confidence >= 0.005] if known else [],
             )
             findings.append(replace(finding, evidence=wording.evidence(finding)))
@@ -257,8 +267,17 @@ class _Bench:
             for record in self.all_records
         ]
         diagnosis = Diagnosis(
-            summaries, baseline, findings, extended, floor, remains, engines, "",
-            self._parameters(final), self._method(), self._curves(before.model, final.model),
+            summaries,
+            baseline,
+            findings,
+            extended,
+            floor,
+            remains,
+            engines,
+            "",
+            self._parameters(final),
+            self._method(),
+            self._curves(before.model, final.model),
         )
         return replace(diagnosis, verdict=wording.verdict(diagnosis))
 
@@ -278,9 +297,17 @@ class _Bench:
         for i, run in enumerate(self.whole):
             curves.append(
                 RunCurves(
-                    run.name, self.split.role(i), run.time, run.displacement, run.velocity,
-                    run.acceleration, run.force, force_along(before, run), force_along(after, run),
-                    self.full.holdout[i], run.inner,
+                    run.name,
+                    self.split.role(i),
+                    run.time,
+                    run.displacement,
+                    run.velocity,
+                    run.acceleration,
+                    run.force,
+                    force_along(before, run),
+                    force_along(after, run),
+                    self.full.holdout[i],
+                    run.inner,
                 )
             )
         return curves

@@ -1,9 +1,9 @@
 """The effects that a diagnosis can name, and the models that test them.
 
 Each effect turns the present model into one or more candidates: the model with the effect's
-coordinates set free, from several starting values where the fit is not convex. Friction laws replace
-one another; everything else adds up. `findings_of` reads the effects off a model, so that a name
-depends on the model alone and not on the way the search took.
+coordinates set free, from several starting values where the fit is not convex. Friction laws
+replace one another; everything else adds up. `effects_of` reads the effects off a model, so that a
+name depends on the model alone and not on the way the search took.
 """
 
 from __future__ import annotations
@@ -21,8 +21,15 @@ LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre")
 
 # coordinates that belong to a friction law and leave with it
 LAW_COORDINATES = (
-    "coulomb_force", "static_excess", "stribeck_velocity", "presliding", "bristle_damping",
-    "bw_level", "bw_shape", "bw_exponent", "bw_ratio",
+    "coulomb_force",
+    "static_excess",
+    "stribeck_velocity",
+    "presliding",
+    "bristle_damping",
+    "bw_level",
+    "bw_shape",
+    "bw_exponent",
+    "bw_ratio",
 )
 LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
 
@@ -55,80 +62,119 @@ EFFECTS = {
     effect.name: effect
     for effect in (
         Effect(
-            "inertance_error", ("inertance",), ("inertance",), "b differs from what is stated",
+            "inertance_error",
+            ("inertance",),
+            ("inertance",),
+            "b differs from what is stated",
             "flywheel inertia, lead or gear ratio other than in the data sheet",
             "a wrong force or displacement calibration: check both against a known mass",
         ),
         Effect(
-            "viscous_friction", ("viscous",), ("viscous",), "c v",
+            "viscous_friction",
+            ("viscous",),
+            ("viscous",),
+            "c v",
             "lubricant shear in bearings, screw and seals",
             "sensor delay: repeat at twice the frequency, a delay grows with its cube",
         ),
         Effect(
-            "coulomb_friction", ("coulomb_force",), ("coulomb_force",), "f_c sign(v)",
+            "coulomb_friction",
+            ("coulomb_force",),
+            ("coulomb_force",),
+            "f_c sign(v)",
             "dry sliding in seals, guides and preloaded screws",
             "hysteretic friction: dwell at mid-stroke and watch whether the force stays",
         ),
         Effect(
-            "stribeck_friction", ("coulomb_force", "static_excess", "stribeck_velocity"),
+            "stribeck_friction",
+            ("coulomb_force", "static_excess", "stribeck_velocity"),
             ("coulomb_force", "static_force", "stribeck_velocity"),
             "[f_c + (f_s - f_c) exp(-(v/v_s)^2)] sign(v)",
             "lubricated contacts that lift off their asperities as the speed grows",
             "Coulomb with viscous friction: run slow strokes below the Stribeck velocity",
         ),
         Effect(
-            "hysteretic_friction", LAW_COORDINATES,
-            ("coulomb_force", "static_force", "stribeck_velocity", "bristle_stiffness",
-             "bristle_damping", "bw_stiffness", "bw_beta", "bw_gamma", "bw_exponent", "bw_ratio"),
+            "hysteretic_friction",
+            LAW_COORDINATES,
+            (
+                "coulomb_force",
+                "static_force",
+                "stribeck_velocity",
+                "bristle_stiffness",
+                "bristle_damping",
+                "bw_stiffness",
+                "bw_beta",
+                "bw_gamma",
+                "bw_exponent",
+                "bw_ratio",
+            ),
             "friction with memory: it builds up over a pre-sliding distance and stays at rest",
             "elastic asperities, seals and preloaded balls that bend before they slide",
             "parallel stiffness or backlash: repeat with strokes shorter than the pre-sliding "
             "distance",
         ),
         Effect(
-            "asymmetric_friction", ("friction_asymmetry",), ("coulomb_force", "friction_asymmetry"),
+            "asymmetric_friction",
+            ("friction_asymmetry",),
+            ("coulomb_force", "friction_asymmetry"),
             "friction level differs between the two directions",
             "one-sided preload, a lip seal, a helical gear's thrust",
             "a constant force: repeat with the device turned round",
         ),
         Effect(
-            "position_dependent_friction", ("friction_gradient", "friction_curvature"),
+            "position_dependent_friction",
+            ("friction_gradient", "friction_curvature"),
             ("coulomb_force", "friction_gradient", "friction_curvature"),
             "friction level changes along the stroke",
             "a bent screw, tight guides, wear at mid-stroke",
             "parallel stiffness: it does not change sign with the direction of motion",
         ),
         Effect(
-            "load_dependent_friction", ("load_friction",), ("load_friction",),
+            "load_dependent_friction",
+            ("load_friction",),
+            ("load_friction",),
             "mu |b a| sign(v)",
             "the flywheel's force pressed through screw threads or gear teeth",
             "Coulomb friction: repeat with another flywheel",
         ),
         Effect(
-            "parallel_stiffness", ("stiffness",), ("stiffness",), "k x",
+            "parallel_stiffness",
+            ("stiffness",),
+            ("stiffness",),
+            "k x",
             "a centring spring, a rubber mount, trapped air",
             "a wrong inertance at one frequency: use at least two frequencies",
         ),
         Effect(
-            "force_offset", ("force_offset",), ("force_offset",), "a constant force",
+            "force_offset",
+            ("force_offset",),
+            ("force_offset",),
+            "a constant force",
             "weight of the flywheel, preload, a load cell that was not zeroed",
             "asymmetric friction: a dwell shows the constant force alone",
         ),
         Effect(
-            "sensor_delay", ("delay",), ("delay",), "the force channel is late by a constant time",
+            "sensor_delay",
+            ("delay",),
+            ("delay",),
+            "the force channel is late by a constant time",
             "filters or clocks that differ between the channels",
             "series elasticity and viscous friction: they change with amplitude or with "
             "frequency, a delay does not",
         ),
         Effect(
-            "variable_inertance", ("inertance_gradient", "inertance_curvature"),
+            "variable_inertance",
+            ("inertance_gradient", "inertance_curvature"),
             ("inertance", "inertance_gradient", "inertance_curvature"),
             "b depends on displacement: b(x) a + b'(x) v^2 / 2",
             "a ratio that varies along the stroke: rack and pinion, eccentric gear, moving fluid",
             "parallel stiffness: repeat at twice the frequency, the inertance force grows fourfold",
         ),
         Effect(
-            "quadratic_damping", ("quadratic_damping",), ("quadratic_damping",), "c2 v |v|",
+            "quadratic_damping",
+            ("quadratic_damping",),
+            ("quadratic_damping",),
+            "c2 v |v|",
             "turbulent flow, windage of the flywheel",
             "viscous friction: repeat at twice the amplitude",
         ),
@@ -149,9 +195,7 @@ def is_distinct(effect: str, fit: Fit, required: float) -> bool:
     names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
     errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
     known = [name for name in names if name in errors]
-    return not known or any(
-        abs(fit.model.values[name]) > required * errors[name] for name in known
-    )
+    return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
 
 
 @dataclass(frozen=True)
@@ -171,10 +215,11 @@ def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 def _free(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
     """An effect whose coordinates are simply added."""
+
     def build(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
         if not all(name in model.free for name in names):
             start = {name: model.values.get(name, _small(name, sizes)) for name in names}
-            yield Candidate(effect, None, (model.adding(**start),))
+            yield Candidate(effect, None, (model.adding(None, **start),))
 
     return build
 
@@ -278,10 +323,11 @@ def _hysteretic(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]
 
 def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
+
     def build(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
         zero = dict.fromkeys(names, 0.0)
         if model.friction in LEVEL_LAWS and not all(name in model.free for name in names):
-            yield Candidate(effect, None, (model.adding(**zero),))
+            yield Candidate(effect, None, (model.adding(None, **zero),))
         elif model.friction == "none":
             zero |= {"coulomb_force": _level(model, sizes), **_width(model)}
             yield Candidate(effect, None, (model.adding("coulomb", **zero),))
@@ -320,8 +366,13 @@ _LAW_EFFECT = {
 }
 _MODULATIONS = ("asymmetric_friction", "position_dependent_friction")
 _SIMPLE = (
-    "viscous_friction", "load_dependent_friction", "parallel_stiffness", "force_offset",
-    "sensor_delay", "quadratic_damping", "variable_inertance",
+    "viscous_friction",
+    "load_dependent_friction",
+    "parallel_stiffness",
+    "force_offset",
+    "sensor_delay",
+    "quadratic_damping",
+    "variable_inertance",
 )
 
 
@@ -377,7 +428,9 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
         names.update(EFFECTS[name].coordinates if name not in laws else LAW_COORDINATES)
     friction = model.friction
     kept_modulations = [name for name in _MODULATIONS if name in effects and name in present]
-    if (laws and laws[0] in dropped) or (not laws and not kept_modulations and not _stated_friction(baseline)):
+    if (laws and laws[0] in dropped) or (
+        not laws and not kept_modulations and not _stated_friction(baseline)
+    ):
         # without its law, a level that varies needs Coulomb friction to act on
         level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
         names.update(LAW_COORDINATES)

@@ -19,16 +19,18 @@ def simulate_engines(
     return {"mujoco": _mujoco(model, runs, masks), "exudyn": None, "reference": None}
 
 
-def _mujoco(
-    model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
-) -> float:
+def _mujoco(model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]) -> float:
     device = model.device()
     square, count = 0.0, 0
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
         force = simulate_along(
-            device, run.spacing, run.displacement, run.velocity, run.acceleration,
+            device,
+            run.spacing,
+            run.displacement,
+            run.velocity,
+            run.acceleration,
             first_state(device, run),
         )["total"]
         residual = run.force - delayed(force, model.delay, run.spacing)

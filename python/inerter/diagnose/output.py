@@ -28,7 +28,7 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
     device = Device(**diagnosis.extended.device)
     names = ", ".join(record.name for record in diagnosis.records)
     comments = {
-        name: f"{value.unit if value.unit != '1' else ''} (standard error {value.stderr:.2g})".strip()
+        name: f"{value.unit} (standard error {value.stderr:.2g})".removeprefix("1 ")
         for name, value in diagnosis.parameters.items()
     }
     toml = device_text(

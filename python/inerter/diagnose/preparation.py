@@ -103,7 +103,7 @@ def _force_error(motions: Sequence[Motion]) -> float:
         rows = [a, v, x, np.ones_like(x), v * np.abs(v), np.tanh(v / (0.01 * v_rms))]
         for share in (0.003, 0.03, 0.3):
             bristle = Device(
-                friction="dahl", coulomb_force=1.0, bristle_stiffness=1 / (share * x_rms)
+                friction="dahl", coulomb_force=1.0, bristle_stiffness=float(1 / (share * x_rms))
             )
             rows.append(bristle.along(motion.spacing, x, v, a)["friction"])
         columns.append(np.array(rows).T[motion.inner])

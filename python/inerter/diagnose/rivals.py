@@ -13,10 +13,19 @@ from inerter.diagnose.statistics import advantage, win_shares
 
 # where the data cannot tell two effects apart, the earlier one here is named
 PRECEDENCE = (
-    "inertance_error", "coulomb_friction", "viscous_friction", "force_offset",
-    "parallel_stiffness", "sensor_delay", "quadratic_damping", "hysteretic_friction",
-    "load_dependent_friction", "asymmetric_friction", "stribeck_friction",
-    "position_dependent_friction", "variable_inertance",
+    "inertance_error",
+    "coulomb_friction",
+    "viscous_friction",
+    "force_offset",
+    "parallel_stiffness",
+    "sensor_delay",
+    "quadratic_damping",
+    "hysteretic_friction",
+    "load_dependent_friction",
+    "asymmetric_friction",
+    "stribeck_friction",
+    "position_dependent_friction",
+    "variable_inertance",
 )
 EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005

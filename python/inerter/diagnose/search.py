@@ -1,4 +1,4 @@
-"""The search for what a model lacks: add the effect that predicts left-out data best, repeat, prune.
+"""The search for what a model lacks: add the effect that predicts best, repeat, prune.
 
 Every decision is made on folds of the fit data that the model in question was not fitted to; the
 held-out data are not touched here. Among candidates that do about equally well the one with the
@@ -101,7 +101,10 @@ class Search:
         self.blocks = blocks(self.runs, self.problem.masks)
         self._part = Problem(
             [head(run, STARTING_SHARE) for run in self.runs],
-            [m[: head_size(run, STARTING_SHARE)] for m, run in zip(self.split.fit, self.runs, strict=True)],
+            [
+                m[: head_size(run, STARTING_SHARE)]
+                for m, run in zip(self.split.fit, self.runs, strict=True)
+            ],
             self.problem.scales,
         )
         self._folds = [
@@ -158,7 +161,8 @@ class Search:
         fitted = list(zip(plain, parallel(self.fit, plain), strict=True))
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
         memory = error.get(("hysteretic_friction", "dahl"))
-        others = [current.rmse(masks), *(e for key, e in error.items() if key[1] is None)]
+        memoryless = ("coulomb_friction", "stribeck_friction")
+        others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in memoryless)]
         if memory is None or memory < (1 - REQUIRED_GAIN) * min(others):
             fitted += zip(rich, parallel(self.fit, rich), strict=True)
         return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
@@ -184,9 +188,7 @@ class Search:
         ]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.steps) + 1}: checking {names} on data left out")
-        scored = parallel(
-            lambda pair: self.score(pair[0].effect, pair[0].law, pair[1]), shortlist
-        )
+        scored = parallel(lambda pair: self.score(pair[0].effect, pair[0].law, pair[1]), shortlist)
         good = [
             s
             for s in scored

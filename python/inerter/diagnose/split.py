@@ -37,6 +37,7 @@ def split(runs: Sequence[Run], holdout: Sequence[str] = ()) -> Split:
     Parameters
     ----------
     runs : sequence of Run
+        Every run.
     holdout : sequence of str
         Names of runs to hold out; by default the run whose motion is nearest to the others', so
         that it is judged on what can be learnt from them.

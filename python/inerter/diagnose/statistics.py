@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def block_squares(
-    residual: Sequence[Array], blocks: Sequence[tuple[int, NDArray]]
-) -> Array:
+def block_squares(residual: Sequence[Array], blocks: Sequence[tuple[int, NDArray]]) -> Array:
     """Sum of squared residuals over each block, shape (number of blocks,)."""
     return np.array([float(np.sum(residual[i][index] ** 2)) for i, index in blocks])
 
@@ -36,6 +34,8 @@ def win_shares(squares: Sequence[Array], seed: int = 0, draws: int = 2000) -> Ar
     ----------
     squares : sequence of ndarray (n,)
         Block sums of squared errors of each model, the same blocks.
+    seed, draws : int
+        Of the resampling.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """Diagnosis of a bench table: amplitudes of force and acceleration at a list of frequencies.
 
-A model's amplitude is that of the fundamental of its force along x = X sin(w t) in steady state. The
-errors of such tables grow with the force, so fits and decisions use relative errors; a constant force
-and a delay leave no trace in amplitudes and cannot be found.
+A model's amplitude is that of the fundamental of its force along x = X sin(w t) in steady state.
+The errors of such tables grow with the force, so fits and decisions use relative errors; a constant
+force and a delay leave no trace in amplitudes and cannot be found.
 """
 
 from __future__ import annotations
@@ -38,8 +38,12 @@ Progress = Callable[[str], None]
 
 # effects that leave a trace in amplitudes and have few enough parameters for a table
 TRIED = (
-    "inertance_error", "viscous_friction", "coulomb_friction", "parallel_stiffness",
-    "quadratic_damping", "load_dependent_friction",
+    "inertance_error",
+    "viscous_friction",
+    "coulomb_friction",
+    "parallel_stiffness",
+    "quadratic_damping",
+    "load_dependent_friction",
 )
 SAMPLES_PER_PERIOD = 400
 # log-likelihood ratio (left-out errors) that a richer model needs: about one false alarm in 1000
@@ -98,7 +102,10 @@ class _Table:
         """Force amplitudes of a model [N], shape (n,)."""
         device = model.device()
         return np.array(
-            [amplitude(device, f, a) for f, a in zip(self.frequency, self.acceleration, strict=True)]
+            [
+                amplitude(device, f, a)
+                for f, a in zip(self.frequency, self.acceleration, strict=True)
+            ]
         )
 
     def error(self, model: Model) -> Array:
@@ -122,13 +129,16 @@ class _Table:
             lambda variables: self.error(at(variables))[mask], inside, bounds=bounds
         )
         freedom = max(int(mask.sum()) - len(how), 1)
-        size = np.array([
-            model.values[n] if c.logarithmic else c.size
-            for n, c in zip(model.free, how, strict=True)
-        ])
+        size = np.array(
+            [
+                model.values[n] if c.logarithmic else c.size
+                for n, c in zip(model.free, how, strict=True)
+            ]
+        )
         covariance = (
             np.linalg.pinv(solution.jac.T @ solution.jac)
-            * (2 * solution.cost / freedom) * np.outer(size, size)
+            * (2 * solution.cost / freedom)
+            * np.outer(size, size)
         )
         best = at(solution.x)
         return Fit(best, [self.error(best)], covariance, int(solution.nfev))
@@ -171,7 +181,9 @@ def diagnose_table(
     else:
         values = {k: float(v) for k, v in device.given.items() if k != "friction"}
         free = () if "inertance" in values else ("inertance",)
-        baseline = Model(device.friction, {"inertance": start, "transition_velocity": transition, **values}, free)
+        baseline = Model(
+            device.friction, {"inertance": start, "transition_velocity": transition, **values}, free
+        )
     before = table.fit(baseline, fit_mask)
     fit, squares = before, table.left_out(before.model)
     findings: list[Finding] = []
@@ -185,9 +197,7 @@ def diagnose_table(
         if rmse_after >= rmse_before:
             break
         fit, squares = after, after_squares
-        findings.append(
-            Finding(effect, None, confidence, {}, rmse_before, rmse_after, "", rivals)
-        )
+        findings.append(Finding(effect, None, confidence, {}, rmse_before, rmse_after, "", rivals))
     values = _parameters(fit)
     findings = [
         replace(f, parameters={n: values[n] for n in EFFECTS[f.effect].parameters if n in values})
@@ -210,7 +220,8 @@ def _best(
             after = table.fit(replace(start, free=free), ~table.holdout)
             tried.append((candidate.effect, after, table.left_out(after.model)))
     good = [
-        one for one in tried
+        one
+        for one in tried
         if squares.size * np.log(squares.sum() / one[2].sum()) > REQUIRED_EVIDENCE
     ]
     if not good:
@@ -219,7 +230,8 @@ def _best(
     others = [one for one in tried if one[0] != effect]
     shares = win_shares([best, squares, *(one[2] for one in others)])
     rivals = [
-        Rival(one[0], float(share)) for one, share in zip(others, shares[2:], strict=True)
+        Rival(one[0], float(share))
+        for one, share in zip(others, shares[2:], strict=True)
         if share > 0.005
     ]
     return effect, after, best, float(shares[0]), sorted(rivals, key=lambda r: -r.confidence)
@@ -234,8 +246,12 @@ def _parameters(fit: Fit) -> dict[str, ParameterValue]:
 
 
 def _diagnosis(
-    tables: Sequence[BenchTable], table: _Table, before: Fit, fit: Fit,
-    findings: list[Finding], values: dict[str, ParameterValue],
+    tables: Sequence[BenchTable],
+    table: _Table,
+    before: Fit,
+    fit: Fit,
+    findings: list[Finding],
+    values: dict[str, ParameterValue],
 ) -> Diagnosis:
     spread = float(np.std(table.force[table.holdout])) or 1.0
 
@@ -246,19 +262,27 @@ def _diagnosis(
     extended = accuracy(fit.model)
     relative = float(np.sqrt(np.mean(fit.residual[0] ** 2)))
     remains = Unexplained(
-        False, 0.0, [],
+        False,
+        0.0,
+        [],
         f"The amplitudes scatter by {100 * relative:.1f} % about the model; a table cannot tell "
         "noise from structure further, a time record can.",
     )
     device = fit.model.device()
-    engine = np.array([
-        _fundamental(simulate_along(device, *_sine(f, a))["total"])
-        for f, a in zip(table.frequency, table.acceleration, strict=True)
-    ])
+    engine = np.array(
+        [
+            _fundamental(simulate_along(device, *_sine(f, a))["total"])
+            for f, a in zip(table.frequency, table.acceleration, strict=True)
+        ]
+    )
     mujoco = float(np.sqrt(np.mean((table.force - engine)[table.holdout] ** 2)))
     points = TablePoints(
-        table.frequency, table.acceleration, table.force, table.predict(before.model),
-        table.predict(fit.model), table.holdout,
+        table.frequency,
+        table.acceleration,
+        table.force,
+        table.predict(before.model),
+        table.predict(fit.model),
+        table.holdout,
     )
     held = ", ".join(f"{f:g}" for f in table.frequency[table.holdout])
     diagnosis = Diagnosis(
@@ -266,9 +290,19 @@ def _diagnosis(
             RecordSummary(t.name, t.samples, 0.0, "fit", [vars(w) for w in t.warnings])
             for t in tables
         ],
-        accuracy(before.model), findings, extended, relative * float(np.mean(table.force)),
-        remains, {"mujoco": mujoco, "exudyn": None, "reference": None}, "", values,
-        {"split": f"held out: the points at {held} Hz", "held_out_samples": int(table.holdout.sum())},
-        [], points,
+        accuracy(before.model),
+        findings,
+        extended,
+        relative * float(np.mean(table.force)),
+        remains,
+        {"mujoco": mujoco, "exudyn": None, "reference": None},
+        "",
+        values,
+        {
+            "split": f"held out: the points at {held} Hz",
+            "held_out_samples": int(table.holdout.sum()),
+        },
+        [],
+        points,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))

@@ -37,7 +37,10 @@ def unexplained(
 
     Parameters
     ----------
-    runs, split : what was fitted, and the parts of it.
+    runs : sequence of Run
+        What was fitted.
+    split : Split
+        The parts of it.
     residual : list of ndarray
         Measured minus predicted force in the fits' band [N].
     floor, raw : float
@@ -64,9 +67,12 @@ def unexplained(
     if not depends and _memory(residual, held) > 0.5 and fraction > REQUIRED_EXCESS:
         depends.append("history")
     significant = fraction > REQUIRED_EXCESS and bool(depends)
-    return Unexplained(significant, fraction, depends, _summary(
-        significant, fraction, depends, shares, line, raw, floor
-    ))
+    return Unexplained(
+        significant,
+        fraction,
+        depends,
+        _summary(significant, fraction, depends, shares, line, raw, floor),
+    )
 
 
 def _quantities(runs: Sequence[Run]) -> dict[str, list[Array]]:
@@ -84,7 +90,9 @@ def _quantities(runs: Sequence[Run]) -> dict[str, list[Array]]:
 
 
 def _predicted_share(
-    values: Sequence[Array], residual: Sequence[Array], fit: Sequence[NDArray],
+    values: Sequence[Array],
+    residual: Sequence[Array],
+    fit: Sequence[NDArray],
     held: Sequence[NDArray],
 ) -> float:
     """Share of the held-out residual's power that bin means learnt on the fit data predict."""
@@ -96,8 +104,9 @@ def _predicted_share(
         return 0.0
     edges = np.unique(np.quantile(x, np.linspace(0, 1, BINS + 1)[1:-1]))
     bins = np.digitize(x, edges)
-    means = np.array([y[bins == k].mean() if np.any(bins == k) else 0.0
-                      for k in range(edges.size + 1)])
+    means = np.array(
+        [y[bins == k].mean() if np.any(bins == k) else 0.0 for k in range(edges.size + 1)]
+    )
     power = float(np.sum(y_held**2))
     left = float(np.sum((y_held - means[np.digitize(x_held, edges)]) ** 2))
     return 1 - left / power if power > 0 else 0.0
@@ -136,8 +145,13 @@ def _memory(residual: Sequence[Array], held: Sequence[NDArray]) -> float:
 
 
 def _summary(
-    significant: bool, fraction: float, depends: Sequence[str], shares: dict[str, float],
-    line: float, raw: float, floor: float,
+    significant: bool,
+    fraction: float,
+    depends: Sequence[str],
+    shares: dict[str, float],
+    line: float,
+    raw: float,
+    floor: float,
 ) -> str:
     if not depends:
         return (

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.fft import rfftfreq
 from numpy.typing import NDArray
-from scipy.fft import rfftfreq
 
 from inerter.core import Device
 from inerter.identify.coordinates import Scales
@@ -77,13 +77,14 @@ class Run:
                 for channel in (self.displacement, velocity, self.acceleration)
             ]
             object.__setattr__(self, "_fine", fine)
-        friction = device.along(self.spacing / parts, *self.__dict__["_fine"], state)["friction"]
-        return friction.reshape(n, parts).mean(axis=1)
+        x, v, a = self.__dict__["_fine"]
+        friction = device.along(self.spacing / parts, x, v, a, state)["friction"]
+        return np.asarray(friction.reshape(n, parts).mean(axis=1), float)
 
     @property
     def time(self) -> Array:
         """Times of the samples [s], shape (n,)."""
-        return self.start + self.spacing * np.arange(self.force.size)
+        return self.start + self.spacing * np.arange(self.force.size, dtype=float)
 
 
 def thin(motion: Motion, rate: float | None = None) -> Run:
@@ -125,9 +126,17 @@ def whole(motion: Motion) -> Run:
     """A run at the record's own rate with the force as measured: what figures are reported on."""
     first = max(1, round(0.01 / motion.spacing))
     return Run(
-        motion.name, motion.start, motion.spacing, motion.displacement, motion.velocity,
-        motion.acceleration, motion.force, motion.inner, float(np.mean(motion.force[:first])),
-        np.inf, np.zeros(motion.force.size, bool),
+        motion.name,
+        motion.start,
+        motion.spacing,
+        motion.displacement,
+        motion.velocity,
+        motion.acceleration,
+        motion.force,
+        motion.inner,
+        float(np.mean(motion.force[:first])),
+        np.inf,
+        np.zeros(motion.force.size, bool),
     )
 
 
@@ -151,6 +160,9 @@ def scales(runs: Sequence[Run]) -> Scales:
         return float(np.std(values)) or 1.0
 
     return Scales(
-        size("force"), size("displacement"), size("velocity"), size("acceleration"),
+        size("force"),
+        size("displacement"),
+        size("velocity"),
+        size("acceleration"),
         min(run.cutoff for run in runs),
     )

@@ -1,7 +1,7 @@
 """Coordinates of a fit: what is searched over, and how it becomes the parameters of a device.
 
-Most coordinates are parameters. Where a parameter's effect depends on another one, the coordinate is
-the combination that the data see:
+Most coordinates are parameters. Where a parameter's effect depends on another one, the coordinate
+is the combination that the data see:
 
     static_excess   static_force - coulomb_force                     [N]
     presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]

@@ -232,9 +232,12 @@ class Problem:
         def jacobian(variables: Array) -> Array:
             base, here = at(variables), self._decode(model, variables)
             selected = np.concatenate(self.masks)
-            return np.column_stack(
-                [self._column(name, here, variables, base)[selected] for name in model.free]
-            ) / size
+            return (
+                np.column_stack(
+                    [self._column(name, here, variables, base)[selected] for name in model.free]
+                )
+                / size
+            )
 
         # strictly inside the bounds, as the trust region needs
         inside = np.clip(
@@ -245,7 +248,7 @@ class Problem:
         solution = least_squares(
             lambda variables: self._masked(at(variables)) / size,
             inside,
-            jacobian,
+            jac=jacobian,  # pyright: ignore[reportArgumentType]
             bounds=(lower, upper),
             xtol=1e-7,
             ftol=1e-9,
@@ -275,7 +278,8 @@ class Problem:
         # to coordinates: logarithms scale with the value
         factor = np.array(
             [
-                model.values[name] if (how := coordinate(name, self.scales)).logarithmic
+                model.values[name]
+                if (how := coordinate(name, self.scales)).logarithmic
                 else how.size
                 for name in model.free
             ]

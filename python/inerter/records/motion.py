@@ -2,9 +2,9 @@
 
 The smoother is the minimiser of
 
-    sum (x - x_measured)^2 / s_x^2 + sum (v - v_measured)^2 / s_v^2 + ... + penalty * integral jerk^2
+    sum (x - x_measured)^2 / s_x^2 + sum (v - v_measured)^2 / s_v^2 + ... + weight * integral jerk^2
 
-solved in the frequency domain: a zero-phase low-pass with power response 1 / (1 + (f / f_c)^6), the
+solved in the frequency domain: a zero-phase low-pass with response 1 / (1 + (f / f_c)^6), the
 smoothing spline of order five for uniform samples, which also weighs measured velocity and
 acceleration in where they are there. It is linear: the same low-pass applied to the force leaves
 every linear force law unbiased, however low the cut-off (`lowpass`).
@@ -19,8 +19,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.fft import irfft, rfft, rfftfreq
 from numpy.typing import NDArray
-from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.interpolate import make_interp_spline
 
 from inerter.records.record import Record
@@ -65,7 +65,7 @@ class Motion:
     @property
     def time(self) -> Array:
         """Times of the samples [s], shape (n,)."""
-        return self.start + self.spacing * np.arange(self.force.size)
+        return self.start + self.spacing * np.arange(self.force.size, dtype=float)
 
 
 def uniform(record: Record) -> tuple[float, dict[str, Array]]:
@@ -92,7 +92,7 @@ def uniform(record: Record) -> tuple[float, dict[str, Array]]:
     }
 
 
-def response(frequency: Array, cutoff: float) -> Array:
+def response(frequency: NDArray[np.floating], cutoff: float) -> Array:
     """Amplitude response of the smoother at frequencies [Hz]."""
     return 1 / (1 + (frequency / cutoff) ** 6)
 
@@ -176,8 +176,16 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     if not _at_rest(velocity[::-1], spacing):
         inner[n - edge :] = False
     return Motion(
-        record.name, float(record.time[0]), spacing, displacement, velocity, acceleration,
-        channels["force"], cutoff, inner, _velocity_noise(channels["displacement"], spacing, cutoff),
+        record.name,
+        float(record.time[0]),
+        spacing,
+        displacement,
+        velocity,
+        acceleration,
+        channels["force"],
+        cutoff,
+        inner,
+        _velocity_noise(channels["displacement"], spacing, cutoff),
     )
 
 

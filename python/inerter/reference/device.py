@@ -5,8 +5,9 @@
 
 The second part of F_b keeps the kinetic energy b(x) v^2 / 2; q `inertance_gradient` [1/m],
 r `inertance_curvature` [1/m^2].
-Sign: x = x2 - x1 (length minus rest_length), positive = longer; F is the force that lengthens the device (tension positive)
-and acts on the bodies as -F along the line. By hand: b = 2 kg, a = 3 m/s^2 gives F = +6 N.
+Sign: x = x2 - x1 (length minus rest_length), positive = longer; F is the force that lengthens the
+device (tension positive) and acts on the bodies as -F along the line. By hand: b = 2 kg,
+a = 3 m/s^2 gives F = +6 N.
 Each term's law, range and source stand in its own file in `laws/`.
 Not modelled: anything in series with the inertance (shaft twist, backlash, compressible fluid).
 """
@@ -24,9 +25,9 @@ from .laws import FRICTION, FrictionParameters, Quantity, load, parallel, parame
 class ReferenceDevice(FrictionParameters):
     """All parameters of one device; SI units, every default harmless.
 
-    Arguments of the methods: x [m] the length, from which `rest_length` is taken, v [m/s], a [m/s^2], z [m] are numbers or arrays that
-    broadcast together; results have their common shape. `z` is the friction law's state; a law
-    without one (`nstate == 0`) ignores it.
+    Arguments of the methods: x [m] the length, from which `rest_length` is taken, v [m/s],
+    a [m/s^2], z [m] are numbers or arrays that broadcast together; results have their common
+    shape. `z` is the friction law's state; a law without one (`nstate == 0`) ignores it.
 
     Raises
     ------

@@ -51,8 +51,12 @@ def loop_figure(diagnosis: Diagnosis, path_png: Path) -> None:
     time = run.time[part] - run.time[part][0]
     forces = {"measured": run.force, "before": run.baseline, "after": run.extended}
     for color, (name, width) in _LINES.items():
-        style: dict[str, Any] = {"color": LIGHT[color], "linewidth": width, "label": name,
-                                 "solid_joinstyle": "round"}
+        style: dict[str, Any] = {
+            "color": LIGHT[color],
+            "linewidth": width,
+            "label": name,
+            "solid_joinstyle": "round",
+        }
         left.plot(time, forces[color][part], **style)
         right.plot(run.velocity[part], forces[color][part], **style)
     left.set_xlabel("time [s]")
@@ -64,13 +68,21 @@ def loop_figure(diagnosis: Diagnosis, path_png: Path) -> None:
     right.tick_params(labelleft=False)
     right.set_ylim(left.get_ylim())
     figure.legend(
-        *left.get_legend_handles_labels(), loc="outside upper left", ncols=3, frameon=False,
-        fontsize=10, handlelength=1.6, borderaxespad=0.3,
+        *left.get_legend_handles_labels(),
+        loc="outside upper left",
+        ncols=3,
+        frameon=False,
+        fontsize=10,
+        handlelength=1.6,
+        borderaxespad=0.3,
     )
     figure.suptitle(
         f"rms error on held-out data: {text.number(diagnosis.baseline.rmse)} N"
         f" → {text.number(diagnosis.extended.rmse)} N",
-        x=0.99, ha="right", fontsize=10.5, color=LIGHT["text"],
+        x=0.99,
+        ha="right",
+        fontsize=10.5,
+        color=LIGHT["text"],
     )
     picture = BytesIO()
     FigureCanvasAgg(figure).print_png(picture, metadata={"Software": None})

@@ -30,7 +30,9 @@ def table_plots(table: TablePoints) -> dict[str, go.Figure]:
 
 
 def _against_frequency(
-    table: TablePoints, title: str, value: Callable[[np.ndarray], np.ndarray],
+    table: TablePoints,
+    title: str,
+    value: Callable[[np.ndarray], np.ndarray],
     measured: bool = True,
 ) -> go.Figure:
     plot = figure("frequency [Hz]", title)
@@ -38,15 +40,25 @@ def _against_frequency(
     if len(f) and np.min(f) > 0 and np.max(f) / np.min(f) > 20:
         plot.update_layout(xaxis=log_axis(f))
     if measured:
-        points(plot, f[~table.holdout], value(table.force)[~table.holdout], "measured",
-               "measured", 9)
-        points(plot, f[table.holdout], value(table.force)[table.holdout], "measured",
-               "measured, held out", 10, symbol="circle-open", marker_line_width=2.5)
+        points(
+            plot, f[~table.holdout], value(table.force)[~table.holdout], "measured", "measured", 9
+        )
+        points(
+            plot,
+            f[table.holdout],
+            value(table.force)[table.holdout],
+            "measured",
+            "measured, held out",
+            10,
+            symbol="circle-open",
+            marker_line_width=2.5,
+        )
     # a line through a model's values has a meaning only with one value per frequency
     order = np.argsort(f, kind="stable")
     joined = len(np.unique(f)) == len(f)
     for name, color, force in (
-        ("before", "before", table.baseline), ("after", "after", table.extended)
+        ("before", "before", table.baseline),
+        ("after", "after", table.extended),
     ):
         if joined:
             line(plot, f[order], value(force)[order], color, name)
@@ -70,7 +82,11 @@ def cutoff_plot(method: dict[str, Any]) -> go.Figure | None:
         nearest = int(np.argmin(np.abs(np.log(x / chosen)))) if chosen > 0 else 0
         points(plot, x[nearest : nearest + 1], y[nearest : nearest + 1], "after", "chosen", 12)
         plot.add_annotation(
-            x=float(np.log10(x[nearest])), y=float(y[nearest]), text="chosen", showarrow=False,
-            yshift=-16, font={"color": LIGHT["after"], "size": 12},
+            x=float(np.log10(x[nearest])),
+            y=float(y[nearest]),
+            text="chosen",
+            showarrow=False,
+            yshift=-16,
+            font={"color": LIGHT["after"], "size": 12},
         )
     return plot

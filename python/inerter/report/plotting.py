@@ -51,31 +51,52 @@ def figure(x_title: str, y_title: str, **layout: Any) -> go.Figure:
 
 
 def line(
-    plot: go.Figure, x: ArrayLike, y: ArrayLike, color: str, name: str, width: float = 1.5,
+    plot: go.Figure,
+    x: ArrayLike,
+    y: ArrayLike,
+    color: str,
+    name: str,
+    width: float = 1.5,
     **options: Any,
 ) -> None:
     """Add a line; samples that are not finite are left out."""
     xs, ys = _finite(x, y)
     plot.add_trace(
         go.Scatter(
-            x=xs, y=ys, mode="lines", name=html.escape(name),
+            x=xs,
+            y=ys,
+            mode="lines",
+            name=html.escape(name),
             line={"color": LIGHT[color], "width": width},
-            hovertemplate="%{x:.4g}, %{y:.4g}", **options,
+            hovertemplate="%{x:.4g}, %{y:.4g}",
+            **options,
         )
     )
 
 
 def points(
-    plot: go.Figure, x: ArrayLike, y: ArrayLike, color: str, name: str, size: float = 3,
-    opacity: float = 1.0, symbol: str = "circle", **options: Any,
+    plot: go.Figure,
+    x: ArrayLike,
+    y: ArrayLike,
+    color: str,
+    name: str,
+    size: float = 3,
+    opacity: float = 1.0,
+    symbol: str = "circle",
+    **options: Any,
 ) -> None:
     """Add points; samples that are not finite are left out."""
     xs, ys = _finite(x, y)
     plot.add_trace(
         go.Scatter(
-            x=xs, y=ys, mode="markers", name=html.escape(name), opacity=opacity,
+            x=xs,
+            y=ys,
+            mode="markers",
+            name=html.escape(name),
+            opacity=opacity,
             marker={"color": LIGHT[color], "size": size, "symbol": symbol},
-            hovertemplate="%{x:.4g}, %{y:.4g}", **options,
+            hovertemplate="%{x:.4g}, %{y:.4g}",
+            **options,
         )
     )
 

@@ -64,9 +64,16 @@ def _over_time(run: RunCurves, limit: int) -> go.Figure:
         plot.update_layout(
             shapes=[
                 {
-                    "type": "rect", "xref": "x", "yref": "paper", "y0": 0, "y1": 1,
-                    "x0": float(run.time[first]), "x1": float(run.time[last]),
-                    "fillcolor": LIGHT["shade"], "opacity": 0.18, "line": {"width": 0},
+                    "type": "rect",
+                    "xref": "x",
+                    "yref": "paper",
+                    "y0": 0,
+                    "y1": 1,
+                    "x0": float(run.time[first]),
+                    "x1": float(run.time[last]),
+                    "fillcolor": LIGHT["shade"],
+                    "opacity": 0.18,
+                    "line": {"width": 0},
                     "layer": "below",
                 }
                 for first, last in thinning.stretches(run.holdout)[:100]
@@ -89,7 +96,9 @@ def _loops(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
         plot = figure(title, "force [N]")
         _room(plot, np.concatenate([x[keep] for keep in keeps]))
         for name, force, width in (
-            ("measured", run.force, 3.0), (BEFORE, run.baseline, 1.5), (AFTER, run.extended, 1.5)
+            ("measured", run.force, 3.0),
+            (BEFORE, run.baseline, 1.5),
+            (AFTER, run.extended, 1.5),
         ):
             for keep in keeps:
                 line(plot, x[keep], force[keep], name, name, width)
@@ -118,7 +127,8 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
     ):
         plot = figure(title, "error [N]")
         for name, color, force in (
-            (BEFORE, "before", run.baseline), (AFTER, "after", run.extended)
+            (BEFORE, "before", run.baseline),
+            (AFTER, "after", run.extended),
         ):
             error = run.force - force
             points(plot, x[some], error[some], color, name, 3, 0.28, hoverinfo="skip")

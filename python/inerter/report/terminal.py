@@ -22,14 +22,16 @@ def summary(diagnosis: Diagnosis) -> RenderableType:
     before, after = diagnosis.baseline.rmse, diagnosis.extended.rmse
     numbers = Text.assemble(
         "rms force error on held-out data  ",
-        (f"{text.number(before)} N", "bold yellow"), " → ",
+        (f"{text.number(before)} N", "bold yellow"),
+        " → ",
         (f"{text.number(after)} N", "bold cyan"),
         f"   ({text.percent(1 - after / before if before > 0 else 0.0)} less)",
     )
     parts: list[RenderableType] = [
         Panel(
             Group(numbers, Text(), _plain(diagnosis.verdict)),
-            title="Diagnosis", title_align="left",
+            title="Diagnosis",
+            title_align="left",
         )
     ]
     if diagnosis.findings:
@@ -84,8 +86,15 @@ def _records(diagnosis: Diagnosis) -> Table:
 
 
 def _table(title: str) -> Table:
-    return Table(title=title, title_justify="left", title_style="bold", box=None, padding=(0, 2),
-                 header_style="dim", expand=True)
+    return Table(
+        title=title,
+        title_justify="left",
+        title_style="bold",
+        box=None,
+        padding=(0, 2),
+        header_style="dim",
+        expand=True,
+    )
 
 
 def _plain(words: str, style: str = "") -> Text:

@@ -1,0 +1,1 @@
+"""Benchmarks: comparisons taken in turn within one run, as ratios. Run `make bench`."""
