@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from inerter.records import Record
-from inerter.records.motion import lowpass, response, smooth, uniform
+from inerter.records.motion import lowpass, response, smooth, uniform, white_noise
 
 H, N = 1e-3, 8000
 TIME = H * np.arange(N)
@@ -101,3 +101,13 @@ def test_drift_and_offset_pass_unchanged() -> None:
     np.testing.assert_allclose(motion.displacement, 3.0 + 0.2 * TIME, atol=1e-12)
     np.testing.assert_allclose(motion.velocity, 0.2, atol=1e-10)
     np.testing.assert_allclose(motion.acceleration, 0, atol=1e-8)
+
+
+def test_noise_is_seen_beneath_a_force_that_jumps() -> None:
+    """0.2 N of white noise on a square wave, at two rates."""
+    random = np.random.default_rng(7)
+    for rate in (250, 2000):
+        t = np.arange(0, 30, 1 / rate)
+        force = 10 * np.sign(np.sin(2 * np.pi * 0.4 * t)) + 50 * np.sin(7 * t)
+        found = white_noise(force + random.normal(0, 0.2, t.size))
+        assert found == pytest.approx(0.2, rel=0.15)

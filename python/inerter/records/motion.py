@@ -192,10 +192,11 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
 def white_noise(values: Array) -> float:
     """Rms of white noise on a channel, from the upper third of its spectrum.
 
-    Median over short segments, so that the few with something sudden do not count. A channel that
-    was filtered before it was stored has no noise there: then this is too low.
+    A low quantile over short segments, so that the many with something sudden in them, such as a
+    reversal of friction, do not count. A channel that was filtered before it was stored has no
+    noise there: then this is too low.
     """
-    length = 128
+    length, quantile = 64, 0.2
     usable = values.size // length * length
     if not usable:
         return 0.0
@@ -203,8 +204,10 @@ def white_noise(values: Array) -> float:
     ends = segments[:, :1] + (segments[:, -1:] - segments[:, :1]) * np.linspace(0, 1, length)
     window = np.hanning(length)
     power = np.abs(rfft((segments - ends) * window, axis=1)) ** 2 / np.sum(window**2)
-    upper = np.median(power[:, 2 * power.shape[1] // 3 : -1], axis=0)
-    return float(np.sqrt(np.mean(upper) / np.log(2)))
+    upper = np.quantile(power[:, 2 * power.shape[1] // 3 : -1], quantile, axis=0)
+
+    # the power of white noise is distributed exponentially
+    return float(np.sqrt(np.mean(upper) / -np.log(1 - quantile)))
 
 
 def _velocity_noise(displacement: Array, spacing: float, cutoff: float) -> float:
