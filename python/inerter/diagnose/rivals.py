@@ -83,7 +83,9 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     better = next(
         (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect)), None
     )
-    return Standing(float(shares[0]), rivals, better)
+    # another law of the same effect is a doubt about the law, not about the effect
+    same = sum(rival.confidence for rival in rivals if rival.effect == effect)
+    return Standing(min(float(shares[0]) + same, 1.0), rivals, better)
 
 
 def _takes_precedence(rival: Scored, final: Scored, effect: str) -> bool:

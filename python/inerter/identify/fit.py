@@ -275,6 +275,11 @@ class Problem:
         count = len(blocks)
         covariance = bread @ (scores.T @ scores) @ bread * count / max(count - 1, 1)
 
+        # a coordinate without effect on the force is not known at all, whatever the sandwich says
+        effect = np.sum(jacobian**2, axis=0)
+        least = np.mean(flat**2) / np.maximum(effect, 1e-12 * np.max(effect) + 1e-300)
+        covariance[np.diag_indices_from(covariance)] = np.maximum(np.diag(covariance), least)
+
         # to coordinates: logarithms scale with the value
         factor = np.array(
             [
