@@ -30,7 +30,7 @@ PRECEDENCE = (
 EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005
 # rivals that are worth cross-validating
-SHORTLIST = 4
+SHORTLIST = 3
 # share of the rms error by which a rival with more parameters has to be better
 HANDICAP = 0.03
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -44,11 +45,20 @@ class Model:
 
     def device(self) -> Device:
         """The device these coordinates stand for."""
-        values = {name: float(value) for name, value in device_values(self.values).items()}
-        return Device(friction=self.friction, **values)
+        return self._device
 
     def without_friction(self) -> Device:
         """The device's terms that are smooth in the motion."""
+        return self._smooth_device
+
+    # worked out once, for all runs
+    @cached_property
+    def _device(self) -> Device:
+        values = {name: float(value) for name, value in device_values(self.values).items()}
+        return Device(friction=self.friction, **values)
+
+    @cached_property
+    def _smooth_device(self) -> Device:
         names = ("inertance", "inertance_gradient", "inertance_curvature", *LINEAR, "rest_length",
                  "stiffness_cubic")  # fmt: skip
         return Device(**{n: float(self.values[n]) for n in names if n in self.values})
