@@ -8,14 +8,16 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, NoReturn
+from warnings import catch_warnings, simplefilter
 
+import numpy as np
 import typer
 from rich.console import Console
 from rich.table import Table
 
 from inerter.core import DeviceError, parameters
 from inerter.diagnose import Diagnosis, diagnose
-from inerter.diagnose.output import write_outputs
+from inerter.diagnose.output import refuse_folder, write_outputs
 from inerter.models import data_path
 from inerter.plugin import plugin_path
 from inerter.records import RecordError
@@ -92,7 +94,10 @@ def _diagnose(
     as_json: bool,
 ) -> Diagnosis:
     try:
-        with _progress(as_json) as progress:
+        refuse_folder(folder)
+        # a user's data that overflow are judged by what comes out, not by numpy's warnings
+        with _progress(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
+            simplefilter("ignore", RuntimeWarning)
             result = diagnose(record, device, model, holdout, progress)
             write_outputs(result, folder)
     except (RecordError, DeviceError, ValueError) as error:

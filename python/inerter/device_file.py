@@ -52,6 +52,16 @@ def read_device(path: Path) -> Device:
         raise DeviceError(f"{path}: {error}") from None
 
 
+def read_delay(path: Path) -> float:
+    """Time by which the force channel was late where the device was identified [s]; usually 0."""
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    channels = content.get("channels", {})
+    delay = channels.get("force_delay", 0.0) if isinstance(channels, dict) else channels
+    if isinstance(delay, bool) or not isinstance(delay, (int, float)) or not abs(delay) < 1:
+        raise DeviceError(f"{path}: force_delay is {delay!r}; give seconds, between -1 and 1")
+    return float(delay)
+
+
 def _with_unit(path: Path, key: str, text: str) -> float:
     """A text with a unit in the parameter's SI unit."""
     import pint

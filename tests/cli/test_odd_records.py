@@ -133,7 +133,6 @@ def test_exact_data_bring_no_finding(tmp_path: Path) -> None:
     assert done.result["baseline"]["device"]["inertance"] == pytest.approx(100, rel=1e-3)
 
 
-@pytest.mark.xfail(strict=True, reason="IndexError: no cut-off leaves a sample")
 @pytest.mark.parametrize("odd", ["60 samples", "drifts away"])
 def test_record_that_no_cutoff_suits_is_refused(tmp_path: Path, odd: str) -> None:
     run = made(seconds=6)
@@ -145,7 +144,6 @@ def test_record_that_no_cutoff_suits_is_refused(tmp_path: Path, odd: str) -> Non
     assert done.status == 2
 
 
-@pytest.mark.xfail(strict=True, reason="called right although it misses all of the force")
 def test_force_of_the_wrong_sign_is_not_called_right(tmp_path: Path) -> None:
     run = made(seconds=6)
     run = run._replace(force=-run.force)
@@ -155,7 +153,6 @@ def test_force_of_the_wrong_sign_is_not_called_right(tmp_path: Path) -> None:
     assert "simulation is right" not in done.result["verdict"]
 
 
-@pytest.mark.xfail(strict=True, reason="told that there is no such run")
 def test_a_held_out_run_that_repeats_another_is_told_so(tmp_path: Path) -> None:
     runs = {"1": made(), "2": made(seed=1), "3": made()}
     record = written(tmp_path / "r.csv", runs)
@@ -164,7 +161,6 @@ def test_a_held_out_run_that_repeats_another_is_told_so(tmp_path: Path) -> None:
     assert "no such run" not in done.stderr
 
 
-@pytest.mark.xfail(strict=True, reason="right to within 236 % of the force's variation")
 def test_a_table_that_fits_badly_is_not_called_right(tmp_path: Path) -> None:
     table = tmp_path / "t.csv"
     table.write_text(

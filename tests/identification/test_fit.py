@@ -26,7 +26,7 @@ def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> Run:
     x, v, a = motion(TIME)
     force = device.along(H, *motion(TIME - delay))["total"] + random.normal(0, noise, N)
     everything = np.ones(N, bool)
-    return Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf, ~everything)
+    return Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf)
 
 
 def problem(one: Run) -> Problem:

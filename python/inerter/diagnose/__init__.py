@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from inerter.core import Device
-from inerter.device_file import read_device
+from inerter.device_file import read_delay, read_device
 from inerter.diagnose.bench import diagnose_bench
 from inerter.diagnose.result import Diagnosis, Finding
 from inerter.diagnose.table import diagnose_table
@@ -45,7 +45,10 @@ def diagnose(
     """
     if device is not None and model is not None:
         raise ValueError("--device and --model are both given; the baseline can be only one")
-    baseline = read_device(device) if isinstance(device, Path) else device
+    if isinstance(device, Path):
+        baseline, delay = read_device(device), read_delay(device)
+    else:
+        baseline, delay = device, 0.0
     if model is not None:
         baseline = device_of_model(model)
     progress("reading the records")
@@ -53,7 +56,7 @@ def diagnose(
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):
-        return diagnose_bench(bench, baseline, holdout, progress)
+        return diagnose_bench(bench, baseline, holdout, progress, delay)
     if len(tables) == len(read):
         if holdout:
             raise ValueError("--holdout names runs, and a table has none; leave it out")

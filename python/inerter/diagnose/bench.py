@@ -44,6 +44,7 @@ def diagnose_bench(
     device: Device | None = None,
     holdout: Sequence[str] = (),
     progress: Progress = lambda text: None,
+    delay: float = 0.0,
 ) -> Diagnosis:
     """What a simulation of the device lacks, on data it has not seen.
 
@@ -58,6 +59,8 @@ def diagnose_bench(
         Names of runs to hold out.
     progress : callable
         Told what is being done, a line each.
+    delay : float
+        Time by which the force channel is known to be late [s].
 
     Raises
     ------
@@ -65,7 +68,7 @@ def diagnose_bench(
         Runs that cannot be split or do not move.
     """
     with threadpool_limits(limits=1, user_api="blas"):
-        return _Bench(records, device, holdout, progress).run()
+        return _Bench(records, device, holdout, progress, delay).run()
 
 
 def baseline_model(device: Device | None, sizes: Scales) -> Model:
@@ -98,6 +101,13 @@ def _refuse_unusable(records: Sequence[Record]) -> None:
                     f"{record.name}: column '{name}' {what} ({values[0]:g} throughout); leave this "
                     "run out"
                 )
+        x = record.displacement
+        away = x - np.linspace(x[0], x[-1], x.size)
+        if np.ptp(away) < 1e-6 * np.ptp(x):
+            raise ValueError(
+                f"{record.name}: column 'displacement' grows evenly and never accelerates, which "
+                "says nothing about an inerter; leave this run out"
+            )
 
 
 class _Bench:
@@ -109,29 +119,30 @@ class _Bench:
         device: Device | None,
         holdout: Sequence[str],
         progress: Progress,
+        delay: float,
     ) -> None:
         self.all_records = list(records)
         self.records = [
             r for r in records if not any(w.code == "duplicate_record" for w in r.warnings)
         ]
         self.progress = progress
+        for record in records:
+            if record.name in holdout and record not in self.records:
+                raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
         _refuse_unusable(self.records)
         progress("smoothing: choosing the cut-off")
         self.preparation: Preparation = prepare(self.records)
         self.runs: list[Run] = [thin(motion) for motion in self.preparation.motions]
         self.whole: list[Run] = [whole(motion) for motion in self.preparation.motions]
-        for run in self.runs:
-            if run.inner.sum() < 50:
-                raise ValueError(
-                    f"{run.name}: {run.time[-1] - run.start:.3g} s are too short; a record has to "
-                    f"last many times the smoother's memory of {1 / run.cutoff:.2g} s"
-                )
         self.split: Split = split(self.runs, holdout)
         held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
         self.full = split(self.whole, held)
         self.band = Problem(self.runs, self.split.holdout, scales(self.runs))
         self.raw = Problem(self.whole, self.full.holdout, self.band.scales)
         self.baseline = baseline_model(device, self.band.scales)
+        if delay:
+            stated = {**self.baseline.values, "delay": delay}
+            self.baseline = replace(self.baseline, values=stated)
         self.search = Search(self.runs, self.split, self.baseline, progress)
 
     def run(self) -> Diagnosis:
@@ -245,11 +256,11 @@ class _Bench:
             [run.force[m] for run, m in zip(self.whole, self.raw.masks, strict=True)]
         )
         given = model.device().given
-        return Accuracy(given, rmse, rmse / float(np.std(force)), model.delay)
+        return Accuracy(given, rmse, rmse / (float(np.std(force)) or 1.0), model.delay)
 
     def _diagnosis(self, before: Fit, final: Fit, findings: list[Finding]) -> Diagnosis:
         baseline, extended = self._accuracy(before.model), self._accuracy(final.model)
-        floor = self.preparation.noise_floor
+        floor = self._noise_floor(final.model)
         remains = unexplained(
             self.runs, self.split, self.band.residual(final.model), floor, extended.rmse
         )
@@ -281,6 +292,15 @@ class _Bench:
         )
         return replace(diagnosis, verdict=wording.verdict(diagnosis))
 
+    def _noise_floor(self, model: Model) -> float:
+        """Noise of the force, and of the acceleration times the inertance, rms [N]."""
+        force = self.preparation.noise_floor
+        if self.preparation.channels:
+            # the noise of a fused acceleration is not known
+            return force
+        variances = [motion.acceleration_noise**2 for motion in self.preparation.motions]
+        return float(np.hypot(force, model.values["inertance"] * np.sqrt(np.mean(variances))))
+
     def _method(self) -> dict:
         p = self.preparation
         return {
@@ -288,6 +308,7 @@ class _Bench:
             "cutoffs_tried": [float(value) for value in p.cutoffs],
             "force_error_at_cutoffs": [float(value) for value in p.errors],
             "channels": ["displacement", *p.channels],
+            "one_tone": self.band.scales.one_tone,
             "split": self.split.description,
             "held_out_samples": sum(int(mask.sum()) for mask in self.raw.masks),
         }

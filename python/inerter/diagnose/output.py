@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import shutil
@@ -13,6 +14,15 @@ from inerter.device_file import device_text
 from inerter.diagnose.result import Diagnosis
 from inerter.report.page import write_report
 from inerter.rig import device_mjcf
+
+
+def refuse_folder(folder: Path) -> None:
+    """Raise OSError where a folder cannot be made or written, before the work is done."""
+    existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not existing.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, "not a folder", str(existing))
+    if not os.access(existing, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, "no permission to write", str(existing))
 
 
 def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
@@ -35,11 +45,12 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         device, comments, diagnosis.extended.delay, f"identified by inerter diagnose from {names}"
     )
     model = device_mjcf(device, "identified_device")
+    refuse_folder(folder)
     folder.mkdir(parents=True, exist_ok=True)
     staging = Path(tempfile.mkdtemp(prefix=".diagnosis-", dir=folder))
     try:
         (staging / "diagnosis.json").write_text(
-            json.dumps(diagnosis.json(), indent=2) + "\n", encoding="utf-8"
+            json.dumps(diagnosis.json(), indent=2, allow_nan=False) + "\n", encoding="utf-8"
         )
         (staging / "device.toml").write_text(toml, encoding="utf-8")
         (staging / "model.xml").write_text(model, encoding="utf-8")

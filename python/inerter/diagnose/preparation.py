@@ -19,6 +19,8 @@ TOLERANCE = 0.005
 # ratio of neighbouring cut-offs tried, and the highest one [Hz]
 STEP = 1.3
 HIGHEST = 200.0
+# samples that every run must keep away from its ends
+SMALLEST = 50
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,12 @@ def prepare(records: Sequence[Record]) -> Preparation:
             for use in choices
         ]
     )
+    if not np.isfinite(errors).any():
+        shortest = min(records, key=lambda record: record.duration)
+        raise ValueError(
+            f"{shortest.name}: {shortest.samples} samples over {shortest.duration:.3g} s are too "
+            "few to tell motion from noise; record at least some periods of the motion"
+        )
     best_choice = int(np.argmin(errors.min(axis=1)))
     row = errors[best_choice]
     index = int(np.flatnonzero(row <= row.min() * (1 + TOLERANCE))[0])
@@ -95,6 +103,8 @@ def _dominant_frequency(record: Record) -> float:
 
 def _force_error(motions: Sequence[Motion]) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory."""
+    if min(int(motion.inner.sum()) for motion in motions) < SMALLEST:
+        return np.inf
     x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
     v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
     columns, forces = [], []

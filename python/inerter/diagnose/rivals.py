@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inerter.diagnose.effects import candidates, effects_of, is_distinct, stripped
+from inerter.diagnose.candidates import candidates
+from inerter.diagnose.effects import effects_of, is_distinct, stripped
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import REQUIRED_DISTINCTION, RICH_LAWS, Scored, Search, parallel
 from inerter.diagnose.statistics import advantage, win_shares

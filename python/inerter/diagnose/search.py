@@ -15,9 +15,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from inerter.diagnose.candidates import Candidate, candidates
 from inerter.diagnose.effects import (
-    Candidate,
-    candidates,
     effects_of,
     is_distinct,
     simpler_laws,

@@ -16,7 +16,8 @@ from scipy.optimize import least_squares
 
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
-from inerter.diagnose.effects import EFFECTS, candidates, effects_of
+from inerter.diagnose.candidates import candidates
+from inerter.diagnose.effects import EFFECTS, effects_of
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -189,7 +190,7 @@ def diagnose_table(
     findings: list[Finding] = []
     while len(findings) < 3:
         progress(f"effect {len(findings) + 1}: trying every candidate")
-        step = _best(table, fit, squares)
+        step = _best(table, baseline, fit, squares)
         if step is None:
             break
         effect, after, after_squares, confidence, rivals = step
@@ -209,11 +210,11 @@ def diagnose_table(
 
 
 def _best(
-    table: _Table, fit: Fit, squares: Array
+    table: _Table, baseline: Model, fit: Fit, squares: Array
 ) -> tuple[str, Fit, Array, float, list[Rival]] | None:
     tried = []
     for candidate in candidates(fit.model, table.scales):
-        present = [name for name, _ in effects_of(fit.model, fit.model)]
+        present = [name for name, _ in effects_of(fit.model, baseline)]
         if candidate.effect in TRIED and candidate.effect not in present:
             start = candidate.starts[0]
             free = tuple(name for name in start.free if name not in NUISANCES)
@@ -253,7 +254,7 @@ def _diagnosis(
     findings: list[Finding],
     values: dict[str, ParameterValue],
 ) -> Diagnosis:
-    spread = float(np.std(table.force[table.holdout])) or 1.0
+    spread = float(np.std(table.force)) or 1.0
 
     def accuracy(model: Model) -> Accuracy:
         rmse = table.rmse(model)

@@ -14,7 +14,7 @@ from inerter.identify.bench import Run
 Array = NDArray[np.float64]
 
 # share of the held-out residual's variance that a dependence must predict to be named
-REQUIRED_SHARE = 0.05
+REQUIRED_SHARE = 0.08
 # a residual this much larger than the noise (in variance) is significant
 REQUIRED_EXCESS = 0.2
 BINS = 16

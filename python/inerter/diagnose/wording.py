@@ -82,9 +82,40 @@ def evidence(finding: Finding) -> str:
     return text + "."
 
 
+# a simulation that misses less of the force's variation than this can be called right
+RIGHT = 0.1
+
+
+def _is_right(diagnosis: Diagnosis) -> bool:
+    """Whether nothing speaks against the simulation, noise apart."""
+    # the floor of a table is its own scatter, which says nothing for the model
+    noise = 0.0 if diagnosis.points else 2 * diagnosis.noise_floor
+    return not diagnosis.unexplained.significant and (
+        diagnosis.baseline.nrmse < RIGHT or diagnosis.baseline.rmse < noise
+    )
+
+
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
+    return _verdict(diagnosis) + (_ONE_TONE if diagnosis.method.get("one_tone") else "")
+
+
+_ONE_TONE = (
+    " The motion is nearly one sine, along which a parallel stiffness is an inertance of the other "
+    "sign: repeat at a second frequency to tell them apart."
+)
+
+
+def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
+    if not diagnosis.findings and not _is_right(diagnosis):
+        warnings = [warning["text"] for record in diagnosis.records for warning in record.warnings]
+        hint = " Mind the warnings: " + "; ".join(warnings) + "." if warnings else ""
+        return (
+            f"The simulation misses the force by {before.rmse:.3g} N rms "
+            f"({100 * before.nrmse:.0f} % of its variation) on held-out data, and no effect tried "
+            f"explains that. {diagnosis.unexplained.summary}{hint}"
+        )
     if not diagnosis.findings:
         return (
             f"The simulation is right as far as these data can tell: it misses the force by "

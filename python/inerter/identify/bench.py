@@ -19,6 +19,8 @@ Array = NDArray[np.float64]
 SAMPLES_PER_PERIOD = 8
 # a velocity within this many standard deviations of its noise may be none
 REST = 4
+# squared correlation of displacement and acceleration from which they count as proportional
+ONE_TONE = 0.98
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,9 @@ class Run:
         Smoothed motion, and the measured force through the same low-pass.
     inner : ndarray of bool (n,)
         False near the ends.
-    resting : ndarray of bool (n,)
-        True in rests, where the velocity is noise: friction without memory is zero there.
+    measured : tuple of ndarray (m,), optional
+        Displacement, velocity, acceleration at the measured rate; the velocity is 0 in rests, where
+        it would be noise.
     thinned : int
         Measured samples per sample here.
     first_force : float
@@ -51,35 +54,25 @@ class Run:
     inner: NDArray[np.bool_]
     first_force: float
     cutoff: float
-    resting: NDArray[np.bool_]
+    measured: tuple[Array, Array, Array] | None = None
     thinned: int = 1
 
-    def lowpass(self, values: Array) -> Array:
-        """The smoother's low-pass at this run's rate, shape (n,) to (n,)."""
-        if "_response" not in self.__dict__:
-            frequency = rfftfreq(2 * values.size - 2, self.spacing)
-            object.__setattr__(self, "_response", response(frequency, self.cutoff))
-        return filtered(values, self.__dict__["_response"])
-
     def friction(self, device: Device, state: float) -> Array:
-        """Friction force of a device averaged over each sample's interval [N], shape (n,).
+        """Friction force of a device through the low-pass of the measured force [N], shape (n,).
 
-        Friction jumps where the velocity changes sign. Taken at thinned samples the jump would be
-        misplaced by up to half an interval, which other effects then make up for; so it is worked
-        out at the measured rate.
+        Friction jumps where the velocity changes sign. It is worked out at the instants of the
+        measured samples, so that a jump falls between the same two samples as in the record;
+        elsewhere it would be misplaced, and other effects would be found to make up for that.
         """
-        n, parts = self.force.size, self.thinned
-        if "_fine" not in self.__dict__:
-            at = (np.arange(n * parts) + 0.5) / parts - 0.5
-            velocity = np.where(self.resting, 0.0, self.velocity)
-            fine = [
-                np.interp(at, np.arange(n), channel)
-                for channel in (self.displacement, velocity, self.acceleration)
-            ]
-            object.__setattr__(self, "_fine", fine)
-        x, v, a = self.__dict__["_fine"]
-        friction = device.along(self.spacing / parts, x, v, a, state)["friction"]
-        return np.asarray(friction.reshape(n, parts).mean(axis=1), float)
+        if self.measured is None:
+            raise ValueError(f"{self.name}: a run at the measured rate has no band")
+        x, v, a = self.measured
+        spacing = self.spacing / self.thinned
+        friction = device.along(spacing, x, v, a, state)["friction"]
+        if "_response" not in self.__dict__:
+            frequency = rfftfreq(2 * x.size - 2, spacing)
+            object.__setattr__(self, "_response", response(frequency, self.cutoff))
+        return filtered(friction, self.__dict__["_response"])[:: self.thinned]
 
     @property
     def time(self) -> Array:
@@ -96,6 +89,7 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
     step = max(1, int(1 / (rate * motion.spacing)))
     first = max(1, round(0.01 / motion.spacing))
     force = lowpass(motion.force, motion.spacing, motion.cutoff)
+    velocity = np.where(_resting(motion), 0.0, motion.velocity)
     return Run(
         motion.name,
         motion.start,
@@ -107,7 +101,7 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
         motion.inner[::step],
         float(np.mean(motion.force[:first])),
         motion.cutoff,
-        _resting(motion)[::step],
+        (motion.displacement, velocity, motion.acceleration),
         step,
     )
 
@@ -136,7 +130,6 @@ def whole(motion: Motion) -> Run:
         motion.inner,
         float(np.mean(motion.force[:first])),
         np.inf,
-        np.zeros(motion.force.size, bool),
     )
 
 
@@ -148,8 +141,12 @@ def head_size(run: Run, share: float) -> int:
 def head(run: Run, share: float) -> Run:
     """The first part of a run."""
     n = head_size(run, share)
-    arrays = ("displacement", "velocity", "acceleration", "force", "inner", "resting")
-    return replace(run, **{name: getattr(run, name)[:n] for name in arrays})
+    arrays = ("displacement", "velocity", "acceleration", "force", "inner")
+    part = {name: getattr(run, name)[:n] for name in arrays}
+    if run.measured is not None:
+        x, v, a = (channel[: (n - 1) * run.thinned + 1] for channel in run.measured)
+        part["measured"] = (x, v, a)
+    return replace(run, **part)
 
 
 def scales(runs: Sequence[Run]) -> Scales:
@@ -159,10 +156,16 @@ def scales(runs: Sequence[Run]) -> Scales:
         values = np.concatenate([getattr(run, channel) for run in runs])
         return float(np.std(values)) or 1.0
 
+    x, a = (
+        np.concatenate([getattr(run, name)[run.inner] for run in runs])
+        for name in ("displacement", "acceleration")
+    )
+    correlation = float(np.corrcoef(x, a)[0, 1]) if np.ptp(x) > 0 and np.ptp(a) > 0 else 0.0
     return Scales(
         size("force"),
         size("displacement"),
         size("velocity"),
         size("acceleration"),
         min(run.cutoff for run in runs),
+        correlation**2 > ONE_TONE,
     )

@@ -21,13 +21,17 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Scales:
-    """Typical sizes of a data set's channels: rms about the mean, SI units; cut-off [Hz]."""
+    """Typical sizes of a data set's channels: rms about the mean, SI units; cut-off [Hz].
+
+    one_tone: the motion is so nearly one sine that displacement and acceleration are proportional.
+    """
 
     force: float
     displacement: float
     velocity: float
     acceleration: float
     cutoff: float = np.inf
+    one_tone: bool = False
 
 
 @dataclass(frozen=True)

@@ -136,7 +136,7 @@ def force_along(model: Model, run: Run) -> Array:
     else:
         # friction is not linear in the motion: it has to pass the low-pass of the measured force
         smooth = model.without_friction().along(run.spacing, *motion)["total"]
-        total = smooth + run.lowpass(run.friction(device, state))
+        total = smooth + run.friction(device, state)
     return delayed(total, model.delay, run.spacing)
 
 

@@ -47,8 +47,8 @@ class Motion:
         Cut-off of the smoother [Hz].
     inner : ndarray of bool (n,)
         False near the ends, where the smoother has to guess.
-    velocity_noise : float
-        Rms noise of the velocity [m/s] that white noise on the displacement leaves.
+    velocity_noise, acceleration_noise : float
+        Rms noise [m/s, m/s^2] that white noise on the displacement leaves.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Motion:
     cutoff: float
     inner: NDArray[np.bool_]
     velocity_noise: float
+    acceleration_noise: float
 
     @property
     def time(self) -> Array:
@@ -175,6 +176,12 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         inner[:edge] = False
     if not _at_rest(velocity[::-1], spacing):
         inner[n - edge :] = False
+
+    # across a gap the motion is a guess
+    steps = np.diff(record.time)
+    for i in np.flatnonzero(steps > max(0.5 / cutoff, 3 * np.median(steps))):
+        begin, end = (int((t - record.time[0]) / spacing) for t in record.time[i : i + 2])
+        inner[max(begin - edge, 0) : end + edge] = False
     return Motion(
         record.name,
         float(record.time[0]),
@@ -185,7 +192,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         channels["force"],
         cutoff,
         inner,
-        _velocity_noise(channels["displacement"], spacing, cutoff),
+        *_derivative_noise(channels["displacement"], spacing, cutoff),
     )
 
 
@@ -210,10 +217,12 @@ def white_noise(values: Array) -> float:
     return float(np.sqrt(np.mean(upper) / -np.log(1 - quantile)))
 
 
-def _velocity_noise(displacement: Array, spacing: float, cutoff: float) -> float:
-    """Integral of (2 pi f)^2 response^2 over white noise of the displacement [m/s]."""
+def _derivative_noise(displacement: Array, spacing: float, cutoff: float) -> tuple[float, float]:
+    """Rms noise of velocity and acceleration: the smoother's integral over white noise."""
     density = white_noise(displacement) ** 2 * 2 * spacing
-    return float(2 * np.pi * np.sqrt(density * cutoff**3 * np.pi / 12))
+    velocity = 2 * np.pi * np.sqrt(density * cutoff**3 * np.pi / 12)
+    acceleration = (2 * np.pi) ** 2 * np.sqrt(density * cutoff**5 * np.pi / 18)
+    return float(velocity), float(acceleration)
 
 
 def _at_rest(velocity: Array, spacing: float) -> bool:

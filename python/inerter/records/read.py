@@ -23,7 +23,7 @@ from .units import QUANTITIES, si_factor, split_header
 MIN_SAMPLES = 50  # of a record over time
 MIN_TABLE_ROWS = 3  # of a bench table
 MAX_MISSING_SHARE = 0.01  # of the rows of a run; three rows are always allowed
-MAX_SIZE = 1e30  # of any value, in SI units
+MAX_SIZE = 1e12  # of any value, in SI units: beyond it no unit can be right
 MAX_MISSING_STRETCH = 25  # rows in a row that are still interpolated
 
 Kind = Literal["bench", "vehicle", "table"]

@@ -1,0 +1,175 @@
+"""The models that test an effect: the present one with the effect's coordinates set free.
+
+Friction laws replace one another; everything else adds up. Where a fit is not convex a candidate
+has several starting points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS, width
+from inerter.identify.coordinates import Scales
+from inerter.identify.fit import Model
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model to try for an effect, with the starting points of its fit."""
+
+    effect: str
+    law: str | None
+    starts: tuple[Model, ...]
+
+
+def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """Every candidate that adds something to a model."""
+    for name, build in _BUILDERS.items():
+        yield from build(name, model, sizes)
+
+
+def _free(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
+    """An effect whose coordinates are simply added."""
+
+    def build(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+        if not all(name in model.free for name in names):
+            start = {name: model.values.get(name, _small(name, sizes)) for name in names}
+            yield Candidate(effect, None, (model.adding(None, **start),))
+
+    return build
+
+
+def _small(name: str, sizes: Scales) -> float:
+    # just off the bound at zero, where the trust region would be stuck
+    return {
+        "viscous": 0.01 * sizes.force / sizes.velocity,
+        "quadratic_damping": 0.01 * sizes.force / sizes.velocity**2,
+        "load_friction": 0.01,
+    }.get(name, 0.0)
+
+
+def _level(model: Model, sizes: Scales) -> float:
+    return model.values.get("coulomb_force") or 0.1 * sizes.force
+
+
+def _coulomb(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if model.friction == "none":
+        start = model.adding("coulomb", coulomb_force=_level(model, sizes), **width(model))
+        yield Candidate(effect, None, (start,))
+    elif model.friction in LEVEL_LAWS and "coulomb_force" not in model.free:
+        yield Candidate(effect, None, (model.adding(coulomb_force=_level(model, sizes)),))
+
+
+def _stribeck(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if model.friction in ("none", "coulomb"):
+        level = _level(model, sizes)
+        yield Candidate(
+            effect,
+            None,
+            tuple(
+                model.adding(
+                    "stribeck",
+                    coulomb_force=level,
+                    static_excess=0.5 * level,
+                    stribeck_velocity=ratio * sizes.velocity,
+                    **width(model),
+                )
+                for ratio in (0.03, 0.1, 0.4)
+            ),
+        )
+
+
+def _hysteretic(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    level, x, v = _level(model, sizes), sizes.displacement, sizes.velocity
+    if model.friction in ("none", "coulomb"):
+        yield Candidate(
+            effect,
+            "dahl",
+            tuple(
+                model.adding("dahl", coulomb_force=level, presliding=ratio * x)
+                for ratio in (0.003, 0.03, 0.3)
+            ),
+        )
+    if model.friction in ("none", "coulomb", "stribeck", "dahl"):
+        pre = model.values.get("presliding")
+        speed = model.values.get("stribeck_velocity")
+        yield Candidate(
+            effect,
+            "lugre",
+            tuple(
+                model.adding(
+                    "lugre",
+                    coulomb_force=level,
+                    static_excess=model.values.get("static_excess", 0.5 * level),
+                    stribeck_velocity=v_s,
+                    presliding=distance,
+                    bristle_damping=0.001 * sizes.force / v,
+                )
+                for distance in ((pre,) if pre else (0.003 * x, 0.03 * x, 0.2 * x))
+                for v_s in ((speed,) if speed else (0.05 * v, 0.3 * v))
+            ),
+        )
+    modulated = any(name in model.values for name in LEVEL_COORDINATES)
+    if model.friction in ("none", "coulomb", "dahl") and not modulated:
+        bare = model.without(LAW_COORDINATES, "none")
+        pre = model.values.get("presliding")
+        yield Candidate(
+            effect,
+            "bouc_wen",
+            tuple(
+                bare.adding(
+                    "bouc_wen",
+                    bw_level=level,
+                    presliding=distance,
+                    bw_shape=shape,
+                    bw_exponent=1.2,
+                    **({} if "stiffness" in model.values else {"bw_ratio": 0.0}),
+                )
+                for distance in ((pre,) if pre else (0.01 * x, 0.1 * x, 0.5 * x))
+                for shape in (0.6, 1.0)
+            ),
+        )
+
+
+def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
+    """A friction level that varies: on top of the present law, or with Coulomb friction."""
+
+    def build(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+        zero = dict.fromkeys(names, 0.0)
+        if model.friction in LEVEL_LAWS and not all(name in model.free for name in names):
+            yield Candidate(effect, None, (model.adding(None, **zero),))
+        elif model.friction == "none":
+            zero |= {"coulomb_force": _level(model, sizes), **width(model)}
+            yield Candidate(effect, None, (model.adding("coulomb", **zero),))
+
+    return build
+
+
+def _stiffness(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    # along one sine a spring is an inertance with the other sign: there is nothing to choose
+    if not (sizes.one_tone and "inertance" in model.free):
+        yield from _free("stiffness")(effect, model, sizes)
+
+
+def _inertance(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if "inertance" not in model.free:
+        start = model.values.get("inertance") or sizes.force / sizes.acceleration
+        yield Candidate(effect, None, (model.adding(inertance=start),))
+
+
+_BUILDERS: dict[str, Callable[[str, Model, Scales], Iterator[Candidate]]] = {
+    "inertance_error": _inertance,
+    "viscous_friction": _free("viscous"),
+    "coulomb_friction": _coulomb,
+    "stribeck_friction": _stribeck,
+    "hysteretic_friction": _hysteretic,
+    "asymmetric_friction": _modulated("friction_asymmetry"),
+    "position_dependent_friction": _modulated("friction_gradient", "friction_curvature"),
+    "load_dependent_friction": _free("load_friction"),
+    "parallel_stiffness": _stiffness,
+    "force_offset": _free("force_offset"),
+    "sensor_delay": _free("delay"),
+    "quadratic_damping": _free("quadratic_damping"),
+    "variable_inertance": _free("inertance_gradient", "inertance_curvature"),
+}
