@@ -88,4 +88,8 @@ static double energy(const InerterDevice* p, double x, double z) {
   return 0.5 * p->bw_stiffness * (share * x * x + (1 - share) * z * z / p->bw_alpha);
 }
 
-const FrictionLaw inerter_bouc_wen = {rate, step, force, energy};
+static double stiffness(const InerterDevice* p) {
+  return fmax(0, 1 - p->bw_ratio) * p->bw_stiffness * p->bw_alpha;
+}
+
+const FrictionLaw inerter_bouc_wen = {rate, step, force, energy, stiffness};

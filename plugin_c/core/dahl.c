@@ -54,4 +54,8 @@ static double energy(const InerterDevice* p, double x, double z) {
   return 0.5 * p->bristle_stiffness * z * z;
 }
 
-const FrictionLaw inerter_dahl = {rate, step, force, energy};
+static double stiffness(const InerterDevice* p) {
+  return p->bristle_stiffness;
+}
+
+const FrictionLaw inerter_dahl = {rate, step, force, energy, stiffness};

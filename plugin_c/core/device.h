@@ -1,12 +1,18 @@
-// A device: inertance, viscous damping, stiffness, further force laws and one friction law.
+// A device: forces at the terminals, and an inertance, perhaps behind a series element.
 //
-//   F = b(x) a + b'(x) v^2 / 2 + c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction
-//       + mu |b(x) a + b'(x) v^2 / 2| sign(v),   b(x) = b max(0.01, 1 + gradient x + curvature x^2)
+//   F = T(x, v, z) + N + mu sign(v) |N|
+//   T = c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction + F_stops
+//   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
+//   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
 //
-// The term with b' makes a varying inertance keep its kinetic energy b(x) v^2 / 2.
+// N: force through the inertance. B, R: inertance.c. G = flywheel_viscous w + pipe + gas: pipe.c,
+// gas_spring.c. F_s, deflection s [m], flywheel velocity w [m/s]: series.c. F_stops: end_stop.c.
 // x, v, a: displacement [m] (length minus rest_length), velocity [m/s] and acceleration [m/s^2] of
 // terminal 2 relative to terminal 1, positive = longer. Functions take the length. F [N]: the force
 // that lengthens the device, tension positive. For a rotational device read rad, N m and kg m^2.
+//
+// States z, each only where it is needed, in this order: the friction law's, s, w, the position of
+// the free play. All 0: unloaded, the flywheel at rest, in the middle of the play.
 //
 // This file and its neighbours are plain C17: no allocation, no globals, no simulator.
 
@@ -28,7 +34,7 @@ extern "C" {
 #define INERTER_API __attribute__((visibility("default")))
 #endif
 
-// friction laws: INERTER_FRICTION_NONE, INERTER_FRICTION_COULOMB, ...
+// friction laws: INERTER_FRICTION_none, INERTER_FRICTION_coulomb, ...
 typedef enum InerterFriction_ {
 #define X(identifier, nstate, meaning) INERTER_FRICTION_##identifier,
   INERTER_FRICTION_LAWS(X)
@@ -36,12 +42,21 @@ typedef enum InerterFriction_ {
       INERTER_NFRICTION
 } InerterFriction;
 
+// laws of the gas spring: INERTER_GAS_polytropic, INERTER_GAS_expanded
+typedef enum InerterGas_ {
+#define X(identifier, meaning) INERTER_GAS_##identifier,
+  INERTER_GAS_LAWS(X)
+#undef X
+      INERTER_NGAS
+} InerterGas;
+
 enum {
 #define X(name, ...) INERTER_INDEX_##name,
   INERTER_PARAMETERS(X)
 #undef X
       INERTER_NPARAMETER,
-  INERTER_MAXSTATE = 1,
+  INERTER_INDEX_gas_law,  // not a number, but it can be given
+  INERTER_MAXSTATE = 4,
   INERTER_MESSAGE_SIZE = 512
 };
 
@@ -50,14 +65,17 @@ typedef struct InerterDevice_ {
   INERTER_PARAMETERS(X)
 #undef X
   int friction;    // InerterFriction
-  uint64_t given;  // bit i: parameter i was set
+  int gas_law;     // InerterGas
+  uint64_t given;  // bit i: parameter i was set; inertance also when the channel gives it
+  uint32_t parts;  // which parts there are (laws.h); set by inerter_finish
+  int nstate;      // set by inerter_finish
 } InerterDevice;
 
 // what is known of one parameter
 typedef struct InerterParameter_ {
   const char* name;
   const char* unit;
-  double initial;    // default; NaN: derived from another parameter when it is not set
+  double initial;    // default; NaN: derived from others when it is not set, or the part is absent
   double lower;      // smallest value
   double upper;      // largest value
   int lower_open;    // 1: the smallest value itself is not allowed
@@ -69,9 +87,11 @@ typedef struct InerterParameter_ {
 // parts of a force, in N
 typedef struct InerterForce_ {
   double total;
-  double inertance;  // b(x) a + b'(x) v^2 / 2
+  double inertance;  // through the inertance, N
   double friction;   // friction law and load friction
 } InerterForce;
+
+//------------------------------ description -------------------------------------------------------
 
 // Description of parameter i, or NULL past the end.
 INERTER_API const InerterParameter* inerter_parameter(int i);
@@ -81,59 +101,92 @@ INERTER_API const char* inerter_friction_name(int i);
 INERTER_API const char* inerter_friction_meaning(int i);
 INERTER_API int inerter_friction_nstate(int i);
 
+// Name and meaning of law i of the gas spring; NULL past the end.
+INERTER_API const char* inerter_gas_law_name(int i);
+INERTER_API const char* inerter_gas_law_meaning(int i);
+
+//------------------------------ configuration -----------------------------------------------------
+
 // Fill the device with the defaults.
 INERTER_API void inerter_default(InerterDevice* device);
 
-// Read a parameter (or the friction law) from text. Return 0, or -1 with a message that names the
-// key, the value and what is allowed.
+// Read a parameter (or the friction or gas law) from text. Return 0, or -1 with a message that
+// names the key, the value and what is allowed.
 INERTER_API int inerter_set(InerterDevice* device, const char* key, const char* text,
                             char message[INERTER_MESSAGE_SIZE]);
 
 // Check every value and how they fit together, and derive what was not set. Return 0, or -1 with a
-// message as above.
+// message as above. Every function below wants a finished device.
 INERTER_API int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]);
 
-// Number of states of the device.
+//------------------------------ states ------------------------------------------------------------
+
+// Number of states of the device, at most INERTER_MAXSTATE.
 INERTER_API int inerter_nstate(const InerterDevice* device);
 
-// Rate of the state at displacement x, velocity v, state z.
-INERTER_API double inerter_state_rate(const InerterDevice* device, double x, double v, double z);
+// Name of state i: "friction_state", "series_deflection", "flywheel_velocity", "gap_position"; NULL
+// past the end.
+INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 
-// State after a time h at constant velocity v from displacement x, exact or unconditionally stable
-// however stiff the law.
-INERTER_API double inerter_state_step(const InerterDevice* device, double x, double v, double z,
-                                      double h);
+// Rates of the states z at displacement x, velocity v.
+INERTER_API void inerter_state_rate(const InerterDevice* device, double x, double v,
+                                    const double* z, double* rate);
 
-// State at which the device has a given total force at x, v, a, within what its friction law can
-// hold; 0 where the force does not depend on a state. It tells the state that a measured run begins
-// with.
-INERTER_API double inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
-                                          double force);
+// States after a time h at constant velocity v from displacement x, in place; unconditionally
+// stable however stiff the law. A friction state: exact or second order, at the friction level of
+// x. The others: second order where h resolves them, settled where it does not.
+INERTER_API void inerter_state_step(const InerterDevice* device, double x, double v, double* z,
+                                    double h);
 
-// All forces but those that depend on acceleration (inertance force, load friction).
-INERTER_API double inerter_force_motion(const InerterDevice* device, double x, double v, double z);
+// States at which the device has a given total force at x, v, a. A friction state within what its
+// law can hold; 0 where the force does not depend on it. With a series element this one carries the
+// force, the flywheel moves along and friction is at 0. It tells the state that a measured run
+// begins with.
+INERTER_API void inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
+                                        double force, double* z);
+
+//------------------------------ forces and energy -------------------------------------------------
+
+// All forces that do not depend on acceleration: T, and with a series element also N and its load
+// friction. Without one those are told by inerter_inertance and inerter_load_factor.
+INERTER_API double inerter_force_motion(const InerterDevice* device, double x, double v,
+                                        const double* z);
 
 // Force of the friction law alone (without load friction).
 INERTER_API double inerter_friction_force(const InerterDevice* device, double x, double v,
-                                          double z);
+                                          const double* z);
 
-// Inertance at displacement x, b(x) [kg]; slope (if not NULL): b'(x) [kg/m].
-INERTER_API double inerter_inertance(const InerterDevice* device, double x, double* slope);
+// Inertance that the terminals feel, B(x, v) [kg]; rest (if not NULL): the branch's force R + G at
+// a = 0 [N]. With a series element both are 0.
+INERTER_API double inerter_inertance(const InerterDevice* device, double x, double v, double* rest);
 
-// Load friction per inertance force magnitude at velocity v: mu sign(v), so that it adds
-// inerter_load_factor * |inertance force|.
+// Load friction per force through the inertance at velocity v: mu sign(v), so that it adds
+// inerter_load_factor * |N|.
 INERTER_API double inerter_load_factor(const InerterDevice* device, double v);
 
 // All forces.
 INERTER_API InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
-                                       double z);
+                                       const double* z);
 
-// Energy stored in inertance, springs and bristles [J].
-INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, double v, double z);
+// Forces over a step of length h [s] at whose end the velocity is v + h a, for implicit stepping:
+// a continuous function of a that does not fall where friction does not, so that
+// a = a0 - mobility * F(a) has one solution. mobility [1/kg]: acceleration of the terminals per
+// force. end (if not NULL): states at the end of the step. See over_step.c.
+INERTER_API InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v,
+                                                 double a, const double* z, double h,
+                                                 double mobility, double* end);
+
+// Energy stored in inertance, springs, bristles, gas and stops [J].
+INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, double v,
+                                         const double* z);
 
 // Power turned into heat [W]: F v - d(stored energy)/dt - F_0 v. The constant force is external.
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
-                                            double a, double z);
+                                            double a, const double* z);
+
+// Whether x and z lie where the laws hold: 1, or 0 with a message that names law, value and limit.
+INERTER_API int inerter_valid(const InerterDevice* device, double x, const double* z,
+                              char message[INERTER_MESSAGE_SIZE]);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,5 @@
-// What a friction law gives to the device. One law, one file; the table in device.c lists them.
+// What a friction law gives to the device. One law, one file; the table in description.c lists
+// them.
 
 #ifndef INERTER_CORE_FRICTION_H_
 #define INERTER_CORE_FRICTION_H_
@@ -8,12 +9,14 @@
 #include "device.h"
 
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
-// Laws without states leave rate, step and energy NULL.
+// stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
+// Laws without states leave all but force NULL.
 typedef struct FrictionLaw_ {
   double (*rate)(const InerterDevice* p, double x, double v, double z);
   double (*step)(const InerterDevice* p, double x, double v, double z, double h);
   double (*force)(const InerterDevice* p, double x, double v, double z);
   double (*energy)(const InerterDevice* p, double x, double z);
+  double (*stiffness)(const InerterDevice* p);
 } FrictionLaw;
 
 extern const FrictionLaw inerter_coulomb;
@@ -22,6 +25,9 @@ extern const FrictionLaw inerter_dahl;
 extern const FrictionLaw inerter_lugre;
 extern const FrictionLaw inerter_bouc_wen;
 extern const FrictionLaw inerter_brown_mcphee;
+
+// by InerterFriction; nothing to call for "none"
+extern const FrictionLaw* const inerter_friction_law[];
 
 // direction of sliding, smooth over the transition velocity
 static inline double friction_direction(const InerterDevice* p, double v) {

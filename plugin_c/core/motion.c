@@ -2,21 +2,38 @@
 
 #include "motion.h"
 
+#include <string.h>
+
+#include "laws.h"
+
+// States from one sample to the next, h later. A bristle sees the mean velocity at the middle,
+// which keeps its path; a series element sees the acceleration too: a stiff one carries b a.
+static void step_between(const InerterDevice* device, const double* x, const double* v, double* z,
+                         double h) {
+  double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
+  if (has_bristle(device)) {
+    double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
+    z[0] = law_of(device)->step(device, middle, mean, z[0], h);
+  }
+  if (has(device, PART_SERIES)) {
+    double change = v[1] - v[0];
+    series_step(device, start, mean - 0.5 * change, change / h, z + series_index(device), h);
+  }
+}
+
 void inerter_along(const InerterDevice* device, int n, double h, const double* x, const double* v,
-                   const double* a, double* z, double* total, double* friction, double* state) {
-  double z_now = z ? *z : 0;
-  int nstate = inerter_nstate(device);
+                   const double* a, double* z, double* total, double* friction, double* states) {
+  double now[INERTER_MAXSTATE] = {0};
+  size_t nstate = (size_t)inerter_nstate(device), size = nstate * sizeof(double);
+  if (z) memcpy(now, z, size);
   for (int i = 0; i < n; i++) {
-    if (nstate && i) {
-      double middle = 0.5 * (x[i] + x[i - 1]);
-      z_now = inerter_state_step(device, middle, (x[i] - x[i - 1]) / h, z_now, h);
-    }
-    InerterForce force = inerter_force(device, x[i], v[i], a[i], z_now);
+    if (nstate && i) step_between(device, x + i - 1, v + i - 1, now, h);
+    InerterForce force = inerter_force(device, x[i], v[i], a[i], now);
     if (total) total[i] = force.total;
     if (friction) friction[i] = force.friction;
-    if (state) state[i] = z_now;
+    if (states) memcpy(states + i * nstate, now, size);
   }
-  if (z) *z = z_now;
+  if (z) memcpy(z, now, size);
 }
 
 void inerter_along_many(const InerterDevice* devices, int ndevice, int n, double h, const double* x,
@@ -27,14 +44,18 @@ void inerter_along_many(const InerterDevice* devices, int ndevice, int n, double
 }
 
 void inerter_evaluate(const InerterDevice* device, int n, const double* x, const double* v,
-                      const double* a, const double* z, double* result) {
+                      const double* a, const double* z, double* result, double* rates) {
+  int nstate = inerter_nstate(device);
   for (int i = 0; i < n; i++) {
-    InerterForce force = inerter_force(device, x[i], v[i], a[i], z[i]);
+    const double* state = nstate ? z + (size_t)i * nstate : NULL;
+    InerterForce force = inerter_force(device, x[i], v[i], a[i], state);
     result[i] = force.total;
     result[n + i] = force.inertance;
     result[2 * n + i] = force.friction;
-    result[3 * n + i] = inerter_state_rate(device, x[i], v[i], z[i]);
-    result[4 * n + i] = inerter_stored_energy(device, x[i], v[i], z[i]);
-    result[5 * n + i] = inerter_dissipated_power(device, x[i], v[i], a[i], z[i]);
+    result[3 * n + i] = inerter_stored_energy(device, x[i], v[i], state);
+    result[4 * n + i] = inerter_dissipated_power(device, x[i], v[i], a[i], state);
+    if (nstate) {
+      inerter_state_rate(device, x[i], v[i], state, rates + (size_t)i * nstate);
+    }
   }
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 
 // X(name, unit, default, lower, upper, bound, laws, meaning)
-//   default: NAN is derived from other parameters when it is not set.
+//   default: NAN: when it is not set it is derived from other parameters, or the part is absent.
 //   bound: CLOSED allows the lower bound itself, OPEN does not. Values are always finite.
 //   laws: the friction laws that read it; "" for the device itself.
 #define INERTER_PARAMETERS(X)                                                                      \
@@ -26,6 +26,42 @@
     "relative rise of the inertance per x")                                                        \
   X(inertance_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED, "",                              \
     "relative rise of the inertance per x^2")                                                      \
+  X(inertance_speed_gradient, "s/m", 0, -INFINITY, INFINITY, CLOSED, "",                           \
+    "relative rise of the inertance per abs(v), g")                                                \
+  X(flywheel_viscous, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "viscous damping of the flywheel itself")                                                      \
+  /* elasticity and play between the terminals and the flywheel */                                 \
+  X(series_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "",                                           \
+    "stiffness in series with the inertance, k_s; 0 and no series_damping: rigid")                 \
+  X(series_damping, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                           \
+    "damping in series with the inertance, c_s")                                                   \
+  X(series_hardening, "1/m", 0, -INFINITY, INFINITY, CLOSED, "",                                   \
+    "relative rise of the series stiffness per deflection, q")                                     \
+  X(backlash, "m", 0, 0, INFINITY, CLOSED, "", "half of the free play of the series element, eps") \
+  /* end stops */                                                                                  \
+  X(stop_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "",                                         \
+    "x below which it stops; unset: no stop")                                                      \
+  X(stop_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "",                                         \
+    "x above which it stops; unset: no stop")                                                      \
+  X(stop_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "", "stiffness of the end stops, k_e")          \
+  X(stop_damping, "s/m", 0, 0, INFINITY, CLOSED, "",                                               \
+    "relative rise of the stop force per approach speed, e")                                       \
+  /* gas spring */                                                                                 \
+  X(gas_pressure, "Pa", 0, 0, INFINITY, CLOSED, "", "pressure at x = 0 and around, p0; 0: no gas") \
+  X(gas_area, "m^2", NAN, 0, INFINITY, CLOSED, "",                                                 \
+    "piston area on the gas, A; unset: piston_area")                                               \
+  X(gas_volume, "m^3", 0, 0, INFINITY, CLOSED, "", "gas volume at x = 0, V0")                      \
+  X(gas_exponent, "1", 1.4, 0, 5, OPEN, "", "polytropic exponent of the gas, gamma")               \
+  /* fluid in a channel: inertance and loss from the geometry */                                   \
+  X(piston_area, "m^2", 0, 0, INFINITY, CLOSED, "", "area that moves the fluid, A1")               \
+  X(channel_area, "m^2", 0, 0, INFINITY, CLOSED, "", "cross-section of the channel, A2")           \
+  X(channel_length, "m", 0, 0, INFINITY, CLOSED, "",                                               \
+    "length of the channel, l: b = rho l A1^2 / A2")                                               \
+  X(fluid_density, "kg/m^3", 1000, 0, INFINITY, OPEN, "", "density of the fluid, rho")             \
+  X(fluid_viscosity, "Pa*s", 0, 0, INFINITY, CLOSED, "",                                           \
+    "dynamic viscosity, mu; 0: no wall friction")                                                  \
+  X(channel_roughness, "m", 0, 0, INFINITY, CLOSED, "", "roughness of the channel's wall")         \
+  X(minor_loss, "1", 0, 0, INFINITY, CLOSED, "", "loss at bends and ends per rho u^2 / 2, K")      \
   /* friction levels, shared by every law but Bouc-Wen */                                          \
   X(coulomb_force, "N", 0, 0, INFINITY, CLOSED, "coulomb stribeck dahl lugre brown_mcphee",        \
     "sliding friction level, f_c")                                                                 \
@@ -63,5 +99,10 @@
   X(lugre, 1, "bristle with Stribeck effect and micro-damping")        \
   X(bouc_wen, 1, "smooth hysteresis with an elastic share")            \
   X(brown_mcphee, 0, "smooth Stribeck curve without states")
+
+// the laws of the gas spring: X(identifier, meaning)
+#define INERTER_GAS_LAWS(X)              \
+  X(polytropic, "p V^gamma is constant") \
+  X(expanded, "second order of that, as a paper prints it")
 
 #endif  // INERTER_CORE_PARAMETERS_H_

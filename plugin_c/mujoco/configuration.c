@@ -7,6 +7,7 @@ const char* const kAttributes[NATTRIBUTE] = {
     INERTER_PARAMETERS(X)
 #undef X
         "friction",
+    "gas_law",
 };
 
 int configuration_read(const mjModel* m, int instance, InerterDevice* device,
@@ -19,5 +20,5 @@ int configuration_read(const mjModel* m, int instance, InerterDevice* device,
       return -1;
     }
   }
-  return inerter_finish(device, message);
+  return 0;
 }

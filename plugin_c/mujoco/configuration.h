@@ -5,11 +5,12 @@
 
 #include "mujoco/instance.h"
 
-// names of the attributes: every parameter of the device, and "friction"
-enum { NATTRIBUTE = INERTER_NPARAMETER + 1 };
+// names of the attributes: every parameter of the device, "friction" and "gas_law"
+enum { NATTRIBUTE = INERTER_NPARAMETER + 2 };
 extern const char* const kAttributes[NATTRIBUTE];
 
-// Read the device of an instance. Return 0, or -1 with a message as in inerter_set.
+// Read what is stated of the device of an instance; inerter_finish makes it whole. Return 0, or -1
+// with a message as in inerter_set.
 int configuration_read(const mjModel* m, int instance, InerterDevice* device,
                        char message[INERTER_MESSAGE_SIZE]);
 

@@ -4,9 +4,9 @@
 
 #include <stdio.h>
 
-// Time derivative of a tendon's Jacobian times a vector. The library exports it, the public header
-// leaves it out; the plugin is built for exactly one version of the library (see plugin.c).
-mjtNum mj_tendonDot(const mjModel* m, mjData* d, int id, const mjtNum* vec);
+#include "mujoco/engine_private.h"
+
+//------------------------------ who it is ---------------------------------------------------------
 
 int instance_actuator(const mjModel* m, int instance, int* count) {
   int found = -1;
@@ -45,15 +45,59 @@ void instance_report(const mjModel* m, int instance, const char* text) {
   }
 }
 
-InerterDevice instance_device(const mjModel* m, const Instance* self) {
-  InerterDevice device = self->device;
-  device.inertance = m->actuator_armature[self->actuator];
-  device.viscous = m->actuator_damping[self->actuator];
-  if (m->opt.disableflags & mjDSBL_DAMPER) {
-    device.viscous = 0;
+void instance_complain(const mjModel* m, Instance* self, const char* text) {
+  if (!self->complained) {
+    self->complained = 1;
+    instance_report(m, m->actuator_plugin[self->actuator], text);
   }
-  return device;
 }
+
+//------------------------------ the device --------------------------------------------------------
+
+// whether a numeric of the model holds a parameter
+static int is_live(const Instance* self, int parameter) {
+  for (int k = 0; k < self->nlive; k++) {
+    if (self->live[k].parameter == parameter) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+// whether the inertance branch needs the acceleration although the engine integrates b
+static int varies(const Instance* self) {
+  const InerterDevice* device = &self->device;
+  return device->load_friction != 0 || device->inertance_gradient != 0 ||
+         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0 ||
+         is_live(self, INERTER_INDEX_inertance);
+}
+
+void instance_refresh(const mjModel* m, Instance* self, int force) {
+  // viscous damping and inertance that the engine integrates: edits of the model count
+  int undamped = (m->opt.disableflags & mjDSBL_DAMPER) != 0;
+  mjtNum armature = m->actuator_armature[self->actuator];
+  mjtNum damping = undamped ? 0 : m->actuator_damping[self->actuator];
+  if (!force && armature == self->armature && damping == self->damping) {
+    return;
+  }
+  self->armature = armature;
+  self->damping = damping;
+  InerterDevice* device = &self->device;
+  int series = instance_has_series(device);
+  if (self->native && !series && !is_live(self, INERTER_INDEX_inertance)) {
+    device->inertance = armature;
+  }
+  if (self->native && !is_live(self, INERTER_INDEX_viscous)) {
+    device->viscous = damping;
+  }
+  self->share = *device;
+  if (self->native) {
+    self->share.viscous -= damping;
+    self->share.inertance = series || varies(self) ? device->inertance : 0;
+  }
+}
+
+//------------------------------ motion ------------------------------------------------------------
 
 int instance_idle(const mjModel* m, const mjData* d, const Instance* self) {
   int i = self->actuator;
@@ -78,23 +122,47 @@ mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* 
   return d->actuator_length[m->actuator_outadr[self->actuator]] - self->rest_length;
 }
 
-mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self) {
+void instance_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum* row) {
+  int output = m->actuator_outadr[self->actuator];
+  int start = d->moment_rowadr[output];
+  mju_zero(row, m->nv);
+  for (int k = start; k < start + d->moment_rownnz[output]; k++) {
+    row[d->moment_colind[k]] = d->actuator_moment[k];
+  }
+}
+
+mjtNum instance_along(const mjModel* m, const mjData* d, const Instance* self, const mjtNum* vec) {
   int row = m->actuator_outadr[self->actuator];
   int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
-  mjtNum velocity = 0;
+  mjtNum sum = 0;
   for (int k = start; k < end; k++) {
-    velocity += d->actuator_moment[k] * d->qvel[d->moment_colind[k]];
+    sum += d->actuator_moment[k] * vec[d->moment_colind[k]];
   }
-  return velocity;
+  return sum;
+}
+
+mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self) {
+  return instance_along(m, d, self, d->qvel);
 }
 
 mjtNum instance_bias_acceleration(const mjModel* m, mjData* d, const Instance* self) {
-  // nobody reads the acceleration of a device without inertance, and the engine has none for
-  // tendons that wrap around geoms
   int i = self->actuator;
-  if (m->actuator_trntype[i] != mjTRN_TENDON || m->actuator_armature[i] == 0) {
+  if (m->actuator_trntype[i] != mjTRN_TENDON) {
     return 0;
   }
+
+  // the engine knows none for tendons that wrap around geoms; their device has no inertance of its
+  // terminals (placement.c), so that nobody reads it
+  int tendon = m->actuator_trnid[2 * i], start = m->tendon_adr[tendon];
+  for (int k = start; k < start + m->tendon_num[tendon]; k++) {
+    if (m->wrap_type[k] == mjWRAP_SPHERE || m->wrap_type[k] == mjWRAP_CYLINDER) {
+      return 0;
+    }
+  }
   mjtNum gear = m->actuator_gear[6 * m->actuator_outadr[i]];
-  return gear * mj_tendonDot(m, d, m->actuator_trnid[2 * i], d->qvel);
+  return gear * mj_tendonDot(m, d, tendon, d->qvel);
+}
+
+int instance_act(const mjModel* m, const Instance* self) {
+  return m->actuator_actadr[self->actuator];
 }

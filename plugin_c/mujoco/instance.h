@@ -12,16 +12,40 @@ _Static_assert(sizeof(mjtNum) == sizeof(double), "the plugin is built for double
 // most stages of an integrator
 enum { MAXSTAGE = 4 };
 
+// a parameter that a numeric of the model holds (live.h)
+typedef struct LiveParameter_ {
+  int parameter;  // index of the parameter
+  int address;    // place in numeric_data
+  mjtNum value;   // last value seen
+} LiveParameter;
+
 // What an mjData keeps of an instance between the callbacks of one step. Everything that has to
 // survive a step is in mjData.act and mjData.plugin_state.
 typedef struct Instance_ {
-  InerterDevice device;     // inertance, viscous: 0, the engine integrates them; rest_length: 0
-  mjtNum rest_length;       // actuator length at which the displacement is 0
-  int actuator;             // index of the actuator
-  int sensed;               // 1: a sensor reads this instance
-  int solves_acceleration;  // 1: finds the acceleration forces of every instance of the model
-  double state;             // state at the last evaluation
-  double power[MAXSTAGE];   // dissipated power at the last evaluations, newest last [W]
+  InerterDevice stated;  // as configured, nothing derived yet
+  InerterDevice device;  // as it is now, with what the engine integrates of it; rest_length: 0
+  InerterDevice share;   // the device without that: what the plugin's force is made of
+  mjtNum armature;       // what of the model these were made for (instance_refresh)
+  mjtNum damping;
+  mjtNum rest_length;  // actuator length at which the displacement is 0
+  int actuator;        // index of the actuator
+  int native;          // 1: the engine integrates inertance and viscous damping (placement.h)
+  int sensed;          // 1: a sensor reads this instance
+  int last;            // 1: the last instance of the plugin in the model
+  int probing;         // 1: the engine is asked what it does without the forces (coupled.c)
+  int nlive;           // number of live parameters
+  LiveParameter live[INERTER_NPARAMETER];
+
+  // the last evaluation
+  mjtNum x, v;  // displacement, velocity
+  mjtNum bias;  // acceleration that qvel alone causes: d(moment)/dt qvel
+  double state[INERTER_MAXSTATE];
+  int solved;              // 1: the force was found together with the acceleration (coupled.h)
+  InerterForce applied;    // that force and its parts [N]
+  double acceleration;     // and the acceleration [m/s^2]
+  double mobility;         // acceleration of the terminals per force [1/kg]
+  double power[MAXSTAGE];  // dissipated power at the last evaluations, newest last [W]
+  int complained;          // 1: has said once what is wrong
 } Instance;
 
 static inline Instance* instance_of(const mjData* d, int instance) {
@@ -37,8 +61,19 @@ int instance_sensed(const mjModel* m, int instance);
 // Report what is wrong with an instance: who it is, then the text.
 void instance_report(const mjModel* m, int instance, const char* text);
 
-// The device as the engine integrates it now: with the actuator's armature and damping.
-InerterDevice instance_device(const mjModel* m, const Instance* self);
+// Say once per mjData what goes wrong while it runs.
+void instance_complain(const mjModel* m, Instance* self, const char* text);
+
+// Whether a device has a series element; end stops.
+static inline int instance_has_series(const InerterDevice* device) {
+  return device->series_stiffness > 0 || device->series_damping > 0;
+}
+static inline int instance_has_stop(const InerterDevice* device) {
+  return device->stop_stiffness > 0;
+}
+
+// Make device and share anew if the model's armature or damping, or `force`, says so.
+void instance_refresh(const mjModel* m, Instance* self, int force);
 
 // Whether the actuator does nothing now: its group or all actuation is disabled, or it sleeps.
 int instance_idle(const mjModel* m, const mjData* d, const Instance* self);
@@ -50,7 +85,16 @@ mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* 
 // Velocity of the actuator at the present qvel, with the moment arms of the last forward pass.
 mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self);
 
+// Row of the moment arms of the actuator, dense (nv).
+void instance_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum* row);
+
+// Product of the actuator's moment arms and a vector of the model's dofs.
+mjtNum instance_along(const mjModel* m, const mjData* d, const Instance* self, const mjtNum* vec);
+
 // The part of the actuator's acceleration that qvel alone causes: d(moment)/dt qvel.
 mjtNum instance_bias_acceleration(const mjModel* m, mjData* d, const Instance* self);
+
+// First address of the device's states in mjData.act.
+int instance_act(const mjModel* m, const Instance* self);
 
 #endif  // INERTER_MUJOCO_INSTANCE_H_

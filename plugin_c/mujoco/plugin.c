@@ -4,24 +4,27 @@
 //   forward pass  act_dot, compute (actuator), ..., compute (sensor)
 //   end of step   advance
 //
-// The actuator's force is everything but b a and c v, which the engine integrates (coupling.c):
+// The actuator's force is what the engine does not integrate itself (placement.c):
 //   actuator_force = ctrl - (F - b a - c v)
-// What of F depends on the acceleration beside b a is solved for (acceleration_forces.c).
-// The friction state z is mjData.act. RK4 integrates it through act_dot. The other integrators take
-// one step of z by the law's own unconditionally stable formula, at the velocity that the step has
-// just found: a bristle driven by the old velocity would be an explicit spring.
-// Heat is integrated in mjData.plugin_state where a sensor asks for it: with RK4 by the weights of
-// its stages, else by the trapezoid.
+// What of F hangs on the acceleration is solved for, all devices together, when the last instance
+// is computed (coupled.c). The device's states are mjData.act. RK4 integrates them through act_dot.
+// The other integrators take one step of them by the laws' own unconditionally stable formulas, at
+// the velocity that the step has just found: a bristle driven by the old velocity would be an
+// explicit spring. Heat is integrated in mjData.plugin_state where a sensor asks for it: with RK4
+// by the weights of its stages, else by the trapezoid.
 
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "mujoco/acceleration_forces.h"
 #include "mujoco/configuration.h"
-#include "mujoco/coupling.h"
+#include "mujoco/coupled.h"
 #include "mujoco/instance.h"
+#include "mujoco/live.h"
+#include "mujoco/placement.h"
 #include "mujoco/sensor.h"
+#include "mujoco/visual.h"
+#include "mujoco/watch.h"
 
 static const char kName[] = "inerter.device";
 
@@ -37,64 +40,63 @@ static int count_sensor_values(const mjModel* m, int instance, int sensor) {
   char message[INERTER_MESSAGE_SIZE];
 
   // init reports a bad configuration; here any size will do
-  int bad = configuration_read(m, instance, &device, message);
+  int bad = configuration_read(m, instance, &device, message) || inerter_finish(&device, message);
   return sensor_size(bad ? 0 : inerter_nstate(&device));
 }
 
-// whether an instance is the last of this plugin, in a model where one needs the acceleration
-static int solves_acceleration(const mjModel* m, int instance) {
-  int needed = 0;
-  for (int k = 0; k < m->nplugin; k++) {
-    if (m->plugin[k] != m->plugin[instance]) {
-      continue;
-    }
-    InerterDevice device;
-    char message[INERTER_MESSAGE_SIZE];
-    needed |= !configuration_read(m, k, &device, message) && acceleration_forces_needed(&device);
-    if (k > instance) {
-      return 0;
-    }
+// the instance from its configuration; returns 0, or -1 with a message
+static int prepare(const mjModel* m, int instance, Instance* self,
+                   char message[INERTER_MESSAGE_SIZE]) {
+  if (configuration_read(m, instance, &self->stated, message)) {
+    return -1;
   }
-  return needed;
-}
-
-static int init(const mjModel* m, mjData* d, int instance) {
-  char message[INERTER_MESSAGE_SIZE];
-  InerterDevice device;
-  if (configuration_read(m, instance, &device, message)) {
-    instance_report(m, instance, message);
+  InerterDevice device = self->stated;
+  if (inerter_finish(&device, message)) {
     return -1;
   }
 
   // one actuator carries the device
   int count;
-  int actuator = instance_actuator(m, instance, &count);
+  self->actuator = instance_actuator(m, instance, &count);
   if (count != 1) {
-    snprintf(message, sizeof(message),
-             "%d actuators refer to it; give every actuator an instance of its own", count);
-    instance_report(m, instance,
-                    count ? message
-                          : "no actuator refers to it; add <actuator><plugin "
-                            "plugin=\"inerter.device\" instance=\"...\" "
-                            "tendon=\"...\"/></actuator>");
+    if (count) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "%d actuators refer to it; give every actuator an instance of its own", count);
+    } else {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "no actuator refers to it; add <actuator><plugin plugin=\"inerter.device\" "
+               "instance=\"...\" tendon=\"...\"/></actuator>");
+    }
     return -1;
   }
-  if (coupling_check(m, actuator, &device, message) ||
-      coupling_place(m, actuator, &device, message)) {
-    instance_report(m, instance, message);
+  int compiling = placement_is_new(m, self->actuator);
+  if (placement_check(m, self->actuator, &device, message) ||
+      placement_decide(m, self->actuator, &device, &self->native, message) ||
+      live_find(m, self, message) || live_derive(m, self, message)) {
     return -1;
+  }
+  self->sensed = instance_sensed(m, instance);
+  self->last = 1;
+  for (int k = instance + 1; k < m->nplugin; k++) {
+    self->last &= m->plugin[k] != m->plugin[instance];
   }
 
+  // say it once, not with every mj_makeData
+  if (compiling && placement_doubt(m, self->actuator, &self->device, self->native, message)) {
+    instance_report(m, instance, message);
+  }
+  return 0;
+}
+
+static int init(const mjModel* m, mjData* d, int instance) {
+  char message[INERTER_MESSAGE_SIZE];
   Instance* self = mju_malloc(sizeof(Instance));
   memset(self, 0, sizeof(*self));
-  self->device = device;
-  self->device.inertance = 0;
-  self->device.viscous = 0;
-  self->device.rest_length = 0;
-  self->rest_length = device.rest_length;
-  self->actuator = actuator;
-  self->sensed = instance_sensed(m, instance);
-  self->solves_acceleration = solves_acceleration(m, instance);
+  if (prepare(m, instance, self, message)) {
+    instance_report(m, instance, message);
+    mju_free(self);
+    return -1;
+  }
   d->plugin_data[instance] = (uintptr_t)self;
   return 0;
 }
@@ -113,29 +115,27 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
   Instance* self = plugin_data;
   mju_zero(plugin_state, m->plugin_statenum[instance]);
   mju_zero(self->power, MAXSTAGE);
-  self->state = 0;
+  mju_zero(self->state, INERTER_MAXSTATE);
 }
 
 //------------------------------ forward pass ------------------------------------------------------
 
-// friction state now, 0 for laws without
-static mjtNum state_now(const mjModel* m, const mjData* d, const Instance* self) {
-  int address = m->actuator_actadr[self->actuator];
-  return inerter_nstate(&self->device) ? d->act[address] : 0;
-}
-
 static void act_dot(const mjModel* m, mjData* d, int instance) {
-  const Instance* self = instance_of(d, instance);
-  if (!inerter_nstate(&self->device)) {
+  Instance* self = instance_of(d, instance);
+  live_update(m, self);
+  int nstate = inerter_nstate(&self->device);
+  if (!nstate) {
     return;
   }
-  int row = m->actuator_outadr[self->actuator];
-  mjtNum rate = 0;
+  int address = instance_act(m, self);
+  mjtNum* rate = d->act_dot + address;
+  mju_zero(rate, nstate);
   if (!instance_idle(m, d, self)) {
-    rate = inerter_state_rate(&self->device, instance_displacement(m, d, self),
-                              d->actuator_velocity[row], state_now(m, d, self));
+    mjtNum x = instance_displacement(m, d, self);
+    mjtNum v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
+    inerter_state_rate(&self->device, x, v, d->act + address, rate);
+    watch_bristle(m, self, x, v, d->act + address, rate);
   }
-  d->act_dot[m->actuator_actadr[self->actuator]] = rate;
 }
 
 // commanded force parallel to the device: the control, delayed and limited as for other actuators
@@ -157,41 +157,70 @@ static mjtNum command(const mjModel* m, const mjData* d, int actuator) {
   return mju_isBad(ctrl) ? 0 : ctrl;
 }
 
-static void compute_force(const mjModel* m, mjData* d, int instance) {
-  Instance* self = instance_of(d, instance);
+// force of one device, or a note that it has to be solved for
+static void compute_force(const mjModel* m, mjData* d, Instance* self) {
+  live_update(m, self);
   int row = m->actuator_outadr[self->actuator];
-  mjtNum x = instance_displacement(m, d, self), v = d->actuator_velocity[row];
-  mjtNum power = 0;
-  if (!instance_idle(m, d, self)) {
-    self->state = state_now(m, d, self);
-    d->actuator_force[row] =
-        command(m, d, self->actuator) - inerter_force_motion(&self->device, x, v, self->state);
-    if (self->sensed) {
-      InerterDevice device = instance_device(m, self);
-      device.load_friction = 0;  // its heat is added where its force is found
-      power = inerter_dissipated_power(&device, x, v, 0, self->state);
-    }
+  self->x = instance_displacement(m, d, self);
+  self->v = d->actuator_velocity[row];
+  self->solved = 0;
+  if (instance_idle(m, d, self)) {
+    return;
   }
+  int nstate = inerter_nstate(&self->device);
+  mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
+  d->actuator_force[row] = command(m, d, self->actuator);
+  self->solved = coupled_needed(m, self);
+  if (self->solved) {
+    self->bias = instance_bias_acceleration(m, d, self);
+    return;
+  }
+  mjtNum rest;
+  inerter_inertance(&self->share, self->x, self->v, &rest);
+  d->actuator_force[row] -=
+      rest + inerter_force_motion(&self->share, self->x, self->v, self->state);
+}
 
-  // remember the last evaluations
-  if (self->sensed) {
-    memmove(self->power, self->power + 1, (MAXSTAGE - 1) * sizeof(*self->power));
-    self->power[MAXSTAGE - 1] = power;
-  }
-  if (self->solves_acceleration) {
-    acceleration_forces_solve(m, d, instance);
+// heat now, for the sensors
+static void remember_power(const mjModel* m, const mjData* d, Instance* self) {
+  memmove(self->power, self->power + 1, (MAXSTAGE - 1) * sizeof(*self->power));
+  self->power[MAXSTAGE - 1] = 0;
+  if (!instance_idle(m, d, self)) {
+    // only load friction asks for the acceleration, and then it has been solved for
+    mjtNum a = self->solved ? self->acceleration : 0;
+    self->power[MAXSTAGE - 1] =
+        inerter_dissipated_power(&self->device, self->x, self->v, a, self->state);
   }
 }
 
 static void compute(const mjModel* m, mjData* d, int instance, int capability) {
-  if (capability & mjPLUGIN_ACTUATOR) {
-    compute_force(m, d, instance);
-  } else if (capability & mjPLUGIN_SENSOR && instance_of(d, instance)->sensed) {
+  Instance* self = instance_of(d, instance);
+  if (capability & mjPLUGIN_SENSOR && self->sensed) {
     sensor_compute(m, d, instance);
+  }
+  if (!(capability & mjPLUGIN_ACTUATOR)) {
+    return;
+  }
+  compute_force(m, d, self);
+  if (!self->last || self->probing) {
+    return;
+  }
+  coupled_solve(m, d, instance);
+  for (int k = 0; k <= instance; k++) {
+    if (m->plugin[k] == m->plugin[instance] && instance_of(d, k)->sensed) {
+      remember_power(m, d, instance_of(d, k));
+    }
   }
 }
 
 //------------------------------ end of step -------------------------------------------------------
+
+// the stages of RK4 overshoot the ends of the free play by their order: back to them
+static void keep_gap(const InerterDevice* device, int nstate, mjtNum* state) {
+  if (device->backlash > 0) {
+    state[nstate - 1] = mju_clip(state[nstate - 1], -device->backlash, device->backlash);
+  }
+}
 
 static void advance(const mjModel* m, mjData* d, int instance) {
   Instance* self = instance_of(d, instance);
@@ -201,9 +230,13 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   mjtNum h = m->opt.timestep;
   const mjtNum* power = self->power;
   mjtNum* heat = self->sensed ? d->plugin_state + m->plugin_stateadr[instance] : NULL;
+  int nstate = inerter_nstate(&self->device);
+  mjtNum* state = d->act + (nstate ? instance_act(m, self) : 0);
+  watch_validity(m, self, state);
 
-  // RK4 has integrated the state; the last four evaluations were its stages
+  // RK4 has integrated the states; the last four evaluations were its stages
   if (m->opt.integrator == mjINT_RK4) {
+    keep_gap(&self->device, nstate, state);
     if (heat) {
       *heat += h / 6 * (power[0] + 2 * power[1] + 2 * power[2] + power[3]);
     }
@@ -211,16 +244,16 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   }
 
   // the step went from x with the velocity that stands in qvel now
-  int row = m->actuator_outadr[self->actuator];
-  mjtNum v0 = d->actuator_velocity[row], v = instance_velocity(m, d, self);
-  mjtNum x = instance_displacement(m, d, self);
-  mjtNum z = inerter_state_step(&self->device, x + 0.5 * h * v, v, self->state, h);
-  if (inerter_nstate(&self->device)) {
-    d->act[m->actuator_actadr[self->actuator]] = z;
+  mjtNum v = instance_velocity(m, d, self), a = (v - self->v) / h;
+  if (instance_has_series(&self->device)) {
+    inerter_force_over_step(&self->share, self->x, self->v, a + self->bias, self->state, h,
+                            self->mobility, self->state);
+  } else if (nstate) {
+    inerter_state_step(&self->device, self->x + 0.5 * h * v, v, self->state, h);
   }
+  mju_copy(state, self->state, nstate);
   if (heat) {
-    InerterDevice device = instance_device(m, self);
-    mjtNum end = inerter_dissipated_power(&device, x + h * v, v, (v - v0) / h, z);
+    mjtNum end = inerter_dissipated_power(&self->device, self->x + h * v, v, a, self->state);
     *heat += 0.5 * h * (power[MAXSTAGE - 1] + end);
   }
 }
@@ -261,5 +294,6 @@ mjPLUGIN_LIB_INIT(inerter) {
   plugin.actuator_act_dot = act_dot;
   plugin.compute = compute;
   plugin.advance = advance;
+  plugin.visualize = visual_draw;
   mjp_registerPlugin(&plugin);
 }

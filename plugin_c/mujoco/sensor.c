@@ -6,29 +6,41 @@ int sensor_size(int nstate) {
   return 5 + nstate;
 }
 
+// forces of the device as the model feels them now
+static InerterForce force_now(const mjModel* m, const mjData* d, const Instance* self, mjtNum v,
+                              mjtNum a) {
+  // a disabled actuator is the inertance and damping that the engine holds
+  InerterForce force = {0, 0, 0};
+  mjtNum held = self->armature * a;
+  if (instance_idle(m, d, self)) {
+    force.inertance = held;
+    force.total = held + self->damping * v;
+    return force;
+  }
+  if (!self->solved) {
+    return inerter_force(&self->device, self->x, v, a, self->state);
+  }
+
+  // found together with the acceleration: what was applied, and what the engine adds
+  force = self->applied;
+  if (self->native && !instance_has_series(&self->share) && self->share.inertance == 0) {
+    force.inertance += held;
+    force.total += held;
+  }
+  force.total += self->damping * v;
+  return force;
+}
+
 void sensor_compute(const mjModel* m, mjData* d, int instance) {
   const Instance* self = instance_of(d, instance);
-  int actuator = self->actuator, row = m->actuator_outadr[actuator];
-  InerterDevice device = instance_device(m, self);
-  int nstate = inerter_nstate(&device);
+  const InerterDevice* device = &self->device;
+  int nstate = inerter_nstate(device);
 
   // motion along the device; the acceleration that the whole model has found
-  mjtNum x = instance_displacement(m, d, self);
   mjtNum v = instance_velocity(m, d, self);
-  mjtNum z = nstate ? d->act[m->actuator_actadr[actuator]] : 0;
-  mjtNum a = instance_bias_acceleration(m, d, self);
-  int start = d->moment_rowadr[row];
-  for (int k = start; k < start + d->moment_rownnz[row]; k++) {
-    a += d->actuator_moment[k] * d->qacc[d->moment_colind[k]];
-  }
-
-  // a disabled actuator is its constant inertance and damping alone: the engine keeps those
-  InerterForce force = inerter_force(&device, x, v, a, z);
-  if (instance_idle(m, d, self)) {
-    force.friction = 0;
-    force.inertance = device.inertance * a;
-    force.total = force.inertance + device.viscous * v;
-  }
+  mjtNum a = instance_along(m, d, self, d->qacc) + instance_bias_acceleration(m, d, self);
+  InerterForce force = force_now(m, d, self, v, a);
+  const mjtNum* state = d->act + (nstate ? instance_act(m, self) : 0);
 
   for (int i = 0; i < m->nsensor; i++) {
     if (m->sensor_plugin[i] != instance) {
@@ -38,10 +50,9 @@ void sensor_compute(const mjModel* m, mjData* d, int instance) {
     *value++ = force.total;
     *value++ = force.inertance;
     *value++ = force.friction;
-    if (nstate) {
-      *value++ = z;
-    }
-    *value++ = inerter_stored_energy(&device, x, v, z);
+    mju_copy(value, state, nstate);
+    value += nstate;
+    *value++ = inerter_stored_energy(device, instance_displacement(m, d, self), v, state);
     *value = d->plugin_state[m->plugin_stateadr[instance]];
   }
 }

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,12 +37,19 @@ class _CParameter(ctypes.Structure):
     ]
 
 
+_FORCES = ("total", "inertance", "friction")
+
+
+class _CForce(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_double) for name in _FORCES]
+
+
 @dataclass(frozen=True)
 class Parameter:
     """What the core says of one parameter.
 
-    `initial` is the default (NaN: derived from others), `laws` the friction laws that read it
-    (empty: the device itself).
+    `initial` is the default (NaN: derived from others, or the part is absent), `laws` the friction
+    laws that read it (empty: the device itself).
     """
 
     name: str
@@ -72,17 +79,15 @@ def _library() -> ctypes.CDLL:
     library = ctypes.CDLL(os.fspath(path))
     library.inerter_parameter.restype = ctypes.POINTER(_CParameter)
     library.inerter_friction_name.restype = ctypes.c_char_p
-    library.inerter_friction_meaning.restype = ctypes.c_char_p
-    for name in ("state_step", "state_of_force"):
-        function = getattr(library, f"inerter_{name}")
-        function.restype = ctypes.c_double
-        function.argtypes = [ctypes.c_void_p] + [ctypes.c_double] * 4
-    library.inerter_along.argtypes = [
-        ctypes.c_void_p,
-        ctypes.c_int,
-        ctypes.c_double,
-        *[ctypes.c_void_p] * 7,
-    ]
+    for name in ("friction_meaning", "gas_law_name", "gas_law_meaning", "state_name"):
+        getattr(library, f"inerter_{name}").restype = ctypes.c_char_p
+    at, number = ctypes.c_void_p, ctypes.c_double
+    library.inerter_state_step.argtypes = [at, number, number, at, number]
+    library.inerter_state_of_force.argtypes = [at, *[number] * 4, at]
+    library.inerter_valid.argtypes = [at, number, at, ctypes.c_char_p]
+    library.inerter_force_over_step.argtypes = [at, *[number] * 3, at, number, number, at]
+    library.inerter_force_over_step.restype = _CForce
+    library.inerter_along.argtypes = [at, ctypes.c_int, number, *[at] * 7]
     return library
 
 
@@ -108,27 +113,42 @@ def parameters() -> Mapping[str, Parameter]:
 @functools.cache
 def friction_laws() -> Mapping[str, str]:
     """The friction laws by name, with their meaning."""
+    return _laws("friction")
+
+
+@functools.cache
+def gas_laws() -> Mapping[str, str]:
+    """The laws of the gas spring by name, with their meaning."""
+    return _laws("gas_law")
+
+
+def _laws(kind: str) -> Mapping[str, str]:
+    name, meaning = (getattr(_library(), f"inerter_{kind}_{what}") for what in ("name", "meaning"))
     found: dict[str, str] = {}
-    while name := _library().inerter_friction_name(len(found)):
-        found[name.decode()] = _library().inerter_friction_meaning(len(found)).decode()
+    while text := name(len(found)):
+        found[text.decode()] = meaning(len(found)).decode()
     return found
 
 
 @functools.cache
 def _device_type() -> type[ctypes.Structure]:
     fields: list[tuple[str, Any]] = [(name, ctypes.c_double) for name in parameters()]
-    fields += [("friction", ctypes.c_int), ("given", ctypes.c_uint64)]
+    fields += [("friction", ctypes.c_int), ("gas_law", ctypes.c_int), ("given", ctypes.c_uint64)]
+    fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int)]
     return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
 
 
 class Device:
     """A device: inertance, damping, stiffness, further force laws and one friction law.
 
+    States z are counted as in `state_names`. Where a method takes one number for z, it is the first
+    state, and the others are 0.
+
     Parameters
     ----------
     **values : float or str
-        Parameters by name (see `parameters()`), SI units, and `friction`, a law's name. What is
-        not given has its default.
+        Parameters by name (see `parameters()`), SI units, and the names of laws: `friction`,
+        `gas_law`. What is not given has its default.
 
     Raises
     ------
@@ -146,9 +166,7 @@ class Device:
                 raise DeviceError(_with_suggestion(name, _text(message)))
         if library.inerter_finish(ctypes.byref(self._c), message):
             raise DeviceError(_text(message))
-        self._given = {
-            name: self.friction if name == "friction" else getattr(self._c, name) for name in values
-        }
+        self._given = {name: getattr(self, name) for name in values}
 
     @property
     def given(self) -> dict[str, float | str]:
@@ -161,9 +179,20 @@ class Device:
         return list(friction_laws())[self._c.friction]  # type: ignore[attr-defined]
 
     @property
+    def gas_law(self) -> str:
+        """Name of the law of the gas spring."""
+        return list(gas_laws())[self._c.gas_law]  # type: ignore[attr-defined]
+
+    @property
     def nstate(self) -> int:
-        """Number of states of the friction law."""
-        return _library().inerter_nstate(ctypes.byref(self._c))
+        """Number of states."""
+        return self._c.nstate  # type: ignore[attr-defined]
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states, such as friction_state."""
+        name, at = _library().inerter_state_name, ctypes.byref(self._c)
+        return tuple(name(at, i).decode() for i in range(self.nstate))
 
     def __getattr__(self, name: str) -> float:
         if name.startswith("_") or name not in parameters():
@@ -184,47 +213,123 @@ class Device:
 
         Parameters
         ----------
-        x, v, a, z : array_like, broadcastable to one shape (n,)
-            Relative displacement [m], velocity, acceleration, state.
+        x, v, a : array_like, broadcastable to one shape (n,)
+            Relative displacement [m], velocity, acceleration.
+        z : array_like
+            States: shape (n, nstate), or anything that broadcasts to it. With at most one state
+            also (n,); one number is the first state.
 
         Returns
         -------
         dict of arrays (n,)
-            total, inertance, friction [N]; state_rate; stored_energy [J]; dissipated_power [W].
+            total, inertance, friction [N]; stored_energy [J]; dissipated_power [W]; state_rate,
+            (n, nstate) with several states or where z has their axis.
         """
-        names = (
-            "total",
-            "inertance",
-            "friction",
-            "state_rate",
-            "stored_energy",
-            "dissipated_power",
-        )
-        x, v, a, z = (
-            np.ascontiguousarray(value, dtype=float)
-            for value in np.broadcast_arrays(*np.atleast_1d(x, v, a, z))
-        )
-        result = np.empty((len(names), x.size))
+        names = (*_FORCES, "stored_energy", "dissipated_power")
+        (x, v, a), z, axis = self._points((x, v, a), np.asarray(z, dtype=float))
+        result, rates = np.empty((len(names), x.size)), np.zeros((x.size, max(1, self.nstate)))
         _library().inerter_evaluate(
             ctypes.byref(self._c),
             x.size,
             *(_pointer(value) for value in (x, v, a, z)),
             _pointer(result),
+            _pointer(rates),
         )
-        return dict(zip(names, result.reshape(len(names), *x.shape), strict=True))
+        found = dict(zip(names, result.reshape(len(names), *x.shape), strict=True))
+        wide = (self.nstate,) if axis else ()
+        return found | {"state_rate": rates[:, : sum(wide) if axis else 1].reshape(*x.shape, *wide)}
 
-    def step(self, x: float, v: float, z: float, h: float) -> float:
-        """State after a time h at constant velocity v from displacement x."""
-        return _library().inerter_state_step(ctypes.byref(self._c), x, v, z, h)
+    def _points(
+        self, motion: Sequence[ArrayLike], z: NDArray[np.float64]
+    ) -> tuple[list[NDArray[np.float64]], NDArray[np.float64], bool]:
+        """Motion of one shape, states (that shape, nstate); whether rates get an axis of states."""
+        motion = np.broadcast_arrays(*np.atleast_1d(*motion))
+        n = self.nstate
+        axis = z.ndim > 0 and z.shape[-1] == n and (n != 1 or z.ndim > motion[0].ndim)
+        if n > 1 and z.ndim and not axis:
+            raise ValueError(f"z has shape {z.shape}; this device has {n} states: give (n, {n})")
+        if not axis:
+            z = np.atleast_1d(z)[..., np.newaxis]
+            z = np.concatenate([z, np.zeros((*z.shape[:-1], max(0, n - 1)))], axis=-1)
+        shape = np.broadcast_shapes(motion[0].shape, z.shape[:-1])
+        states = np.ascontiguousarray(np.broadcast_to(z, (*shape, z.shape[-1])))
+        wide = [
+            np.ascontiguousarray(np.broadcast_to(value, shape), dtype=float) for value in motion
+        ]
+        return wide, states, axis or n > 1
 
-    def state_of_force(self, x: float, v: float, a: float, force: float) -> float:
-        """State at which the device has a given total force, within what its law can hold."""
-        return _library().inerter_state_of_force(ctypes.byref(self._c), x, v, a, force)
+    def _states(self, z: ArrayLike) -> NDArray[np.float64]:
+        """All states, a copy of shape (nstate,)."""
+        given, n = np.asarray(z, dtype=float), self.nstate
+        states = np.zeros(n)
+        if given.ndim == 0:
+            states[:1] = given
+        elif given.shape == (n,):
+            states[:] = given
+        else:
+            raise ValueError(f"the state has shape {given.shape}; this device has {n} states")
+        return states
+
+    @overload
+    def step(self, x: float, v: float, z: float, h: float) -> float: ...
+    @overload
+    def step(
+        self, x: float, v: float, z: Sequence[float] | NDArray, h: float
+    ) -> NDArray[np.float64]: ...
+    def step(self, x: float, v: float, z: Any, h: float) -> float | NDArray[np.float64]:
+        """States after a time h at constant velocity v from displacement x, in the form of z."""
+        states = self._states(z)
+        _library().inerter_state_step(ctypes.byref(self._c), x, v, states.ctypes.data, h)
+        return states if np.ndim(z) else float(states[0]) if self.nstate else 0.0
+
+    def state_of_force(
+        self, x: float, v: float, a: float, force: float
+    ) -> float | NDArray[np.float64]:
+        """State at which the device has a given total force, within what its law can hold.
+
+        A number for a device with at most one state, else an array (nstate,): with a series element
+        this one carries the force, the flywheel moves along and friction is at 0.
+        """
+        states = np.zeros(self.nstate)
+        _library().inerter_state_of_force(ctypes.byref(self._c), x, v, a, force, states.ctypes.data)
+        return states if self.nstate > 1 else float(states.sum())
+
+    def over_step(
+        self, x: float, v: float, a: float, z: ArrayLike, h: float, mobility: float
+    ) -> tuple[dict[str, float], NDArray[np.float64]]:
+        """Force over a step of h seconds at whose end the velocity is v + h a.
+
+        Parameters
+        ----------
+        x, v, z : float; z also a sequence (nstate,)
+            Relative displacement [m], velocity and states at the start.
+        a, h, mobility : float
+            Acceleration over the step, its length [s], acceleration of the terminals per force
+            [1/kg].
+
+        Returns
+        -------
+        dict, ndarray (nstate,)
+            total, inertance, friction [N]; states at the end.
+        """
+        states = self._states(z)
+        end = np.zeros_like(states)
+        force = _library().inerter_force_over_step(
+            ctypes.byref(self._c), x, v, a, states.ctypes.data, h, mobility, end.ctypes.data
+        )
+        return {name: getattr(force, name) for name in _FORCES}, end
+
+    def validity(self, x: float, z: ArrayLike = 0.0) -> str | None:
+        """None where the laws hold at displacement x and states z, else which one does not."""
+        states, message = self._states(z), ctypes.create_string_buffer(_MESSAGE_SIZE)
+        if _library().inerter_valid(ctypes.byref(self._c), x, states.ctypes.data, message):
+            return None
+        return _text(message)
 
     def along(
-        self, h: float, x: NDArray, v: NDArray, a: NDArray, state: float = 0.0
+        self, h: float, x: NDArray, v: NDArray, a: NDArray, state: ArrayLike = 0.0
     ) -> dict[str, NDArray[np.float64]]:
-        """Force and state along a motion sampled every h seconds.
+        """Force and states along a motion sampled every h seconds.
 
         Parameters
         ----------
@@ -232,16 +337,18 @@ class Device:
             Sample spacing [s].
         x, v, a : ndarray (n,)
             Relative displacement [m], velocity, acceleration.
-        state : float
-            State at the first sample.
+        state : float or sequence (nstate,)
+            States at the first sample.
 
         Returns
         -------
-        dict of ndarray (n,)
-            total [N], friction [N], state.
+        dict of ndarray
+            total [N], friction [N], shape (n,); states (n, nstate); state (n,), the first of them
+            (0 without states).
         """
         x, v, a = _motion(x, v, a)
-        result = np.empty((3, x.size))
+        result, states = np.empty((2, x.size)), np.empty((x.size, self.nstate))
+        now = self._states(state)
         at, row = result.ctypes.data, result.strides[0]
         _library().inerter_along(
             ctypes.byref(self._c),
@@ -250,13 +357,13 @@ class Device:
             x.ctypes.data,
             v.ctypes.data,
             a.ctypes.data,
-            ctypes.byref(ctypes.c_double(state)),
+            now.ctypes.data,
             at,
             at + row,
-            at + 2 * row,
+            states.ctypes.data,
         )
-        total, friction, states = result
-        return {"total": total, "friction": friction, "state": states}
+        first = states[:, 0] if self.nstate else np.zeros(x.size)
+        return {"total": result[0], "friction": result[1], "state": first, "states": states}
 
 
 def along_many(
@@ -331,10 +438,11 @@ def _text(message: ctypes.Array[ctypes.c_char]) -> str:
 
 
 def _with_suggestion(name: str, message: str) -> str:
-    if name == "friction" or name in parameters():
+    known = [*parameters(), "friction", "gas_law"]
+    if name in known:
         return message
     import difflib
 
-    close = difflib.get_close_matches(name, [*parameters(), "friction"], n=3)
+    close = difflib.get_close_matches(name, known, n=3)
     hint = f"did you mean {', '.join(close)}?" if close else "`inerter parameters` lists them"
     return f"{message}; {hint}"

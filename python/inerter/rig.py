@@ -61,14 +61,16 @@ def simulate_along(
     x: ArrayLike,
     v: ArrayLike,
     a: ArrayLike,
-    state: float = 0.0,
+    state: ArrayLike = 0.0,
 ) -> dict[str, NDArray[np.float64]]:
     """Run a device in MuJoCo along a sampled motion, on the test rig.
 
-    At each sample the rig is put at x and v and accelerated by a; the sensor gives the force. Then
-    the table moves on to the next sample at constant velocity, which advances the state. This is
-    what `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far
-    below the table's 1e12 kg).
+    At each sample the rig is put at x and v and accelerated by a; the sensor gives the force of
+    that instant (which the stages of RK4 are made of). Then the table moves on to the next sample
+    at constant velocity, which advances the states: by the laws' own steps (Euler), or with a
+    series element by stages of RK4 short enough for it. This is what `Device.along` does, so that
+    both agree to rounding (1e-9 of the force for inertances far below the table's 1e12 kg), with a
+    series element to the error of its second-order steps.
 
     Parameters
     ----------
@@ -78,13 +80,14 @@ def simulate_along(
         Sample spacing [s].
     x, v, a : array_like (n,)
         Relative displacement [m], velocity, acceleration.
-    state : float
-        State at the first sample.
+    state : float or sequence (nstate,)
+        States at the first sample; one number is the first of them, the others are 0.
 
     Returns
     -------
-    dict of ndarray (n,)
-        total [N], friction [N], state.
+    dict of ndarray
+        total [N], friction [N], shape (n,); states (n, nstate); state (n,), the first of them (0
+        without states).
 
     Raises
     ------
@@ -100,24 +103,42 @@ def simulate_along(
     load_plugin()
     model = mujoco.MjModel.from_xml_string(device_mjcf(device, timestep=h))
     data = mujoco.MjData(model)
-    stateful = bool(device.nstate)
-    if stateful:
+    if np.ndim(state):
+        data.act[:] = state
+    elif device.nstate:
         data.act[0] = state
 
     # views into the engine's memory, fetched once
     qpos, qvel, ctrl, act = data.qpos, data.qvel, data.ctrl, data.act
     sensor = data.sensor("device").data
-    total, friction, states = np.zeros((3, x.size))
+    total, friction = np.zeros((2, x.size))
+    states = np.zeros((x.size, device.nstate))
     between = np.append(np.diff(x) / h, 0.0)
+    instant = mujoco.mjtIntegrator.mjINT_RK4
+    pieces = _pieces(device, h)
+    moving = instant if pieces > 1 else mujoco.mjtIntegrator.mjINT_EULER
+    model.opt.timestep = h / pieces
     for i in range(x.size):
         # the sample: position, velocity and acceleration as recorded
         qpos[0], qvel[0], ctrl[0] = x[i], v[i], a[i]
+        model.opt.integrator = instant
         mujoco.mj_forward(model, data)
         total[i], friction[i] = sensor[0], sensor[2]
-        if stateful:
-            states[i] = act[0]
+        states[i] = act
 
         # on to the next sample
         qvel[0], ctrl[0] = between[i], 0.0
-        mujoco.mj_step(model, data)
-    return {"total": total, "friction": friction, "state": states}
+        model.opt.integrator = moving
+        mujoco.mj_step(model, data, nstep=pieces)
+    first = states[:, 0] if device.nstate else np.zeros(x.size)
+    return {"total": total, "friction": friction, "state": first, "states": states}
+
+
+def _pieces(device: Device, h: float) -> int:
+    """Into how many steps a sample spacing is cut so that RK4 resolves the series element."""
+    if not (device.series_stiffness or device.series_damping):
+        return 1
+    spring = np.sqrt(device.series_stiffness / device.inertance)
+    damper = device.series_damping / device.inertance
+    relaxation = device.series_stiffness / device.series_damping if device.backlash else 0.0
+    return max(2, int(np.ceil(h * max(spring, damper, relaxation) / 0.2)))

@@ -83,6 +83,95 @@ def draw_branches(rng: np.random.Generator, wide: float = 1.0) -> Parameters:
     }
 
 
+def draw_flywheel(rng: np.random.Generator, channel: bool, gas: bool) -> Parameters:
+    """What stands at the flywheel: viscous damping, speed gradient; a channel, a gas spring."""
+    drawn: Parameters = {
+        "flywheel_viscous": around(rng, 30.0) * float(rng.random() < 0.5),
+        "inertance_speed_gradient": float(rng.normal(0.0, 1.0)) * float(rng.random() < 0.5),
+    }
+    if channel:
+        bore = around(rng, 6e-3, 0.5)
+        drawn |= {
+            "piston_area": around(rng, 1.6e-3, 0.3),
+            "channel_area": np.pi * bore**2 / 4.0,
+            "channel_length": around(rng, 1.7, 0.5),
+            "fluid_density": around(rng, 1000.0, 0.1),
+            "fluid_viscosity": around(rng, 1e-3, 1.5) * float(rng.random() < 0.8),
+            "channel_roughness": bore * float(rng.uniform(0.0, 0.05)),
+            "minor_loss": float(rng.uniform(0.0, 3.0)),
+        }
+    if gas:
+        # volume for a stroke of some 0.05 m
+        area = around(rng, 1.6e-3, 0.3)
+        drawn |= {
+            "gas_pressure": around(rng, 1e5, 0.5),
+            "gas_area": area,
+            "gas_volume": area * around(rng, 0.05, 0.5),
+            "gas_exponent": float(rng.choice([1.0, 1.4, rng.uniform(0.5, 3.0)])),
+            "gas_law": str(rng.choice(["polytropic", "expanded"])),
+        }
+    return drawn
+
+
+def draw_stops(rng: np.random.Generator) -> Parameters:
+    """A lower stop, an upper stop or both, within the usual stroke."""
+    drawn: Parameters = {
+        "stop_stiffness": around(rng, 1e5),
+        "stop_damping": around(rng, 1.0) * float(rng.random() < 0.8),
+    }
+    which = rng.integers(3)
+    if which != 0:
+        drawn["stop_lower"] = -around(rng, 1e-2)
+    if which != 1:
+        drawn["stop_upper"] = around(rng, 1e-2)
+    return drawn
+
+
+def draw_series(rng: np.random.Generator, backlash: bool) -> Parameters:
+    """A series element: damped or not, hardening or not; without backlash perhaps a dashpot."""
+    drawn: Parameters = {
+        "series_stiffness": around(rng, 1e5, 1.5),
+        "series_damping": around(rng, 300.0) * float(rng.random() < 0.8),
+        "series_hardening": float(rng.normal(0.0, 50.0)) * float(rng.random() < 0.5),
+    }
+    if backlash:
+        drawn["backlash"] = around(rng, 1e-4)
+    elif rng.random() < 0.1:
+        drawn |= {"series_stiffness": 0.0, "series_damping": around(rng, 300.0)}
+        drawn["series_hardening"] = 0.0
+    return drawn
+
+
+def draw_complete(rng: np.random.Generator) -> Parameters:
+    """A device that may have every part; friction none, coulomb or dahl of exponent 1."""
+    channel, gas, stops, series, backlash = (rng.random(5) < 0.6).tolist()
+    drawn = draw_friction(rng, str(rng.choice(["none", "coulomb", "dahl"])))
+    drawn |= {"dahl_exponent": 1.0} if drawn["friction"] == "dahl" else {}
+    drawn |= draw_branches(rng) | draw_flywheel(rng, channel, gas)
+    drawn |= draw_stops(rng) if stops else {}
+    drawn |= draw_series(rng, backlash) if series else {}
+    if channel:
+        del drawn["inertance"]
+    return drawn
+
+
+def draw_states(rng: np.random.Generator, count: int, p: Parameters) -> Array:
+    """States (count, nstate) of such a device: the gap inside, at either side, a little outside."""
+    columns = []
+    if p["friction"] in MEMORY:
+        columns.append(rng.uniform(-2.0, 2.0, count) * state_limit(p))
+    if p.get("series_stiffness", 0.0) > 0.0 or p.get("series_damping", 0.0) > 0.0:
+        gap = p.get("backlash", 0.0)
+        reach = gap + 10.0 ** rng.uniform(-6.0, -2.0, count)
+        columns.append(reach * rng.uniform(-1.0, 1.0, count))
+        columns.append(10.0 ** rng.uniform(-3.0, 0.5, count) * rng.choice([-1.0, 1.0], count))
+        if gap:
+            inside = rng.uniform(-1.0, 1.0, count)
+            columns.append(gap * rng.choice([-1.0, 1.0, -1.1, 0.0], count))
+            columns[-1] = np.where(rng.random(count) < 0.4, gap * inside, columns[-1])
+    return np.stack(columns, axis=1) if columns else np.zeros((count, 0))
+
+
 def state_limit(p: Parameters) -> float:
     """Deflection [m] beyond which a slide cannot lead, at a friction level of 1."""
     if p["friction"] == "bouc_wen":

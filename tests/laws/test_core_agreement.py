@@ -13,12 +13,15 @@ from core_draws import (
     MEMORY,
     Parameters,
     draw_branches,
+    draw_complete,
     draw_friction,
     draw_levels,
     draw_points,
+    draw_states,
     magnitudes,
     state_limit,
 )
+from core_telling import Telling
 from inerter.core import Device, friction_laws, parameters
 from inerter.reference import FRICTION_LAWS, ReferenceDevice
 
@@ -31,7 +34,10 @@ def reach(p: Parameters) -> float:
 
 def test_both_know_the_same_laws_and_parameters() -> None:
     assert tuple(friction_laws()) == tuple(FRICTION_LAWS) == LAWS
-    assert set(parameters()) == {f.name for f in fields(ReferenceDevice)} - {"friction"}
+    assert set(parameters()) == {f.name for f in fields(ReferenceDevice)} - {
+        "friction",
+        "gas_law",
+    }
 
 
 @pytest.mark.parametrize("wide", [1.0, 3.0], ids=["usual", "extreme"])
@@ -61,6 +67,39 @@ def test_core_is_the_reference(law: str, wide: float) -> None:
         for name, value in expected.items():
             error = abs(found[name] - value)
             assert np.all(error <= TOLERANCE * sizes[name]), (p, name, error.max())
+
+
+def test_core_is_the_reference_of_the_complete_device() -> None:
+    # series element, backlash, stops, gas, channel, speed gradient; the gap inside and at its sides
+    rng = np.random.default_rng(11)
+    for _ in range(300):
+        p = draw_complete(rng)
+        core, reference = Device(**p), ReferenceDevice(**p)
+        assert core.state_names == reference.state_names
+        x, v, a, _ = draw_points(rng, 60, 1.0, 1.0)
+        z = draw_states(rng, 60, p)
+        if p.get("backlash"):
+            z[:, -1] = np.clip(z[:, -1], -p["backlash"], p["backlash"])
+        state = reference.state_argument(z)
+
+        found = core.evaluate(x, v, a, z)
+        carried = reference.inertance_force(x, v, a, state)
+        load = reference.load_friction_force(v, carried)
+        expected = {
+            "inertance": carried,
+            "friction": reference.friction_force(x, v, state) + load,
+            "total": reference.force(x, v, a, state),
+            "state_rate": reference.state_rate(x, v, state),
+            "stored_energy": reference.stored_energy(x, v, state),
+            "dissipated_power": reference.dissipated_power(x, v, a, state),
+        }
+        sizes = Telling(**p).quantities(x, v, a, z)
+        for name, value in expected.items():
+            size = sizes[name][1]
+            if core.nstate == 0 and name == "state_rate":
+                continue
+            error = abs(found[name].reshape(size.shape) - np.reshape(value, size.shape))
+            assert np.all(error <= TOLERANCE * size), (p, name, error.max())
 
 
 @pytest.mark.parametrize("law", LAWS)

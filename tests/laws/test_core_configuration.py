@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from inerter.core import Device, DeviceError, friction_laws, parameters
+from inerter.core import Device, DeviceError, friction_laws, gas_laws, parameters
 
 # enough to make each law valid
 VALID: dict[str, dict[str, float]] = {
@@ -18,6 +18,16 @@ VALID: dict[str, dict[str, float]] = {
     "lugre": {"coulomb_force": 10.0},
     "bouc_wen": {"bw_stiffness": 1e4},
     "brown_mcphee": {"coulomb_force": 10.0},
+}
+
+# enough to make the part of a parameter valid
+CHANNEL = {"piston_area": 1e-3, "channel_area": 1e-4, "channel_length": 2.0}
+GAS = {"gas_pressure": 1e5, "gas_area": 1e-3, "gas_volume": 1e-4}
+PARTS: dict[str, dict[str, float]] = {
+    "gas_exponent": GAS,
+    "stop_damping": {"stop_upper": 0.1, "stop_stiffness": 1e4},
+    "backlash": {"inertance": 1.0, "series_stiffness": 1e4},
+    "channel_roughness": CHANNEL,
 }
 
 
@@ -90,6 +100,7 @@ def test_values_on_the_bounds_are_accepted(name: str) -> None:
         values = {**VALID[law], name: value}
         if name in VALID[law] or name == "static_force":
             continue  # zero force or stiffness: refused together with the law, see below
+        values = PARTS.get(name, {}) | values
         assert getattr(Device(friction=law, **values), name) == value
 
 
@@ -115,6 +126,8 @@ def test_a_key_of_another_law_is_refused(name: str) -> None:
         ("bw_apha", "bw_alpha"),
         ("Stiffness", "stiffness"),
         ("frction", "friction"),
+        ("gaslaw", "gas_law"),
+        ("back_lash", "backlash"),
     ],
 )
 def test_an_unknown_key_is_refused_with_a_suggestion(wrong: str, right: str) -> None:
@@ -136,6 +149,14 @@ def test_an_unknown_law_is_told_the_laws() -> None:
         assert law in message
 
 
+def test_an_unknown_gas_law_is_told_the_laws() -> None:
+    assert tuple(gas_laws()) == ("polytropic", "expanded")
+    with pytest.raises(DeviceError) as caught:
+        Device(**GAS, gas_law="ideal")
+    message = str(caught.value)
+    assert message == 'gas_law is "ideal": no such law; choose one of polytropic expanded'
+
+
 @pytest.mark.parametrize(
     ("values", "words"),
     [
@@ -148,6 +169,78 @@ def test_an_unknown_law_is_told_the_laws() -> None:
         ({"friction": "lugre", "static_force": 5.0}, "coulomb_force is 0 N"),
         ({"friction": "bouc_wen"}, "bw_stiffness is 0 N/m"),
         ({"friction": "bouc_wen", "bw_stiffness": 0.0}, "bw_stiffness is 0 N/m"),
+        # series element
+        (
+            {"inertance": 1.0, "series_damping": 5.0, "backlash": 1e-3},
+            "backlash is 0.001 m, but series_stiffness is 0 N/m; give .* or remove backlash",
+        ),
+        (
+            {"inertance": 1.0, "series_hardening": -3.0},
+            "series_hardening is -3 1/m, but series_stiffness is 0 N/m; give .* or remove",
+        ),
+        (
+            {"series_stiffness": 1e4, "series_damping": 5.0},
+            "series_stiffness is 10000 N/m, but inertance is 0 kg: there is nothing behind",
+        ),
+        ({"series_damping": 5.0}, r"series_damping is 5 N\*s/m, but inertance is 0 kg.*remove"),
+        # end stops
+        (
+            {"stop_lower": -0.1},
+            "stop_lower is -0.1 m, but stop_stiffness is 0 N/m; give stop_stiffness > 0 N/m",
+        ),
+        ({"stop_upper": 0.1}, "stop_upper is 0.1 m, but stop_stiffness is 0 N/m"),
+        (
+            {"stop_lower": 0.1, "stop_upper": 0.1, "stop_stiffness": 1.0},
+            "stop_lower is 0.1 m, not below stop_upper 0.1 m; give stop_lower < stop_upper",
+        ),
+        (
+            {"stop_stiffness": 7.0},
+            "stop_stiffness is 7 N/m, but there is no stop; give stop_lower or stop_upper, or",
+        ),
+        ({"stop_damping": 0.5}, "stop_damping is 0.5 s/m, but there is no stop.*remove stop_damp"),
+        # gas spring
+        ({"gas_law": "polytropic"}, "gas_law is given, but gas_pressure is 0 Pa.*remove gas_law"),
+        ({"gas_exponent": 1.4}, "gas_exponent is given, but gas_pressure is 0 Pa.*give gas_press"),
+        ({"gas_volume": 1.0}, "gas_volume is given, but gas_pressure is 0 Pa"),
+        ({"gas_area": 1.0}, "gas_area is given, but gas_pressure is 0 Pa"),
+        (
+            {"gas_pressure": 1e5, "gas_volume": 1e-3},
+            r"gas_area is unset, but gas_pressure is 100000 Pa; give .* \(or piston_area\)",
+        ),
+        (
+            {"gas_pressure": 1e5, "gas_volume": 1e-3, "gas_area": 0.0},
+            r"gas_area is 0 m\^2, but gas_pressure is 100000 Pa",
+        ),
+        (
+            {"gas_pressure": 1e5, "gas_area": 1e-3},
+            r"gas_volume is 0 m\^3, but gas_pressure is 100000 Pa; give gas_volume > 0 m\^3",
+        ),
+        # channel
+        (
+            {"minor_loss": 1.0},
+            "minor_loss is given, but the channel is incomplete: piston_area, channel_area, "
+            "channel_length missing",
+        ),
+        (
+            {"piston_area": 1e-3, "channel_length": 2.0},
+            "channel_length is given, but the channel is incomplete: channel_area missing",
+        ),
+        ({"piston_area": 1e-3}, "piston_area is given.*: channel_area, channel_length missing"),
+        (
+            GAS | {"piston_area": 1e-3, "fluid_viscosity": 1e-3},
+            "fluid_viscosity is given.*: channel_area, channel_length missing",
+        ),
+        ({"fluid_density": 900.0}, "fluid_density is given.*incomplete"),
+        ({"channel_roughness": 1e-5}, "channel_roughness is given.*incomplete"),
+        (
+            CHANNEL | {"inertance": 3.0},
+            "inertance is 3 kg, but the channel gives 20 kg; state one of them",
+        ),
+        (CHANNEL | {"inertance": 0.0}, "inertance is 0 kg, but the channel gives 20 kg"),
+        (
+            CHANNEL | {"piston_area": 1e200},
+            "inertance is inf kg from fluid_density, channel_length, piston_area and channel_area",
+        ),
     ],
 )
 def test_values_that_do_not_fit_together(values: dict, words: str) -> None:
@@ -162,8 +255,57 @@ def test_defaults_are_the_declared_ones() -> None:
             assert getattr(device, name) == parameter.initial
     assert device.friction == "none"
     assert device.given == {}
+    assert device.gas_law == "polytropic"
+    # absent until it is given
+    assert math.isnan(device.stop_lower)
+    assert math.isnan(device.stop_upper)
+    assert math.isnan(device.gas_area)
     # derived: without a breakaway level of its own, friction breaks away at the sliding level
     assert Device(friction="lugre", coulomb_force=7.0).static_force == 7.0
+
+
+def test_the_channel_gives_the_inertance_once() -> None:
+    device = Device(**CHANNEL, fluid_density=500.0)
+    assert device.inertance == 500.0 * 2.0 * 1e-3**2 / 1e-4
+    # it counts as stated for the plugin, but not as what the user stated
+    index = list(parameters()).index("inertance")
+    assert device._c.given >> index & 1  # type: ignore[attr-defined]
+    assert "inertance" not in device.given
+    assert not Device(viscous=1.0)._c.given >> index & 1  # type: ignore[attr-defined]
+    # so it can be stated anew: a longer channel, more inertance
+    assert device.replace(channel_length=4.0).inertance == 2.0 * device.inertance
+
+
+def test_the_piston_alone_may_serve_the_gas() -> None:
+    device = Device(gas_pressure=1e5, gas_volume=1e-3, piston_area=2e-3)
+    assert device.gas_area == 2e-3
+    assert device.inertance == 0.0
+
+
+def test_zero_leaves_a_part_away() -> None:
+    # a program may write every key
+    zero = {
+        "series_stiffness", "series_damping", "series_hardening", "backlash", "stop_stiffness",
+        "stop_damping", "gas_pressure", "gas_area", "gas_volume", "piston_area", "channel_area",
+        "channel_length", "fluid_viscosity", "channel_roughness", "minor_loss",
+    }  # fmt: skip
+    device = Device(inertance=2.0, **dict.fromkeys(sorted(zero), 0.0))
+    assert device.nstate == 0
+    assert device.evaluate(1.0, 1.0, 3.0, 0.0)["total"].tolist() == [6.0]
+
+
+def test_states_follow_from_the_parts() -> None:
+    series = {"inertance": 1.0, "series_stiffness": 1e4}
+    friction = {"friction": "dahl", "coulomb_force": 1.0}
+    moving = ("series_deflection", "flywheel_velocity")
+    assert Device(**friction).state_names == ("friction_state",)
+    assert Device(**series).state_names == moving
+    assert Device(**series, backlash=1e-3).state_names == (*moving, "gap_position")
+    complete = Device(**series, **friction, backlash=1e-3)
+    assert complete.state_names == ("friction_state", *moving, "gap_position")
+    assert complete.nstate == 4
+    # a law without memory adds none
+    assert Device(**series, friction="coulomb", coulomb_force=1.0).state_names == moving
 
 
 @pytest.mark.parametrize("text", ["1.5", " 1.5", "1.5 ", "+1.5", "15e-1", "0x1.8p0"])

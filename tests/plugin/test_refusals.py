@@ -6,6 +6,7 @@ The message reaches the user as the text of the ValueError that loading the mode
 from __future__ import annotations
 
 import mujoco
+import numpy as np
 import pytest
 from plugin_models import plugin_actuator, quarter_car_xml
 
@@ -51,7 +52,7 @@ def test_a_wrong_value_is_named(keys: dict, words: list[str]) -> None:
 
 
 ATTRIBUTES = {
-    "no actdim": (LUGRE, 'actdim="0"', ["actdim is 0", '"lugre" has 1 state', 'actdim="1"']),
+    "no actdim": (LUGRE, 'actdim="0"', ["actdim is 0", '"lugre") has 1 state', 'actdim="1"']),
     "large actdim": (LUGRE, 'actdim="3"', ["actdim is 3", 'actdim="1"']),
     "needless actdim": ({}, 'actdim="1"', ["actdim is 1", "has 0 states", 'actdim="0"']),
     "dyntype": ({}, 'dyntype="integrator"', ["dyntype", "remove"]),
@@ -131,10 +132,6 @@ def space(actuator: str, simple: str = "", instance: str = "") -> str:
 
 
 TOPOLOGY = {
-    "siblings": ('tendon="siblings"', ['"wheel" and body "body"', "branches", "Nest"]),
-    "cousins": ('tendon="cousins"', ['"left" and body "right"', "branches"]),
-    "fixed tendon": ('tendon="two"', ['tendon "two"', "branches"]),
-    "simple body": ('tendon="free"', ['body "ball"', 'simple="false"']),
     "wrapping": ('tendon="round"', ['tendon "round"', 'geom "drum"']),
     "free joint": ('joint="ball"', ["free joint", "slide or hinge"]),
     "ball joint": ('joint="swivel"', ["ball joint", "slide or hinge"]),
@@ -152,18 +149,87 @@ def test_a_transmission_that_cannot_carry_inertance_is_refused(
 
 
 @pytest.mark.parametrize("target", ["siblings", "cousins", "two", "free", "round"])
-def test_without_inertance_any_tendon_will_do(target: str) -> None:
+def test_without_inertance_or_with_elasticity_any_tendon_will_do(target: str) -> None:
+    elastic = {"inertance": 2, "series_stiffness": 1e4, "series_damping": 10}
+    for keys, actdim in (({"viscous": 2, **LUGRE}, 1), (elastic, 2)):
+        model = mujoco.MjModel.from_xml_string(
+            space(plugin_actuator(keys, f'tendon="{target}"', attributes=f'actdim="{actdim}"'))
+        )
+        data = mujoco.MjData(model)
+        data.qvel[:] = np.linspace(-1, 1, model.nv)
+        mujoco.mj_step(model, data, nstep=20)
+        assert np.isfinite(data.qpos).all()
+        assert data.act.any()
+
+
+@pytest.mark.parametrize("target", ["siblings", "cousins", "two", "free"])
+def test_where_the_engine_cannot_hold_the_inertance_the_plugin_does(target: str) -> None:
     model = mujoco.MjModel.from_xml_string(
-        space(plugin_actuator({"viscous": 2, **LUGRE}, f'tendon="{target}"'))
+        space(plugin_actuator({"inertance": 2}, f'tendon="{target}"'))
     )
+    assert model.actuator_armature[0] == 0
     mujoco.mj_step(model, mujoco.MjData(model))
 
 
-def test_a_body_that_is_not_simple_takes_the_inertance() -> None:
-    model = mujoco.MjModel.from_xml_string(
-        space(plugin_actuator({"inertance": 2}, 'tendon="free"'), ' simple="false"')
-    )
-    assert model.actuator_armature[0] == 2
+def test_where_the_engine_can_hold_the_inertance_it_does() -> None:
+    for target, simple in (('tendon="free"', ' simple="false"'), ('joint="left"', "")):
+        model = mujoco.MjModel.from_xml_string(
+            space(plugin_actuator({"inertance": 2}, target), simple)
+        )
+        assert model.actuator_armature[0] == 2
+
+
+CUT = {
+    "forcerange": ('forcerange="-5 5"', "", ["forcerange is given", "cut", "remove it"]),
+    "armature": ('armature="3"', "", ["armature is 3", "two branches", "inertance"]),
+    "damping": ('damping="3"', "", ["damping is 3", "viscous"]),
+    "tendon": ("", 'actuatorfrcrange="-5 5"', ["actuatorfrcrange of the tendon"]),
+}
+
+
+@pytest.mark.parametrize(("attribute", "tendon", "words"), CUT.values(), ids=CUT)
+def test_what_would_cut_the_inertance_is_refused(
+    attribute: str, tendon: str, words: list[str]
+) -> None:
+    device = plugin_actuator({"inertance": 2}, 'tendon="two"', attributes=attribute)
+    text = refusal(space(device).replace('<fixed name="two"', f'<fixed name="two" {tendon}'))
+    for word in ['actuator "strut"', *words]:
+        assert word in text
+
+
+LIVE = {
+    "two values": ('name="strut.viscous" data="1 2"', ["strut.viscous", "one number"]),
+    "out of range": ('name="strut.viscous" data="-1"', ["viscous is -1", ">= 0"]),
+}
+
+
+@pytest.mark.parametrize(("numeric", "words"), LIVE.values(), ids=LIVE)
+def test_a_wrong_live_parameter_is_named(numeric: str, words: list[str]) -> None:
+    xml = quarter_car_xml(plugin_actuator({}), extra=f"<custom><numeric {numeric}/></custom>")
+    text = refusal(xml)
+    for word in ['actuator "strut"', *words]:
+        assert word in text
+
+
+def test_a_live_parameter_that_turns_wrong_stops_the_run() -> None:
+    numeric = '<custom><numeric name="strut.viscous" data="1"/></custom>'
+    model = mujoco.MjModel.from_xml_string(quarter_car_xml(plugin_actuator({}), extra=numeric))
+    data = mujoco.MjData(model)
+    for value in (-1.0, np.nan, np.inf):
+        model.numeric_data[0] = value
+        with pytest.raises(mujoco.FatalError, match=r'actuator "strut": .*viscous is'):
+            mujoco.mj_step(model, data)
+        model.numeric_data[0] = 2.0
+        mujoco.mj_step(model, data)
+
+
+def test_a_series_element_too_stiff_for_rk4_is_warned_of(capfd: pytest.CaptureFixture) -> None:
+    keys = {"inertance": 2, "series_stiffness": 1e9}
+    xml = quarter_car_xml(plugin_actuator(keys, attributes='actdim="2"'), option='integrator="RK4"')
+    mujoco.MjModel.from_xml_string(xml)
+    text = capfd.readouterr()
+    assert "too stiff for RK4" in text.err + text.out
+    assert "implicitfast" in text.err + text.out
 
 
 def test_an_instance_needs_one_actuator() -> None:

@@ -49,6 +49,9 @@ def test_the_written_model_is_the_device(law: str) -> None:
     assert model.na == device(law).nstate
     data = mujoco.MjData(model)
     data.qpos[0], data.qvel[0], data.ctrl[0] = X[100], V[100], A[100]
+
+    # the stages of RK4 feel the force of the instant; other integrators that of the end of the step
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     mujoco.mj_forward(model, data)
     expected = device(law).evaluate(X[100], V[100], A[100], 0.0)["total"][0]
     assert data.sensordata[0] == pytest.approx(expected, rel=1e-8)

@@ -57,7 +57,7 @@ class Run:
     measured: tuple[Array, Array, Array] | None = None
     thinned: int = 1
 
-    def friction(self, device: Device, state: float) -> Array:
+    def friction(self, device: Device, state: float | Array) -> Array:
         """Friction force of a device through the low-pass of the measured force [N], shape (n,).
 
         Friction jumps where the velocity changes sign. It is worked out at the instants of the

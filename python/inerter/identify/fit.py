@@ -115,8 +115,11 @@ def delayed(force: Array, delay: float, spacing: float) -> Array:
     )  # type: ignore[return-value]
 
 
-def first_state(device: Device, run: Run) -> float:
-    """State a run begins with, read off its first force, within what the friction law can hold."""
+def first_state(device: Device, run: Run) -> float | Array:
+    """State a run begins with, read off its first force, within what the friction law can hold.
+
+    A number for a device with at most one state, else an array (nstate,).
+    """
     if device.nstate == 0:
         return 0.0
     return device.state_of_force(

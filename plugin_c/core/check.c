@@ -1,0 +1,261 @@
+// Whether a configuration fits together, and what follows from it. Each message names what is
+// wrong, its value, and what to do.
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "configuration.h"
+#include "laws.h"
+
+_Static_assert(INERTER_INDEX_gas_law < 64, "InerterDevice.given has a bit for each");
+
+static int is_given(const InerterDevice* device, int i) {
+  return (int)(device->given >> i & 1);
+}
+
+static int refuse(char* message, const char* format, ...) {
+  va_list values;
+  va_start(values, format);
+  vsnprintf(message, INERTER_MESSAGE_SIZE, format, values);
+  va_end(values);
+  return -1;
+}
+
+// whether a word stands in a list separated by blanks
+static int listed(const char* list, const char* word) {
+  size_t length = strlen(word);
+  for (const char* at = list; (at = strstr(at, word)); at += length) {
+    if ((at == list || at[-1] == ' ') && (at[length] == ' ' || !at[length])) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+// a parameter of another law is a mistake, not a wish to ignore
+static int check_law(const InerterDevice* device, char* message) {
+  const char* law = inerter_friction_name(device->friction);
+  for (int i = 0; i < INERTER_NPARAMETER; i++) {
+    const InerterParameter* p = inerter_parameter(i);
+    if (*p->laws && is_given(device, i) && !listed(p->laws, law)) {
+      return refuse(message,
+                    "%s is given, but friction is \"%s\", which does not read it; remove it or "
+                    "choose friction from: %s",
+                    p->name, law, p->laws);
+    }
+  }
+  return 0;
+}
+
+static int check_ranges(InerterDevice* device, char* message) {
+  char range[128];
+  for (int i = 0; i < INERTER_NPARAMETER; i++) {
+    const InerterParameter* p = inerter_parameter(i);
+    double value = *value_of(device, i);
+    if (!allowed(p, value) && !(isnan(value) && isnan(p->initial))) {
+      return refuse(message, "%s is %g: out of range; give %s (%s)", p->name, value,
+                    range_text(p, range), p->meaning);
+    }
+  }
+  return 0;
+}
+
+static int check_friction(const InerterDevice* device, char* message) {
+  int friction = device->friction;
+  if (device->static_force < device->coulomb_force) {
+    return refuse(message,
+                  "static_force is %g N, below coulomb_force %g N; give static_force >= "
+                  "coulomb_force",
+                  device->static_force, device->coulomb_force);
+  }
+  if (friction == INERTER_FRICTION_none) {
+    return 0;
+  }
+  if (friction == INERTER_FRICTION_bouc_wen) {
+    return device->bw_stiffness > 0
+               ? 0
+               : refuse(message,
+                        "bw_stiffness is 0 N/m, but friction is \"bouc_wen\"; give bw_stiffness > "
+                        "0 N/m or friction \"none\"");
+  }
+  int bristle = friction == INERTER_FRICTION_dahl || friction == INERTER_FRICTION_lugre;
+  if ((bristle ? device->coulomb_force : device->static_force) <= 0) {
+    return refuse(message,
+                  "coulomb_force is 0 N, but friction is \"%s\"; give coulomb_force > 0 N or "
+                  "friction \"none\"",
+                  inerter_friction_name(friction));
+  }
+  return 0;
+}
+
+static int check_stops(const InerterDevice* device, char* message) {
+  int lower = !isnan(device->stop_lower), upper = !isnan(device->stop_upper);
+  if (!lower && !upper) {
+    const int needy[] = {INERTER_INDEX_stop_stiffness, INERTER_INDEX_stop_damping};
+    const double values[] = {device->stop_stiffness, device->stop_damping};
+    for (int i = 0; i < 2; i++) {
+      const InerterParameter* p = inerter_parameter(needy[i]);
+      if (values[i] > 0) {
+        return refuse(message,
+                      "%s is %g %s, but there is no stop; give stop_lower or stop_upper, or remove "
+                      "%s",
+                      p->name, values[i], p->unit, p->name);
+      }
+    }
+    return 0;
+  }
+  if (device->stop_stiffness <= 0) {
+    const char* name = lower ? "stop_lower" : "stop_upper";
+    return refuse(message,
+                  "%s is %g m, but stop_stiffness is 0 N/m; give stop_stiffness > 0 N/m or remove "
+                  "%s",
+                  name, lower ? device->stop_lower : device->stop_upper, name);
+  }
+  if (device->stop_lower >= device->stop_upper) {
+    return refuse(message,
+                  "stop_lower is %g m, not below stop_upper %g m; give stop_lower < stop_upper",
+                  device->stop_lower, device->stop_upper);
+  }
+  return 0;
+}
+
+static int check_gas(InerterDevice* device, char* message) {
+  if (device->gas_pressure == 0) {
+    const int needy[] = {INERTER_INDEX_gas_area, INERTER_INDEX_gas_volume,
+                         INERTER_INDEX_gas_exponent};
+    const char* found = is_given(device, INERTER_INDEX_gas_law) ? "gas_law" : NULL;
+    for (int i = 0; i < 3; i++) {
+      if (is_given(device, needy[i]) && *value_of(device, needy[i]) != 0) {
+        found = inerter_parameter(needy[i])->name;
+      }
+    }
+    return found ? refuse(message,
+                          "%s is given, but gas_pressure is 0 Pa: there is no gas spring; give "
+                          "gas_pressure > 0 Pa or remove %s",
+                          found, found)
+                 : 0;
+  }
+  if (isnan(device->gas_area)) {
+    device->gas_area = device->piston_area;
+  }
+  if (device->gas_area == 0) {
+    return refuse(message,
+                  "gas_area is %s, but gas_pressure is %g Pa; give gas_area > 0 m^2 (or "
+                  "piston_area) or remove gas_pressure",
+                  is_given(device, INERTER_INDEX_gas_area) ? "0 m^2" : "unset",
+                  device->gas_pressure);
+  }
+  if (device->gas_volume == 0) {
+    return refuse(message,
+                  "gas_volume is 0 m^3, but gas_pressure is %g Pa; give gas_volume > 0 m^3 or "
+                  "remove gas_pressure",
+                  device->gas_pressure);
+  }
+  return 0;
+}
+
+// the channel's geometry is there as a whole or not at all; it gives the inertance
+static int check_channel(InerterDevice* device, char* message) {
+  const int geometry[] = {INERTER_INDEX_piston_area, INERTER_INDEX_channel_area,
+                          INERTER_INDEX_channel_length};
+  const int others[] = {INERTER_INDEX_channel_area,      INERTER_INDEX_channel_length,
+                        INERTER_INDEX_fluid_density,     INERTER_INDEX_fluid_viscosity,
+                        INERTER_INDEX_channel_roughness, INERTER_INDEX_minor_loss};
+  const char* found = device->piston_area > 0 && device->gas_pressure == 0 ? "piston_area" : NULL;
+  for (int i = 0; i < 6; i++) {
+    if (is_given(device, others[i]) && *value_of(device, others[i]) != 0) {
+      found = inerter_parameter(others[i])->name;
+    }
+  }
+  if (!found) {
+    return 0;
+  }
+
+  char missing[64] = "";
+  for (int i = 0; i < 3; i++) {
+    if (*value_of(device, geometry[i]) == 0) {
+      if (*missing) strcat(missing, ", ");
+      strcat(missing, inerter_parameter(geometry[i])->name);
+    }
+  }
+  if (*missing) {
+    return refuse(message,
+                  "%s is given, but the channel is incomplete: %s missing; give piston_area, "
+                  "channel_area and channel_length > 0, or remove %s",
+                  found, missing, found);
+  }
+  double inertance = pipe_inertance(device);
+  if (is_given(device, INERTER_INDEX_inertance)) {
+    return refuse(message,
+                  "inertance is %g kg, but the channel gives %g kg; state one of them: remove "
+                  "inertance, or the channel's parameters",
+                  device->inertance, inertance);
+  }
+  if (!isfinite(inertance) || inertance == 0) {
+    return refuse(message,
+                  "inertance is %g kg from fluid_density, channel_length, piston_area and "
+                  "channel_area: out of range; correct them",
+                  inertance);
+  }
+  device->inertance = inertance;
+  device->given |= UINT64_C(1) << INERTER_INDEX_inertance;
+  return 0;
+}
+
+static int check_series(const InerterDevice* device, char* message) {
+  const int needy[] = {INERTER_INDEX_series_hardening, INERTER_INDEX_backlash};
+  const double values[] = {device->series_hardening, device->backlash};
+  for (int i = 0; i < 2; i++) {
+    const InerterParameter* p = inerter_parameter(needy[i]);
+    if (values[i] != 0 && device->series_stiffness == 0) {
+      return refuse(message,
+                    "%s is %g %s, but series_stiffness is 0 N/m; give series_stiffness > 0 N/m or "
+                    "remove %s",
+                    p->name, values[i], p->unit, p->name);
+    }
+  }
+  if (device->inertance == 0 && (device->series_stiffness > 0 || device->series_damping > 0)) {
+    int stiff = device->series_stiffness > 0;
+    return refuse(message,
+                  "%s is %g %s, but inertance is 0 kg: there is nothing behind the series element; "
+                  "give inertance > 0 kg or remove %s",
+                  stiff ? "series_stiffness" : "series_damping",
+                  stiff ? device->series_stiffness : device->series_damping,
+                  stiff ? "N/m" : "N*s/m", stiff ? "series_stiffness" : "series_damping");
+  }
+  return 0;
+}
+
+static uint32_t parts_of(const InerterDevice* p) {
+  int pipe = p->fluid_viscosity > 0 || p->minor_loss > 0, gas = p->gas_pressure > 0;
+  int series = p->series_stiffness > 0 || p->series_damping > 0;
+  int varying =
+      p->inertance_gradient != 0 || p->inertance_curvature != 0 || p->inertance_speed_gradient != 0;
+  int stops = !isnan(p->stop_lower) || !isnan(p->stop_upper);
+  return (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) | (gas ? PART_GAS : 0) |
+         (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) | (series ? PART_SERIES : 0) |
+         (p->backlash > 0 ? PART_BACKLASH : 0) | (stops ? PART_STOPS : 0);
+}
+
+int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
+  if (!inerter_friction_name(device->friction)) {
+    return refuse(message, "friction is %d: no such law", device->friction);
+  }
+  if (!inerter_gas_law_name(device->gas_law)) {
+    return refuse(message, "gas_law is %d: no such law", device->gas_law);
+  }
+  if (isnan(device->static_force)) {
+    device->static_force = device->coulomb_force;
+  }
+  if (check_law(device, message) || check_ranges(device, message) ||
+      check_friction(device, message) || check_stops(device, message) ||
+      check_gas(device, message) || check_channel(device, message) ||
+      check_series(device, message)) {
+    return -1;
+  }
+  device->parts = parts_of(device);
+  device->nstate = inerter_friction_nstate(device->friction) + (has(device, PART_SERIES) ? 2 : 0) +
+                   (has(device, PART_BACKLASH) ? 1 : 0);
+  return 0;
+}

@@ -1,0 +1,125 @@
+// Reading a configuration: one key and its text at a time. check.c sees that all of it fits.
+
+#include "configuration.h"
+
+#include <ctype.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void inerter_default(InerterDevice* device) {
+  memset(device, 0, sizeof(*device));
+#define X(name, unit, initial, ...) device->name = (initial);
+  INERTER_PARAMETERS(X)
+#undef X
+}
+
+double* value_of(InerterDevice* device, int i) {
+  return (double*)((char*)device + inerter_parameter(i)->offset);
+}
+
+const char* range_text(const InerterParameter* p, char text[128]) {
+  const char* unit = strcmp(p->unit, "1") ? p->unit : "";
+  if (isinf(p->lower) && isinf(p->upper)) {
+    snprintf(text, 128, "any finite number%s%s", *unit ? " in " : "", unit);
+  } else if (isinf(p->upper)) {
+    snprintf(text, 128, "a finite number %s %g%s%s", p->lower_open ? ">" : ">=", p->lower,
+             *unit ? " " : "", unit);
+  } else {
+    snprintf(text, 128, "a number %s %g and <= %g%s%s", p->lower_open ? ">" : ">=", p->lower,
+             p->upper, *unit ? " " : "", unit);
+  }
+  return text;
+}
+
+int allowed(const InerterParameter* p, double value) {
+  return isfinite(value) && value <= p->upper &&
+         (p->lower_open ? value > p->lower : value >= p->lower);
+}
+
+// strtod that wants a decimal point whatever the program's locale
+static double number(const char* text, const char** end) {
+  const char* point = localeconv()->decimal_point;
+  size_t before = strcspn(text, "."), width = strlen(point);
+  char local[128];
+  char* stop;
+  *end = text;
+  if (!strcmp(point, ".")) {
+    double value = strtod(text, &stop);
+    *end = stop;
+    return value;
+  }
+  if (strstr(text, point) || strlen(text) + width >= sizeof(local)) {
+    return 0;
+  }
+
+  // the locale's point in place of ours
+  memcpy(local, text, before);
+  if (text[before]) {
+    memcpy(local + before, point, width);
+    strcpy(local + before + width, text + before + 1);
+  } else {
+    local[before] = 0;
+  }
+  double value = strtod(local, &stop);
+  size_t length = (size_t)(stop - local);
+  *end = text + (length > before ? length - width + 1 : length);
+  return value;
+}
+
+// set one of several laws by name
+static int set_law(const char* key, const char* text, const char* (*name)(int), int* law,
+                   char* message) {
+  for (int i = 0; name(i); i++) {
+    if (!strcmp(text, name(i))) {
+      *law = i;
+      return 0;
+    }
+  }
+  int length = snprintf(message, INERTER_MESSAGE_SIZE,
+                        "%s is \"%.60s\": no such law; choose one of", key, text);
+  for (int i = 0; name(i) && length < INERTER_MESSAGE_SIZE; i++) {
+    length += snprintf(message + length, INERTER_MESSAGE_SIZE - length, " %s", name(i));
+  }
+  return -1;
+}
+
+int inerter_set(InerterDevice* device, const char* key, const char* text,
+                char message[INERTER_MESSAGE_SIZE]) {
+  char range[128];
+  if (!strcmp(key, "friction")) {
+    return set_law(key, text, inerter_friction_name, &device->friction, message);
+  }
+  if (!strcmp(key, "gas_law")) {
+    device->given |= UINT64_C(1) << INERTER_INDEX_gas_law;
+    return set_law(key, text, inerter_gas_law_name, &device->gas_law, message);
+  }
+  for (int i = 0; i < INERTER_NPARAMETER; i++) {
+    const InerterParameter* p = inerter_parameter(i);
+    if (strcmp(key, p->name)) {
+      continue;
+    }
+    const char* end;
+    double value = number(text, &end);
+    int empty = end == text;
+    while (isspace((unsigned char)*end)) {
+      end++;
+    }
+    if (empty || *end) {
+      snprintf(message, INERTER_MESSAGE_SIZE, "%s is \"%.60s\": not a number; give %s (%s)", key,
+               text, range_text(p, range), p->meaning);
+      return -1;
+    }
+    if (!allowed(p, value)) {
+      snprintf(message, INERTER_MESSAGE_SIZE, "%s is \"%.60s\": out of range; give %s (%s)", key,
+               text, range_text(p, range), p->meaning);
+      return -1;
+    }
+    *value_of(device, i) = value;
+    device->given |= UINT64_C(1) << i;
+    return 0;
+  }
+  snprintf(message, INERTER_MESSAGE_SIZE, "\"%.60s\" is not a parameter of the device", key);
+  return -1;
+}

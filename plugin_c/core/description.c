@@ -1,0 +1,73 @@
+// What there is to configure: names, units, ranges and meanings, from the lists in parameters.h.
+
+#include "device.h"
+#include "laws.h"
+
+enum { CLOSED = 0, OPEN = 1 };
+
+static const InerterParameter kParameters[] = {
+#define X(name, unit, initial, lower, upper, bound, laws, meaning) \
+  {#name, unit, initial, lower, upper, bound, offsetof(InerterDevice, name), laws, meaning},
+    INERTER_PARAMETERS(X)
+#undef X
+};
+
+static const struct {
+  const char* name;
+  int nstate;
+  const char* meaning;
+} kFriction[] = {
+#define X(identifier, nstate, meaning) {#identifier, nstate, meaning},
+    INERTER_FRICTION_LAWS(X)
+#undef X
+};
+
+static const struct {
+  const char* name;
+  const char* meaning;
+} kGas[] = {
+#define X(identifier, meaning) {#identifier, meaning},
+    INERTER_GAS_LAWS(X)
+#undef X
+};
+
+const FrictionLaw* const inerter_friction_law[] = {
+#define inerter_none inerter_coulomb  // never called: "none" is tested first
+#define X(identifier, nstate, meaning) &inerter_##identifier,
+    INERTER_FRICTION_LAWS(X)
+#undef X
+#undef inerter_none
+};
+
+const InerterParameter* inerter_parameter(int i) {
+  return i >= 0 && i < INERTER_NPARAMETER ? &kParameters[i] : NULL;
+}
+
+const char* inerter_friction_name(int i) {
+  return i >= 0 && i < INERTER_NFRICTION ? kFriction[i].name : NULL;
+}
+
+const char* inerter_friction_meaning(int i) {
+  return i >= 0 && i < INERTER_NFRICTION ? kFriction[i].meaning : NULL;
+}
+
+int inerter_friction_nstate(int i) {
+  return i >= 0 && i < INERTER_NFRICTION ? kFriction[i].nstate : -1;
+}
+
+const char* inerter_gas_law_name(int i) {
+  return i >= 0 && i < INERTER_NGAS ? kGas[i].name : NULL;
+}
+
+const char* inerter_gas_law_meaning(int i) {
+  return i >= 0 && i < INERTER_NGAS ? kGas[i].meaning : NULL;
+}
+
+const char* inerter_state_name(const InerterDevice* device, int i) {
+  static const char* const kSeries[] = {"series_deflection", "flywheel_velocity", "gap_position"};
+  if (i < 0 || i >= device->nstate) {
+    return NULL;
+  }
+  int friction = kFriction[device->friction].nstate;
+  return i < friction ? "friction_state" : kSeries[i - friction];
+}

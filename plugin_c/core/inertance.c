@@ -1,0 +1,53 @@
+// Inertance that varies along the stroke and with speed.
+//
+//   force = B(y, w) w' + R(y, w),   B = b X(y) V(w),   R = b X'(y) E(w)
+//   X = max(0.01, 1 + gradient y + curvature y^2)
+//   V = max(0.01, 1 + g |w|)
+//   E = integral from 0 to w of u V(u) du = w^2 / 2 + g |w|^3 / 3
+//
+// y, w: displacement [m], velocity [m/s] of the flywheel; b [kg] inertance; gradient [1/m]
+// inertance_gradient, curvature [1/m^2] inertance_curvature, g [s/m] inertance_speed_gradient.
+// Positive force lengthens. Stored energy b X E; R makes the force keep it: F w = d(b X E)/dt.
+// Where a floor holds, X' = 0, and V stays 0.01.
+// Source: Lagrange with the co-energy whose momentum is b X P(w), P' = V. With g = 0 this is
+// b(x) a + b'(x) v^2 / 2 of a ball screw of varying lead.
+// Not modelled: an inertance that depends on the history of the motion.
+
+#include "laws.h"
+
+static const double kFloor = 0.01;
+
+// X, with its slope
+static Tangent along_stroke(const InerterDevice* p, double y) {
+  double linear = p->inertance_gradient, square = p->inertance_curvature;
+  double factor = 1 + (linear + square * y) * y;
+  if (factor < kFloor) {
+    return (Tangent){kFloor, 0};
+  }
+  return (Tangent){factor, linear + 2 * square * y};
+}
+
+// E
+static double kinetic(const InerterDevice* p, double w) {
+  double g = p->inertance_speed_gradient, square = w * w;
+  if (g == 0) {
+    return 0.5 * square;
+  }
+  double edge = (kFloor - 1) / g;  // where V meets its floor
+  if (g > 0 || fabs(w) <= edge) {
+    return (0.5 + g * fabs(w) / 3) * square;
+  }
+  return (0.5 + g * edge / 3) * edge * edge + 0.5 * kFloor * (square - edge * edge);
+}
+
+double inertance_felt(const InerterDevice* p, double y, double w, double* rest) {
+  Tangent stroke = along_stroke(p, y);
+  if (rest) {
+    *rest = stroke.slope != 0 ? p->inertance * stroke.slope * kinetic(p, w) : 0;
+  }
+  return p->inertance * stroke.value * fmax(kFloor, 1 + p->inertance_speed_gradient * fabs(w));
+}
+
+double inertance_energy(const InerterDevice* p, double y, double w) {
+  return p->inertance * along_stroke(p, y).value * kinetic(p, w);
+}

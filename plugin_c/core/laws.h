@@ -1,0 +1,120 @@
+// What the laws beside friction give to the device. One law, one file; friction is in friction.h.
+
+#ifndef INERTER_CORE_LAWS_H_
+#define INERTER_CORE_LAWS_H_
+
+#include "device.h"
+#include "friction.h"
+
+// which parts a device has (InerterDevice.parts)
+enum {
+  PART_VARYING = 1 << 0,   // the inertance varies along the stroke or with speed
+  PART_FLYWHEEL = 1 << 1,  // damping or gas at the flywheel: G
+  PART_PIPE = 1 << 2,      // loss of the fluid in its channel
+  PART_GAS = 1 << 3,
+  PART_SERIES = 1 << 4,
+  PART_BACKLASH = 1 << 5,
+  PART_STOPS = 1 << 6
+};
+
+static inline int has(const InerterDevice* p, unsigned part) {
+  return (p->parts & part) != 0;
+}
+
+// displacement that the laws see
+static inline double stretch_of(const InerterDevice* p, double length) {
+  return length - p->rest_length;
+}
+
+static inline const FrictionLaw* law_of(const InerterDevice* p) {
+  return inerter_friction_law[p->friction];
+}
+
+// whether the friction law has a state, z[0]
+static inline int has_bristle(const InerterDevice* p) {
+  return p->friction == INERTER_FRICTION_dahl || p->friction == INERTER_FRICTION_lugre ||
+         p->friction == INERTER_FRICTION_bouc_wen;
+}
+
+// place of the series element's first state, after that of friction
+static inline int series_index(const InerterDevice* p) {
+  return has_bristle(p);
+}
+
+// a quantity and its derivative
+typedef struct Tangent_ {
+  double value;
+  double slope;
+} Tangent;
+
+static inline double clamp(double value, double lower, double upper) {
+  return value < lower ? lower : value > upper ? upper : value;
+}
+
+// inertance.c, at displacement y and velocity w of the flywheel: B; R (if not NULL); stored energy
+double inertance_felt(const InerterDevice* p, double y, double w, double* rest);
+double inertance_energy(const InerterDevice* p, double y, double w);
+
+// gas_spring.c, at displacement y
+double gas_force(const InerterDevice* p, double y);
+double gas_energy(const InerterDevice* p, double y);
+int gas_valid(const InerterDevice* p, double y, char* message);
+
+// pipe.c: inertance of the fluid; force of its losses at velocity w, with slope >= 0
+double pipe_inertance(const InerterDevice* p);
+Tangent pipe_force(const InerterDevice* p, double w);
+
+// end_stop.c, at displacement x, velocity v
+double stop_force(const InerterDevice* p, double x, double v);
+double stop_energy(const InerterDevice* p, double x);
+double stop_heat(const InerterDevice* p, double x, double v);
+
+// flywheel damping with its slope: flywheel_viscous w + pipe(w)
+static inline Tangent flywheel_damper(const InerterDevice* p, double w) {
+  Tangent damper = {0, 0};
+  if (has(p, PART_PIPE)) {
+    damper = pipe_force(p, w);
+  }
+  damper.value += p->flywheel_viscous * w;
+  damper.slope += p->flywheel_viscous;
+  return damper;
+}
+
+// G(y, w)
+static inline double flywheel_force(const InerterDevice* p, double y, double w) {
+  double gas = has(p, PART_GAS) ? gas_force(p, y) : 0;
+  return gas + flywheel_damper(p, w).value;
+}
+
+// series.c: states s, w, gap in z; x, v of the terminals
+double series_force(const InerterDevice* p, double v, const double* z);
+void series_rate(const InerterDevice* p, double x, double v, const double* z, double* rate);
+double series_energy(const InerterDevice* p, const double* z);
+double series_heat(const InerterDevice* p, double v, const double* z);
+int series_valid(const InerterDevice* p, const double* z, char* message);
+void series_of_force(const InerterDevice* p, double v, double force, double* z);
+
+// series_step.c: states after a time h from x, v at acceleration a; force over a step and states at
+// its end, where the velocity is v, for a mobility of the terminals
+void series_step(const InerterDevice* p, double x, double v, double a, double* z, double h);
+double series_over_step(const InerterDevice* p, double x, double v, double* z, double h,
+                        double mobility);
+
+// Least implicit share of a spring in a step: stable always, neutral where h resolves the spring.
+static inline double least_share(double stiffness, double mobility, double h) {
+  double square = h * h * stiffness * mobility;
+  return square > 1 ? 1 - 1 / square : 0;
+}
+
+// series.c: spring phi(d) with its slope
+Tangent series_spring(const InerterDevice* p, double d);
+
+// position of the play, and the spring's deflection d
+static inline double series_gap(const InerterDevice* p, const double* z) {
+  if (!has(p, PART_BACKLASH)) {
+    return 0;
+  }
+  return clamp(p->series_damping > 0 ? z[2] : z[0], -p->backlash, p->backlash);
+}
+
+#endif  // INERTER_CORE_LAWS_H_

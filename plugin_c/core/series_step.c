@@ -1,0 +1,184 @@
+// Steps of the series element (series.c): linear equations for the end of a step, in closed form.
+//
+// Flywheel:  B (w1 - w) / h + R + G(w) + G' share (w1 - w) = F
+//            s1 - s = h (v - w - share (w1 - w))
+// Spring in contact:  F = phi(d) + share phi'(d) (d1 - d) + c_s (d1 - d) / h
+// Loose: backward step, the spring relaxes to `rest` while the play takes up the motion:
+//            rest c_s / h + phi(d) + phi'(d) (rest - d) = d c_s / h
+//            F = (phi' + c_s / h) (s1 - gap1 - rest),  gap1 = s1 - rest clamped to the play
+//
+// With backlash F is a dead zone in s1: one line pushes, one pulls. A side that is in contact keeps
+// its own line, which the step resolves better. The sum of both is continuous and does not fall
+// with s1, so that with the flywheel's line there is one F.
+//
+// v, w, s, d, phi, B, R, G, h [s]: as in series.c; share 1/2 ... 1: implicit part of the step.
+// Source: the theta method; least share for stability follows from the linear oscillator.
+// Not modelled: impacts within a step, whose times are not searched.
+
+#include "laws.h"
+
+enum { S, W, GAP };  // places in z
+
+// what F does to the flywheel over a step: s1 - s = free_u - give_u F, w1 = free_w + give_w F
+typedef struct Flywheel_ {
+  double free_u, give_u;
+  double free_w, give_w;
+} Flywheel;
+
+// F over a step as function of u = s1 - s, each line its value at u = 0 and slope
+typedef struct Element_ {
+  Tangent push, pull;  // F = max(0, push) + min(0, pull); without backlash F = push
+  double rest;         // deflection that a loose spring relaxes to
+  int side;            // +1, -1: side in contact at the start
+} Element;
+
+static double at(Tangent line, double u) {
+  return line.value + line.slope * u;
+}
+
+// the flywheel's step from w, its coefficients taken at displacement y and velocity near
+static Flywheel flywheel_step(const InerterDevice* p, double y, double near, double w, double v,
+                              double h, double share) {
+  double rest, mass = inertance_felt(p, y, near, &rest) / h;
+  if (has(p, PART_FLYWHEEL)) {
+    Tangent damper = flywheel_damper(p, near);
+    rest += damper.value + damper.slope * (w - near) + (has(p, PART_GAS) ? gas_force(p, y) : 0);
+    mass += share * damper.slope;
+  }
+  double change = rest / mass;
+  return (Flywheel){h * (v - w + share * change), h * share / mass, w - change, 1 / mass};
+}
+
+// the element's step from z; in contact linearised at deflection near, with `share`
+static Element element_step(const InerterDevice* p, const double* z, double near, double h,
+                            double share) {
+  Element element = {.side = 0};
+  double damping = p->series_damping / h, gap = series_gap(p, z), d = z[S] - gap;
+  Tangent spring = series_spring(p, near);
+  spring.value += spring.slope * (d - near);
+  spring.slope = share * spring.slope + damping;
+  element.push = spring;
+  if (!has(p, PART_BACKLASH)) {
+    return element;
+  }
+
+  // loose; without damper the spring is unloaded at once
+  Tangent loose = series_spring(p, damping > 0 ? d : 0);
+  loose.slope += damping;
+  element.rest = damping > 0 ? d - loose.value / loose.slope : 0;
+  element.push.value = loose.slope * (z[S] - element.rest - p->backlash);
+  element.pull.value = loose.slope * (z[S] - element.rest + p->backlash);
+  element.push.slope = element.pull.slope = loose.slope;
+
+  // in contact
+  element.side = (gap >= p->backlash) - (gap <= -p->backlash);
+  if (element.side > 0) {
+    element.push = spring;
+  } else if (element.side < 0) {
+    element.pull = spring;
+  }
+  return element;
+}
+
+static double on_line(Tangent line, Flywheel flywheel) {
+  return at(line, flywheel.free_u) / (1 + line.slope * flywheel.give_u);
+}
+
+// F of both; of the four combinations of lines the one that fits itself
+static double common_force(const InerterDevice* p, Element element, Flywheel flywheel) {
+  if (!has(p, PART_BACKLASH)) {
+    return on_line(element.push, flywheel);
+  }
+  Tangent push = element.push, pull = element.pull;
+  Tangent both = {push.value + pull.value, push.slope + pull.slope};
+  double candidates[] = {0, on_line(push, flywheel), on_line(pull, flywheel),
+                         on_line(both, flywheel)};
+  double found = 0, least = INFINITY;
+  for (int i = 0; i < 4; i++) {
+    double u = flywheel.free_u - flywheel.give_u * candidates[i];
+    double error = fabs(fmax(0, at(push, u)) + fmin(0, at(pull, u)) - candidates[i]);
+    if (error < least) {
+      least = error;
+      found = candidates[i];
+    }
+  }
+  return found;
+}
+
+// states at the end of a step with force F
+static void finish_step(const InerterDevice* p, Element element, Flywheel flywheel, double force,
+                        double* z) {
+  double u = flywheel.free_u - flywheel.give_u * force;
+  z[S] += u;
+  z[W] = flywheel.free_w + flywheel.give_w * force;
+  if (!has(p, PART_BACKLASH)) {
+    return;
+  }
+  int held = (element.side > 0 && at(element.push, u) > 0 && at(element.pull, u) >= 0) ||
+             (element.side < 0 && at(element.pull, u) < 0 && at(element.push, u) <= 0);
+  if (held && p->series_damping > 0) {
+    z[GAP] = element.side * p->backlash;
+  } else {
+    z[GAP] = clamp(z[S] - element.rest, -p->backlash, p->backlash);
+  }
+}
+
+// One step from velocity v at acceleration a: a backward half step to the middle, then the whole
+// with the coefficients there. Second order with share 1/2; the share rises where h does not
+// resolve the element, so that it settles.
+static void substep(const InerterDevice* p, double x, double v, double a, double* z, double h) {
+  double middle[3] = {z[S], z[W], has(p, PART_BACKLASH) ? z[GAP] : 0};
+  double d = z[S] - series_gap(p, z);
+  Element half = element_step(p, z, d, 0.5 * h, 1);
+  double midway = v + 0.5 * h * a;
+  Flywheel flywheel = flywheel_step(p, x - z[S], z[W], z[W], midway, 0.5 * h, 1);
+  finish_step(p, half, flywheel, common_force(p, half, flywheel), middle);
+
+  double near = middle[S] - series_gap(p, middle);
+  double y = x + 0.25 * h * (v + midway) - middle[S];
+  double inertance = inertance_felt(p, y, middle[W], NULL);
+  double damping = p->series_damping;
+  if (has(p, PART_FLYWHEEL)) {
+    damping += flywheel_damper(p, middle[W]).slope;
+  }
+  double square = h * (h * series_spring(p, near).slope + damping) / inertance;
+  double share = square > 2 ? 1 - 1 / square : 0.5;
+  Element element = element_step(p, z, near, h, share);
+  flywheel = flywheel_step(p, y, middle[W], z[W], v + share * h * a, h, share);
+  finish_step(p, element, flywheel, common_force(p, element, flywheel), z);
+}
+
+// parts of a third of a radian as long as they are not too many, else a few that settle
+static int count_parts(double radians) {
+  enum { MOST = 32, FEW = 4 };
+  if (!(3 * radians < MOST)) {
+    return FEW;
+  }
+  return 1 + (int)(3 * radians);
+}
+
+void series_step(const InerterDevice* p, double x, double v, double a, double* z, double h) {
+  if (h == 0) {
+    return;
+  }
+  double inertance = inertance_felt(p, x - z[S], z[W], NULL);
+  double stiffness = series_spring(p, z[S] - series_gap(p, z)).slope;
+  double rate = sqrt(stiffness / inertance) + p->series_damping / inertance;
+  int count = count_parts(fabs(h) * rate);
+  for (int i = 0; i < count; i++) {
+    double t = h * i / count;
+    substep(p, x + (v + 0.5 * a * t) * t, v + a * t, a, z, h / count);
+  }
+}
+
+double series_over_step(const InerterDevice* p, double x, double v, double* z, double h,
+                        double mobility) {
+  double inertance = inertance_felt(p, x - z[S], z[W], NULL), d = z[S] - series_gap(p, z);
+  double stiffness = series_spring(p, d).slope;
+  double share = least_share(stiffness, mobility + 1 / inertance, h);
+  Element element = element_step(p, z, d, h, share);
+  Flywheel flywheel = flywheel_step(p, x - z[S], z[W], z[W], v, h, 1);
+  double force = common_force(p, element, flywheel);
+  finish_step(p, element, flywheel, force, z);
+  return force;
+}

@@ -1,0 +1,35 @@
+// The effective mass of a step, in the way of the chosen integrator.
+//
+//   H a = f + J_c' f_c,   H = M                          RK4, Euler without joint damping
+//                         H = M + h D                    Euler (D: joint damping)
+//                         H = M - h df/dv                implicit, implicitfast
+//                         H = M + h D + h^2 K            discrete
+//
+// a [rad/s^2, m/s^2]: (v_next - v) / h, the acceleration that the step applies; f smooth forces,
+// J_c' f_c constraint forces. A force that is to be proportional to the acceleration has to be
+// found in this metric: in another one a strong damper beside the inerter would be felt twice.
+
+#ifndef INERTER_MUJOCO_METRIC_H_
+#define INERTER_MUJOCO_METRIC_H_
+
+#include <mujoco/mujoco.h>
+
+typedef enum MetricKind_ { METRIC_INERTIA, METRIC_DISCRETE, METRIC_CHOLESKY, METRIC_LU } MetricKind;
+
+typedef struct Metric_ {
+  MetricKind kind;
+  mjtNum* factor;   // of H, in the sparsity of M (METRIC_CHOLESKY) or of D (METRIC_LU)
+  mjtNum* inverse;  // inverse diagonal of the factor (METRIC_CHOLESKY)
+} Metric;
+
+// The metric of the present step, factorised; it lives on the stack of mjData.
+Metric metric_of_step(const mjModel* m, mjData* d);
+
+// Whether the acceleration of the step differs from mjData.qacc.
+int metric_moves_qacc(const Metric* metric);
+
+// x = H^-1 y for n vectors.
+void metric_solve(const mjModel* m, mjData* d, const Metric* metric, mjtNum* x, const mjtNum* y,
+                  int n);
+
+#endif  // INERTER_MUJOCO_METRIC_H_

@@ -1,0 +1,18 @@
+// What goes wrong while a model runs: said once per mjData, and kept from doing harm.
+
+#ifndef INERTER_MUJOCO_WATCH_H_
+#define INERTER_MUJOCO_WATCH_H_
+
+#include "mujoco/instance.h"
+
+// Say that a law has left the range that it is valid in.
+void watch_validity(const mjModel* m, Instance* self, const mjtNum* state);
+
+// Keep the rate of a friction state to what the stages of RK4 resolve. At speed v a bristle relaxes
+// towards sliding at a rate of sigma0 |v| / g, which is easily beyond the stability of explicit
+// stages. There it is slowed to the fastest that is stable: sliding then sets in within a step
+// instead of at once, at the same level.
+void watch_bristle(const mjModel* m, Instance* self, double x, double v, const mjtNum* state,
+                   mjtNum* rate);
+
+#endif  // INERTER_MUJOCO_WATCH_H_
