@@ -47,7 +47,7 @@ static void force_colour(const mjModel* m, mjtNum force, mjtNum length, float rg
   float t = (float)tanh(force * m->vis.map.force / length);
   rgba[0] = 0.55f + 0.4f * (t > 0 ? t : 0.6f * t);
   rgba[1] = 0.57f - 0.42f * fabsf(t);
-  rgba[2] = 0.60f + 0.35f * (t < 0 ? -t : -0.8f * t);
+  rgba[2] = 0.60f + 0.35f * (t < 0 ? -t : -1.2f * t);
   rgba[3] = 1;
 }
 

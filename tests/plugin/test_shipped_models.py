@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -28,9 +31,35 @@ def test_it_loads_and_runs(name: str, file: str) -> None:
     assert not any(warning.number for warning in data.warning)
 
 
+@pytest.mark.parametrize("name", model_names())
+def test_every_model_can_be_looked_at(name: str) -> None:
+    """A scene with a light, at rest or started from its key, and a README that names each file."""
+    scene = mujoco.MjModel.from_xml_path(str(model_path(name, "scene.xml")))
+    assert scene.nlight
+    assert scene.nkey
+    text = model_path(name, "README.md").read_text(encoding="utf-8")
+    for path in model_path(name).parent.glob("model*.xml"):
+        if name != "test_rig":
+            assert f"`{path.name}`" in text, path.name
+    assert "**Provenance.**" in text
+    assert "**What to look at.**" in text
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_what_the_readme_shows_runs(name: str) -> None:
+    text = model_path(name, "README.md").read_text(encoding="utf-8")
+    for code in re.findall(r"```python\n(.*?)```", text, re.S):
+        names: dict[str, Any] = {}
+        exec(code, names)
+        data = names["data"]
+        assert np.isfinite(data.qpos).all()
+        assert np.abs(data.qpos).max() > 1e-6
+        assert not any(warning.number for warning in data.warning)
+
+
 def test_what_is_not_there_is_named() -> None:
     with pytest.raises(ValueError, match="quarter_car, test_rig"):
-        model_path("half_car")
+        model_path("bicycle")
     with pytest.raises(ValueError, match=r"scene\.xml"):
         model_path("quarter_car", "model_s4.xml")
 
@@ -80,8 +109,8 @@ def test_a_quarter_car_is_the_matrix_exponential(file: str) -> None:
 def test_a_friction_strut_agrees_with_the_reference() -> None:
     from inerter.reference import QuarterCar, ReferenceDevice
 
-    p = {"coulomb_force": 40.0, "static_force": 60.0, "stribeck_velocity": 0.02}
-    bristle = {"bristle_stiffness": 5e4, "bristle_damping": 100.0}
+    p: dict[str, Any] = {"coulomb_force": 40.0, "static_force": 60.0, "stribeck_velocity": 0.02}
+    bristle: dict[str, Any] = {"bristle_stiffness": 5e4, "bristle_damping": 100.0}
     spec = mujoco.MjSpec.from_file(str(model_path("quarter_car")))
     config = dict(spec.plugins[0].config)
     spec.plugins[0].config = config | {"friction": "lugre"} | {
