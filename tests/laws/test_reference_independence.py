@@ -7,8 +7,8 @@ import inerter.reference
 
 FOLDER = Path(inerter.reference.__file__).parent
 ALLOWED = {
-    "__future__", "collections", "dataclasses", "difflib", "itertools", "pathlib", "types",
-    "typing", "numpy", "scipy",
+    "__future__", "collections", "dataclasses", "difflib", "functools", "itertools", "pathlib",
+    "types", "typing", "numpy", "scipy",
 }  # fmt: skip
 
 

@@ -3,10 +3,19 @@
 It shares no code with the fast core; the two meet in tests and in `inerter validate`.
 
     laws/            one force law per file
-    device.py        the device: inertance, springs, dampers, friction
+    device.py        the device: inertance, springs, dampers, friction, series element
     motion.py        its force along an imposed motion
     motions.py       test motions in closed form
+    contacts.py      integration that locates the contacts of a backlash
+    strut.py         spring, damper and device in one of three layouts
+    structure.py     bodies with struts between them, solved jointly
+    model_parameters.py   published numbers of the models
     quarter_car.py   the quarter-car with the device in its strut
+    vehicle.py       what the two next share
+    half_car.py      heave and pitch on two struts
+    full_car.py      heave, pitch and roll on four struts
+    tuned_inerter_damper.py   a shear frame with inerters between floors
+    fluid_inerter.py the fluid inerter on its shaker
     bench.py         test records with one hidden effect
     bench_motions.py, bench_devices.py   what it draws from
     wang_su.py       the demonstration record
@@ -16,19 +25,58 @@ from __future__ import annotations
 
 from .bench import EFFECTS, HYSTERETIC_LAWS, HiddenCase, HiddenRun, NoiseLevels, hide_effect
 from .device import ReferenceDevice
-from .laws import FRICTION_LAWS, friction_level
+from .fluid_inerter import (
+    FluidInerterResult,
+    FluidInerterTest,
+    complete_device,
+    dry_device,
+    receptance,
+    sweep_voltage,
+)
+from .full_car import FullCar, FullCarResult
+from .half_car import HalfCar, HalfCarResult
+from .laws import FRICTION_LAWS, GAS_LAWS, friction_level
+from .model_parameters import FLUID_INERTER, FRAME, FULL_CAR, HALF_CAR, SHAKER
 from .motion import Motion, Response, response, sine_motion
 from .motions import chirp, scaled, strokes, sum_of_sines, windowed_sines
 from .quarter_car import LAYOUTS, QuarterCar, QuarterCarResult
 from .record import write_record
+from .structure import Structure, StructureRun
+from .strut import Strut
+from .tuned_inerter_damper import (
+    FRAME_DEVICE,
+    FloorDevice,
+    FrameResult,
+    ShearFrame,
+    frame_modes,
+    frame_receptance,
+    frame_state_matrix,
+)
+from .vehicle import Corner, corner_of
 from .wang_su import WANG_SU_DEVICE, WangSuBench, wang_su_bench, wang_su_motion
 
 __all__ = [
     "EFFECTS",
+    "FLUID_INERTER",
+    "FRAME",
+    "FRAME_DEVICE",
     "FRICTION_LAWS",
+    "FULL_CAR",
+    "GAS_LAWS",
+    "HALF_CAR",
     "HYSTERETIC_LAWS",
     "LAYOUTS",
+    "SHAKER",
     "WANG_SU_DEVICE",
+    "Corner",
+    "FloorDevice",
+    "FluidInerterResult",
+    "FluidInerterTest",
+    "FrameResult",
+    "FullCar",
+    "FullCarResult",
+    "HalfCar",
+    "HalfCarResult",
     "HiddenCase",
     "HiddenRun",
     "Motion",
@@ -37,15 +85,27 @@ __all__ = [
     "QuarterCarResult",
     "ReferenceDevice",
     "Response",
+    "ShearFrame",
+    "Structure",
+    "StructureRun",
+    "Strut",
     "WangSuBench",
     "chirp",
+    "complete_device",
+    "corner_of",
+    "dry_device",
+    "frame_modes",
+    "frame_receptance",
+    "frame_state_matrix",
     "friction_level",
     "hide_effect",
+    "receptance",
     "response",
     "scaled",
     "sine_motion",
     "strokes",
     "sum_of_sines",
+    "sweep_voltage",
     "wang_su_bench",
     "wang_su_motion",
     "windowed_sines",

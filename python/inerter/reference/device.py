@@ -1,15 +1,19 @@
-"""The device: an inertance with everything that stands beside it.
+"""The device: an inertance with everything that stands beside it and in series with it.
 
-    F = F_b + c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_load
-    F_b = b(x) a + b'(x) v^2 / 2,  b(x) = b max(0.01, 1 + q x + r x^2)
+    F = T(x, v, z) + N + lambda(v) |N|
+    T = c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_stops         at the terminals
+    without a series element:  N = B(x, v) a + R(x, v) + G(x, v)
+    with one:                  N = F_s(s, s', gap),   B(y, w) w' + R(y, w) + G(y, w) = F_s
+    G(y, w) = c_w w + pipe(w) + gas(y)                                    at the flywheel
 
-The second part of F_b keeps the kinetic energy b(x) v^2 / 2; q `inertance_gradient` [1/m],
-r `inertance_curvature` [1/m^2].
-Sign: x = x2 - x1 (length minus rest_length), positive = longer; F is the force that lengthens the
-device (tension positive) and acts on the bodies as -F along the line. By hand: b = 2 kg,
-a = 3 m/s^2 gives F = +6 N.
-Each term's law, range and source stand in its own file in `laws/`.
-Not modelled: anything in series with the inertance (shaft twist, backlash, compressible fluid).
+Symbols: x = x2 - x1 (length minus rest_length); s = x - y series deflection, y and w = y'
+displacement and velocity of the flywheel side; c_w `flywheel_viscous` [N s/m]. Without a series
+element y = x and w = v. Each term's law, range and source stand in its own file in `laws/`.
+Sign: positive x = longer; F is the force that lengthens the device (tension positive) and acts on
+the bodies as -F along the line. By hand: b = 2 kg, a = 3 m/s^2 gives F = +6 N.
+States, each only if needed: friction_state [m], series_deflection s [m], flywheel_velocity w
+[m/s], gap_position [m]. All zero: unloaded, flywheel at rest, middle of the gap.
+Not modelled: masses of the terminals, several series elements.
 """
 
 from __future__ import annotations
@@ -17,83 +21,100 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from .laws import FRICTION, FrictionParameters, Quantity, load, parallel, parameter
+from .laws import (
+    FRICTION,
+    DeviceParameters,
+    Quantity,
+    channel,
+    end_stops,
+    gas,
+    inertance,
+    load,
+    parallel,
+    series,
+)
+from .laws.series import Contact
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReferenceDevice(FrictionParameters):
-    """All parameters of one device; SI units, every default harmless.
+class ReferenceDevice(DeviceParameters):
+    """One device: its parameters, and what follows from them.
 
     Arguments of the methods: x [m] the length, from which `rest_length` is taken, v [m/s],
-    a [m/s^2], z [m] are numbers or arrays that broadcast together; results have their common
-    shape. `z` is the friction law's state; a law without one (`nstate == 0`) ignores it.
-
-    Raises
-    ------
-    ValueError
-        A parameter is outside its bounds; the message names it, its value and what is allowed.
+    a [m/s^2] are numbers or arrays that broadcast together; results have their common shape.
+    `z` holds the states: for `nstate` 0 it is ignored, for 1 it has the shape of x, for more it
+    has shape (..., nstate); the number 0 means all states zero. `contact` (see `laws/series.py`)
+    is for integrators that locate contacts; without it the states decide.
     """
-
-    inertance: float = parameter(0.0, "kg", "inertance b", at_least=0.0)
-    inertance_gradient: float = parameter(0.0, "1/m", "relative rise of b per x")
-    inertance_curvature: float = parameter(0.0, "1/m^2", "relative rise of b per x^2")
-    viscous: float = parameter(0.0, "N s/m", "linear damping c")
-    quadratic_damping: float = parameter(0.0, "N s^2/m^2", "quadratic damping c2")
-    stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
-    stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
-    rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")
-    force_offset: float = parameter(0.0, "N", "constant force f0")
-    load_friction: float = parameter(
-        0.0, "-", "friction share mu of the inertance force", at_least=0.0
-    )
-
-    def __post_init__(self) -> None:
-        """Check what was given, see Raises."""
-        super().__post_init__()
-        if self.load_friction >= 1.0:
-            raise ValueError(
-                f"load_friction: {self.load_friction} locks the device (no unique acceleration); "
-                "keep it below 1"
-            )
 
     @property
     def nstate(self) -> int:
-        """Number of states of the friction law: 0 or 1."""
-        return FRICTION[self.friction].STATES
+        """Number of states, 0 to 4."""
+        return len(self.state_names)
 
-    def force(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states in their order."""
+        friction = ("friction_state",) if FRICTION[self.friction].STATES else ()
+        flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
+        return friction + flywheel + (("gap_position",) if self.backlash > 0.0 else ())
+
+    @property
+    def total_inertance(self) -> float:
+        """The inertance [kg]: `inertance`, or what the channel's geometry gives."""
+        return self.inertance if self.channel_area == 0.0 else channel.inertance(self)
+
+    def state_argument(self, states: ArrayLike) -> Quantity:
+        """States of shape (..., nstate) in the form that the methods take as `z`."""
+        array = np.asarray(states, dtype=np.float64)
+        if self.nstate == 0:
+            return 0.0
+        return array[..., 0] if self.nstate == 1 else array
+
+    def force(
+        self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+    ) -> Quantity:
         """Total force F [N], tension positive."""
-        carried = self.inertance_force(x, v, a)
+        carried = self.inertance_force(x, v, a, z, contact=contact)
         return carried + self.load_friction_force(v, carried) + self.rest_force(x, v, z)
 
-    def inertance_at(self, x: Quantity) -> tuple[Quantity, Quantity]:
-        """Inertance b(x) [kg] and its slope b'(x) [kg/m]."""
-        stretch = x - self.rest_length
-        factor = 1.0 + (self.inertance_gradient + self.inertance_curvature * stretch) * stretch
-        slope = self.inertance_gradient + 2.0 * self.inertance_curvature * stretch
-        return (
-            self.inertance * np.maximum(0.01, factor),
-            self.inertance * np.where(factor < 0.01, 0.0, slope),
-        )
+    def branch(
+        self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+    ) -> tuple[Quantity, Quantity]:
+        """B [kg] and r [N] of the inertance branch's force N = B a + r at the terminals.
 
-    def inertance_force(self, x: Quantity, v: Quantity, a: Quantity) -> Quantity:
-        """The force through the inertance F_b [N]."""
-        inertance, slope = self.inertance_at(x)
-        return inertance * a + 0.5 * slope * v * v
+        With a series element B is zero and r the series element's force.
+        """
+        if self.has_series:
+            return 0.0, self._series_force(x, v, z, contact)
+        stretch = x - self.rest_length
+        mass, rest = inertance.branch(self, self.total_inertance, stretch, v)
+        return mass, rest + self._flywheel_side(stretch, v)
+
+    def inertance_force(
+        self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+    ) -> Quantity:
+        """The force through the inertance branch N [N]."""
+        mass, rest = self.branch(x, v, z, contact=contact)
+        return mass * a + rest
 
     def rest_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
-        """The part of F [N] that does not depend on the acceleration."""
-        spring = parallel.spring_force(x - self.rest_length, self.stiffness, self.stiffness_cubic)
+        """The part T of F [N] that stands beside the inertance branch."""
+        stretch = x - self.rest_length
+        spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
         damper = parallel.damping_force(v, self.viscous, self.quadratic_damping)
-        return spring + damper + self.force_offset + self.friction_force(x, v, z)
+        beside = spring + damper + self.force_offset + self.friction_force(x, v, z)
+        return beside + end_stops.force(self, stretch, v)
 
     def friction_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Force of the friction law alone [N], without load friction and without `viscous`."""
-        return FRICTION[self.friction].force(self, x - self.rest_length, v, z)
+        state = self._states(z)[0]
+        return FRICTION[self.friction].force(self, x - self.rest_length, v, state)
 
     def load_friction_force(self, v: Quantity, carried: Quantity) -> Quantity:
-        """Load-dependent friction mu |F_b| tanh(v / v_t) [N], F_b the force carried."""
+        """Load-dependent friction mu |N| tanh(v / v_t) [N], N the force carried."""
         return load.force(
             carried,
             v,
@@ -102,7 +123,7 @@ class ReferenceDevice(FrictionParameters):
         )
 
     def load_share(self, v: Quantity) -> Quantity:
-        """The factor mu tanh(v / v_t) [-] on |b a|."""
+        """The factor lambda = mu tanh(v / v_t) [-] on |N|."""
         return load.share(
             v, load_friction=self.load_friction, transition_velocity=self.transition_velocity
         )
@@ -115,25 +136,56 @@ class ReferenceDevice(FrictionParameters):
         Raises
         ------
         ValueError
-            The inertance is zero: the force then says nothing about the acceleration.
+            The inertance is zero or has a series element before it: the force then says nothing
+            about the terminals' acceleration.
         """
-        if self.inertance == 0.0:
+        if self.total_inertance == 0.0:
             raise ValueError("inertance: 0 kg gives no acceleration for a force; give more than 0")
+        if self.has_series:
+            raise ValueError(
+                "series_stiffness: with a series element the force does not depend on the "
+                "terminals' acceleration; ask state_rate for the flywheel's"
+            )
         remainder = force - self.rest_force(x, v, z)
         carried = remainder / (1.0 + self.load_share(v) * np.sign(remainder))
-        inertance, slope = self.inertance_at(x)
-        return (carried - 0.5 * slope * v * v) / inertance
+        mass, rest = self.branch(x, v, z)
+        return (carried - rest) / mass
 
-    def state_rate(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
-        """Rate z' of the friction law's state [m/s]; zero for a law without one."""
-        return FRICTION[self.friction].rate(self, x - self.rest_length, v, z)
+    def state_rate(
+        self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+    ) -> Quantity:
+        """Rates of the states, in the form of `z`; zero for a device without any."""
+        friction, deflection, speed, gap = self._states(z)
+        stretch = x - self.rest_length
+        rates = [FRICTION[self.friction].rate(self, stretch, v, friction)]
+        if not self.has_series:
+            return rates[0]
+
+        # the flywheel is driven by the series element
+        if not FRICTION[self.friction].STATES:
+            rates = []
+        series_rate = v - speed
+        pull = series.force(self, deflection, series_rate, gap, contact)
+        position = stretch - deflection
+        mass, rest = inertance.branch(self, self.total_inertance, position, speed)
+        rates += [series_rate, (pull - rest - self._flywheel_side(position, speed)) / mass]
+        if self.backlash > 0.0:
+            rates.append(series.gap_rate(self, deflection, series_rate, gap, contact))
+        return np.stack(np.broadcast_arrays(*rates), axis=-1)
 
     def stored_energy(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
-        """Kinetic, spring and bristle energy [J]."""
-        kinetic = 0.5 * self.inertance_at(x)[0] * v * v
+        """Kinetic, spring, bristle, stop and gas energy [J]."""
+        friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
-        spring = parallel.spring_energy(stretch, self.stiffness, self.stiffness_cubic)
-        return kinetic + spring + FRICTION[self.friction].stored_energy(self, stretch, v, z)
+        position, speed = (stretch - deflection, speed) if self.has_series else (stretch, v)
+        energy = parallel.spring_energy(stretch, self.stiffness, self.stiffness_cubic)
+        energy = energy + FRICTION[self.friction].stored_energy(self, stretch, v, friction)
+        energy = energy + end_stops.stored_energy(self, stretch)
+        energy = energy + inertance.stored_energy(self, self.total_inertance, position, speed)
+        energy = energy + gas.stored_energy(self, position)
+        if self.has_series:
+            energy = energy + series.stored_energy(self, deflection, gap)
+        return energy
 
     def dissipated_power(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0
@@ -142,10 +194,60 @@ class ReferenceDevice(FrictionParameters):
 
         The work of `force_offset` is external and counts as neither stored nor dissipated.
         """
-        damper = parallel.damping_force(v, self.viscous, self.quadratic_damping) * v
-        friction = FRICTION[self.friction].dissipated_power(self, x - self.rest_length, v, z)
-        return damper + friction + self.load_friction_force(v, self.inertance_force(x, v, a)) * v
+        friction, deflection, speed, gap = self._states(z)
+        stretch = x - self.rest_length
+        heat = parallel.damping_force(v, self.viscous, self.quadratic_damping) * v
+        heat = heat + FRICTION[self.friction].dissipated_power(self, stretch, v, friction)
+        heat = heat + end_stops.dissipated_power(self, stretch, v)
+        heat = heat + self.load_friction_force(v, self.inertance_force(x, v, a, z)) * v
+        if self.has_series:
+            heat = heat + series.dissipated_power(self, deflection, v - speed, gap)
+        else:
+            speed = v
+        flywheel = self.flywheel_viscous * speed * speed
+        return heat + flywheel + channel.dissipated_power(self, speed)
+
+    def gas_valid(self, x: Quantity, z: Quantity = 0.0) -> bool | NDArray[np.bool_]:
+        """Whether the gas law is inside its validity; true without gas."""
+        deflection = self._states(z)[1]
+        return gas.valid(self, x - self.rest_length - deflection)
+
+    def contact_of(self, v: float, z: Quantity) -> int:
+        """The contact of the backlash that the states mean: +1, -1 or 0 (in the gap)."""
+        _, deflection, speed, gap = self._states(z)
+        return series.contact_of(self, float(deflection), v - float(speed), float(gap))
+
+    def contact_guards(self, v: float, z: Quantity, contact: int) -> list[tuple[float, int]]:
+        """What ends the contact, see `series.guards`."""
+        _, deflection, speed, gap = self._states(z)
+        return series.guards(self, float(deflection), v - float(speed), float(gap), contact)
 
     def parameters(self) -> dict[str, float | str]:
-        """Every parameter by name, defaults included."""
+        """Every parameter by name, defaults included; NaN for one that is not given."""
         return asdict(self)
+
+    def _series_force(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
+        _, deflection, speed, gap = self._states(z)
+        return series.force(self, deflection, v - speed, gap, contact) + 0.0 * x
+
+    def _flywheel_side(self, displacement: Quantity, velocity: Quantity) -> Quantity:
+        """G [N]: damper, pipe and gas between the flywheel and terminal 1."""
+        pipe = channel.force(self, velocity)
+        return self.flywheel_viscous * velocity + pipe + gas.force(self, displacement)
+
+    def _states(self, z: Quantity) -> tuple[Quantity, Quantity, Quantity, Quantity]:
+        """Friction state, s, w, gap; zero where there is none."""
+        if not self.has_series:
+            return z, 0.0, 0.0, 0.0
+        array: NDArray[np.float64] = np.asarray(z, dtype=np.float64)
+        if array.ndim == 0 and array == 0.0:
+            return 0.0, 0.0, 0.0, 0.0
+        if array.ndim == 0 or array.shape[-1] != self.nstate:
+            raise ValueError(
+                f"z: shape {array.shape}, but this device has the states "
+                f"{', '.join(self.state_names)} along the last axis"
+            )
+        first = FRICTION[self.friction].STATES
+        friction = array[..., 0] if first else 0.0
+        gap = array[..., first + 2] if self.backlash > 0.0 else 0.0
+        return friction, array[..., first], array[..., first + 1], gap

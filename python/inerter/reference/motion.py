@@ -2,9 +2,9 @@
 
     z' = state_rate(x(t), v(t), z),   F(t) = force(x(t), v(t), a(t), z(t))
 
-The motion is analytic, so only the friction law's state is integrated. A friction law has a
-corner where the velocity changes sign; each stretch between two corners is therefore integrated
-on its own, and within it the right-hand side is smooth.
+The motion is analytic, so only the device's states are integrated. A friction law has a corner
+where the velocity changes sign; each stretch between two corners is therefore integrated on its
+own, and within it the right-hand side is smooth. Contacts of a backlash are located as events.
 Not modelled: the test rig; the motion is followed exactly whatever the force.
 """
 
@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import odeint, solve_ivp
 from scipy.optimize import brentq
 
+from .contacts import Clutch, Contacts, integrate
 from .device import ReferenceDevice
 from .laws import Quantity
 
@@ -46,7 +47,11 @@ class Motion:
 
 @dataclass(frozen=True)
 class Response:
-    """A device's answer, arrays of shape (times,); `state` is zero for a law without one."""
+    """A device's answer, arrays of shape (times,).
+
+    `state` is the friction law's state, zero for a law without one; `states` holds all states of
+    the device in its order, shape (times, nstate).
+    """
 
     time: NDArray[np.float64]
     displacement: NDArray[np.float64]
@@ -54,6 +59,7 @@ class Response:
     acceleration: NDArray[np.float64]
     state: NDArray[np.float64]
     force: NDArray[np.float64]
+    states: NDArray[np.float64]
 
 
 def sine_motion(amplitude: float, frequency: float, phase: float = 0.0) -> Motion:
@@ -109,7 +115,7 @@ def response(
     motion: Motion,
     times: ArrayLike,
     *,
-    initial_state: float = 0.0,
+    initial_state: ArrayLike = 0.0,
     method: str = "LSODA",
     rtol: float = 1e-10,
     scan_step: float = 1e-3,
@@ -119,13 +125,13 @@ def response(
     Parameters
     ----------
     device
-        The device; only its friction state is integrated.
+        The device; only its states are integrated.
     motion
         The imposed motion.
     times
         Requested times [s], shape (n,), increasing; the state starts at `times[0]`.
     initial_state
-        State z [m] at `times[0]`.
+        States at `times[0]`, shape (nstate,); a number stands for each of them.
     method
         "LSODA" (fast) or any stiff method of `scipy.integrate.solve_ivp`, for instance "Radau".
     rtol
@@ -148,15 +154,31 @@ def response(
     x = _along(motion.displacement, at)
     v = _along(motion.velocity, at)
     a = _along(motion.acceleration, at)
-    state = np.full(at.shape, float(initial_state) if device.nstate else 0.0)
+    states = np.empty((at.size, device.nstate))
+    states[:] = np.asarray(initial_state, dtype=np.float64)
     if device.nstate and at.size > 1:
-        _integrate(device, motion, at, state, method, rtol, scan_step)
-    force = np.asarray(device.force(x, v, a, state), dtype=np.float64)
-    return Response(at, x, v, a, state, force)
+        _integrate(device, motion, at, states, method, rtol, scan_step)
+    force = np.asarray(device.force(x, v, a, device.state_argument(states)), dtype=np.float64)
+    friction = "friction_state" in device.state_names
+    state = states[:, 0].copy() if friction else np.zeros(at.shape)
+    return Response(at, x, v, a, state, force, states)
+
+
+def state_scales(device: ReferenceDevice) -> NDArray[np.float64]:
+    """Size of each state, for tolerances, shape (nstate,)."""
+    # a series deflection that matters carries ten newtons or is a millimetre
+    stiffness = device.series_stiffness
+    sizes = {
+        "friction_state": state_scale,
+        "series_deflection": lambda _: min(1e-3, 10.0 / stiffness) if stiffness else 1e-3,
+        "flywheel_velocity": lambda _: 1e-2,
+        "gap_position": lambda d: min(d.backlash, 10.0 / stiffness),
+    }
+    return np.array([sizes[name](device) for name in device.state_names])
 
 
 def state_scale(device: ReferenceDevice) -> float:
-    """Deflection [m] at which the law's state saturates, for tolerances; 1 mm if it does not."""
+    """Deflection [m] at which the friction law's state saturates; 1 mm if it does not."""
     if device.friction == "bouc_wen":
         narrowing = device.bw_beta + device.bw_gamma
         if narrowing > 0.0:
@@ -174,12 +196,12 @@ def _integrate(
     device: ReferenceDevice,
     motion: Motion,
     at: NDArray[np.float64],
-    state: NDArray[np.float64],
+    states: NDArray[np.float64],
     method: str,
     rtol: float,
     scan_step: float,
 ) -> None:
-    """Fill `state` at the times `at`, one smooth stretch after another."""
+    """Fill `states` at the times `at`, one smooth stretch after another."""
     start, end = float(at[0]), float(at[-1])
     corners = [float(kink) for kink in motion.kinks]
     for speed in marked_speeds(device):
@@ -194,39 +216,66 @@ def _integrate(
     edges = edges[np.concatenate(([True], np.diff(edges) > 1e-10))]
     edges[-1] = end
 
-    needs_displacement = device.friction_gradient != 0.0 or device.friction_curvature != 0.0
+    level_varies = device.friction_gradient != 0.0 or device.friction_curvature != 0.0
+    needs_displacement = level_varies or device.has_series
     displacement, velocity = motion.displacement, motion.velocity
-    absolute = rtol * state_scale(device)
+    absolute = rtol * state_scales(device)
 
-    def rate(t: float, z: NDArray[np.float64]) -> list[float]:
+    def rate(t: float, z: NDArray[np.float64], contacts: Contacts = ()) -> NDArray[np.float64]:
         x = float(displacement(t)) if needs_displacement else 0.0
-        return [float(device.state_rate(x, float(velocity(t)), float(z[0])))]
+        contact = contacts[0] if contacts else None
+        found = device.state_rate(x, float(velocity(t)), device.state_argument(z), contact=contact)
+        return np.atleast_1d(found)
 
-    z = float(state[0])
+    clutches: tuple[Clutch, ...] = ()
+    if device.backlash > 0.0:
+        names = device.state_names
+        clutches = (
+            Clutch(
+                device,
+                lambda t, z, _: (float(velocity(t)), z),
+                names.index("gap_position"),
+                names.index("series_deflection"),
+            ),
+        )
+
+    z = states[0].copy()
     for left, right in pairwise(edges):
         first, last = np.searchsorted(at, [left, right], side="right")
         inside = at[first:last]
         stops = np.unique(np.concatenate(([left], inside, [right])))
-        path = _stretch(rate, z, stops, method, rtol, absolute, scan_step)
-        state[first:last] = path[np.searchsorted(stops, inside)]
-        z = float(path[-1])
+        if clutches:
+            path = integrate(
+                rate,
+                z,
+                stops,
+                clutches,
+                method=method,
+                rtol=max(rtol, 1e-12),
+                atol=absolute,
+                max_step=scan_step,
+            )
+        else:
+            path = _stretch(rate, z, stops, method, rtol, absolute, scan_step)
+        states[first:last] = path[np.searchsorted(stops, inside)]
+        z = path[-1].copy()
 
 
 def _stretch(
-    rate: Callable[[float, NDArray[np.float64]], list[float]],
-    z: float,
+    rate: Callable[[float, NDArray[np.float64]], NDArray[np.float64]],
+    z: NDArray[np.float64],
     stops: NDArray[np.float64],
     method: str,
     rtol: float,
-    atol: float,
+    atol: NDArray[np.float64],
     max_step: float,
 ) -> NDArray[np.float64]:
-    """The state at `stops` (first = start, last = end) over one smooth stretch."""
+    """The states at `stops` (first = start, last = end) over one smooth stretch."""
     where = f"between {stops[0]:.9g} s and {stops[-1]:.9g} s"
     if method == "LSODA":
         path, report = odeint(
             rate,
-            [z],
+            z,
             stops,
             tfirst=True,
             rtol=rtol,
@@ -238,11 +287,11 @@ def _stretch(
         )
         if not str(report["message"]).startswith("Integration successful"):
             raise RuntimeError(f"LSODA stopped {where}: {report['message']}")
-        return path[:, 0]
+        return path
     solution = solve_ivp(
         rate,
         (float(stops[0]), float(stops[-1])),
-        [z],
+        z,
         method=method,  # pyright: ignore[reportArgumentType]
         t_eval=stops,
         rtol=rtol,
@@ -251,4 +300,4 @@ def _stretch(
     )
     if not solution.success:
         raise RuntimeError(f"{method} stopped {where}: {solution.message}")
-    return solution.y[0]
+    return solution.y.T

@@ -1,14 +1,32 @@
 """One force law per file; each gives its state's rate, force, stored energy, dissipated power.
 
 Every friction law is a module with the same five names, called as
-`force(parameters, displacement, velocity, state)`; `FRICTION` finds it by its name.
+`force(parameters, displacement, velocity, state)`; `FRICTION` finds it by its name. The other laws
+are functions of the parameters and of the quantities their equation names.
 """
 
 from __future__ import annotations
 
 from types import ModuleType
 
-from . import bouc_wen, brown_mcphee, coulomb, dahl, load, lugre, none, parallel, stribeck
+from . import (
+    bouc_wen,
+    brown_mcphee,
+    channel,
+    coulomb,
+    dahl,
+    end_stops,
+    gas,
+    inertance,
+    load,
+    lugre,
+    none,
+    parallel,
+    series,
+    series_spring,
+    stribeck,
+)
+from .device_parameters import GAS_LAWS, DeviceParameters
 from .level import friction_level
 from .parameters import FRICTION_LAWS, FrictionParameters, Quantity, parameter
 
@@ -25,17 +43,25 @@ FRICTION: dict[str, ModuleType] = {
 __all__ = [
     "FRICTION",
     "FRICTION_LAWS",
+    "GAS_LAWS",
+    "DeviceParameters",
     "FrictionParameters",
     "Quantity",
     "bouc_wen",
     "brown_mcphee",
+    "channel",
     "coulomb",
     "dahl",
+    "end_stops",
     "friction_level",
+    "gas",
+    "inertance",
     "load",
     "lugre",
     "none",
     "parallel",
     "parameter",
+    "series",
+    "series_spring",
     "stribeck",
 ]

@@ -9,7 +9,7 @@ Range: passive for c, c2 >= 0; the offset is work done from outside and counts a
 stored nor dissipated.
 Stored: k (x - l0)^2 / 2 + k3 (x - l0)^4 / 4. Dissipated: c v^2 + c2 |v|^3.
 Source: elementary; a published set's sigma2, c_d, c0 all are c.
-Not modelled: end stops, gas springs, frequency-dependent damping.
+Not modelled: frequency-dependent damping; end stops and gas stand in their own files.
 """
 
 from __future__ import annotations

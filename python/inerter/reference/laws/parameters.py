@@ -1,4 +1,4 @@
-"""The friction parameters, each declared once with its unit, default and bounds."""
+"""How a parameter is declared, and those of the friction laws: unit, default and bounds."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 Quantity = float | NDArray[np.float64]
 """A number, or an array of numbers that broadcasts against its neighbours."""
+
+UNSET = float("nan")
+"""Default of a parameter that has no harmless number: not given."""
 
 FRICTION_LAWS = (
     "none",
@@ -30,9 +33,16 @@ def parameter(
     *,
     at_least: float | None = None,
     above: float | None = None,
+    at_most: float | None = None,
 ) -> Any:
     """Declare a dataclass field that carries unit, meaning and bounds as metadata."""
-    metadata = {"unit": unit, "meaning": meaning, "at_least": at_least, "above": above}
+    metadata = {
+        "unit": unit,
+        "meaning": meaning,
+        "at_least": at_least,
+        "above": above,
+        "at_most": at_most,
+    }
     return field(default=default, metadata=metadata)
 
 
@@ -86,6 +96,8 @@ class FrictionParameters:
                 continue
             value = getattr(self, declared.name)
             unit = declared.metadata["unit"]
+            if declared.default is UNSET and np.isnan(value):
+                continue
             if not np.isfinite(value):
                 raise ValueError(f"{declared.name}: {value} {unit} is not finite; give a number")
             at_least, above = declared.metadata["at_least"], declared.metadata["above"]
@@ -96,6 +108,11 @@ class FrictionParameters:
             if above is not None and value <= above:
                 raise ValueError(
                     f"{declared.name}: {value} {unit} must be above {above}; give a larger value"
+                )
+            at_most = declared.metadata["at_most"]
+            if at_most is not None and value > at_most:
+                raise ValueError(
+                    f"{declared.name}: {value} {unit} is above {at_most}; give at most that"
                 )
 
         # a law with a bristle divides by its friction level

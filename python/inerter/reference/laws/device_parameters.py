@@ -1,0 +1,157 @@
+"""Every parameter of a device beside those of its friction law, declared once, and their checks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .parameters import UNSET, FrictionParameters, parameter
+
+GAS_LAWS = ("polytropic", "expanded")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeviceParameters(FrictionParameters):
+    """All parameters of one device; SI units, every default harmless. NaN means: not given.
+
+    Raises
+    ------
+    ValueError
+        A parameter is outside its bounds, or parameters do not go together; the message names
+        the parameter, its value and what to do.
+    """
+
+    inertance: float = parameter(0.0, "kg", "inertance b", at_least=0.0)
+    inertance_gradient: float = parameter(0.0, "1/m", "relative rise of b per x")
+    inertance_curvature: float = parameter(0.0, "1/m^2", "relative rise of b per x^2")
+    inertance_speed_gradient: float = parameter(0.0, "s/m", "relative rise of b per |v|")
+    viscous: float = parameter(0.0, "N s/m", "linear damping c")
+    quadratic_damping: float = parameter(0.0, "N s^2/m^2", "quadratic damping c2")
+    stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
+    stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
+    rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")
+    force_offset: float = parameter(0.0, "N", "constant force f0")
+    load_friction: float = parameter(
+        0.0, "-", "friction share mu of the inertance force", at_least=0.0
+    )
+
+    series_stiffness: float = parameter(0.0, "N/m", "spring in series k_s", at_least=0.0)
+    series_damping: float = parameter(0.0, "N s/m", "damper in series c_s", at_least=0.0)
+    series_hardening: float = parameter(0.0, "1/m", "relative rise of k_s per deflection")
+    backlash: float = parameter(0.0, "m", "half of the free play", at_least=0.0)
+    flywheel_viscous: float = parameter(0.0, "N s/m", "damping of the flywheel", at_least=0.0)
+
+    stop_lower: float = parameter(UNSET, "m", "shortest displacement before the stop")
+    stop_upper: float = parameter(UNSET, "m", "longest displacement before the stop")
+    stop_stiffness: float = parameter(0.0, "N/m", "stiffness of the stops", at_least=0.0)
+    stop_damping: float = parameter(0.0, "s/m", "damping of the stops", at_least=0.0)
+
+    gas_law: str = "polytropic"
+    gas_pressure: float = parameter(0.0, "Pa", "pressure p0 at y = 0", at_least=0.0)
+    gas_area: float = parameter(UNSET, "m^2", "area A under gas", at_least=0.0)
+    gas_volume: float = parameter(0.0, "m^3", "volume V0 at y = 0", at_least=0.0)
+    gas_exponent: float = parameter(1.4, "-", "polytropic exponent", above=0.0, at_most=5.0)
+
+    piston_area: float = parameter(0.0, "m^2", "piston area A1", at_least=0.0)
+    channel_area: float = parameter(0.0, "m^2", "channel cross-section A2", at_least=0.0)
+    channel_length: float = parameter(0.0, "m", "channel length l", at_least=0.0)
+    fluid_density: float = parameter(1000.0, "kg/m^3", "density rho", above=0.0)
+    fluid_viscosity: float = parameter(0.0, "Pa s", "dynamic viscosity mu", at_least=0.0)
+    channel_roughness: float = parameter(0.0, "m", "wall roughness", at_least=0.0)
+    minor_loss: float = parameter(0.0, "-", "loss at the channel's ends K", at_least=0.0)
+
+    @property
+    def has_series(self) -> bool:
+        """Whether something stands in series with the inertance."""
+        return self.series_stiffness > 0.0 or self.series_damping > 0.0
+
+    def __post_init__(self) -> None:
+        """Check what was given, see Raises."""
+        super().__post_init__()
+        if self.load_friction >= 1.0:
+            raise ValueError(
+                f"load_friction: {self.load_friction} locks the device (no unique acceleration); "
+                "keep it below 1"
+            )
+        self._check_channel()
+        self._check_series()
+        self._check_stops()
+        self._check_gas()
+
+    def _check_series(self) -> None:
+        if self.series_stiffness == 0.0:
+            for name, unit in (("series_hardening", "1/m"), ("backlash", "m")):
+                if getattr(self, name) != 0.0:
+                    raise ValueError(
+                        f"{name}: {getattr(self, name)} {unit} needs series_stiffness > 0; "
+                        f"give series_stiffness, or drop {name}"
+                    )
+        if self.has_series and self.inertance == 0.0 and self.channel_area == 0.0:
+            given = "series_stiffness" if self.series_stiffness > 0.0 else "series_damping"
+            raise ValueError(
+                f"{given}: {getattr(self, given)} stands in series with an inertance of 0 kg; "
+                f"give inertance > 0, or drop {given}"
+            )
+
+    def _check_stops(self) -> None:
+        there = [n for n in ("stop_lower", "stop_upper") if not np.isnan(getattr(self, n))]
+        if there and self.stop_stiffness == 0.0:
+            raise ValueError(
+                f"{there[0]}: {getattr(self, there[0])} m needs stop_stiffness > 0; "
+                f"give stop_stiffness, or drop {there[0]}"
+            )
+        for name in ("stop_stiffness", "stop_damping"):
+            if not there and getattr(self, name) > 0.0:
+                raise ValueError(
+                    f"{name}: {getattr(self, name)} without a stop; give stop_lower or stop_upper"
+                )
+        if self.stop_lower >= self.stop_upper:
+            raise ValueError(
+                f"stop_lower: {self.stop_lower} m is not below stop_upper {self.stop_upper} m; "
+                "exchange them"
+            )
+
+    def _check_gas(self) -> None:
+        if self.gas_law not in GAS_LAWS:
+            raise ValueError(f"gas_law: '{self.gas_law}' is not one of {', '.join(GAS_LAWS)}")
+        if self.gas_pressure == 0.0:
+            unused = {
+                "gas_law": self.gas_law != "polytropic",
+                "gas_area": not np.isnan(self.gas_area),
+                "gas_volume": self.gas_volume != 0.0,
+                "gas_exponent": self.gas_exponent != 1.4,
+            }
+            for name, given in unused.items():
+                if given:
+                    raise ValueError(
+                        f"{name}: {getattr(self, name)} without a gas spring; give gas_pressure > 0"
+                    )
+            return
+        area = self.piston_area if np.isnan(self.gas_area) else self.gas_area
+        for name, value in (("gas_area", area), ("gas_volume", self.gas_volume)):
+            if value == 0.0:
+                raise ValueError(
+                    f"{name}: the gas spring (gas_pressure {self.gas_pressure} Pa) needs {name} > 0"
+                )
+
+    def _check_channel(self) -> None:
+        geometry = ("piston_area", "channel_area", "channel_length")
+        losses = ("fluid_viscosity", "minor_loss", "channel_roughness")
+        wanted = [n for n in (*geometry[1:], *losses) if getattr(self, n) > 0.0]
+        # the piston may also be there for the gas alone
+        if self.piston_area > 0.0 and self.gas_pressure == 0.0:
+            wanted.append("piston_area")
+        if not wanted:
+            return
+        missing = [name for name in geometry if getattr(self, name) == 0.0]
+        if missing:
+            raise ValueError(
+                f"{missing[0]}: 0 leaves the channel ({wanted[0]} {getattr(self, wanted[0])}) "
+                f"incomplete; give {' and '.join(missing)}"
+            )
+        if self.inertance > 0.0:
+            raise ValueError(
+                f"inertance: {self.inertance} kg, but the channel's geometry states one too; "
+                "give one of them"
+            )
