@@ -21,7 +21,7 @@ import inerter
 import mujoco
 import numpy as np
 
-INTEGRATORS = ("Euler", "implicitfast", "RK4")
+INTEGRATORS = ("Euler", "implicitfast", "discrete", "RK4")
 LUGRE = {
     "bristle_stiffness": 5e4, "bristle_damping": 200.0, "coulomb_force": 80.0,
     "static_force": 120.0, "stribeck_velocity": 0.05,
@@ -48,9 +48,36 @@ MODEL = """
   <sensor>{sensor}</sensor>
 </mujoco>"""
 
+# the same masses as siblings of the world: an inertance between two branches of the tree
+SIBLINGS = MODEL.replace(
+    """      <body>
+        <joint name="travel" type="slide" axis="0 0 1"/>
+        <geom size="0.1" mass="181.75" contype="0" conaffinity="0"/>
+      </body>
+    </body>
+""",
+    """    </body>
+    <body>
+      <joint name="body" type="slide" axis="0 0 1"/>
+      <geom size="0.1" mass="181.75" contype="0" conaffinity="0"/>
+    </body>
+""",
+).replace(
+    '<joint joint="travel" coef="1"/>',
+    '<joint joint="body" coef="1"/><joint joint="wheel" coef="-1"/>',
+)
+
 _CONFIG = "".join(f'<config key="{key}" value="{value}"/>' for key, value in LUGRE.items())
 _IDEAL = '<config key="inertance" value="113"/>'
 _LUGRE = f'{_IDEAL}<config key="friction" value="lugre"/>{_CONFIG}'
+_COULOMB = (
+    f'{_IDEAL}<config key="friction" value="coulomb"/><config key="coulomb_force" value="80"/>'
+    '<config key="transition_velocity" value="0.02"/>'
+)
+_SERIES = (
+    f'{_IDEAL}<config key="series_stiffness" value="1e6"/>'
+    '<config key="series_damping" value="3200"/>'
+)
 _PLUGIN = '<plugin name="strut" plugin="inerter.device" tendon="strut"'
 
 # name: (actuator, what it is compared with)
@@ -65,6 +92,12 @@ VARIANTS: dict[str, tuple[str, str | None]] = {
     ),
     "plugin, LuGre": (f'{_PLUGIN} actdim="1">{_LUGRE}</plugin>', "native LuGre"),
     "plugin, LuGre, sensor": ("instance", "native LuGre"),
+    "plugin, Coulomb": (f"{_PLUGIN}>{_COULOMB}</plugin>", "native armature"),
+    "plugin, series element": (f'{_PLUGIN} actdim="2">{_SERIES}</plugin>', "native armature"),
+    "siblings, no device": ("", "no device"),
+    "siblings, ideal": (f"{_PLUGIN}>{_IDEAL}</plugin>", "native armature"),
+    "siblings, LuGre": (f'{_PLUGIN} actdim="1">{_LUGRE}</plugin>', "native LuGre"),
+    "siblings, series element": (f'{_PLUGIN} actdim="2">{_SERIES}</plugin>', "native armature"),
     "Python callback, LuGre": (
         '<general tendon="strut" gainprm="0" armature="113"/>',
         "plugin, LuGre",
@@ -72,14 +105,16 @@ VARIANTS: dict[str, tuple[str, str | None]] = {
 }
 
 
-def _model(actuator: str, integrator: str) -> mujoco.MjModel:
+def _model(actuator: str, integrator: str, siblings: bool) -> mujoco.MjModel:
     instance = sensor = ""
     if actuator == "instance":
         instance = f'<instance name="strut">{_LUGRE}</instance>'
         actuator = f'{_PLUGIN} instance="strut" actdim="1"/>'
         sensor = '<plugin name="strut" plugin="inerter.device" instance="strut"/>'
     return mujoco.MjModel.from_xml_string(
-        MODEL.format(instance=instance, actuator=actuator, sensor=sensor, integrator=integrator)
+        (SIBLINGS if siblings else MODEL).format(
+            instance=instance, actuator=actuator, sensor=sensor, integrator=integrator
+        )
     )
 
 
@@ -125,7 +160,10 @@ def run(quick: bool = False) -> list[dict[str, Any]]:
     rounds, steps = (5, 1000) if quick else (25, 4000)
     rows: list[dict[str, Any]] = []
     for integrator in INTEGRATORS:
-        models = {name: _model(actuator, integrator) for name, (actuator, _) in VARIANTS.items()}
+        models = {
+            name: _model(actuator, integrator, name.startswith("siblings"))
+            for name, (actuator, _) in VARIANTS.items()
+        }
         datas = {name: mujoco.MjData(model) for name, model in models.items()}
         times: dict[str, list[float]] = {name: [] for name in VARIANTS}
         for round_ in range(-1, rounds):  # the first one warms up
