@@ -28,7 +28,7 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double*
     z[0] = law_of(device)->step(device, stretch, v, z[0], h);
   }
   if (has(device, PART_SERIES)) {
-    series_step(device, stretch, v, 0, z + series_index(device), h);
+    series_step(device, stretch, v, 0, 0, z + series_index(device), h);
   }
 }
 

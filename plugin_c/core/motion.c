@@ -7,7 +7,8 @@
 #include "laws.h"
 
 // States from one sample to the next, h later. A bristle sees the mean velocity at the middle,
-// which keeps its path; a series element sees the acceleration too: a stiff one carries b a.
+// which keeps its path; a series element sees the cubic through both samples: a stiff one carries
+// b a.
 static void step_between(const InerterDevice* device, const double* x, const double* v, double* z,
                          double h) {
   double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
@@ -16,8 +17,9 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     z[0] = law_of(device)->step(device, middle, mean, z[0], h);
   }
   if (has(device, PART_SERIES)) {
-    double change = v[1] - v[0];
-    series_step(device, start, mean - 0.5 * change, change / h, z + series_index(device), h);
+    double a = (6 * mean - 4 * v[0] - 2 * v[1]) / h;
+    double jerk = 6 * (v[0] + v[1] - 2 * mean) / (h * h);
+    series_step(device, start, v[0], a, jerk, z + series_index(device), h);
   }
 }
 

@@ -148,16 +148,17 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
   finish_step(p, element, flywheel, common_force(p, element, flywheel), z);
 }
 
-// parts of a third of a radian as long as they are not too many, else a few that settle
+// parts of a sixteenth of a radian as long as they are not too many, else a few that settle
 static int count_parts(double radians) {
-  enum { MOST = 32, FEW = 4 };
-  if (!(3 * radians < MOST)) {
+  enum { PER_RADIAN = 16, MOST = 256, FEW = 4 };
+  if (!(PER_RADIAN * radians < MOST)) {
     return FEW;
   }
-  return 1 + (int)(3 * radians);
+  return 1 + (int)(PER_RADIAN * radians);
 }
 
-void series_step(const InerterDevice* p, double x, double v, double a, double* z, double h) {
+void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
+                 double h) {
   if (h == 0) {
     return;
   }
@@ -165,9 +166,11 @@ void series_step(const InerterDevice* p, double x, double v, double a, double* z
   double stiffness = series_spring(p, z[S] - series_gap(p, z)).slope;
   double rate = sqrt(stiffness / inertance) + p->series_damping / inertance;
   int count = count_parts(fabs(h) * rate);
+  double part = h / count;
   for (int i = 0; i < count; i++) {
-    double t = h * i / count;
-    substep(p, x + (v + 0.5 * a * t) * t, v + a * t, a, z, h / count);
+    double t = part * i;
+    double here = x + (v + (0.5 * a + jerk * t / 6) * t) * t;
+    substep(p, here, v + (a + 0.5 * jerk * t) * t, a + jerk * (t + 0.5 * part), z, part);
   }
 }
 

@@ -16,6 +16,7 @@ from pathlib import Path
 from inerter.core import Device, DeviceError, parameters
 
 SCHEMA = "inerter.device/1"
+LAWS = ("friction", "gas_law")  # keys whose value is a name
 
 
 def read_device(path: Path) -> Device:
@@ -43,7 +44,7 @@ def read_device(path: Path) -> Device:
     for key, value in table.items():
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise DeviceError(f"{path}: {key} is {value!r}; give a number, or a text with a unit")
-        if isinstance(value, str) and key != "friction":
+        if isinstance(value, str) and key not in LAWS:
             value = _with_unit(path, key, value)
         values[key] = value
     try:
@@ -106,7 +107,7 @@ def device_text(
         text = f'"{value}"' if isinstance(value, str) else repr(float(value))
         if isinstance(value, float) and not math.isfinite(value):
             continue
-        note = comments.get(name, "" if name == "friction" else parameters()[name].unit)
+        note = comments.get(name, "" if name in LAWS else parameters()[name].unit)
         lines.append(f"{name} = {text}" + (f"  # {note}" if note and note != "1" else ""))
     if delay:
         lines += [

@@ -66,9 +66,9 @@ def simulate_along(
     """Run a device in MuJoCo along a sampled motion, on the test rig.
 
     At each sample the rig is put at x and v and accelerated by a; the sensor gives the force of
-    that instant (which the stages of RK4 are made of). Then the table moves on to the next sample
-    at constant velocity, which advances the states: by the laws' own steps (Euler), or with a
-    series element by stages of RK4 short enough for it. This is what `Device.along` does, so that
+    that instant (which the stages of RK4 are made of). Then the table moves on to the next sample,
+    which advances the states: at constant velocity by the laws' own steps (Euler), or with a series
+    element along the cubic through both samples, by stages of RK4 short enough for it. This is what `Device.along` does, so that
     both agree to rounding (1e-9 of the force for inertances far below the table's 1e12 kg), with a
     series element to the error of its second-order steps.
 
@@ -114,6 +114,9 @@ def simulate_along(
     total, friction = np.zeros((2, x.size))
     states = np.zeros((x.size, device.nstate))
     between = np.append(np.diff(x) / h, 0.0)
+    # accelerations at both ends of the cubic between two samples
+    start = np.append((6 * between[:-1] - 4 * v[:-1] - 2 * v[1:]) / h, 0.0)
+    end = np.append((-6 * between[:-1] + 2 * v[:-1] + 4 * v[1:]) / h, 0.0)
     instant = mujoco.mjtIntegrator.mjINT_RK4
     pieces = _pieces(device, h)
     moving = instant if pieces > 1 else mujoco.mjtIntegrator.mjINT_EULER
@@ -127,9 +130,15 @@ def simulate_along(
         states[i] = act
 
         # on to the next sample
-        qvel[0], ctrl[0] = between[i], 0.0
         model.opt.integrator = moving
-        mujoco.mj_step(model, data, nstep=pieces)
+        if pieces == 1:
+            qvel[0], ctrl[0] = between[i], 0.0
+            mujoco.mj_step(model, data)
+            continue
+        for piece in range(pieces if i + 1 < x.size else 0):
+            share = (piece + 0.5) / pieces
+            ctrl[0] = (1 - share) * start[i] + share * end[i]
+            mujoco.mj_step(model, data)
     first = states[:, 0] if device.nstate else np.zeros(x.size)
     return {"total": total, "friction": friction, "state": first, "states": states}
 

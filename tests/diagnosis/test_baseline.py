@@ -8,8 +8,9 @@ import mujoco
 import numpy as np
 import pytest
 from inerter import Device
+from inerter.core import DeviceError
 from inerter.device_file import device_text, read_device
-from inerter.diagnose import diagnose_bench
+from inerter.diagnose import diagnose, diagnose_bench
 from inerter.diagnose.output import write_outputs
 from inerter.mjcf import device_of_model
 from inerter.records import Record
@@ -45,6 +46,40 @@ def test_right_device_brings_no_finding(records) -> None:
     diagnosis = diagnose_bench(records, Device(**TRUE))
     assert diagnosis.findings == []
     assert diagnosis.baseline.device["coulomb_force"] == 12.0
+
+
+def test_the_rest_length_is_where_a_record_counts_from(tmp_path: Path) -> None:
+    # a spring tells a displacement that is off by the rest length
+    truth = response(
+        ReferenceDevice(inertance=80.0, stiffness=5e3),
+        sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [0.0, 1.0, 2.0]),
+        np.arange(0, 9, 2e-3),
+    )
+    noise = np.random.default_rng(6).normal(0, 0.2, truth.time.size)
+    columns = np.column_stack([truth.time, truth.displacement, truth.force + noise])
+    np.savetxt(
+        tmp_path / "run.csv", columns, delimiter=",", header="time,displacement,force", comments=""
+    )
+    stated = Device(inertance=80.0, stiffness=5e3, rest_length=0.4)
+    diagnosis = diagnose([tmp_path / "run.csv"], stated)
+    assert diagnosis.findings == []
+    write_outputs(diagnosis, tmp_path / "out")
+    assert read_device(tmp_path / "out" / "device.toml").rest_length == 0.4
+
+
+def test_a_device_with_every_part_can_be_the_baseline(records) -> None:
+    # what the data cannot show (a stiff shaft, a weak gas spring) stays as it was stated
+    stated = Device(
+        **TRUE, series_stiffness=1e9, series_damping=1e4, gas_law="expanded", gas_pressure=1e5,
+        gas_area=1e-7, gas_volume=1e-6,
+    )  # fmt: skip
+    diagnosis = diagnose_bench(records, stated)
+    assert diagnosis.findings == []
+    assert diagnosis.extended.device["gas_law"] == "expanded"
+    assert diagnosis.extended.device["series_stiffness"] == 1e9
+    channel = Device(piston_area=1e-3, channel_area=1e-5, channel_length=1.0)
+    with pytest.raises(DeviceError, match=r"state inertance = 100 in their place"):
+        diagnose_bench(records, channel)
 
 
 def test_wrong_inertance_is_named_alone(records) -> None:

@@ -271,7 +271,7 @@ def test_along_is_second_order_with_a_series_element() -> None:
     x, v, a = motion(np.ones(1))
     truth = float(device.evaluate(x, v, a, run.y[:, -1])["total"][0])
     errors = []
-    for count in (200, 400, 800, 1600):
+    for count in (800, 1600, 3200):  # one part per sample
         t = np.linspace(0.0, 1.0, count + 1)
         found = device.along(t[1], *motion(t), state=[0.0, 0.07])
         assert found["states"].shape == (count + 1, 2)

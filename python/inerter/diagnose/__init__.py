@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from inerter.core import Device
@@ -51,16 +52,21 @@ def diagnose(
         baseline, delay = device, 0.0
     if model is not None:
         baseline = device_of_model(model)
+    # the displacement of a record counts from the rest length
+    rest_length = baseline.rest_length if baseline else 0.0
+    if baseline and rest_length:
+        baseline = Device(**{k: v for k, v in baseline.given.items() if k != "rest_length"})
     progress("reading the records")
     read = read_records(records)
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):
-        return diagnose_bench(bench, baseline, holdout, progress, delay)
+        found = diagnose_bench(bench, baseline, holdout, progress, delay)
+        return replace(found, rest_length=rest_length)
     if len(tables) == len(read):
         if holdout:
             raise ValueError("--holdout names runs, and a table has none; leave it out")
-        return diagnose_table(tables, baseline, progress)
+        return replace(diagnose_table(tables, baseline, progress), rest_length=rest_length)
     kinds = ", ".join(f"{record.name} ({record.kind})" for record in read)
     if tables and bench:
         raise RecordError(f"records of different kinds: {kinds}; give one kind at a time")

@@ -28,7 +28,14 @@ from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, scales, thin, whole
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import Fit, Model, Problem, force_along, parameter_errors
+from inerter.identify.fit import (
+    Fit,
+    Model,
+    Problem,
+    force_along,
+    parameter_errors,
+    stated_values,
+)
 from inerter.records import Record
 
 Progress = Callable[[str], None]
@@ -79,7 +86,7 @@ def baseline_model(device: Device | None, sizes: Scales) -> Model:
         return Model(
             "none", {"inertance": start, "transition_velocity": transition}, ("inertance",)
         )
-    values = {name: float(value) for name, value in device.given.items() if name != "friction"}
+    values, texts = stated_values(device)
     values.setdefault("transition_velocity", transition)
     level = values.get("coulomb_force", 0.0)
     if "static_force" in values:
@@ -88,7 +95,7 @@ def baseline_model(device: Device | None, sizes: Scales) -> Model:
         values["presliding"] = level / values.pop("bristle_stiffness")
     free = () if "inertance" in values else ("inertance",)
     values.setdefault("inertance", sizes.force / sizes.acceleration)
-    return Model(device.friction, values, free)
+    return Model(device.friction, values, free, texts)
 
 
 def _refuse_unusable(records: Sequence[Record]) -> None:

@@ -41,8 +41,12 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         name: f"{value.unit} (standard error {value.stderr:.2g})".removeprefix("1 ")
         for name, value in diagnosis.parameters.items()
     }
+    rest_length = {"rest_length": diagnosis.rest_length} if diagnosis.rest_length else {}
     toml = device_text(
-        device, comments, diagnosis.extended.delay, f"identified by inerter diagnose from {names}"
+        device.replace(**rest_length),
+        comments,
+        diagnosis.extended.delay,
+        f"identified by inerter diagnose from {names}",
     )
     model = device_mjcf(device, "identified_device")
     refuse_folder(folder)

@@ -158,6 +158,8 @@ class Diagnosis:
     method: dict[str, Any] = field(default_factory=dict)
     curves: list[RunCurves] = field(default_factory=list)
     points: TablePoints | None = None
+    rest_length: float = 0.0
+    """As stated [m]; the displacement of records counts from it, so that no law reads it here."""
 
     def json(self) -> dict[str, Any]:
         """The contract's diagnosis.json."""

@@ -30,7 +30,7 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.statistics import win_shares
 from inerter.identify.coordinates import Scales, coordinate
-from inerter.identify.fit import NUISANCES, Fit, Model, parameter_errors
+from inerter.identify.fit import NUISANCES, Fit, Model, parameter_errors, stated_values
 from inerter.records import BenchTable
 from inerter.rig import simulate_along
 
@@ -180,10 +180,13 @@ def diagnose_table(
             "none", {"inertance": start, "transition_velocity": transition}, ("inertance",)
         )
     else:
-        values = {k: float(v) for k, v in device.given.items() if k != "friction"}
+        values, texts = stated_values(device)
         free = () if "inertance" in values else ("inertance",)
         baseline = Model(
-            device.friction, {"inertance": start, "transition_velocity": transition, **values}, free
+            device.friction,
+            {"inertance": start, "transition_velocity": transition, **values},
+            free,
+            texts,
         )
     before = table.fit(baseline, fit_mask)
     fit, squares = before, table.left_out(before.model)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from inerter.core import Device
+from inerter.core import Device, DeviceError, parameters
 from inerter.identify.bench import Run, scales
 from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_values
 
@@ -34,11 +34,14 @@ class Model:
         Coordinates by name (see `coordinates`), SI units.
     free : tuple of str
         Names that a fit may change.
+    texts : mapping
+        What a device states in words beside the friction law, such as gas_law.
     """
 
     friction: str
     values: Mapping[str, float]
     free: tuple[str, ...]
+    texts: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
@@ -55,13 +58,13 @@ class Model:
     @cached_property
     def _device(self) -> Device:
         values = {name: float(value) for name, value in device_values(self.values).items()}
-        return Device(friction=self.friction, **values)
+        return Device(friction=self.friction, **values, **self.texts)
 
     @cached_property
     def _smooth_device(self) -> Device:
-        names = ("inertance", "inertance_gradient", "inertance_curvature", *LINEAR, "rest_length",
-                 "stiffness_cubic")  # fmt: skip
-        return Device(**{n: float(self.values[n]) for n in names if n in self.values})
+        whole, known = self._device.given, parameters()
+        names = [n for n in whole if n in known and not known[n].laws and n != "load_friction"]
+        return Device(**{n: whole[n] for n in names}, **self.texts)
 
     @property
     def delay(self) -> float:
@@ -77,14 +80,32 @@ class Model:
         """The model with further free coordinates, under another friction law if given."""
         law = friction or self.friction
         names = tuple(name for name in values if name not in self.free)
-        return Model(law, {**self.values, **values}, _useful(self.free + names, law))
+        return Model(law, {**self.values, **values}, _useful(self.free + names, law), self.texts)
 
     def without(self, names: Sequence[str], friction: str | None = None) -> Model:
         """The model without some coordinates."""
         law = friction or self.friction
         free = tuple(name for name in self.free if name not in names)
         values = {name: value for name, value in self.values.items() if name not in names}
-        return Model(law, values, _useful(free, law))
+        return Model(law, values, _useful(free, law), self.texts)
+
+
+def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
+    """What a device states in numbers, and in words beside its friction law.
+
+    Raises
+    ------
+    DeviceError
+        The inertance comes from a channel: a fit has to be able to change it.
+    """
+    if device.inertance and "piston_area" in device.given and "inertance" not in device.given:
+        raise DeviceError(
+            f"inertance follows from piston_area {device.piston_area:g} m^2 and the channel; a "
+            f"diagnosis varies it: state inertance = {device.inertance:g} in their place"
+        )
+    given = {name: value for name, value in device.given.items() if name != "friction"}
+    words = {name: value for name, value in given.items() if isinstance(value, str)}
+    return {name: float(value) for name, value in given.items() if name not in words}, words
 
 
 def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
@@ -132,13 +153,13 @@ def force_along(model: Model, run: Run) -> Array:
     device = model.device()
     state = first_state(device, run)
     motion = (run.displacement, run.velocity, run.acceleration)
-    if np.isinf(run.cutoff):
+    if np.isinf(run.cutoff) or (device.friction == "none" and not device.load_friction):
         total = device.along(run.spacing, *motion, state)["total"]
-    elif device.friction == "none" and not device.load_friction:
-        total = device.along(run.spacing, *motion)["total"]
     else:
         # friction is not linear in the motion: it has to pass the low-pass of the measured force
-        smooth = model.without_friction().along(run.spacing, *motion)["total"]
+        smooth_device = model.without_friction()
+        rest = np.atleast_1d(state)[-smooth_device.nstate :] if smooth_device.nstate else 0.0
+        smooth = smooth_device.along(run.spacing, *motion, rest)["total"]
         total = smooth + run.friction(device, state)
     return delayed(total, model.delay, run.spacing)
 
