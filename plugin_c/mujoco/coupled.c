@@ -113,10 +113,10 @@ static void respond(const mjModel* m, mjData* d, const Answer* answer, const mjt
     along(m, answer, d->qacc, a);
     return;
   }
-  mjtNum* total = answer->work;
+  mjtNum *total = answer->work, *qacc = answer->work + nv;
   mju_add(total, d->qfrc_smooth, d->qfrc_constraint, nv);
-  metric_solve(m, d, &answer->metric, total, total, 1);
-  along(m, answer, total, a);
+  metric_solve(m, d, &answer->metric, qacc, total, 1);
+  along(m, answer, qacc, a);
 }
 
 // Broyden's update: W such that it explains the last change of a by the last change of force
@@ -234,6 +234,16 @@ static void apply(const mjModel* m, mjData* d, const Coupled* c, mjtNum a) {
   self->mobility = c->mobility;
 }
 
+// whether the acceleration answers the forces by the metric alone: no constraints, and no free
+// bodies whose gyroscopic terms the discrete integrator adds after its constraint solver
+static int is_linear(const mjModel* m, const mjData* d, const Metric* metric) {
+  int linear = !d->nefc;
+  for (int j = 0; metric->kind == METRIC_DISCRETE && j < m->njnt; j++) {
+    linear &= m->jnt_type[j] != mjJNT_FREE;
+  }
+  return linear;
+}
+
 void coupled_solve(const mjModel* m, mjData* d, int last) {
   int nv = m->nv;
   mj_markStack(d);
@@ -250,7 +260,7 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
   answer.plain = mj_stackAllocNum(d, n * nv);
   answer.smooth = mj_stackAllocNum(d, nv);
   answer.free = mj_stackAllocNum(d, nv);
-  answer.work = mj_stackAllocNum(d, nv);
+  answer.work = mj_stackAllocNum(d, 2 * nv);
   mjtNum* X = mj_stackAllocNum(d, n * nv);
   mjtNum* W = mj_stackAllocNum(d, n * n);
   mjtNum* p = mj_stackAllocNum(d, n);
@@ -283,7 +293,7 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
 
   mju_copy(a, p, n);
   int fits = 1;
-  if (!d->nefc) {
+  if (is_linear(m, d, &answer.metric)) {
     fits = monotone_solve(law, all, n, W, p, a, force, scratch);
   } else {
     if (metric_moves_qacc(&answer.metric)) {

@@ -12,8 +12,10 @@ mjtNum mj_tendonDot(const mjModel* m, mjData* d, int id, const mjtNum* vec);
 // Derivative of the smooth forces by velocity into mjData.qDeriv; bias: Coriolis forces too.
 void mjd_smooth_vel(const mjModel* m, mjData* d, int bias);
 
-// Implicit 6 x 6 inertia of a free body that stands alone; 0 if the joint is none.
-int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum h, mjtNum A[36]);
+// Implicit 6 x 6 inertia of a free body that stands alone, for implicitfast (discrete: 0); 0 if the
+// joint is none.
+int mjd_freeMhat(const mjModel* m, const mjData* d, int joint, mjtNum h, mjtNum A[36],
+                 int discrete);
 int mju_factorLU6(mjtNum A[36], int pivot[6]);
 void mju_solveLU6(mjtNum x[6], const mjtNum A[36], const mjtNum y[6], const int pivot[6]);
 

@@ -99,7 +99,7 @@ static Metric metric_of_implicitfast(const mjModel* m, mjData* d) {
   // the engine solves free bodies apart, in full: here they keep the plain inertia
   for (int j = 0; j < m->njnt; j++) {
     mjtNum block[36];
-    if (m->jnt_type[j] != mjJNT_FREE || !mjd_freeMhat(m, d, j, m->opt.timestep, block)) {
+    if (m->jnt_type[j] != mjJNT_FREE || !mjd_freeMhat(m, d, j, m->opt.timestep, block, 0)) {
       continue;
     }
     for (int i = m->jnt_dofadr[j]; i < m->jnt_dofadr[j] + 6; i++) {
@@ -173,7 +173,7 @@ void metric_solve(const mjModel* m, mjData* d, const Metric* metric, mjtNum* x, 
   for (int j = 0; j < m->njnt; j++) {
     mjtNum block[36];
     int pivot[6], address = m->jnt_dofadr[j];
-    if (m->jnt_type[j] != mjJNT_FREE || !mjd_freeMhat(m, d, j, m->opt.timestep, block) ||
+    if (m->jnt_type[j] != mjJNT_FREE || !mjd_freeMhat(m, d, j, m->opt.timestep, block, 0) ||
         !mju_factorLU6(block, pivot)) {
       continue;
     }

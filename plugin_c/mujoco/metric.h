@@ -28,7 +28,7 @@ Metric metric_of_step(const mjModel* m, mjData* d);
 // Whether the acceleration of the step differs from mjData.qacc.
 int metric_moves_qacc(const Metric* metric);
 
-// x = H^-1 y for n vectors.
+// x = H^-1 y for n vectors; x and y are different places.
 void metric_solve(const mjModel* m, mjData* d, const Metric* metric, mjtNum* x, const mjtNum* y,
                   int n);
 
