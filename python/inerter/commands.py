@@ -13,6 +13,7 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 import typer
 from rich.console import Console
+from rich.progress import Progress
 from rich.table import Table
 
 from inerter.core import DeviceError, parameters
@@ -114,6 +115,89 @@ def _diagnose(
     return result
 
 
+@contextmanager
+def _progress_bar(text: str, quiet: bool) -> Iterator[Callable[[float], None]]:
+    """A bar for a share of the work, on a terminal's stderr."""
+    if quiet or not notes.is_terminal:
+        yield lambda share: None
+        return
+    with Progress(console=notes, transient=True) as progress:
+        task = progress.add_task(text, total=1.0)
+        yield lambda share: progress.update(task, completed=share)
+
+
+@app.command("simulate")
+def simulate_command(
+    model: Annotated[Path, typer.Argument(help="A MuJoCo model: .xml or compiled .mjb.")],
+    duration: Annotated[
+        float | None, typer.Option(help="Seconds; default: the control's length, else 10.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/simulation"
+    ),
+    timestep: Annotated[
+        float | None, typer.Option(help="Time step [s] in place of the model's.")
+    ] = None,
+    integrator: Annotated[
+        str | None,
+        typer.Option(help="Euler, RK4, implicit, implicitfast or discrete; default: the model's."),
+    ] = None,
+    keyframe: Annotated[
+        str | None, typer.Option(help="Name or index of the keyframe to start from.")
+    ] = None,
+    control: Annotated[
+        Path | None,
+        typer.Option(help="Table with time and columns named after actuators, joints or BODY.x."),
+    ] = None,
+    rate: Annotated[
+        float | None, typer.Option(help="Samples per second of the records; default: at most 1000.")
+    ] = None,
+    video: Annotated[Path | None, typer.Option(help="Also write a video: .gif or .mp4.")] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print simulation.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Run a model; write what each inerter.device did as a record, and a page of pictures.
+
+    Writes DEVICE.csv per device (`inerter diagnose` reads it), simulation.html, simulation.json.
+    """
+    import mujoco
+
+    from inerter.simulate.errors import SimulationError, engine_text
+    from inerter.simulate.output import write_run
+    from inerter.simulate.run import run_model
+    from inerter.simulate.summary import print_run, summary
+    from inerter.simulate.video import FRAME_RATE, refuse_video, write_video
+
+    try:
+        refuse_folder(out_dir)
+        if video is not None:
+            refuse_video(video)
+        with _progress_bar("simulating", as_json) as progress:
+            run = run_model(
+                model, duration, timestep=timestep, integrator=integrator, keyframe=keyframe,
+                control=control, rate=rate, frame_rate=FRAME_RATE if video else 0.0,
+                progress=progress,
+            )  # fmt: skip
+        files = write_run(run, out_dir)
+        if video is not None:
+            with _progress_bar("rendering", as_json) as progress:
+                write_video(run.model, run.frames, video, progress)
+    except (SimulationError, DeviceError) as error:
+        _refuse(str(error))
+    except mujoco.FatalError as error:
+        _refuse(f"{model}: {engine_text(error)}")
+    except OSError as error:
+        _refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(json.dumps(summary(run), indent=2))
+    else:
+        print_run(run, out)
+        out.print(f"Written to {out_dir}: {', '.join(files)}")
+        if video is not None:
+            out.print(f"Video: {video}")
+
+
 @app.command()
 def demo(
     out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
@@ -146,7 +230,7 @@ def parameters_command() -> None:
     for p in parameters().values():
         lower = f"{'>' if p.lower_open else '>='} {p.lower:g}" if p.lower > -1e300 else ""
         upper = f"<= {p.upper:g}" if p.upper < 1e300 else ""
-        default = "derived" if p.initial != p.initial else f"{p.initial:g}"
+        default = "unset" if p.initial != p.initial else f"{p.initial:g}"
         bounds = " ".join(part for part in (lower, upper) if part) or "any"
         table.add_row(p.name, p.unit, default, bounds, " ".join(p.laws) or "-", p.meaning)
     out.print(table)

@@ -1,0 +1,1 @@
+"""Running a model: devices as records, a page of pictures, a video."""

@@ -1,0 +1,52 @@
+"""The files of a run: all of them or none."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+from inerter.diagnose.output import refuse_folder
+from inerter.simulate.page import render_page
+from inerter.simulate.record import device_csv, device_names, vehicle_csv
+from inerter.simulate.run import Run
+from inerter.simulate.summary import summary
+
+
+def write_run(run: Run, folder: Path) -> list[str]:
+    """Write DEVICE.csv per device, vehicle/record.csv, simulation.json and simulation.html.
+
+    Everything is written into a temporary folder first and moved when complete. The vehicle's
+    record has a folder of its own, so that a folder can be diagnosed as a whole.
+
+    Returns
+    -------
+    list of str
+        The files, relative to the folder.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
+    files = {f"{name}.csv": device_csv(run, device)
+             for name, device in zip(device_names(run), run.devices, strict=True)}  # fmt: skip
+    if run.vehicle:
+        files["vehicle/record.csv"] = vehicle_csv(run)
+    files["simulation.json"] = json.dumps(summary(run), indent=2, allow_nan=False) + "\n"
+    files["simulation.html"] = render_page(run)
+    refuse_folder(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    staging = Path(tempfile.mkdtemp(prefix=".simulation-", dir=folder))
+    try:
+        for name, content in files.items():
+            (staging / name).parent.mkdir(exist_ok=True)
+            (staging / name).write_text(content, encoding="utf-8", errors="replace")
+        for name in files:
+            (folder / name).parent.mkdir(exist_ok=True)
+            os.replace(staging / name, folder / name)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+    return list(files)

@@ -1,0 +1,132 @@
+"""The pictures of a run: per device forces, loops and energies; the vehicle; the joints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+
+from inerter.core import parameters
+from inerter.report import thinning
+from inerter.report.plotting import figure, line
+from inerter.simulate.run import Run
+from inerter.simulate.sample import DeviceRun
+
+TIME_SAMPLES = 3000
+LOOP_SAMPLES = 4000
+MOST_JOINTS = 6
+
+# line colours of the report that differ in lightness too
+TOTAL, INERTANCE, FRICTION = "after", "measured", "before"
+_COLORS = ("after", "before", "measured", "warn", "shade", "text")
+STATE_UNITS = {
+    "friction_state": "m",
+    "series_deflection": "m",
+    "flywheel_velocity": "m/s",
+    "gap_position": "m",
+}
+
+
+def device_plots(run: Run, device: DeviceRun) -> dict[str, go.Figure]:
+    """Every plot of a device, by the name of its place in the page."""
+    columns = device.columns
+    plots = {
+        "time": _forces_and_motion(run, device),
+        "loop-displacement": _loop(columns, "displacement", "displacement [m]"),
+        "loop-velocity": _loop(columns, "velocity", "velocity [m/s]"),
+        "energy": _energy(run, device),
+    }
+    for name in device.place.act:
+        plot = figure("time [s]", f"{name.replace('_', ' ')} [{STATE_UNITS[name]}]")
+        _over_time(plot, run.time, columns[name], "after", name)
+        plots[f"state-{name}"] = plot
+    return plots
+
+
+def model_plots(run: Run) -> dict[str, go.Figure]:
+    """Plots of what is not a device: the vehicle's columns and the joints."""
+    plots = {}
+    units = {"body_acceleration": "m/s²", "wheel_acceleration": "m/s²", "tyre_force": "N"}
+    for name in run.vehicle:
+        if name != "time":
+            plot = figure("time [s]", f"{name.replace('_', ' ')} [{units.get(name, 'm')}]")
+            _over_time(plot, run.time, run.vehicle[name], "after", name)
+            plots[f"vehicle-{name}"] = plot
+    if run.joints:
+        plot = figure("time [s]", "position [m or rad]", showlegend=len(run.joints) > 1)
+        plot.update_layout(legend={"orientation": "h", "y": 1.02, "yanchor": "bottom"})
+        moving = sorted(run.joints, key=lambda name: -float(np.ptp(run.joints[name])))
+        for color, name in zip(_COLORS, moving[:MOST_JOINTS], strict=False):
+            _over_time(plot, run.time, run.joints[name], color, name)
+        plots["joints"] = plot
+    return plots
+
+
+def _forces_and_motion(run: Run, device: DeviceRun) -> go.Figure:
+    """Forces above, displacement below, one time axis."""
+    plot = figure("time [s]", "force [N]")
+    style = plot.layout.yaxis.to_plotly_json()  # type: ignore[attr-defined]
+    plot.update_layout(
+        yaxis={"domain": [0.44, 1.0]},
+        yaxis2=style | {"domain": [0.0, 0.36], "anchor": "x"},
+        xaxis={"anchor": "y2"},
+    )
+    plot.layout.yaxis2.title.text = "displacement [m]"  # type: ignore[attr-defined]
+    columns = device.columns
+    _over_time(plot, run.time, columns["inertance_force"], INERTANCE, "inertance", width=3.0)
+    if has_friction(device):
+        _over_time(plot, run.time, columns["friction_force"], FRICTION, "friction")
+    _over_time(plot, run.time, columns["force"], TOTAL, "total")
+    _over_time(plot, run.time, columns["displacement"], TOTAL, "displacement", yaxis="y2")
+    return plot
+
+
+def has_friction(device: DeviceRun) -> bool:
+    """Whether friction acted in a device."""
+    return bool(np.any(device.columns["friction_force"]))
+
+
+def _loop(columns: dict[str, np.ndarray], name: str, title: str) -> go.Figure:
+    """Force against a column: the whole, and what of it is not the inertance's."""
+    plot = figure(title, "force [N]")
+    keep = thinning.evenly(len(columns[name]), LOOP_SAMPLES)
+    x, total = columns[name][keep], columns["force"][keep]
+    rest = total - columns["inertance_force"][keep]
+    line(plot, x, total, TOTAL, "total", 1.2)
+    if np.any(rest):
+        line(plot, x, rest, FRICTION, "without inertance", 1.2)
+    return plot
+
+
+def _energy(run: Run, device: DeviceRun) -> go.Figure:
+    plot = figure("time [s]", "energy [J]")
+    for name, color in (("stored_energy", INERTANCE), ("dissipated_energy", FRICTION)):
+        _over_time(plot, run.time, device.columns[name], color, name.split("_")[0])
+    return plot
+
+
+def _over_time(
+    plot: go.Figure,
+    time: np.ndarray,
+    values: np.ndarray,
+    color: str,
+    name: str,
+    width: float = 1.4,
+    **options: Any,
+) -> None:
+    keep = thinning.extremes(values, TIME_SAMPLES)
+    line(plot, time[keep], values[keep], color, name, width, **options)
+
+
+def parameter_rows(run: Run, device: DeviceRun) -> list[tuple[str, str, str]]:
+    """Name, value and meaning of what a device was given."""
+    rows = []
+    for name, value in device.place.stated(run.model).items():
+        if isinstance(value, str):
+            rows.append((name, value, ""))
+        else:
+            known = parameters()[name]
+            unit = "" if known.unit == "1" else f" {known.unit}"
+            rows.append((name, f"{value:.6g}{unit}", known.meaning))
+    return rows

@@ -1,0 +1,79 @@
+"""A run as records: one CSV per device, one for a vehicle, in the form that `diagnose` reads.
+
+Device: time, displacement, force, velocity, acceleration; then inertance_force, friction_force
+[N], the states, stored_energy, dissipated_energy [J], and control_force [N] if there was any.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+import mujoco
+import polars as pl
+from numpy.typing import NDArray
+
+import inerter
+from inerter.core import parameters
+from inerter.simulate.run import Run
+from inerter.simulate.sample import DeviceRun
+
+
+def device_names(run: Run) -> list[str]:
+    """File names, without extension, of the devices: what a file may be called, all different."""
+    names: list[str] = []
+    for i, device in enumerate(run.devices):
+        name = re.sub(r"[^\w.+-]+", "_", device.place.name).strip("._") or f"device_{i}"
+        while name.casefold() in [other.casefold() for other in names]:
+            name += "_2"
+        names.append(name)
+    return names
+
+
+def device_csv(run: Run, device: DeviceRun) -> str:
+    """Text of a device's record."""
+    place = device.place
+    given = ", ".join(
+        f"{name} = {value}" if isinstance(value, str) else f"{name} = {value:.10g}{_unit(name)}"
+        for name, value in place.stated(run.model).items()
+    )
+    notes = [
+        f'device "{place.name}" of {run.path.name}: {given or "no parameters"}',
+        *_origin(run),
+        "displacement: length of the actuator less the rest length; force: tension positive,",
+        "without control_force, which acts beside the device; SI units",
+        "acceleration: the engine's at the row's instant, along the device: J qacc + dJ/dt qvel",
+    ]
+    if _is_hinge(run.model, place.actuator):
+        notes.insert(-1, "on a hinge: read rad for m, N*m for N, kg*m^2 for kg")
+    return _csv(notes, device.columns)
+
+
+def _is_hinge(model: mujoco.MjModel, actuator: int) -> bool:
+    if model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_TENDON:
+        return False
+    return model.jnt_type[model.actuator_trnid[actuator, 0]] == mujoco.mjtJoint.mjJNT_HINGE
+
+
+def vehicle_csv(run: Run) -> str:
+    """Text of the vehicle record."""
+    return _csv([f"vehicle of {run.path.name}", *_origin(run)], run.vehicle)
+
+
+def _origin(run: Run) -> list[str]:
+    steps = "step" if run.every == 1 else f"{run.every} steps"
+    return [
+        f"simulated by inerter {inerter.__version__} with MuJoCo {mujoco.mj_versionString()}, "
+        f"{run.integrator}, time step {run.model.opt.timestep:g} s, a row every {steps}",
+    ]
+
+
+def _unit(name: str) -> str:
+    unit = parameters()[name].unit
+    return "" if unit == "1" else f" {unit}"
+
+
+def _csv(notes: Iterable[str], columns: Mapping[str, NDArray]) -> str:
+    # names come from the model: a line break in one must not end the comment
+    head = "".join(f"# {' '.join(note.split())}\n" for note in notes)
+    return head + pl.DataFrame(dict(columns)).write_csv()
