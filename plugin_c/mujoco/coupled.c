@@ -135,9 +135,9 @@ static void learn(int n, mjtNum* W, const mjtNum* da, const mjtNum* dforce) {
 
 // With constraints: ask for the answer to a set of forces, take it as linear, solve, ask again.
 // The answer's slope lies between 0 and W, so this converges even with the plain W; the update
-// makes it fast.
+// makes it fast. free: accelerations without the forces and without constraints, for scale.
 static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, const mjtNum* W,
-                             const mjtNum* start, mjtNum* a, mjtNum* force) {
+                             const mjtNum* free, const mjtNum* start, mjtNum* a, mjtNum* force) {
   int n = answer->n;
   mj_markStack(d);
   mjtNum* slope = mj_stackAllocNum(d, n * n);
@@ -175,7 +175,7 @@ static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, 
     double allowed = round < 12 ? kFit : kLooseFit;
     fits = 1;
     for (int i = 0; i < n; i++) {
-      mjtNum size = fabs(a[i]) + fabs(answered[i]), miss = 0;
+      mjtNum size = fabs(a[i]) + fabs(answered[i]) + fabs(free[i]), miss = 0;
       for (int j = 0; j < n; j++) {
         size += fabs(W[i * n + j] * force[j]);
         miss += W[i * n + j] * fabs(force[j] - asked[j]);
@@ -302,7 +302,7 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
       mju_copy(answer.plain, X, n * nv);
     }
     guess(m, d, &answer, force + n);
-    fits = solve_constrained(m, d, &answer, W, force + n, a, force);
+    fits = solve_constrained(m, d, &answer, W, p, force + n, a, force);
   }
   for (int i = 0; i < n; i++) {
     apply(m, d, all + i, a[i]);

@@ -94,7 +94,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         dark=DARK,
         palette=Markup(to_script({"light": LIGHT, "dark": DARK})),
         plots=Markup(to_script(plots)),
-        plotly=Markup(_plotly()),
+        plotly=Markup(plotly_script()),
         number=text.number,
         tidy=text.tidy,
         count=text.count,
@@ -124,7 +124,8 @@ def _template() -> Any:
 
 
 @cache
-def _plotly() -> str:
+def plotly_script() -> str:
+    """Plotly's JavaScript, fit to stand inside a script element."""
     # the end of a script element must not stand inside it
     return get_plotlyjs().replace("</script", "<\\/script").replace("<!--", "<\\!--")
 

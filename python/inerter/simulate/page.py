@@ -44,7 +44,7 @@ def render_page(run: Run) -> str:
         dark=DARK,
         palette=Markup(to_script({"light": LIGHT, "dark": DARK})),
         plots=Markup(to_script(plots)),
-        plotly=Markup(report_page._plotly()),
+        plotly=Markup(report_page.plotly_script()),
         number=text.number,
     )
 
