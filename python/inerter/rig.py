@@ -68,9 +68,9 @@ def simulate_along(
     At each sample the rig is put at x and v and accelerated by a; the sensor gives the force of
     that instant (which the stages of RK4 are made of). Then the table moves on to the next sample,
     which advances the states: at constant velocity by the laws' own steps (Euler), or with a series
-    element along the cubic through both samples, by stages of RK4 short enough for it. This is what `Device.along` does, so that
-    both agree to rounding (1e-9 of the force for inertances far below the table's 1e12 kg), with a
-    series element to the error of its second-order steps.
+    element along the cubic through both samples, by stages of RK4 short enough for it. This is what
+    `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far below
+    the table's 1e12 kg), with a series element to the error of its second-order steps.
 
     Parameters
     ----------
