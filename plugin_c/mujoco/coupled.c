@@ -135,9 +135,9 @@ static void learn(int n, mjtNum* W, const mjtNum* da, const mjtNum* dforce) {
 
 // With constraints: ask for the answer to a set of forces, take it as linear, solve, ask again.
 // The answer's slope lies between 0 and W, so this converges even with the plain W; the update
-// makes it fast. free: accelerations without the forces and without constraints, for scale.
+// makes it fast. scale: size of the accelerations that the answer is a difference of.
 static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, const mjtNum* W,
-                             const mjtNum* free, const mjtNum* start, mjtNum* a, mjtNum* force) {
+                             const mjtNum* scale, const mjtNum* start, mjtNum* a, mjtNum* force) {
   int n = answer->n;
   mj_markStack(d);
   mjtNum* slope = mj_stackAllocNum(d, n * n);
@@ -175,7 +175,7 @@ static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, 
     double allowed = round < 12 ? kFit : kLooseFit;
     fits = 1;
     for (int i = 0; i < n; i++) {
-      mjtNum size = fabs(a[i]) + fabs(answered[i]) + fabs(free[i]), miss = 0;
+      mjtNum size = fabs(a[i]) + fabs(answered[i]) + scale[i], miss = 0;
       for (int j = 0; j < n; j++) {
         size += fabs(W[i * n + j] * force[j]);
         miss += W[i * n + j] * fabs(force[j] - asked[j]);
@@ -266,6 +266,7 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
   mjtNum* p = mj_stackAllocNum(d, n);
   mjtNum* a = mj_stackAllocNum(d, n);
   mjtNum* force = mj_stackAllocNum(d, 2 * n);
+  mjtNum* scale = mj_stackAllocNum(d, n);
   mjtNum* scratch = mj_stackAllocNum(d, n * (n + 4));
   forward_without(m, d, last);
   mju_copy(answer.smooth, d->qfrc_smooth, nv);
@@ -294,21 +295,27 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
   mju_copy(a, p, n);
   int fits = 1;
   if (is_linear(m, d, &answer.metric)) {
-    fits = monotone_solve(law, all, n, W, p, a, force, scratch);
+    monotone_solve(law, all, n, W, p, a, force, scratch);
   } else {
     if (metric_moves_qacc(&answer.metric)) {
       mj_solveM(m, d, answer.plain, answer.J, n);
     } else {
       mju_copy(answer.plain, X, n * nv);
     }
+    for (int i = 0; i < n; i++) {
+      scale[i] = fabs(all[i].self->bias);
+      for (int k = 0; k < nv; k++) {
+        scale[i] += fabs(answer.J[i * nv + k] * answer.free[k]);
+      }
+    }
     guess(m, d, &answer, force + n);
-    fits = solve_constrained(m, d, &answer, W, p, force + n, a, force);
+    fits = solve_constrained(m, d, &answer, W, scale, force + n, a, force);
   }
   for (int i = 0; i < n; i++) {
     apply(m, d, all + i, a[i]);
     if (!fits) {
-      instance_complain(m, all[i].self,
-                        "force and acceleration did not fit each other to 1e-10; shorten the "
+      instance_complain(m, all[i].self, COMPLAINT_FIT,
+                        "force and acceleration of a step did not fit each other; shorten the "
                         "timestep or tighten <option tolerance> and iterations");
     }
   }

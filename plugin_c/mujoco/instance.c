@@ -45,9 +45,9 @@ void instance_report(const mjModel* m, int instance, const char* text) {
   }
 }
 
-void instance_complain(const mjModel* m, Instance* self, const char* text) {
-  if (!self->complained) {
-    self->complained = 1;
+void instance_complain(const mjModel* m, Instance* self, Complaint reason, const char* text) {
+  if (!(self->complained & reason)) {
+    self->complained |= reason;
     instance_report(m, m->actuator_plugin[self->actuator], text);
   }
 }
@@ -77,9 +77,20 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   int undamped = (m->opt.disableflags & mjDSBL_DAMPER) != 0;
   mjtNum armature = m->actuator_armature[self->actuator];
   mjtNum damping = undamped ? 0 : m->actuator_damping[self->actuator];
-  if (!force && armature == self->armature && damping == self->damping) {
+  if (!force && armature == self->armature && damping == self->damping &&
+      undamped == self->undamped) {
     return;
   }
+  if (!self->native && armature != 0) {
+    mju_error(
+        "inerter.device, actuator \"%.60s\": actuator_armature is %g, but the engine's inertia "
+        "matrix cannot hold the inertance of this device; change it by a numeric "
+        "\"%.60s.inertance\" "
+        "in <custom>, and leave actuator_armature 0",
+        mj_id2name(m, mjOBJ_ACTUATOR, self->actuator), armature,
+        mj_id2name(m, mjOBJ_ACTUATOR, self->actuator));
+  }
+  self->undamped = undamped;
   self->armature = armature;
   self->damping = damping;
   InerterDevice* device = &self->device;
@@ -89,6 +100,8 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   }
   if (self->native && !is_live(self, INERTER_INDEX_viscous)) {
     device->viscous = damping;
+  } else {
+    device->viscous = undamped ? 0 : self->viscous;
   }
   self->share = *device;
   if (self->native) {
@@ -109,13 +122,13 @@ int instance_idle(const mjModel* m, const mjData* d, const Instance* self) {
     return 1;
   }
 
-  // asleep: the tree of the first dof is
-  int row = m->actuator_outadr[i];
-  if (m->opt.enableflags & mjENBL_SLEEP && d->moment_rownnz[row]) {
-    int dof = d->moment_colind[d->moment_rowadr[row]];
-    return d->tree_asleep[m->dof_treeid[dof]] >= 0;
+  // asleep: every tree that it moves is
+  int row = m->actuator_outadr[i], start = d->moment_rowadr[row], count = d->moment_rownnz[row];
+  int asleep = m->opt.enableflags & mjENBL_SLEEP && count;
+  for (int k = start; asleep && k < start + count; k++) {
+    asleep = d->tree_asleep[m->dof_treeid[d->moment_colind[k]]] >= 0;
   }
-  return 0;
+  return asleep;
 }
 
 mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* self) {

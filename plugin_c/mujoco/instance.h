@@ -27,6 +27,8 @@ typedef struct Instance_ {
   InerterDevice share;   // the device without that: what the plugin's force is made of
   mjtNum armature;       // what of the model these were made for (instance_refresh)
   mjtNum damping;
+  int undamped;
+  mjtNum viscous;      // as stated or live, whoever integrates it
   mjtNum rest_length;  // actuator length at which the displacement is 0
   int actuator;        // index of the actuator
   int native;          // 1: the engine integrates inertance and viscous damping (placement.h)
@@ -45,7 +47,9 @@ typedef struct Instance_ {
   double acceleration;     // and the acceleration [m/s^2]
   double mobility;         // acceleration of the terminals per force [1/kg]
   double power[MAXSTAGE];  // dissipated power at the last evaluations, newest last [W]
-  int complained;          // 1: has said once what is wrong
+  int complained;          // reasons (Complaint) for which it has said once what is wrong
+  int integrator;          // under which (+ 1), and with which step, its stiffness was looked at
+  mjtNum timestep;
 } Instance;
 
 static inline Instance* instance_of(const mjData* d, int instance) {
@@ -61,8 +65,16 @@ int instance_sensed(const mjModel* m, int instance);
 // Report what is wrong with an instance: who it is, then the text.
 void instance_report(const mjModel* m, int instance, const char* text);
 
-// Say once per mjData what goes wrong while it runs.
-void instance_complain(const mjModel* m, Instance* self, const char* text);
+// What can go wrong while a model runs: each is said once per mjData.
+typedef enum Complaint_ {
+  COMPLAINT_FIT = 1 << 0,       // force and acceleration
+  COMPLAINT_VALIDITY = 1 << 1,  // of a law
+  COMPLAINT_BRISTLE = 1 << 2,   // too fast for RK4
+  COMPLAINT_STIFF = 1 << 3,     // too stiff for the step
+  COMPLAINT_SITES = 1 << 4      // that meet
+} Complaint;
+
+void instance_complain(const mjModel* m, Instance* self, Complaint reason, const char* text);
 
 // Whether a device has a series element; end stops.
 static inline int instance_has_series(const InerterDevice* device) {
@@ -75,7 +87,8 @@ static inline int instance_has_stop(const InerterDevice* device) {
 // Make device and share anew if the model's armature or damping, or `force`, says so.
 void instance_refresh(const mjModel* m, Instance* self, int force);
 
-// Whether the actuator does nothing now: its group or all actuation is disabled, or it sleeps.
+// Whether the actuator does nothing now: its group or all actuation is disabled, or all that it
+// moves sleeps.
 int instance_idle(const mjModel* m, const mjData* d, const Instance* self);
 
 // Displacement of the device: length of the actuator less the rest length. Every force law sees

@@ -34,6 +34,22 @@ int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZ
     live->value = m->numeric_data[live->address];
   }
 
+  // a numeric named after the actuator, but after no parameter, is a slip
+  size_t length = strlen(actuator);
+  for (int i = 0; i < m->nnumeric; i++) {
+    const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
+    int ours = name && !strncmp(name, actuator, length) && name[length] == '.';
+    for (int k = 0; ours && k < INERTER_NPARAMETER; k++) {
+      ours = strcmp(name + length + 1, inerter_parameter(k)->name) != 0;
+    }
+    if (ours) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "numeric \"%.120s\" is named after this device, but \"%.60s\" is not a parameter "
+               "that can be live; see `inerter parameters`, or give the numeric another name",
+               name, name + length + 1);
+      return -1;
+    }
+  }
   return 0;
 }
 
@@ -57,7 +73,9 @@ int live_derive(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_S
     return -1;
   }
   self->rest_length = self->device.rest_length;
+  self->viscous = self->device.viscous;
   self->device.rest_length = 0;
+  self->timestep = 0;  // look at its stiffness anew
   instance_refresh(m, self, 1);
   return 0;
 }

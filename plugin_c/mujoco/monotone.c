@@ -11,8 +11,8 @@
 
 enum { NEWTON_ROUNDS = 12, SWEEPS = 200, BISECTIONS = 120 };
 
-// residuals over their rounding that are small enough: not worth sweeps; good as a result
-static const double ENOUGH = 1e3, GOOD = 1e6;
+// residual over the rounding of its terms that is not worth sweeps
+static const double ENOUGH = 1e3;
 
 // solve the n x n system A x = y by elimination with row exchange; A and y are destroyed
 static void solve_dense(int n, mjtNum* A, mjtNum* y, mjtNum* x) {
@@ -96,8 +96,8 @@ static double solve_alone(MonotoneForce law, const void* devices, int i, double 
   return fabs(at_low) < fabs(at_high) ? low : high;
 }
 
-int monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
-                   mjtNum* a, mjtNum* force, mjtNum* scratch) {
+void monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
+                    mjtNum* a, mjtNum* force, mjtNum* scratch) {
   mjtNum *A = scratch, *r = A + n * n, *step = r + n, *trial = step + n, *other = trial + n;
   for (int i = 0; i < n; i++) {
     force[i] = law(devices, i, a[i]);
@@ -142,5 +142,4 @@ int monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* 
     }
     size = reached;
   }
-  return size < GOOD;
 }

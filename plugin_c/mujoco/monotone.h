@@ -14,9 +14,9 @@
 // force of device i at acceleration a
 typedef double (*MonotoneForce)(const void* devices, int i, double a);
 
-// Solve for a (in: a guess). force: the n forces at the solution. scratch: n * (n + 4) numbers.
-// Return 1, or 0 if the residual stayed above rounding (a, force: the best found).
-int monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
-                   mjtNum* a, mjtNum* force, mjtNum* scratch);
+// Solve for a (in: a guess), as far as rounding lets. force: the n forces at the solution. scratch:
+// n * (n + 4) numbers.
+void monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
+                    mjtNum* a, mjtNum* force, mjtNum* scratch);
 
 #endif  // INERTER_MUJOCO_MONOTONE_H_

@@ -7,22 +7,10 @@
 
 #include "core/device.h"
 
-// Check that an actuator can carry the device: a tendon or a slide or hinge joint, the right number
-// of states. Return 0, or -1 with a message.
-int placement_check(const mjModel* m, int actuator, const InerterDevice* device,
-                    char message[INERTER_MESSAGE_SIZE]);
-
 // Place inertance and viscous damping in the model: the first time, by the compiler's init, into
 // the actuator's armature and damping where the engine can hold them. *native: whether it does.
 // Return 0, or -1 with a message.
 int placement_decide(const mjModel* m, int actuator, const InerterDevice* device, int* native,
                      char message[INERTER_MESSAGE_SIZE]);
-
-// What the chosen integrator will not carry: 1 with a message, else 0.
-int placement_doubt(const mjModel* m, int actuator, const InerterDevice* device, int native,
-                    char message[INERTER_MESSAGE_SIZE]);
-
-// Whether the model is being compiled: nothing is placed yet.
-int placement_is_new(const mjModel* m, int actuator);
 
 #endif  // INERTER_MUJOCO_PLACEMENT_H_

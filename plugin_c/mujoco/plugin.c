@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mujoco/attachment.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupled.h"
 #include "mujoco/instance.h"
@@ -69,8 +70,7 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     }
     return -1;
   }
-  int compiling = placement_is_new(m, self->actuator);
-  if (placement_check(m, self->actuator, &device, message) ||
+  if (attachment_check(m, self->actuator, &device, message) ||
       placement_decide(m, self->actuator, &device, &self->native, message) ||
       live_find(m, self, message) || live_derive(m, self, message)) {
     return -1;
@@ -79,11 +79,6 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   self->last = 1;
   for (int k = instance + 1; k < m->nplugin; k++) {
     self->last &= m->plugin[k] != m->plugin[instance];
-  }
-
-  // say it once, not with every mj_makeData
-  if (compiling && placement_doubt(m, self->actuator, &self->device, self->native, message)) {
-    instance_report(m, instance, message);
   }
   return 0;
 }
@@ -167,6 +162,8 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   if (instance_idle(m, d, self)) {
     return;
   }
+  watch_stiffness(m, self);
+  watch_sites(m, d, self);
   int nstate = inerter_nstate(&self->device);
   mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
   d->actuator_force[row] = command(m, d, self->actuator);

@@ -6,9 +6,11 @@ int sensor_size(int nstate) {
   return 5 + nstate;
 }
 
-// forces of the device as the model feels them now
-static InerterForce force_now(const mjModel* m, const mjData* d, const Instance* self, mjtNum v,
-                              mjtNum a) {
+InerterForce sensor_force(const mjModel* m, mjData* d, const Instance* self) {
+  // motion along the device; the acceleration that the whole model has found
+  mjtNum v = instance_velocity(m, d, self);
+  mjtNum a = instance_along(m, d, self, d->qacc) + instance_bias_acceleration(m, d, self);
+
   // a disabled actuator is the inertance and damping that the engine holds
   InerterForce force = {0, 0, 0};
   mjtNum held = self->armature * a;
@@ -36,10 +38,8 @@ void sensor_compute(const mjModel* m, mjData* d, int instance) {
   const InerterDevice* device = &self->device;
   int nstate = inerter_nstate(device);
 
-  // motion along the device; the acceleration that the whole model has found
+  InerterForce force = sensor_force(m, d, self);
   mjtNum v = instance_velocity(m, d, self);
-  mjtNum a = instance_along(m, d, self, d->qacc) + instance_bias_acceleration(m, d, self);
-  InerterForce force = force_now(m, d, self, v, a);
   const mjtNum* state = d->act + (nstate ? instance_act(m, self) : 0);
 
   for (int i = 0; i < m->nsensor; i++) {

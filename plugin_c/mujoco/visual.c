@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "mujoco/instance.h"
+#include "mujoco/sensor.h"
 
 static const mjtNum kLead = 0.02;                      // displacement of one revolution [m, rad]
 static const mjtNum kBarrel = 0.09, kRod = 0.035;      // radii over length
@@ -44,7 +45,7 @@ static int terminals(const mjModel* m, const mjData* d, int actuator, mjtNum fro
 
 // colour of the barrel: red in tension, blue in compression
 static void force_colour(const mjModel* m, mjtNum force, mjtNum length, float rgba[4]) {
-  float t = (float)tanh(force * m->vis.map.force / length);
+  float t = (float)tanh(force * m->vis.map.force / fmax(length, mjMINVAL));
   rgba[0] = 0.55f + 0.4f * (t > 0 ? t : 0.6f * t);
   rgba[1] = 0.57f - 0.42f * fabsf(t);
   rgba[2] = 0.60f + 0.35f * (t < 0 ? -t : -1.2f * t);
@@ -84,8 +85,7 @@ void visual_draw(const mjModel* m, mjData* d, const mjvOption* option, mjvScene*
 
   // barrel and rod
   float colour[4], steel[4] = {0.75f, 0.76f, 0.78f, 1};
-  int row = m->actuator_outadr[self->actuator];
-  force_colour(m, -d->actuator_force[row], length, colour);
+  force_colour(m, sensor_force(m, d, self).total, length, colour);
   mjtNum barrel[3] = {kBarrel * length, 0.25 * length, 0};
   mju_addScl3(pos, from, axis, 0.27 * length);
   add(scene, mjGEOM_CYLINDER, barrel, pos, mat, colour, self->actuator);

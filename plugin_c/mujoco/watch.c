@@ -7,8 +7,9 @@
 
 void watch_validity(const mjModel* m, Instance* self, const mjtNum* state) {
   char message[INERTER_MESSAGE_SIZE];
-  if (!self->complained && !inerter_valid(&self->device, self->x, state, message)) {
-    instance_complain(m, self, message);
+  if (!(self->complained & COMPLAINT_VALIDITY) &&
+      !inerter_valid(&self->device, self->x, state, message)) {
+    instance_complain(m, self, COMPLAINT_VALIDITY, message);
   }
 }
 
@@ -39,5 +40,111 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
            "with a timestep of %g s, and was slowed to that; for this law prefer "
            "integrator=\"implicitfast\", which steps it exactly, or shorten the timestep",
            v, inerter_friction_name(device->friction), 1 / decay, m->opt.timestep);
-  instance_complain(m, self, message);
+  instance_complain(m, self, COMPLAINT_BRISTLE, message);
+}
+
+//------------------------------ stiffness ---------------------------------------------------------
+
+// acceleration per force along the actuator, in the initial configuration, a native inertance
+// included [1/kg]
+static double mobility(const mjModel* m, int actuator) {
+  double gear = m->actuator_gear[6 * m->actuator_outadr[actuator]];
+  int target = m->actuator_trnid[2 * actuator];
+  double weight = m->actuator_trntype[actuator] == mjTRN_TENDON
+                      ? m->tendon_invweight0[target]
+                      : m->dof_invweight0[m->jnt_dofadr[target]];
+  return gear * gear * weight;
+}
+
+// slope of the friction force over velocity at rest, for laws without memory [N s/m]
+static double friction_slope(const InerterDevice* device) {
+  const double none[INERTER_MAXSTATE] = {0}, small = 1e-9;
+  int memory = device->friction == INERTER_FRICTION_dahl ||
+               device->friction == INERTER_FRICTION_lugre ||
+               device->friction == INERTER_FRICTION_bouc_wen;
+  return memory ? 0 : inerter_friction_force(device, 0, small, none) / small;
+}
+
+// the fastest motion so far, and what causes it
+typedef struct Fastest_ {
+  double rate;  // over what the integrator resolves
+  const char* cause;
+} Fastest;
+
+static void consider(Fastest* fastest, double rate, double limit, const char* cause) {
+  if (rate / limit > fastest->rate) {
+    fastest->rate = rate / limit;
+    fastest->cause = cause;
+  }
+}
+
+void watch_stiffness(const mjModel* m, Instance* self) {
+  if (self->integrator == m->opt.integrator + 1 && self->timestep == m->opt.timestep) {
+    return;
+  }
+  self->integrator = m->opt.integrator + 1;  // 0: not looked at yet
+  self->timestep = m->opt.timestep;
+
+  // masses at the terminals and at the flywheel
+  const InerterDevice* p = &self->device;
+  int series = instance_has_series(p), stages = m->opt.integrator == mjINT_RK4;
+  double light = mobility(m, self->actuator);
+  if (!series && !self->native) {
+    light /= 1 + light * p->inertance;
+  }
+  double wheel = series ? 1 / p->inertance : light;
+  double gas = p->gas_pressure > 0
+                   ? p->gas_exponent * p->gas_pressure * p->gas_area * p->gas_area / p->gas_volume
+                   : 0;
+
+  // an oscillation of omega h < 2 (one stage), 2.8 (RK4); a decay of lambda h < 2.7
+  Fastest fastest = {1, NULL};
+  double swing = stages ? 2.8 : 2, decay = 2.7;
+  consider(&fastest, sqrt(fabs(p->stiffness) * light), swing / m->opt.timestep, "stiffness");
+  consider(&fastest, sqrt(gas * wheel), swing / m->opt.timestep, "the gas spring");
+  if (stages) {
+    double both = light + wheel;
+    consider(&fastest, p->viscous * light, decay / self->timestep, "viscous");
+    consider(&fastest, p->flywheel_viscous * wheel, decay / self->timestep, "flywheel_viscous");
+    consider(&fastest, sqrt(p->stop_stiffness * light), swing / self->timestep, "stop_stiffness");
+    consider(&fastest, friction_slope(p) * light, decay / self->timestep,
+             "the change of sign of friction (transition_velocity; brown_mcphee: "
+             "stribeck_velocity)");
+    if (series) {
+      consider(&fastest, sqrt(p->series_stiffness * both), swing / self->timestep,
+               "series_stiffness");
+      consider(&fastest, p->series_damping * both, decay / self->timestep, "series_damping");
+    }
+    if (p->backlash > 0 && p->series_damping > 0) {
+      consider(&fastest, p->series_stiffness / p->series_damping, decay / self->timestep,
+               "the relaxation of the series element in its play");
+    }
+  }
+  if (fastest.cause) {
+    char message[INERTER_MESSAGE_SIZE];
+    snprintf(
+        message, sizeof(message),
+        "%s is too stiff for %s with a timestep of %g s and the masses it acts on; set timestep "
+        "<= %.2g%s",
+        fastest.cause, stages ? "RK4" : "this integrator", self->timestep,
+        0.9 * self->timestep / fastest.rate,
+        stages ? ", or integrator=\"implicitfast\" (not for stiffness and gas)"
+               : ", or give a parallel stiffness to the tendon and take integrator=\"discrete\"");
+    instance_complain(m, self, COMPLAINT_STIFF, message);
+  }
+}
+
+//------------------------------ sites -------------------------------------------------------------
+
+void watch_sites(const mjModel* m, const mjData* d, Instance* self) {
+  int tendon = m->actuator_trnid[2 * self->actuator];
+  if (self->complained & COMPLAINT_SITES || m->actuator_trntype[self->actuator] != mjTRN_TENDON ||
+      m->wrap_type[m->tendon_adr[tendon]] == mjWRAP_JOINT ||
+      d->ten_length[tendon] > 1e-6 * m->stat.meansize) {
+    return;
+  }
+  instance_complain(
+      m, self, COMPLAINT_SITES,
+      "the sites of its tendon meet: the line between them has no direction there, and "
+      "its length cannot change sign; set the sites apart and state rest_length");
 }

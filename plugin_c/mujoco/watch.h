@@ -8,6 +8,13 @@
 // Say that a law has left the range that it is valid in.
 void watch_validity(const mjModel* m, Instance* self, const mjtNum* state);
 
+// Say what is too stiff for the integrator and the timestep, whenever these are new: what acts at
+// the start of a step or within stages, and is not resolved by them.
+void watch_stiffness(const mjModel* m, Instance* self);
+
+// Say that the sites of a tendon meet: there is no direction then.
+void watch_sites(const mjModel* m, const mjData* d, Instance* self);
+
 // Keep the rate of a friction state to what the stages of RK4 resolve. At speed v a bristle relaxes
 // towards sliding at a rate of sigma0 |v| / g, which is easily beyond the stability of explicit
 // stages. There it is slowed to the fastest that is stable: sliding then sets in within a step

@@ -223,15 +223,6 @@ def test_a_live_parameter_that_turns_wrong_stops_the_run() -> None:
         mujoco.mj_step(model, data)
 
 
-def test_a_series_element_too_stiff_for_rk4_is_warned_of(capfd: pytest.CaptureFixture) -> None:
-    keys = {"inertance": 2, "series_stiffness": 1e9}
-    xml = quarter_car_xml(plugin_actuator(keys, attributes='actdim="2"'), option='integrator="RK4"')
-    mujoco.MjModel.from_xml_string(xml)
-    text = capfd.readouterr()
-    assert "too stiff for RK4" in text.err + text.out
-    assert "implicitfast" in text.err + text.out
-
-
 def test_an_instance_needs_one_actuator() -> None:
     instance = '<instance name="shared"><config key="inertance" value="1"/></instance>'
     use = '<plugin plugin="inerter.device" instance="shared" joint="{}"/>'

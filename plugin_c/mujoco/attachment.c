@@ -1,0 +1,193 @@
+// Whether an actuator can carry a device: see attachment.h.
+
+#include "mujoco/attachment.h"
+
+#include <stdio.h>
+
+#include "mujoco/instance.h"
+
+const char* attachment_name(const mjModel* m, mjtObj type, int id) {
+  const char* name = mj_id2name(m, type, id);
+  return name && *name ? name : "(unnamed)";
+}
+
+int attachment_wrapped_geom(const mjModel* m, int tendon) {
+  for (int k = m->tendon_adr[tendon]; k < m->tendon_adr[tendon] + m->tendon_num[tendon]; k++) {
+    if (m->wrap_type[k] == mjWRAP_SPHERE || m->wrap_type[k] == mjWRAP_CYLINDER) {
+      return m->wrap_objid[k];
+    }
+  }
+  return -1;
+}
+
+// refuse a transmission that is not a single distance or angle
+static int check_transmission(const mjModel* m, int actuator, const InerterDevice* device,
+                              char message[INERTER_MESSAGE_SIZE]) {
+  int target = m->actuator_trnid[2 * actuator], geom;
+  switch (m->actuator_trntype[actuator]) {
+    case mjTRN_TENDON:
+      geom = attachment_wrapped_geom(m, target);
+      if (geom >= 0 && device->inertance > 0 && !instance_has_series(device)) {
+        snprintf(message, INERTER_MESSAGE_SIZE,
+                 "inertance is %g kg, but tendon \"%.40s\" wraps around geom \"%.40s\": the engine "
+                 "does not know how such a tendon accelerates; route it through sites and pulleys, "
+                 "or state the elasticity (series_stiffness) that a wrapping tendon has",
+                 device->inertance, attachment_name(m, mjOBJ_TENDON, target),
+                 attachment_name(m, mjOBJ_GEOM, geom));
+        return -1;
+      }
+      return 0;
+    case mjTRN_JOINT:
+    case mjTRN_JOINTINPARENT:
+      if (m->jnt_type[target] == mjJNT_SLIDE || m->jnt_type[target] == mjJNT_HINGE) {
+        return 0;
+      }
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "joint \"%.60s\" is a %s joint; a device needs a slide or hinge joint, or a tendon",
+               attachment_name(m, mjOBJ_JOINT, target),
+               m->jnt_type[target] == mjJNT_FREE ? "free" : "ball");
+      return -1;
+    default:
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "the transmission is neither a tendon nor a joint; give tendon=\"...\" or "
+               "joint=\"...\" (slide or hinge)");
+      return -1;
+  }
+}
+
+// whether a tendon goes over joints, or over sites of bodies that move against each other
+static int joins_two(const mjModel* m, int tendon) {
+  int first = m->tendon_adr[tendon], body = -1;
+  for (int k = first; k < first + m->tendon_num[tendon]; k++) {
+    if (m->wrap_type[k] == mjWRAP_JOINT) {
+      return 1;
+    }
+    if (m->wrap_type[k] == mjWRAP_SITE) {
+      int here = m->body_weldid[m->site_bodyid[m->wrap_objid[k]]];
+      if (body >= 0 && here != body) {
+        return 1;
+      }
+      body = here;
+    }
+  }
+  return 0;
+}
+
+// refuse an actuator that moves nothing
+static int check_moves(const mjModel* m, int actuator, char message[INERTER_MESSAGE_SIZE]) {
+  int tendon = m->actuator_trnid[2 * actuator];
+  if (m->actuator_gear[6 * m->actuator_outadr[actuator]] == 0) {
+    snprintf(message, INERTER_MESSAGE_SIZE, "gear is 0: the device would do nothing; give another");
+    return -1;
+  }
+  if (m->actuator_trntype[actuator] == mjTRN_TENDON && !joins_two(m, tendon)) {
+    snprintf(
+        message, INERTER_MESSAGE_SIZE,
+        "tendon \"%.60s\" joins points that do not move against each other (both on one body or "
+        "in the world): the device would do nothing; attach it to two bodies",
+        attachment_name(m, mjOBJ_TENDON, tendon));
+    return -1;
+  }
+  return 0;
+}
+
+// refuse trees that may fall asleep one without the other
+static int check_sleep(const mjModel* m, int actuator, char message[INERTER_MESSAGE_SIZE]) {
+  int tendon = m->actuator_trnid[2 * actuator];
+  if (!(m->opt.enableflags & mjENBL_SLEEP) || m->actuator_trntype[actuator] != mjTRN_TENDON) {
+    return 0;
+  }
+  int trees = 0, sleeper = -1, last = -1;
+  for (int k = 0; k < m->ten_J_rownnz[tendon]; k++) {
+    int dof = m->ten_J_colind[m->ten_J_rowadr[tendon] + k], tree = m->dof_treeid[dof];
+    int policy = m->tree_sleep_policy[tree];
+    trees += tree != last;
+    last = tree;
+    if (policy != mjSLEEP_AUTO_NEVER && policy != mjSLEEP_NEVER) {
+      sleeper = m->dof_bodyid[dof];
+    }
+  }
+  if (trees > 1 && sleeper >= 0) {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "sleep is enabled and body \"%.60s\" may fall asleep while the device moves its other "
+             "end, for which the engine does not wake it; write sleep=\"never\" on its tree",
+             attachment_name(m, mjOBJ_BODY, sleeper));
+    return -1;
+  }
+  return 0;
+}
+
+// the states a device needs, in words
+static void states_text(const InerterDevice* device, char text[160]) {
+  int length = 0;
+  text[0] = 0;
+  for (int i = 0; i < inerter_nstate(device); i++) {
+    length += snprintf(text + length, 160 - length, "%s%s", i ? ", " : ": ",
+                       inerter_state_name(device, i));
+  }
+}
+
+int attachment_check(const mjModel* m, int actuator, const InerterDevice* device,
+                     char message[INERTER_MESSAGE_SIZE]) {
+  if (m->actuator_dyntype[actuator] != mjDYN_NONE) {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "dyntype is given; a device has no other dynamics than its own: remove dyntype");
+    return -1;
+  }
+  int nstate = inerter_nstate(device);
+  if (m->actuator_actnum[actuator] != nstate) {
+    char states[160];
+    states_text(device, states);
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "actdim is %d, but the device (friction \"%s\"%s) has %d state%s%s; %s actdim=\"%d\" "
+             "in <plugin>",
+             m->actuator_actnum[actuator], inerter_friction_name(device->friction),
+             instance_has_series(device) ? ", series element" : "", nstate, nstate == 1 ? "" : "s",
+             states, nstate ? "write" : "remove it or write", nstate);
+    return -1;
+  }
+  return check_transmission(m, actuator, device, message) || check_moves(m, actuator, message) ||
+                 check_sleep(m, actuator, message)
+             ? -1
+             : 0;
+}
+
+// whether the inertance, or part of it, is a force of the actuator
+static int is_force(const InerterDevice* device, int native) {
+  return (device->inertance > 0 && !native) || instance_has_series(device) ||
+         device->load_friction != 0 || device->inertance_gradient != 0 ||
+         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0;
+}
+
+int attachment_check_force(const mjModel* m, int actuator, const InerterDevice* device, int native,
+                           char message[INERTER_MESSAGE_SIZE]) {
+  if (!is_force(device, native)) {
+    return 0;
+  }
+  int target = m->actuator_trnid[2 * actuator];
+  int tendon = m->actuator_trntype[actuator] == mjTRN_TENDON;
+  const char* limit = NULL;
+  int joint = -1;
+  if (m->actuator_forcelimited[actuator]) {
+    limit = "forcerange";
+  } else if (tendon && m->tendon_actfrclimited[target]) {
+    limit = "actuatorfrcrange of the tendon";
+  } else if (!tendon) {
+    joint = m->jnt_actfrclimited[target] ? target : -1;
+  } else {
+    for (int k = 0; joint < 0 && k < m->ten_J_rownnz[target]; k++) {
+      int candidate = m->dof_jntid[m->ten_J_colind[m->ten_J_rowadr[target] + k]];
+      joint = m->jnt_actfrclimited[candidate] ? candidate : -1;
+    }
+  }
+  if (limit || joint >= 0) {
+    snprintf(
+        message, INERTER_MESSAGE_SIZE,
+        "%s%s%.60s%s is given, but the inertance of this device is a force of its actuator and "
+        "would be cut; remove it",
+        limit ? limit : "actuatorfrcrange of joint ", limit ? "" : "\"",
+        limit ? "" : attachment_name(m, mjOBJ_JOINT, joint), limit ? "" : "\"");
+    return -1;
+  }
+  return 0;
+}

@@ -1,0 +1,26 @@
+// Whether an actuator can carry a device.
+
+#ifndef INERTER_MUJOCO_ATTACHMENT_H_
+#define INERTER_MUJOCO_ATTACHMENT_H_
+
+#include <mujoco/mujoco.h>
+
+#include "core/device.h"
+
+// Check what the device is attached to (a tendon or a slide or hinge joint that moves, trees that
+// stay awake) and the number of its states. Return 0, or -1 with a message.
+int attachment_check(const mjModel* m, int actuator, const InerterDevice* device,
+                     char message[INERTER_MESSAGE_SIZE]);
+
+// Check that no limit cuts an inertance that is a force of the actuator: not native, varying, with
+// load friction or behind a series element. Return 0, or -1 with a message.
+int attachment_check_force(const mjModel* m, int actuator, const InerterDevice* device, int native,
+                           char message[INERTER_MESSAGE_SIZE]);
+
+// The geom that a tendon wraps around, or -1.
+int attachment_wrapped_geom(const mjModel* m, int tendon);
+
+// Name of an element of the model, or "(unnamed)".
+const char* attachment_name(const mjModel* m, mjtObj type, int id);
+
+#endif  // INERTER_MUJOCO_ATTACHMENT_H_
