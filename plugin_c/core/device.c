@@ -195,5 +195,8 @@ int inerter_valid(const InerterDevice* device, double x, const double* z,
       return 0;
     }
   }
+  if (has(device, PART_VARYING) && !inertance_valid(device, y, message)) {
+    return 0;
+  }
   return has(device, PART_GAS) ? gas_valid(device, y, message) : 1;
 }

@@ -13,6 +13,8 @@
 // b(x) a + b'(x) v^2 / 2 of a ball screw of varying lead.
 // Not modelled: an inertance that depends on the history of the motion.
 
+#include <stdio.h>
+
 #include "laws.h"
 
 static const double kFloor = 0.01;
@@ -50,4 +52,17 @@ double inertance_felt(const InerterDevice* p, double y, double w, double* rest) 
 
 double inertance_energy(const InerterDevice* p, double y, double w) {
   return p->inertance * along_stroke(p, y).value * kinetic(p, w);
+}
+
+int inertance_valid(const InerterDevice* p, double y, char* message) {
+  double factor = 1 + (p->inertance_gradient + p->inertance_curvature * y) * y;
+  if (factor >= kFloor) {
+    return 1;
+  }
+  snprintf(
+      message, INERTER_MESSAGE_SIZE,
+      "at x = %g m, inertance_gradient %g 1/m and inertance_curvature %g 1/m^2 leave %.2g of the "
+      "inertance; below %g it is held there: fit them to the whole stroke",
+      y, p->inertance_gradient, p->inertance_curvature, factor, kFloor);
+  return 0;
 }

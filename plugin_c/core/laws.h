@@ -54,6 +54,7 @@ static inline double clamp(double value, double lower, double upper) {
 // inertance.c, at displacement y and velocity w of the flywheel: B; R (if not NULL); stored energy
 double inertance_felt(const InerterDevice* p, double y, double w, double* rest);
 double inertance_energy(const InerterDevice* p, double y, double w);
+int inertance_valid(const InerterDevice* p, double y, char* message);
 
 // gas_spring.c, at displacement y
 double gas_force(const InerterDevice* p, double y);

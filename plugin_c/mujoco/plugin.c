@@ -75,6 +75,18 @@ static int prepare(const mjModel* m, int instance, Instance* self,
       live_find(m, self, message) || live_derive(m, self, message)) {
     return -1;
   }
+
+  // what acts on the inertance alone would do nothing; a live inertance may start at 0
+  device = self->device;
+  int acts = device.load_friction != 0 || device.inertance_gradient != 0 ||
+             device.inertance_curvature != 0 || device.inertance_speed_gradient != 0;
+  if (acts && device.inertance == 0 && !self->nlive) {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "%s is given, but inertance is 0 kg, which is all that it acts on; state inertance or "
+             "remove it",
+             device.load_friction != 0 ? "load_friction" : "a variation of the inertance");
+    return -1;
+  }
   self->sensed = instance_sensed(m, instance);
   self->last = 1;
   for (int k = instance + 1; k < m->nplugin; k++) {

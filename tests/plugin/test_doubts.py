@@ -54,6 +54,10 @@ REFUSED = {
     "joint limit cuts": (
         pair('joint="a"', "", 2, ELASTIC, joint='actuatorfrcrange="-5 5"'),
         ['actuatorfrcrange of joint "a"', "remove it"]),
+    "friction of no load": (
+        pair(keys={"load_friction": 0.5}), ["load_friction is given", "inertance is 0"]),
+    "variation of nothing": (
+        pair(keys={"viscous": 1, "inertance_gradient": 1}), ["variation", "inertance is 0"]),
     "no gear": (pair(attributes='gear="0"'), ["gear is 0"]),
     "one body": (pair('tendon="same"'), ['tendon "same"', "do nothing", "two bodies"]),
     "armature of the tendon": (
@@ -158,6 +162,15 @@ def test_sites_that_meet_are_said_once(capfd: pytest.CaptureFixture) -> None:
     model = mujoco.MjModel.from_xml_string(pair(c="-1"))
     run(model)
     assert said(capfd).count("the sites of its tendon meet") == 1
+
+
+def test_a_law_that_leaves_its_range_is_said_once(capfd: pytest.CaptureFixture) -> None:
+    keys = {"inertance": 5, "inertance_gradient": -10}
+    model = mujoco.MjModel.from_xml_string(pair('joint="a"', keys=keys))
+    data = mujoco.MjData(model)
+    data.qpos[0] = 0.2
+    mujoco.mj_step(model, data, 3)
+    assert said(capfd).count("inertance_gradient -10 1/m") == 1
 
 
 def test_bodies_at_rest_on_the_ground_are_quiet(capfd: pytest.CaptureFixture) -> None:
