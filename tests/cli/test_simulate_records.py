@@ -329,6 +329,15 @@ def test_a_run_in_which_nothing_moves_says_so(tmp_path: Path) -> None:
     assert run_model(path, 0.1, keyframe="pulled").warnings == []
 
 
+def test_warnings_are_of_the_integrator_that_runs(tmp_path: Path) -> None:
+    """A bristle that RK4 could not resolve: implicitfast steps it exactly."""
+    dahl = device(states=1, inertance=1, friction="dahl", coulomb_force=30, bristle_stiffness=1e7)
+    path = written(tmp_path, oscillator(dahl, extra=PULL))
+    assert run_model(path, 0.2, keyframe="0", integrator="implicitfast").warnings == []
+    (warning,) = run_model(path, 0.2, keyframe="0", integrator="RK4").warnings
+    assert "faster than RK4 resolves" in warning
+
+
 def test_every_device_has_a_record_whatever_its_name(tmp_path: Path) -> None:
     keys = {"inertance": 2, "friction": "dahl", "coulomb_force": 1}
     actuators = (

@@ -6,11 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
-from inerter.diagnose.effects import EFFECTS, effects_of, submodel
+from inerter.diagnose.acceptance import visible, visible_delay
+from inerter.diagnose.effects import EFFECTS, effects_of, simpler_laws, submodel
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.preparation import Preparation, prepare
 from inerter.diagnose.result import (
@@ -38,12 +40,15 @@ from inerter.identify.fit import (
 )
 from inerter.records import Record
 
+Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 # how surely an effect must help on the held-out data to be reported (standard errors)
 CONFIRMING_ADVANTAGE = 2.0
 # width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
 TRANSITION = 0.005
+# samples without which there is nothing to learn from or to judge on
+FEWEST = 8
 
 
 def diagnose_bench(
@@ -117,6 +122,21 @@ def _refuse_unusable(records: Sequence[Record]) -> None:
             )
 
 
+def _refuse_too_little(split: Split, band: Problem, raw: Problem) -> None:
+    """Where gaps and ends leave nothing to learn from or to judge on, there is no diagnosis."""
+    learnt = band.with_masks(split.fit).masks
+    for masks, purpose in (
+        (learnt, "learn from"),
+        (raw.masks, "judge on"),
+        (band.masks, "judge on"),
+    ):
+        if sum(int(mask.sum()) for mask in masks) < FEWEST:
+            raise ValueError(
+                f"{split.description}: gaps and ends leave no motion to {purpose}; record "
+                "longer or without gaps"
+            )
+
+
 class _Bench:
     """One diagnosis, step by step."""
 
@@ -146,6 +166,7 @@ class _Bench:
         self.full = split(self.whole, held)
         self.band = Problem(self.runs, self.split.holdout, scales(self.runs))
         self.raw = Problem(self.whole, self.full.holdout, self.band.scales)
+        _refuse_too_little(self.split, self.band, self.raw)
         self.baseline = baseline_model(device, self.band.scales)
         if delay:
             stated = {**self.baseline.values, "delay": delay}
@@ -155,7 +176,7 @@ class _Bench:
     def run(self) -> Diagnosis:
         """The whole procedure."""
         before = self.search.problem.fit(self.baseline)
-        final = self.search.run()
+        final = self._plainest_law(self.search.run())
         final, standings = self._settle(final)
         chain = self._chain(final.model)
         while (weak := self._unconfirmed(chain)) is not None:
@@ -166,6 +187,19 @@ class _Bench:
             chain = self._chain(final.model)
         findings = self._findings(final.fit, chain, standings)
         return self._diagnosis(before, final.fit, findings)
+
+    def _plainest_law(self, final: Scored) -> Scored:
+        """The simplest friction law from which the one found does not differ visibly."""
+        if final.model.friction == self.baseline.friction:
+            return final
+        for model in simpler_laws(final.model):
+            fit = self.search.problem.fit(model)
+            apart = self.band.residual(fit.model), self.band.residual(final.model)
+            squares = [(a - b)[m] ** 2 for a, b, m in zip(*apart, self.band.masks, strict=True)]
+            difference = float(np.sqrt(np.mean(np.concatenate(squares))))
+            if not self._is_visible(difference, 0.0, final.model):
+                return self.search.score("", None, fit)
+        return final
 
     def _settle(self, final: Scored) -> tuple[Scored, dict[str, Standing]]:
         """Compare every effect with its rivals; where they are equal, name the usual one."""
@@ -204,7 +238,7 @@ class _Bench:
         return chain
 
     def _unconfirmed(self, chain: list[tuple[str, str | None, Fit, Fit]]) -> str | None:
-        """The first effect of a chain that does not help on the held-out data."""
+        """The first effect of a chain that does not help on the held-out data, or not visibly."""
         stretches = blocks(self.runs, self.band.masks)
         for effect, _, before, after in reversed(chain):
             squares = [
@@ -213,9 +247,22 @@ class _Bench:
             if (
                 squares[1].sum() >= squares[0].sum()
                 or advantage(squares[0], squares[1]) < CONFIRMING_ADVANTAGE
+                or not self._is_visible(
+                    self._raw_rmse(before.model), self._raw_rmse(after.model), after.model
+                )
+                or (effect == "sensor_delay" and not self._delay_is_visible(after.model))
             ):
                 return effect
         return None
+
+    def _is_visible(self, before: float, after: float, model: Model) -> bool:
+        force = float(np.sqrt(np.mean(self._held_out_force() ** 2)))
+        return visible(before, after, self._noise_floor(model), force)
+
+    def _delay_is_visible(self, model: Model) -> bool:
+        stated = self.baseline.values.get("delay", 0.0)
+        spacing = max(run.spacing for run in self.whole)
+        return visible_delay(model.delay - stated, spacing)
 
     def _findings(
         self,
@@ -258,12 +305,13 @@ class _Bench:
         return float(np.sqrt(square / sum(int(m.sum()) for m in self.raw.masks)))
 
     def _accuracy(self, model: Model) -> Accuracy:
-        rmse = self._raw_rmse(model)
-        force = np.concatenate(
+        rmse, spread = self._raw_rmse(model), float(np.std(self._held_out_force()))
+        return Accuracy(model.device().given, rmse, rmse / (spread or 1.0), model.delay)
+
+    def _held_out_force(self) -> Array:
+        return np.concatenate(
             [run.force[m] for run, m in zip(self.whole, self.raw.masks, strict=True)]
         )
-        given = model.device().given
-        return Accuracy(given, rmse, rmse / (float(np.std(force)) or 1.0), model.delay)
 
     def _diagnosis(self, before: Fit, final: Fit, findings: list[Finding]) -> Diagnosis:
         baseline, extended = self._accuracy(before.model), self._accuracy(final.model)
@@ -313,6 +361,7 @@ class _Bench:
         return {
             "cutoff": p.cutoff,
             "cutoffs_tried": [float(value) for value in p.cutoffs],
+            # infinite where too little of a short record is left to judge a cut-off by
             "force_error_at_cutoffs": [float(value) for value in p.errors],
             "channels": ["displacement", *p.channels],
             "one_tone": self.band.scales.one_tone,

@@ -162,17 +162,28 @@ class Diagnosis:
     """As stated [m]; the displacement of records counts from it, so that no law reads it here."""
 
     def json(self) -> dict[str, Any]:
-        """The contract's diagnosis.json."""
-        return {
-            "schema": SCHEMA,
-            "records": [vars(record) for record in self.records],
-            "baseline": self.baseline.json(),
-            "findings": [finding.json() for finding in self.findings],
-            "extended": self.extended.json(),
-            "parameters": {name: vars(value) for name, value in self.parameters.items()},
-            "noise": {"rmse_floor": self.noise_floor},
-            "unexplained": vars(self.unexplained),
-            "engines": {name: {"rmse": rmse} for name, rmse in self.engines.items()},
-            "method": self.method,
-            "verdict": self.verdict,
-        }
+        """The contract's diagnosis.json; null for a number that is not finite."""
+        return _finite(
+            {
+                "schema": SCHEMA,
+                "records": [vars(record) for record in self.records],
+                "baseline": self.baseline.json(),
+                "findings": [finding.json() for finding in self.findings],
+                "extended": self.extended.json(),
+                "parameters": {name: vars(value) for name, value in self.parameters.items()},
+                "noise": {"rmse_floor": self.noise_floor},
+                "unexplained": vars(self.unexplained),
+                "engines": {name: {"rmse": rmse} for name, rmse in self.engines.items()},
+                "method": self.method,
+                "verdict": self.verdict,
+            }
+        )
+
+
+def _finite(value: Any) -> Any:
+    """The same with None for numbers that are not finite, for which JSON has no word."""
+    if isinstance(value, dict):
+        return {key: _finite(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(part) for part in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -166,11 +166,19 @@ class Sampler:
 
 @contextmanager
 def _forces_of_the_instant(model: mujoco.MjModel) -> Iterator[None]:
-    """With the integrator that takes forces at the beginning of the step."""
-    integrator = model.opt.integrator
+    """With the integrator that takes forces at the beginning of the step.
+
+    Nothing is stepped here. What an engine about to take RK4's stages would warn of is not of the
+    run, which warns for itself.
+    """
+    integrator, warn = model.opt.integrator, mujoco.get_mju_user_warning()
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
-    yield
-    model.opt.integrator = integrator
+    mujoco.set_mju_user_warning(lambda text: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(warn)
+        model.opt.integrator = integrator
 
 
 def _along(model: mujoco.MjModel, data: mujoco.MjData, row: int, vector: Array) -> float:
