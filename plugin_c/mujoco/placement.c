@@ -81,6 +81,10 @@ static int check_attributes(const mjModel* m, int actuator, const InerterDevice*
   return 0;
 }
 
+int placement_is_new(const mjModel* m, int actuator) {
+  return m->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] == 0;
+}
+
 // Value that the model is to hold: the configured one, unless only the attribute states it.
 // Return 0, or -1 with a message if both are stated and differ.
 static int merge(const InerterDevice* device, int index, mjtNum configured, const char* attribute,

@@ -13,4 +13,7 @@
 int placement_decide(const mjModel* m, int actuator, const InerterDevice* device, int* native,
                      char message[INERTER_MESSAGE_SIZE]);
 
+// Whether the model is being compiled: nothing is placed yet.
+int placement_is_new(const mjModel* m, int actuator);
+
 #endif  // INERTER_MUJOCO_PLACEMENT_H_

@@ -70,17 +70,18 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     }
     return -1;
   }
+  int compiling = placement_is_new(m, self->actuator);
   if (attachment_check(m, self->actuator, &device, message) ||
       placement_decide(m, self->actuator, &device, &self->native, message) ||
       live_find(m, self, message) || live_derive(m, self, message)) {
     return -1;
   }
 
-  // what acts on the inertance alone would do nothing; a live inertance may start at 0
+  // what acts on the inertance alone would do nothing; edited or live, it may be 0
   device = self->device;
   int acts = device.load_friction != 0 || device.inertance_gradient != 0 ||
              device.inertance_curvature != 0 || device.inertance_speed_gradient != 0;
-  if (acts && device.inertance == 0 && !self->nlive) {
+  if (compiling && acts && device.inertance == 0 && !self->nlive) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "%s is given, but inertance is 0 kg, which is all that it acts on; state inertance or "
              "remove it",
