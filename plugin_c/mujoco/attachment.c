@@ -152,16 +152,10 @@ int attachment_check(const mjModel* m, int actuator, const InerterDevice* device
              : 0;
 }
 
-// whether the inertance, or part of it, is a force of the actuator
-static int is_force(const InerterDevice* device, int native) {
-  return (device->inertance > 0 && !native) || instance_has_series(device) ||
-         device->load_friction != 0 || device->inertance_gradient != 0 ||
-         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0;
-}
-
 int attachment_check_force(const mjModel* m, int actuator, const InerterDevice* device, int native,
                            char message[INERTER_MESSAGE_SIZE]) {
-  if (!is_force(device, native)) {
+  if ((native || device->inertance == 0) && !instance_has_series(device) &&
+      !instance_varies(device)) {
     return 0;
   }
   int target = m->actuator_trnid[2 * actuator];

@@ -12,8 +12,8 @@
 int attachment_check(const mjModel* m, int actuator, const InerterDevice* device,
                      char message[INERTER_MESSAGE_SIZE]);
 
-// Check that no limit cuts an inertance that is a force of the actuator: not native, varying, with
-// load friction or behind a series element. Return 0, or -1 with a message.
+// Check that no limit cuts an inertance that is a force of the actuator: not native (or
+// live), varying, with load friction or behind a series element. Return 0, or -1 with a message.
 int attachment_check_force(const mjModel* m, int actuator, const InerterDevice* device, int native,
                            char message[INERTER_MESSAGE_SIZE]);
 

@@ -51,9 +51,7 @@ int coupled_needed(const mjModel* m, const Instance* self) {
     return !series && (share->inertance > 0 || share->load_friction > 0);
   }
   return !self->native || series || share->inertance > 0 || share->load_friction > 0 ||
-         instance_has_stop(share) || share->friction == INERTER_FRICTION_coulomb ||
-         share->friction == INERTER_FRICTION_stribeck ||
-         share->friction == INERTER_FRICTION_brown_mcphee;
+         instance_has_stop(share) || instance_has_sharp_friction(share);
 }
 
 // the devices to solve for
@@ -148,15 +146,16 @@ static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, 
   mjtNum* scratch = mj_stackAllocNum(d, n * (n + 4));
   mju_copy(slope, W, n * n);
   mju_copy(force, start, n);
+  mju_zero(asked, n);
+  mju_zero(answered, n);
 
   int fits = 0;
   for (int round = 0; !fits && round < CONSTRAINT_ROUNDS; round++) {
-    mju_copy(change, asked, n);
+    mju_sub(change, force, asked, n);
     mju_copy(change + n, answered, n);
     mju_copy(asked, force, n);
     respond(m, d, answer, asked, answered);
     if (round) {
-      mju_sub(change, asked, change, n);
       mju_sub(change + n, answered, change + n, n);
       learn(n, slope, change + n, change);
     }

@@ -54,22 +54,13 @@ void instance_complain(const mjModel* m, Instance* self, Complaint reason, const
 
 //------------------------------ the device --------------------------------------------------------
 
-// whether a numeric of the model holds a parameter
-static int is_live(const Instance* self, int parameter) {
+int instance_is_live(const Instance* self, int parameter) {
   for (int k = 0; k < self->nlive; k++) {
     if (self->live[k].parameter == parameter) {
       return 1;
     }
   }
   return 0;
-}
-
-// whether the inertance branch needs the acceleration although the engine integrates b
-static int varies(const Instance* self) {
-  const InerterDevice* device = &self->device;
-  return device->load_friction != 0 || device->inertance_gradient != 0 ||
-         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0 ||
-         is_live(self, INERTER_INDEX_inertance);
 }
 
 void instance_refresh(const mjModel* m, Instance* self, int force) {
@@ -82,23 +73,23 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
     return;
   }
   if (!self->native && armature != 0) {
+    const char* name = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
+    name = name && *name ? name : "(unnamed)";
     mju_error(
         "inerter.device, actuator \"%.60s\": actuator_armature is %g, but the engine's inertia "
-        "matrix cannot hold the inertance of this device; change it by a numeric "
-        "\"%.60s.inertance\" "
-        "in <custom>, and leave actuator_armature 0",
-        mj_id2name(m, mjOBJ_ACTUATOR, self->actuator), armature,
-        mj_id2name(m, mjOBJ_ACTUATOR, self->actuator));
+        "matrix cannot hold the inertance of this device; leave it 0 and change the inertance by a "
+        "numeric \"%.60s.inertance\" in <custom>",
+        name, armature, name);
   }
   self->undamped = undamped;
   self->armature = armature;
   self->damping = damping;
   InerterDevice* device = &self->device;
   int series = instance_has_series(device);
-  if (self->native && !series && !is_live(self, INERTER_INDEX_inertance)) {
+  if (self->native && !series && !instance_is_live(self, INERTER_INDEX_inertance)) {
     device->inertance = armature;
   }
-  if (self->native && !is_live(self, INERTER_INDEX_viscous)) {
+  if (self->native && !instance_is_live(self, INERTER_INDEX_viscous)) {
     device->viscous = damping;
   } else {
     device->viscous = undamped ? 0 : self->viscous;
@@ -106,7 +97,9 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   self->share = *device;
   if (self->native) {
     self->share.viscous -= damping;
-    self->share.inertance = series || varies(self) ? device->inertance : 0;
+    int whole =
+        series || instance_varies(device) || instance_is_live(self, INERTER_INDEX_inertance);
+    self->share.inertance = whole ? device->inertance : 0;
   }
 }
 

@@ -84,6 +84,24 @@ static inline int instance_has_stop(const InerterDevice* device) {
   return device->stop_stiffness > 0;
 }
 
+// Whether a device has friction with a state; friction without one.
+static inline int instance_has_bristle(const InerterDevice* device) {
+  return inerter_friction_nstate(device->friction) > 0;
+}
+static inline int instance_has_sharp_friction(const InerterDevice* device) {
+  return device->friction != INERTER_FRICTION_none && !instance_has_bristle(device);
+}
+
+// Whether a device needs the acceleration although the engine integrates b: load friction, or an
+// inertance that varies.
+static inline int instance_varies(const InerterDevice* device) {
+  return device->load_friction != 0 || device->inertance_gradient != 0 ||
+         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0;
+}
+
+// Whether a numeric of the model holds a parameter of the device.
+int instance_is_live(const Instance* self, int parameter);
+
 // Make device and share anew if the model's armature or damping, or `force`, says so.
 void instance_refresh(const mjModel* m, Instance* self, int force);
 

@@ -149,9 +149,6 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   mjModel* model = (mjModel*)m;
   int series = instance_has_series(device);
   *native = fits_inertia(m, actuator);
-  if (attachment_check_force(m, actuator, device, *native, message)) {
-    return -1;
-  }
   if (!*native || (series && m->actuator_armature[actuator] != 0)) {
     *native = 0;
     if (check_attributes(m, actuator, device, message)) {

@@ -77,15 +77,17 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     return -1;
   }
 
+  int live = instance_is_live(self, INERTER_INDEX_inertance);
+  if (attachment_check_force(m, self->actuator, &self->device, self->native && !live, message)) {
+    return -1;
+  }
+
   // what acts on the inertance alone would do nothing; edited or live, it may be 0
-  device = self->device;
-  int acts = device.load_friction != 0 || device.inertance_gradient != 0 ||
-             device.inertance_curvature != 0 || device.inertance_speed_gradient != 0;
-  if (compiling && acts && device.inertance == 0 && !self->nlive) {
+  if (compiling && instance_varies(&self->device) && self->device.inertance == 0 && !live) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "%s is given, but inertance is 0 kg, which is all that it acts on; state inertance or "
              "remove it",
-             device.load_friction != 0 ? "load_friction" : "a variation of the inertance");
+             self->device.load_friction != 0 ? "load_friction" : "a variation of the inertance");
     return -1;
   }
   self->sensed = instance_sensed(m, instance);

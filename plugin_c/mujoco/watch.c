@@ -16,10 +16,7 @@ void watch_validity(const mjModel* m, Instance* self, const mjtNum* state) {
 void watch_bristle(const mjModel* m, Instance* self, double x, double v, const mjtNum* state,
                    mjtNum* rate) {
   const InerterDevice* device = &self->device;
-  int bristle = device->friction == INERTER_FRICTION_dahl ||
-                device->friction == INERTER_FRICTION_lugre ||
-                device->friction == INERTER_FRICTION_bouc_wen;
-  if (m->opt.integrator != mjINT_RK4 || !bristle || v == 0) {
+  if (m->opt.integrator != mjINT_RK4 || !instance_has_bristle(device) || v == 0) {
     return;
   }
 
@@ -59,22 +56,22 @@ static double mobility(const mjModel* m, int actuator) {
 // slope of the friction force over velocity at rest, for laws without memory [N s/m]
 static double friction_slope(const InerterDevice* device) {
   const double none[INERTER_MAXSTATE] = {0}, small = 1e-9;
-  int memory = device->friction == INERTER_FRICTION_dahl ||
-               device->friction == INERTER_FRICTION_lugre ||
-               device->friction == INERTER_FRICTION_bouc_wen;
-  return memory ? 0 : inerter_friction_force(device, 0, small, none) / small;
+  return instance_has_sharp_friction(device)
+             ? inerter_friction_force(device, 0, small, none) / small
+             : 0;
 }
 
 // the fastest motion so far, and what causes it
 typedef struct Fastest_ {
   double rate;  // over what the integrator resolves
   const char* cause;
+  const char* remedy;  // beside a shorter step
 } Fastest;
 
-static void consider(Fastest* fastest, double rate, double limit, const char* cause) {
+static void consider(Fastest* fastest, double rate, double limit, const char* cause,
+                     const char* remedy) {
   if (rate / limit > fastest->rate) {
-    fastest->rate = rate / limit;
-    fastest->cause = cause;
+    *fastest = (Fastest){rate / limit, cause, remedy};
   }
 }
 
@@ -98,26 +95,30 @@ void watch_stiffness(const mjModel* m, Instance* self) {
                    : 0;
 
   // an oscillation of omega h < 2 (one stage), 2.8 (RK4); a decay of lambda h < 2.7
-  Fastest fastest = {1, NULL};
-  double swing = stages ? 2.8 : 2, decay = 2.7;
-  consider(&fastest, sqrt(fabs(p->stiffness) * light), swing / m->opt.timestep, "stiffness");
-  consider(&fastest, sqrt(gas * wheel), swing / m->opt.timestep, "the gas spring");
+  double h = m->opt.timestep, swing = (stages ? 2.8 : 2) / h, decay = 2.7 / h;
+  const char* tendon =
+      ", or give the stiffness to the tendon or joint, with integrator=\"discrete\"";
+  const char* implicit = ", or integrator=\"implicitfast\"";
+  Fastest fastest = {1, NULL, NULL};
+  consider(&fastest, sqrt(fabs(p->stiffness) * light), swing, "stiffness", tendon);
+  consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
   if (stages) {
     double both = light + wheel;
-    consider(&fastest, p->viscous * light, decay / self->timestep, "viscous");
-    consider(&fastest, p->flywheel_viscous * wheel, decay / self->timestep, "flywheel_viscous");
-    consider(&fastest, sqrt(p->stop_stiffness * light), swing / self->timestep, "stop_stiffness");
-    consider(&fastest, friction_slope(p) * light, decay / self->timestep,
-             "the change of sign of friction (transition_velocity; brown_mcphee: "
-             "stribeck_velocity)");
+    consider(&fastest, p->viscous * light, decay, "viscous", implicit);
+    consider(&fastest, p->flywheel_viscous * wheel, decay, "flywheel_viscous", implicit);
+    consider(&fastest, sqrt(p->stop_stiffness * light), swing, "stop_stiffness", implicit);
+    consider(&fastest, friction_slope(p) * light, decay,
+             p->friction == INERTER_FRICTION_brown_mcphee
+                 ? "the change of sign of friction within stribeck_velocity"
+                 : "the change of sign of friction within transition_velocity",
+             implicit);
     if (series) {
-      consider(&fastest, sqrt(p->series_stiffness * both), swing / self->timestep,
-               "series_stiffness");
-      consider(&fastest, p->series_damping * both, decay / self->timestep, "series_damping");
+      consider(&fastest, sqrt(p->series_stiffness * both), swing, "series_stiffness", implicit);
+      consider(&fastest, p->series_damping * both, decay, "series_damping", implicit);
     }
     if (p->backlash > 0 && p->series_damping > 0) {
-      consider(&fastest, p->series_stiffness / p->series_damping, decay / self->timestep,
-               "the relaxation of the series element in its play");
+      consider(&fastest, p->series_stiffness / p->series_damping, decay,
+               "the relaxation of the series element in its play", implicit);
     }
   }
   if (fastest.cause) {
@@ -126,10 +127,8 @@ void watch_stiffness(const mjModel* m, Instance* self) {
         message, sizeof(message),
         "%s is too stiff for %s with a timestep of %g s and the masses it acts on; set timestep "
         "<= %.2g%s",
-        fastest.cause, stages ? "RK4" : "this integrator", self->timestep,
-        0.9 * self->timestep / fastest.rate,
-        stages ? ", or integrator=\"implicitfast\" (not for stiffness and gas)"
-               : ", or give a parallel stiffness to the tendon and take integrator=\"discrete\"");
+        fastest.cause, stages ? "RK4" : "this integrator", h, 0.9 * h / fastest.rate,
+        fastest.remedy);
     instance_complain(m, self, COMPLAINT_STIFF, message);
   }
 }
