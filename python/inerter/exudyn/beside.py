@@ -1,0 +1,59 @@
+"""What acts straight between the terminals: springs, dampers, a constant force, end stops.
+
+    T = c v + c2 v |v| + k x + k3 x^3 + F_0 + stops
+
+Sign: tension positive. A stop at x_e pushes back with k_e delta (1 + e delta'), delta its
+compression, and never pulls (Hunt and Crossley 1975, exponent 1).
+"""
+
+from __future__ import annotations
+
+import math
+
+from inerter.exudyn.functions import Functions, Value
+from inerter.exudyn.parameters import Parameters
+
+
+def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
+    """The sum of all of them [N]."""
+    total = p.force_offset
+    if p.viscous:
+        total = total + p.viscous * v
+    if p.quadratic_damping:
+        total = total + p.quadratic_damping * f.abs(v) * v
+    if p.stiffness:
+        total = total + p.stiffness * x
+    if p.stiffness_cubic:
+        total = total + p.stiffness_cubic * x * x * x
+    for direction, place in _stops(p):
+        depth = f.greatest(0.0, direction * (x - place))
+        approach = f.greatest(0.0, 1.0 + p.stop_damping * direction * v)
+        total = total + direction * p.stop_stiffness * depth * approach
+    return total
+
+
+def stored_energy(p: Parameters, x: float) -> float:
+    """Energy in springs and stops [J]."""
+    energy = 0.5 * p.stiffness * x**2 + 0.25 * p.stiffness_cubic * x**4
+    for direction, place in _stops(p):
+        energy += 0.5 * p.stop_stiffness * max(0.0, direction * (x - place)) ** 2
+    return energy
+
+
+def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
+    """Heat in dampers and stops [W]."""
+    heat = (p.viscous + p.quadratic_damping * f.abs(v)) * v * v
+    for direction, place in _stops(p):
+        depth = f.greatest(0.0, direction * (x - place))
+        approach = direction * v
+        share = f.greatest(0.0, 1.0 + p.stop_damping * approach) - 1.0
+        heat = heat + p.stop_stiffness * depth * share * approach
+    return heat
+
+
+def _stops(p: Parameters) -> list[tuple[float, float]]:
+    """Direction and place [m] of each stop."""
+    if not p.stop_stiffness:
+        return []
+    both = ((1.0, p.stop_upper), (-1.0, p.stop_lower))
+    return [(direction, place) for direction, place in both if not math.isnan(place)]

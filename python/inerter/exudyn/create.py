@@ -1,0 +1,287 @@
+"""`CreateInerter`: puts a device between two terminals of an Exudyn system."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+from inerter.exudyn import device as law
+from inerter.exudyn.engine import exudyn
+from inerter.exudyn.functions import NUMBERS
+from inerter.exudyn.kinematics import Span
+from inerter.exudyn.parameters import Parameters
+from inerter.exudyn.terminals import terminals
+from inerter.exudyn.user_functions import (
+    Element,
+    force_function,
+    mass_function,
+    mass_matrix,
+    symbolic_force,
+)
+
+QUANTITIES = (
+    "displacement",
+    "velocity",
+    "acceleration",
+    "total",
+    "inertance",
+    "friction",
+    "stored_energy",
+    "dissipated_power",
+)
+"""What `Inerter.Evaluate` tells, and sensors can measure."""
+
+
+@dataclass(frozen=True)
+class Inerter:
+    """A device in an Exudyn system.
+
+    Attributes
+    ----------
+    name
+        Name of the object.
+    device
+        The device with all its parameters.
+    objectNumber
+        The ObjectGenericODE2.
+    nodeNumbers
+        Nodes of the terminals.
+    stateNode
+        NodeGenericODE2 whose velocity coordinates are the states, or None.
+    stateNames
+        Names of the states in their order; last "dissipated_energy" if it is added up.
+    symbolic
+        Whether Exudyn evaluates the forces in C++.
+    """
+
+    mbs: Any
+    name: str
+    device: Device
+    objectNumber: Any  # noqa: N815 - Exudyn's manner
+    nodeNumbers: tuple[Any, ...]  # noqa: N815
+    stateNode: Any  # noqa: N815
+    stateNames: tuple[str, ...]  # noqa: N815
+    symbolic: bool
+    element: Element
+
+    def GetStates(self, configuration: Any = None) -> NDArray[np.float64]:  # noqa: N802
+        """States, shape (states,), in the order of `stateNames`; Exudyn's current configuration."""
+        if self.stateNode is None:
+            return np.zeros(0)
+        values = self._coordinates("Coordinates_t", configuration)[self.element.kinematics.size :]
+        device = self.device
+        if device.backlash and not device.series_damping:
+            # without a damper the position in the play follows from the deflection
+            deflection = values[self.stateNames.index("series_deflection")]
+            place = np.clip(deflection, -device.backlash, device.backlash)
+            values[self.stateNames.index("gap_position")] = place
+        return values
+
+    def Evaluate(self, configuration: Any = None) -> dict[str, Any]:  # noqa: N802
+        """What the device does: the quantities of `QUANTITIES` and "states", SI units.
+
+        Forces are tension positive. The accelerations are those that Exudyn knows: after a run
+        the last step's.
+        """
+        p = self.element.device
+        q, q_t, q_tt = (
+            self._coordinates(kind, configuration)
+            for kind in ("Coordinates", "Coordinates_t", "Coordinates_tt")
+        )
+        motion = self.element.kinematics.at(q.tolist(), q_t.tolist())
+        x, v = motion.length - self.device.rest_length, motion.rate
+        a = float(np.dot(motion.row, q_tt[: len(motion.row)])) + motion.bias
+        states = self.GetStates(configuration)
+        z = states[: self.device.nstate].tolist()
+        through = law.carried(p, x, v, a, z)
+        return {
+            "displacement": x,
+            "velocity": v,
+            "acceleration": a,
+            **law.forces(p, x, v, a, z),
+            "stored_energy": law.stored_energy(p, x, v, z),
+            "dissipated_power": law.dissipated_power(NUMBERS, p, x, v, z, through),
+            "states": states,
+        }
+
+    def AddSensor(  # noqa: N802
+        self, quantity: str = "total", fileName: str = "", storeInternal: bool = True
+    ) -> Any:
+        """Add a sensor of one quantity, a state or all "states", and return its SensorIndex.
+
+        Raises
+        ------
+        ValueError
+            There is no such quantity; the message lists them.
+        """
+        known = (*QUANTITIES, *self.stateNames, *(("states",) if self.stateNames else ()))
+        if quantity not in known:
+            raise ValueError(f"quantity: {quantity!r} is none of {', '.join(known)}")
+
+        def sensorUserFunction(  # noqa: N802
+            mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
+        ) -> list[float]:
+            if quantity == "states":
+                return self.GetStates(configuration).tolist()
+            if quantity in self.stateNames:
+                return [float(self.GetStates(configuration)[self.stateNames.index(quantity)])]
+            return [float(self.Evaluate(configuration)[quantity])]
+
+        return self.mbs.AddSensor(
+            exudyn("itemInterface").SensorUserFunction(
+                name=f"{self.name}_{quantity}",
+                sensorUserFunction=sensorUserFunction,
+                fileName=fileName,
+                writeToFile=bool(fileName),
+                storeInternal=storeInternal,
+            )
+        )
+
+    def _coordinates(self, kind: str, configuration: Any) -> NDArray[np.float64]:
+        """Coordinates of the object: the terminals' nodes, then the states."""
+        engine = exudyn()
+        where = engine.ConfigurationType.Current if configuration is None else configuration
+        what = getattr(engine.OutputVariableType, kind)
+        found = self.mbs.GetObjectOutputBody(self.objectNumber, what, [0.0] * 3, where)
+        return np.atleast_1d(np.array(found, dtype=float))
+
+
+def CreateInerter(  # noqa: N802 - Exudyn's manner
+    mbs: Any,
+    name: str = "",
+    itemNumbers: Sequence[Any] = (None, None),
+    localPosition0: Sequence[float] = (0.0, 0.0, 0.0),
+    localPosition1: Sequence[float] = (0.0, 0.0, 0.0),
+    *,
+    symbolic: bool | None = None,
+    initialStates: Mapping[str, float] | None = None,
+    dissipatedEnergy: bool = False,
+    show: bool = True,
+    drawSize: float = -1.0,
+    color: Sequence[float] | None = None,
+    **parameters: float | str,
+) -> Inerter:
+    """Put a device between two terminals.
+
+    Parameters
+    ----------
+    mbs
+        The MainSystem, before `Assemble`.
+    name
+        Name of the object.
+    itemNumbers
+        Terminals 1 and 2: each a body (ObjectIndex) at `localPosition0` or `localPosition1`, a
+        node (NodeIndex), a marker (MarkerIndex), or None, the ground. Two points on bodies: the
+        displacement is their distance minus `rest_length`. Two coordinates (Node1D, or
+        MarkerNodeCoordinate): it is their difference minus `rest_length`, reference coordinates
+        not counted, as in CoordinateSpringDamper.
+    localPosition0, localPosition1
+        Points on the bodies [m], in their frames; on the ground in the global one.
+    symbolic
+        Whether Exudyn evaluates the forces itself, in C++, instead of calling Python: None, where
+        it can (on 1D coordinates, unless load friction acts on a rigid device).
+    initialStates
+        States at the start by name, as in `Inerter.stateNames`; 0 for those not given.
+    dissipatedEnergy
+        Whether to add up the dissipated energy [J], as one more state.
+    show, drawSize, color
+        Whether and how a device between points is drawn.
+    **parameters
+        Parameters of the device, named as in the MuJoCo plugin, SI units: `inertance=113`,
+        `friction="lugre"`, `bristle_stiffness=1e5` ...
+
+    Returns
+    -------
+    Inerter
+        The device in the system: its numbers, states, sensors.
+
+    Raises
+    ------
+    inerter.core.DeviceError
+        A parameter that cannot be: names it, its value, what is allowed.
+    ValueError
+        Terminals or states that cannot be.
+    """
+    itemInterface = exudyn("itemInterface")
+    device = Device(**parameters)
+    nodes, kinematics = terminals(mbs, itemNumbers, (localPosition0, localPosition1))
+    element = Element(Parameters.of(device), kinematics, dissipatedEnergy)
+    if symbolic and not element.recordable:
+        raise ValueError(
+            "symbolic: True, but Exudyn can evaluate by itself only devices on 1D coordinates, "
+            "without load friction on a rigid inertance; leave it None or set it False"
+        )
+    names = (*device.state_names, *(("dissipated_energy",) if dissipatedEnergy else ()))
+    states = _initial_states(names, initialStates or {})
+
+    own = None
+    if names:
+        own = mbs.AddNode(
+            itemInterface.NodeGenericODE2(
+                name=f"{name}_states",
+                referenceCoordinates=[0.0] * len(names),
+                initialCoordinates=[0.0] * len(names),
+                initialCoordinates_t=states,
+                numberOfODE2Coordinates=len(names),
+            )
+        )
+    compiled = element.recordable if symbolic is None else symbolic
+    force = symbolic_force(element, mbs) if compiled else force_function(element)
+    mass = 0 if element.constant_mass else mass_function(element)
+    number = mbs.AddObject(
+        itemInterface.ObjectGenericODE2(
+            name=name,
+            nodeNumbers=[*nodes, *([own] if names else [])],
+            massMatrix=mass_matrix(element),
+            forceUserFunction=force,
+            massMatrixUserFunction=mass,
+            visualization=itemInterface.VObjectGenericODE2(show=False),
+        )
+    )
+    # expressions live as long as the system that evaluates them
+    mbs.variables.setdefault("inerter", []).append(force)
+    if show and isinstance(kinematics, Span):
+        _draw(mbs, name, itemNumbers, (localPosition0, localPosition1), drawSize, color)
+    return Inerter(mbs, name, device, number, tuple(nodes), own, names, bool(compiled), element)
+
+
+def _initial_states(names: Sequence[str], given: Mapping[str, float]) -> list[float]:
+    for key, value in given.items():
+        if key not in names:
+            there = ", ".join(names) or "none"
+            raise ValueError(f"initialStates: {key!r} is no state of this device; it has {there}")
+        if not np.isfinite(value):
+            raise ValueError(f"initialStates: {key} is {value}; give a finite number")
+    return [float(given.get(key, 0.0)) for key in names]
+
+
+def _draw(
+    mbs: Any,
+    name: str,
+    items: Sequence[Any],
+    local: Sequence[Sequence[float]],
+    size: float,
+    color: Sequence[float] | None,
+) -> None:
+    """A spring without force, which Exudyn draws between the terminals."""
+    places = [list(point) for point in local]
+    ends = []
+    for item, place in zip(items, places, strict=True):
+        if item is None:
+            ends.append(mbs.CreateGround(referencePosition=place))
+            place[:] = [0.0, 0.0, 0.0]
+        else:
+            ends.append(item)
+    mbs.CreateSpringDamper(
+        name=f"{name}_drawing",
+        itemNumbers=ends,
+        localPosition0=places[0],
+        localPosition1=places[1],
+        drawSize=size,
+        color=exudyn("graphics").color.default if color is None else list(color),
+    )

@@ -1,0 +1,155 @@
+"""The device as Exudyn needs it: forces at the terminals, rates of the states, energy.
+
+    F = T + F_friction + N + mu tanh(v / v_t) |N|
+
+T: `beside.py`; friction: `friction.py`; N, through the inertance: `flywheel.py`, behind the series
+element of `series.py` if there is one. States z: friction_state, series_deflection s,
+flywheel_velocity w, gap_position, each only where it is needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from inerter.exudyn import beside, flywheel, friction, series
+from inerter.exudyn.functions import NUMBERS, Functions, Value
+from inerter.exudyn.parameters import Parameters
+
+
+@dataclass(frozen=True)
+class Term:
+    """An expression and where it counts: at the terminals [N per unit], in rates of states."""
+
+    value: Value
+    terminals: float = 0.0
+    rates: tuple[tuple[int, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class States:
+    """The states by what they are; 0 where there is none."""
+
+    friction: Value = 0.0
+    deflection: Value = 0.0
+    speed: Value = 0.0
+    gap: Value = 0.0
+
+
+def states_of(p: Parameters, z: Sequence[Value]) -> States:
+    """The states of a sequence in the device's order."""
+    names = dict(zip(p.state_names, range(p.nstate), strict=True))
+    found = {
+        field: z[names[name]]
+        for field, name in (
+            ("friction", "friction_state"),
+            ("deflection", "series_deflection"),
+            ("speed", "flywheel_velocity"),
+            ("gap", "gap_position"),
+        )
+        if name in names
+    }
+    return States(**found)
+
+
+def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -> list[Term]:
+    """All that does not depend on acceleration; the inertance of `mass` is left out.
+
+    x [m] is the length minus rest_length, v [m/s] its rate.
+    """
+    state, place = states_of(p, z), {name: i for i, name in enumerate(p.state_names)}
+    rubbing = friction.LAWS[p.friction](f, p, x, v, state.friction)
+    at_terminals = beside.force(f, p, x, v) + rubbing.bound
+    found: list[Term] = []
+    if rubbing.rate is not None:
+        rates = ((place["friction_state"], 1.0),)
+        found.append(Term(rubbing.rate, rubbing.damping, rates))
+
+    if not series.is_there(p):
+        rest = flywheel.inertance(f, p, x, v)[1] + flywheel.force(f, p, x, v)
+        return [*found, Term(at_terminals + rest, 1.0)]
+
+    rate, y = v - state.speed, x - state.deflection
+    shaft = series.at(f, p, state.deflection, rate, state.gap)
+    mass, rest = flywheel.inertance(f, p, y, state.speed)
+    rest = rest + flywheel.force(f, p, y, state.speed)
+    if p.load_friction:
+        at_terminals = at_terminals + _load_share(f, p, v) * f.abs(shaft.force)
+    spinning = place["flywheel_velocity"]
+    if flywheel.varies(p):
+        found.append(Term(shaft.force, 1.0))
+        found.append(Term((shaft.force - rest) / mass, 0.0, ((spinning, 1.0),)))
+    else:
+        found.append(Term(shaft.force, 1.0, ((spinning, 1.0 / mass),)))
+        found.append(Term(rest, 0.0, ((spinning, -1.0 / mass),)))
+    found.append(Term(rate, 0.0, ((place["series_deflection"], 1.0),)))
+    if p.backlash and p.series_damping:
+        found.append(Term(shaft.gap_rate, 0.0, ((place["gap_position"], 1.0),)))
+    return [*found, Term(at_terminals, 1.0)]
+
+
+def mass(f: Functions, p: Parameters, x: Value, v: Value, load_sign: float = 0.0) -> Value:
+    """Inertance at the terminals [kg]; `load_sign` is the sign of N, for load friction."""
+    if series.is_there(p):
+        return 0.0
+    inertance = flywheel.inertance(f, p, x, v)[0]
+    return inertance * (1.0 + load_sign * _load_share(f, p, v)) if load_sign else inertance
+
+
+def load_rest(p: Parameters, x: float, v: float, load_sign: float) -> float:
+    """Load friction of that part of N that does not depend on acceleration [N]."""
+    rest = flywheel.inertance(NUMBERS, p, x, v)[1] + flywheel.force(NUMBERS, p, x, v)
+    return load_sign * _load_share(NUMBERS, p, v) * rest
+
+
+def carried(p: Parameters, x: float, v: float, a: float, z: Sequence[float]) -> float:
+    """N, the force through the inertance [N]."""
+    if series.is_there(p):
+        state = states_of(p, z)
+        rate = v - state.speed
+        return series.at(NUMBERS, p, state.deflection, rate, state.gap).force
+    inertance, rest = flywheel.inertance(NUMBERS, p, x, v)
+    return inertance * a + rest + flywheel.force(NUMBERS, p, x, v)
+
+
+def forces(p: Parameters, x: float, v: float, a: float, z: Sequence[float]) -> dict[str, float]:
+    """Total force, force through the inertance, friction with load friction [N]."""
+    through = carried(p, x, v, a, z)
+    rubbing = friction.LAWS[p.friction](NUMBERS, p, x, v, states_of(p, z).friction)
+    rub = rubbing.bound + rubbing.damping * (rubbing.rate or 0.0)
+    rub = rub + _load_share(NUMBERS, p, v) * abs(through)
+    total = beside.force(NUMBERS, p, x, v) + rub + through
+    return {"total": total, "inertance": through, "friction": rub}
+
+
+def stored_energy(p: Parameters, x: float, v: float, z: Sequence[float]) -> float:
+    """Kinetic, elastic, bristle, gas and stop energy [J]."""
+    state = states_of(p, z)
+    energy = beside.stored_energy(p, x) + friction.stored_energy(p, x, state.friction)
+    if not series.is_there(p):
+        return energy + flywheel.stored_energy(p, x, v)
+    shaft = series.stored_energy(p, state.deflection, state.gap)
+    return energy + shaft + flywheel.stored_energy(p, x - state.deflection, state.speed)
+
+
+def dissipated_power(
+    f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value], through: Value
+) -> Value:
+    """Power turned into heat [W]; `through` is N [N], read for load friction only."""
+    state = states_of(p, z)
+    rubbing = friction.LAWS[p.friction](f, p, x, v, state.friction)
+    heat = beside.dissipated_power(f, p, x, v) + rubbing.bound * v
+    if rubbing.rate is not None:
+        stored = friction.stored_power(f, p, x, v, state.friction, rubbing.rate)
+        heat = heat + rubbing.damping * rubbing.rate * v - stored
+    if p.load_friction:
+        heat = heat + _load_share(f, p, v) * f.abs(through) * v
+    if not series.is_there(p):
+        return heat + flywheel.dissipated_power(f, p, v)
+    shaft = series.dissipated_power(f, p, state.deflection, v - state.speed, state.gap)
+    return heat + shaft + flywheel.dissipated_power(f, p, state.speed)
+
+
+def _load_share(f: Functions, p: Parameters, v: Value) -> Value:
+    """Mu tanh(v / v_t) [-]."""
+    return p.load_friction * f.tanh(v / p.transition_velocity) if p.load_friction else 0.0

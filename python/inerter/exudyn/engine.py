@@ -1,0 +1,28 @@
+"""Exudyn itself, imported when it is needed; the rest of inerter does without it."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from typing import Any
+
+
+@functools.cache
+def exudyn(module: str = "") -> Any:
+    """The package, or one of its modules.
+
+    Raises
+    ------
+    ImportError
+        It is not installed; the message says how to install it.
+    """
+    try:
+        package = importlib.import_module("exudyn")
+    except ImportError as error:
+        raise ImportError(
+            'Exudyn is not installed; run `pip install "inerter[exudyn]"` '
+            "(it has wheels for the usual Pythons)"
+        ) from error
+    if not module or hasattr(package, module):
+        return getattr(package, module) if module else package
+    return importlib.import_module(f"exudyn.{module}")

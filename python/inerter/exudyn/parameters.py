@@ -1,0 +1,18 @@
+"""The parameters of a device as plain attributes, which user functions read often."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from inerter.core import Device, parameters
+
+
+class Parameters(SimpleNamespace):
+    """Every parameter of the device by name, `friction`, `gas_law`, `nstate`, `state_names`."""
+
+    @classmethod
+    def of(cls, device: Device) -> Parameters:
+        """The parameters of a device that the core has checked."""
+        numbers = {name: getattr(device, name) for name in parameters()}
+        names = ("friction", "gas_law", "nstate", "state_names")
+        return cls(**numbers, **{name: getattr(device, name) for name in names})

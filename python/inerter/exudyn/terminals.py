@@ -1,0 +1,194 @@
+"""From the items that a user names to nodes and the kinematics between them.
+
+An item is a body (ObjectIndex), a node (NodeIndex), a marker (MarkerIndex) or None, the ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from inerter.exudyn.engine import exudyn
+from inerter.exudyn.kinematics import (
+    Line,
+    Point,
+    Span,
+    euler_parameters,
+    plane_rotation,
+    rotation_vector,
+    tait_bryan,
+)
+
+NO_ROTATION: dict[str, tuple[int, Any]] = {"Point": (3, None), "Point2D": (2, None)}
+WITH_ROTATION: dict[str, tuple[int, Any]] = {
+    "RigidBody2D": (2, plane_rotation),
+    "RigidBodyEP": (3, euler_parameters),
+    "RigidBodyRxyz": (3, tait_bryan),
+    "RigidBodyRotVecLG": (3, rotation_vector),
+}
+POINT_NODES = NO_ROTATION | WITH_ROTATION
+"""Nodes of points and bodies: number of translations, rotation."""
+
+BODIES = ("MassPoint", "MassPoint2D", "RigidBody", "RigidBody2D")
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a terminal is: a coordinate of a node, a point on a node, or on the ground.
+
+    `node` is None on the ground, `coordinate` is None for a point.
+    """
+
+    node: Any = None
+    coordinate: int | None = None
+    local: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+def terminals(
+    mbs: Any, items: Sequence[Any], local: Sequence[Sequence[float]]
+) -> tuple[list[Any], Line | Span]:
+    """The nodes, each once, and the kinematics over their coordinates in this order.
+
+    Raises
+    ------
+    ValueError
+        Items that cannot carry a terminal, or do not fit together; the message says why.
+    """
+    if len(items) != 2:
+        raise ValueError(f"itemNumbers: {len(items)} given; an inerter has two terminals")
+    if items[0] is None and items[1] is None:
+        raise ValueError("itemNumbers: both are the ground; give at least one body or node")
+    places = [
+        _place(mbs, item, _vector(point, i))
+        for i, (item, point) in enumerate(zip(items, local, strict=True))
+    ]
+    straight = [place.coordinate is not None for place in places if place.node is not None]
+    if any(straight) != all(straight):
+        raise ValueError(
+            "itemNumbers: one terminal is a coordinate, the other a point on a body; give two "
+            "coordinates (Node1D, MarkerNodeCoordinate) or two points"
+        )
+
+    nodes: list[Any] = []
+    starts: dict[int, int] = {}
+    size = 0
+    for place in places:
+        if place.node is not None and int(place.node) not in starts:
+            starts[int(place.node)] = size
+            nodes.append(place.node)
+            size += len(mbs.GetNode(place.node)["referenceCoordinates"])
+    if any(straight):
+        return nodes, _line(mbs, places, starts, size)
+    return nodes, Span(size, *(_point(mbs, place, starts) for place in places))
+
+
+def _vector(point: Sequence[float], index: int) -> tuple[float, float, float]:
+    found = np.asarray(point, dtype=float)
+    if found.shape != (3,) or not np.all(np.isfinite(found)):
+        raise ValueError(f"localPosition{index}: {point} is not three finite numbers [m]")
+    return tuple(float(value) for value in found)  # pyright: ignore[reportReturnType]
+
+
+def _place(mbs: Any, item: Any, local: tuple[float, float, float]) -> Place:
+    """The place that an item means."""
+    engine = exudyn()
+    if item is None:
+        return Place(local=local)
+    if isinstance(item, engine.MarkerIndex):
+        return _marker_place(mbs, item)
+    if isinstance(item, engine.NodeIndex):
+        return _node_place(mbs, item, local)
+    if isinstance(item, engine.ObjectIndex):
+        return _body_place(mbs, item, local)
+    raise ValueError(
+        f"itemNumbers: {item!r} is no body, node or marker of Exudyn; give what mbs.Add... or "
+        "mbs.Create... returned, or None for the ground"
+    )
+
+
+def _marker_place(mbs: Any, item: Any) -> Place:
+    marker = mbs.GetMarker(item)
+    kind = marker["markerType"]
+    if kind == "NodeCoordinate":
+        node = _index("NodeIndex", marker["nodeNumber"])
+        if mbs.GetNode(node)["nodeType"] == "PointGround":
+            return Place()
+        return Place(node, int(marker["coordinate"]))
+    if kind in ("NodePosition", "NodeRigid"):
+        return _node_place(mbs, _index("NodeIndex", marker["nodeNumber"]), (0.0, 0.0, 0.0))
+    if kind in ("BodyPosition", "BodyRigid"):
+        local = tuple(float(value) for value in marker["localPosition"])
+        body = _index("ObjectIndex", marker["bodyNumber"])
+        return _body_place(mbs, body, local)  # pyright: ignore[reportArgumentType]
+    raise ValueError(
+        f"itemNumbers: marker {int(item)} is a Marker{kind}; an inerter takes MarkerBodyPosition, "
+        "MarkerBodyRigid, MarkerNodePosition, MarkerNodeRigid or MarkerNodeCoordinate"
+    )
+
+
+def _body_place(mbs: Any, item: Any, local: tuple[float, float, float]) -> Place:
+    body = mbs.GetObject(item)
+    kind = body["objectType"]
+    if kind == "Ground":
+        turned = np.asarray(body["referenceRotation"]) @ np.asarray(local)
+        position = np.asarray(body["referencePosition"]) + turned
+        return Place(local=tuple(float(value) for value in position))  # pyright: ignore[reportArgumentType]
+    if kind not in BODIES:
+        raise ValueError(
+            f"itemNumbers: object {int(item)} is a {kind}; an inerter takes the bodies "
+            f"{', '.join(BODIES)}, Ground, and nodes"
+        )
+    return _node_place(mbs, _index("NodeIndex", body["nodeNumber"]), local)
+
+
+def _node_place(mbs: Any, item: Any, local: tuple[float, float, float]) -> Place:
+    node = mbs.GetNode(item)
+    kind = node["nodeType"]
+    if kind == "1D":
+        return Place(item, 0)
+    if kind == "PointGround":
+        return Place(local=tuple(float(value) for value in node["referenceCoordinates"]))  # pyright: ignore[reportArgumentType]
+    if kind in NO_ROTATION and any(local):
+        raise ValueError(
+            f"localPosition: {list(local)} on node {int(item)}, a Node{kind}, which does not turn; "
+            "give [0, 0, 0]"
+        )
+    if kind not in POINT_NODES:
+        names = ", ".join(f"Node{name}" for name in ("1D", "PointGround", *POINT_NODES))
+        raise ValueError(
+            f"itemNumbers: node {int(item)} is a Node{kind}; an inerter takes {names}, or one of "
+            "its coordinates by a MarkerNodeCoordinate"
+        )
+    return Place(item, None, local)
+
+
+def _index(kind: str, number: Any) -> Any:
+    return getattr(exudyn(), kind)(int(number))
+
+
+def _line(mbs: Any, places: list[Place], starts: dict[int, int], size: int) -> Line:
+    found: list[tuple[int, float]] = []
+    for place, weight in zip(places, (-1.0, 1.0), strict=True):
+        if place.node is None:
+            continue
+        count = len(mbs.GetNode(place.node)["referenceCoordinates"])
+        coordinate = place.coordinate or 0
+        if not 0 <= coordinate < count:
+            raise ValueError(
+                f"itemNumbers: coordinate {coordinate} of node {int(place.node)}, which has {count}"
+            )
+        found.append((starts[int(place.node)] + coordinate, weight))
+    return Line(size, tuple(place for place, _ in found), tuple(weight for _, weight in found))
+
+
+def _point(mbs: Any, place: Place, starts: dict[int, int]) -> Point:
+    if place.node is None:
+        return Point(local=place.local)
+    node = mbs.GetNode(place.node)
+    moves, rotation = POINT_NODES[node["nodeType"]]
+    reference = tuple(float(value) for value in node["referenceCoordinates"])
+    start = starts[int(place.node)]
+    return Point(start, reference, moves, rotation, place.local)
