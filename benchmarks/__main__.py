@@ -12,10 +12,11 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from benchmarks import along_motion, step_cost
+from benchmarks import along_motion, exudyn_cost, step_cost
 
 BENCHMARKS = {
     "step_cost": ("What one step of a quarter-car costs", step_cost.run),
+    "exudyn_cost": ("What one step costs in Exudyn", exudyn_cost.run),
     "along_motion": ("What a sample along a measured motion costs", along_motion.run),
 }
 
@@ -38,6 +39,9 @@ def main() -> None:
     results: dict[str, Any] = {"machine": platform.processor() or platform.machine()}
     for name in track(BENCHMARKS, description="benchmarks", console=console):
         title, run = BENCHMARKS[name]
+        if name == "exudyn_cost" and not exudyn_cost.available():
+            console.print('exudyn_cost is left out: `pip install "inerter[exudyn]"`')
+            continue
         results[name] = run(options.quick)
         show(title, results[name], console)
     options.out.mkdir(parents=True, exist_ok=True)

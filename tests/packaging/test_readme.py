@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -30,12 +31,40 @@ def test_model_loads_and_moves_as_an_inerter() -> None:
 
 
 def test_python_runs() -> None:
-    (code,) = blocks("python")
+    (code,) = [code for code in blocks("python") if "exudyn" not in code]
     names: dict[str, object] = {}
     exec(code, names)
     force = np.asarray(names["force"])
     assert force.shape == (2000,)
     assert np.all(np.isfinite(force))
+
+
+def test_exudyn_runs() -> None:
+    """Without a force the box keeps its speed."""
+    exudyn = pytest.importorskip("exudyn")
+    (code,) = [code for code in blocks("python") if "exudyn" in code]
+    names: dict[str, Any] = {}
+    exec(code, names)
+    settings = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps = 100
+    settings.timeIntegration.endTime = 0.1
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    names["mbs"].SolveDynamic(settings, solverType=exudyn.DynamicSolverType.RK44)
+    assert names["strut"].Evaluate()["velocity"] == pytest.approx(1.0, abs=1e-12)
+    assert names["strut"].Evaluate()["displacement"] == pytest.approx(0.1, abs=1e-12)
+
+
+def test_exudyn_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("exudyn")
+    text = (ROOT / "docs" / "exudyn.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.S)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    # 10 N of friction brake 180 kg and 113 kg of inertance
+    found = names["strut"].Evaluate()
+    assert found["velocity"] == pytest.approx(1 - 0.5 * 10 / 293, rel=1e-3)
+    assert found["friction"] == pytest.approx(10, rel=1e-2)
 
 
 def test_links_lead_somewhere() -> None:

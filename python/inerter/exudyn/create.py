@@ -70,7 +70,13 @@ class Inerter:
     element: Element
 
     def GetStates(self, configuration: Any = None) -> NDArray[np.float64]:  # noqa: N802
-        """States, shape (states,), in the order of `stateNames`; Exudyn's current configuration."""
+        """States, shape (states,), in the order of `stateNames`; Exudyn's current configuration.
+
+        Raises
+        ------
+        ValueError
+            The run has diverged.
+        """
         if self.stateNode is None:
             return np.zeros(0)
         values = self._coordinates("Coordinates_t", configuration)[self.element.kinematics.size :]
@@ -86,7 +92,7 @@ class Inerter:
         """What the device does: the quantities of `QUANTITIES` and "states", SI units.
 
         Forces are tension positive. The accelerations are those that Exudyn knows: after a run
-        the last step's.
+        the last step's. Raises ValueError if the run has diverged.
         """
         p = self.element.device
         q, q_t, q_tt = (
@@ -148,7 +154,13 @@ class Inerter:
         where = engine.ConfigurationType.Current if configuration is None else configuration
         what = getattr(engine.OutputVariableType, kind)
         found = self.mbs.GetObjectOutputBody(self.objectNumber, what, [0.0] * 3, where)
-        return np.atleast_1d(np.array(found, dtype=float))
+        values = np.atleast_1d(np.array(found, dtype=float))
+        if not np.all(np.isfinite(values)):
+            raise ValueError(
+                f'inerter "{self.name}": its coordinates are not finite; the run has diverged. '
+                "Shorten the step, or take GeneralizedAlpha, or DOPRI5 with tolerances"
+            )
+        return values
 
 
 def CreateInerter(  # noqa: N802 - Exudyn's manner

@@ -155,7 +155,7 @@ def load_sign(
 
 
 def symbolic_force(element: Element, mbs: Any) -> Any:
-    """The forces as a symbolic user function; every expression stands in it once."""
+    """The forces as a symbolic user function, every expression once; 0 if there are none."""
     symbolic = exudyn("symbolic")
     recording = symbolic.GetRecording()
     symbolic.SetRecording(True)
@@ -163,6 +163,8 @@ def symbolic_force(element: Element, mbs: Any) -> Any:
         arguments, result = _record(element, symbolic)
     finally:
         symbolic.SetRecording(recording)
+    if result is None:
+        return 0
     function = symbolic.UserFunction()
     contents = {
         "functionName": "forceUserFunction",
@@ -203,6 +205,8 @@ def _record(element: Element, symbolic: Any) -> tuple[list[Any], Any]:
 
     result = None
     for term in recorded:
+        if not isinstance(term.value, symbolic.Real) and term.value == 0.0:
+            continue
         weights = np.zeros(element.size)
         weights[:first] = [-term.terminals * share for share in line.row]
         for place, share in term.rates:
