@@ -19,7 +19,8 @@ C_FILES = $(shell find plugin_c tests benchmarks -name '*.[ch]')
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped record into out/demo'
-	@echo 'make test    every test, against the installed package (ARGS="-k dahl -x" go to pytest)'
+	@echo 'make test    every test, on all cores, against the installed package'
+	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
 	@echo 'make bench   benchmarks, into out/bench'
 	@echo 'make lint    ruff, pyright, clang-format'
 	@echo 'make format  let ruff and clang-format rewrite the files'
@@ -61,7 +62,7 @@ demo: $(VENV)/lab
 	@$(BIN)/inerter demo --out out/demo
 
 test: $(VENV)/dev
-	@$(BIN)/pytest $(ARGS)
+	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
 
 bench: $(VENV)/lab
 	@$(BIN)/python -m benchmarks

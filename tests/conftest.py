@@ -2,7 +2,10 @@
 
 Tests that hide an effect and look for it draw it from one seed, so that a failure can be repeated:
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
-one. The seed of a session stands in pytest's header.
+one. The seed of a session stands at the end of pytest's output.
+
+With pytest-xdist (`make test`) all workers hide effects by the same seed and compute with one
+thread each. What shares an expensive fixture stays in one worker.
 """
 
 from __future__ import annotations
@@ -10,8 +13,14 @@ from __future__ import annotations
 import os
 import secrets
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+# before NumPy is imported: one thread for each worker, not one for each core in each of them
+if "PYTEST_XDIST_WORKER" in os.environ:
+    for _library in ("OPENBLAS", "OMP", "MKL"):
+        os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
 ROOT = Path(__file__).resolve().parents[1]
 MEASURED = ROOT.parent / "shared" / "data"
@@ -32,8 +41,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Settle the seed once per session."""
-    text = str(config.getoption("--effects-seed"))
+    """Settle the seed once per session: a worker has the controller's."""
+    given = getattr(config, "workerinput", {}).get("effects_seed")
+    text = str(config.getoption("--effects-seed") if given is None else given)
     try:
         config.stash[_SEED] = secrets.randbelow(2**31) if text == "random" else int(text)
     except ValueError:
@@ -42,9 +52,40 @@ def pytest_configure(config: pytest.Config) -> None:
         ) from None
 
 
-def pytest_report_header(config: pytest.Config) -> str:
-    """Show the seed, so that a failure can be repeated."""
-    return f"effects seed: {config.stash[_SEED]} (repeat with --effects-seed)"
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Tell a worker of pytest-xdist the seed."""
+    node.workerinput["effects_seed"] = node.config.stash[_SEED]
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """Show the seed, so that a failure can be repeated; -q would hide it in the header."""
+    terminalreporter.write_line(f"effects seed: {config.stash[_SEED]} (repeat with --effects-seed)")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Let --dist loadfile deal out the diagnoses, which are long, one by one."""
+    if config.getoption("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return _together(nodeid)
+
+    return Scheduling(config, log)
+
+
+def _together(nodeid: str) -> str:
+    """What one worker runs: a test file; of the diagnoses, the tests of a case."""
+    file, _, test = nodeid.partition("::")
+    if not file.startswith("tests/diagnosis/"):
+        return file
+    name, bracket, case = test.partition("[")
+    return f"{file}::[{case}" if bracket else f"{file}::{name}"
 
 
 @pytest.fixture(scope="session")

@@ -2,38 +2,104 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter import rig
+from inerter.core import Device
 from inerter.identify.bench import Run
 from inerter.identify.fit import Model, delayed, first_state
-from inerter.rig import simulate_along
+from inerter.reference import Motion, ReferenceDevice, response
+
+Array = NDArray[np.float64]
+Along = Callable[[Device, Run, Any], Array]
 
 
 def simulate_engines(
     model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
 ) -> dict[str, float | None]:
-    """Rms force error [N] of each engine over the masked samples; None: engine not run."""
-    return {"mujoco": _mujoco(model, runs, masks), "exudyn": None, "reference": None}
+    """Rms force error [N] of each engine over the masked samples.
+
+    None: Exudyn is not installed, or Exudyn or the reference cannot follow this device along this
+    motion (a bristle too stiff for the samples, a friction level that reaches zero).
+    """
+    found: dict[str, float | None] = {"mujoco": _error(_mujoco, model, runs, masks)}
+    others = {"exudyn": _exudyn if find_spec("exudyn") else None, "reference": _reference}
+    for name, along in others.items():
+        try:
+            found[name] = along and _error(along, model, runs, masks)
+        except (ValueError, RuntimeError):
+            found[name] = None
+    return found
 
 
-def _mujoco(model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]) -> float:
+def _error(
+    along: Along, model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
+) -> float:
+    """Rms error [N]; ValueError if a force is not finite."""
     device = model.device()
     square, count = 0.0, 0
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
-        force = simulate_along(
-            device,
-            run.spacing,
-            run.displacement,
-            run.velocity,
-            run.acceleration,
-            first_state(device, run),
-        )["total"]
+        force = along(device, run, first_state(device, run))
+        if not np.all(np.isfinite(force)):
+            raise ValueError("the force is not finite")
         residual = run.force - delayed(force, model.delay, run.spacing)
         square += float(np.sum(residual[mask] ** 2))
         count += int(mask.sum())
     return float(np.sqrt(square / count))
+
+
+def _mujoco(device: Device, run: Run, state: Any) -> Array:
+    motion = (run.displacement, run.velocity, run.acceleration)
+    return rig.simulate_along(device, run.spacing, *motion, state)["total"]
+
+
+def _exudyn(device: Device, run: Run, state: Any) -> Array:
+    from inerter.exudyn.rig import simulate_along
+
+    motion = (run.displacement, run.velocity, run.acceleration)
+    return simulate_along(device, run.spacing, *motion, state)["total"]
+
+
+def _reference(device: Device, run: Run, state: Any) -> Array:
+    times = run.spacing * np.arange(run.displacement.size)
+    given: dict[str, Any] = device.given
+    found = response(ReferenceDevice(**given), _motion(run), times, initial_state=state, rtol=1e-8)
+    return found.force
+
+
+def _motion(run: Run) -> Motion:
+    """The recorded motion between its samples: cubic in displacement, linear in acceleration."""
+    h, last = run.spacing, run.displacement.size - 2
+    x, v, a = run.displacement, run.velocity, run.acceleration
+    rise = np.diff(x) / h
+    rows = np.column_stack(
+        [x[:-1], v[:-1], (3 * rise - 2 * v[:-1] - v[1:]) / h, (v[:-1] + v[1:] - 2 * rise) / h**2]
+    )
+    table = rows.tolist()
+
+    def piece(t: Any) -> tuple[Any, Any]:
+        if isinstance(t, float):
+            row = min(max(int(t / h + 1e-9), 0), last)
+            return table[row], t - row * h
+        row = np.clip((np.asarray(t) / h + 1e-9).astype(int), 0, last)
+        return rows[row].T, t - row * h
+
+    def displacement(t: Any) -> Any:
+        c, u = piece(t)
+        return c[0] + u * (c[1] + u * (c[2] + u * c[3]))
+
+    def velocity(t: Any) -> Any:
+        c, u = piece(t)
+        return c[1] + u * (2.0 * c[2] + 3.0 * u * c[3])
+
+    def acceleration(t: Any) -> Any:
+        return np.interp(t, h * np.arange(last + 2), a)
+
+    return Motion(displacement, velocity, acceleration)

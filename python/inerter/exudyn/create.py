@@ -24,13 +24,12 @@ from inerter.exudyn.user_functions import (
     symbolic_force,
 )
 
+FORCES = ("total", "inertance", "friction")
 QUANTITIES = (
     "displacement",
     "velocity",
     "acceleration",
-    "total",
-    "inertance",
-    "friction",
+    *FORCES,
     "stored_energy",
     "dissipated_power",
 )
@@ -91,8 +90,10 @@ class Inerter:
     def Evaluate(self, configuration: Any = None) -> dict[str, Any]:  # noqa: N802
         """What the device does: the quantities of `QUANTITIES` and "states", SI units.
 
-        Forces are tension positive. The accelerations are those that Exudyn knows: after a run
-        the last step's. Raises ValueError if the run has diverged.
+        Forces are tension positive. The acceleration is the one that Exudyn knows: explicit
+        solvers know none before the first step, and that of their last stage if
+        `timeIntegration.explicit.computeEndOfStepAccelerations` has been set False. Raises
+        ValueError if the run has diverged.
         """
         p = self.element.device
         q, q_t, q_tt = (
@@ -118,14 +119,17 @@ class Inerter:
     def AddSensor(  # noqa: N802
         self, quantity: str = "total", fileName: str = "", storeInternal: bool = True
     ) -> Any:
-        """Add a sensor of one quantity, a state or all "states", and return its SensorIndex.
+        """Add a sensor of a quantity or a state, and return its SensorIndex.
+
+        "forces" are total, inertance and friction together, "states" all states.
 
         Raises
         ------
         ValueError
             There is no such quantity; the message lists them.
         """
-        known = (*QUANTITIES, *self.stateNames, *(("states",) if self.stateNames else ()))
+        together = ("forces", "states") if self.stateNames else ("forces",)
+        known = (*QUANTITIES, *self.stateNames, *together)
         if quantity not in known:
             raise ValueError(f"quantity: {quantity!r} is none of {', '.join(known)}")
 
@@ -136,7 +140,9 @@ class Inerter:
                 return self.GetStates(configuration).tolist()
             if quantity in self.stateNames:
                 return [float(self.GetStates(configuration)[self.stateNames.index(quantity)])]
-            return [float(self.Evaluate(configuration)[quantity])]
+            found = self.Evaluate(configuration)
+            names = FORCES if quantity == "forces" else (quantity,)
+            return [float(found[name]) for name in names]
 
         return self.mbs.AddSensor(
             exudyn("itemInterface").SensorUserFunction(
@@ -221,7 +227,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     """
     itemInterface = exudyn("itemInterface")
     device = Device(**parameters)
-    nodes, kinematics = terminals(mbs, itemNumbers, (localPosition0, localPosition1))
+    nodes, kinematics = terminals(mbs, name, itemNumbers, (localPosition0, localPosition1))
     element = Element(Parameters.of(device), kinematics, dissipatedEnergy)
     if symbolic and not element.recordable:
         raise ValueError(

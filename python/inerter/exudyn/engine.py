@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import importlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -26,3 +28,15 @@ def exudyn(module: str = "") -> Any:
     if not module or hasattr(package, module):
         return getattr(package, module) if module else package
     return importlib.import_module(f"exudyn.{module}")
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep Exudyn from printing: its solvers remark on any user function."""
+    config = exudyn().config
+    before = config.printToConsole
+    config.printToConsole = False
+    try:
+        yield
+    finally:
+        config.printToConsole = before

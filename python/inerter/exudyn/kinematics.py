@@ -102,11 +102,12 @@ class Point:
 
 @dataclass(frozen=True)
 class Span:
-    """The distance between two points."""
+    """The distance between two points; `name` is the element's, for its errors."""
 
     size: int
     first: Point
     second: Point
+    name: str = ""
 
     def at(self, q: Numbers, q_t: Numbers) -> Motion:
         """The motion at coordinates and velocities of shape (size,) or longer."""
@@ -116,8 +117,8 @@ class Span:
         length = math.sqrt(dot(between, between))
         if length < SHORTEST:
             raise ValueError(
-                f"inerter: its terminals are {length:g} m apart, which leaves it without a "
-                "direction; put them apart, or use 1D coordinates"
+                f'inerter "{self.name}": its terminals are {length:g} m apart, which leaves it '
+                "without a direction; put them apart, or use 1D coordinates"
             )
         line = scale(between, 1.0 / length)
         rate = dot(line, relative)

@@ -48,9 +48,11 @@ class Place:
 
 
 def terminals(
-    mbs: Any, items: Sequence[Any], local: Sequence[Sequence[float]]
+    mbs: Any, name: str, items: Sequence[Any], local: Sequence[Sequence[float]]
 ) -> tuple[list[Any], Line | Span]:
     """The nodes, each once, and the kinematics over their coordinates in this order.
+
+    `name` is the element's.
 
     Raises
     ------
@@ -59,12 +61,12 @@ def terminals(
     """
     if len(items) != 2:
         raise ValueError(f"itemNumbers: {len(items)} given; an inerter has two terminals")
-    if items[0] is None and items[1] is None:
-        raise ValueError("itemNumbers: both are the ground; give at least one body or node")
     places = [
         _place(mbs, item, _vector(point, i))
         for i, (item, point) in enumerate(zip(items, local, strict=True))
     ]
+    if all(place.node is None for place in places):
+        raise ValueError("itemNumbers: both are the ground; give at least one body or node")
     straight = [place.coordinate is not None for place in places if place.node is not None]
     if any(straight) != all(straight):
         raise ValueError(
@@ -82,7 +84,7 @@ def terminals(
             size += len(mbs.GetNode(place.node)["referenceCoordinates"])
     if any(straight):
         return nodes, _line(mbs, places, starts, size)
-    return nodes, Span(size, *(_point(mbs, place, starts) for place in places))
+    return nodes, Span(size, *(_point(mbs, place, starts) for place in places), name=name)
 
 
 def _vector(point: Sequence[float], index: int) -> tuple[float, float, float]:
@@ -98,6 +100,11 @@ def _place(mbs: Any, item: Any, local: tuple[float, float, float]) -> Place:
     if item is None:
         return Place(local=local)
     if isinstance(item, engine.MarkerIndex):
+        if any(local):
+            raise ValueError(
+                f"localPosition: {list(local)} beside marker {int(item)}, which has a place of its "
+                "own; give the point to the marker, or name its body"
+            )
         return _marker_place(mbs, item)
     if isinstance(item, engine.NodeIndex):
         return _node_place(mbs, item, local)
@@ -147,15 +154,15 @@ def _body_place(mbs: Any, item: Any, local: tuple[float, float, float]) -> Place
 def _node_place(mbs: Any, item: Any, local: tuple[float, float, float]) -> Place:
     node = mbs.GetNode(item)
     kind = node["nodeType"]
-    if kind == "1D":
-        return Place(item, 0)
-    if kind == "PointGround":
-        return Place(local=tuple(float(value) for value in node["referenceCoordinates"]))  # pyright: ignore[reportArgumentType]
-    if kind in NO_ROTATION and any(local):
+    if kind in ("1D", "PointGround", *NO_ROTATION) and any(local):
         raise ValueError(
             f"localPosition: {list(local)} on node {int(item)}, a Node{kind}, which does not turn; "
             "give [0, 0, 0]"
         )
+    if kind == "1D":
+        return Place(item, 0)
+    if kind == "PointGround":
+        return Place(local=tuple(float(value) for value in node["referenceCoordinates"]))  # pyright: ignore[reportArgumentType]
     if kind not in POINT_NODES:
         names = ", ".join(f"Node{name}" for name in ("1D", "PointGround", *POINT_NODES))
         raise ValueError(

@@ -50,6 +50,19 @@ def figure(x_title: str, y_title: str, **layout: Any) -> go.Figure:
     )
 
 
+def two_over_time(above: str, below: str) -> go.Figure:
+    """Two empty plots, one above the other, on one time axis; lines of the lower: yaxis="y2"."""
+    plot = figure("time [s]", above)
+    style = plot.layout.yaxis.to_plotly_json()  # type: ignore[attr-defined]
+    plot.update_layout(
+        yaxis={"domain": [0.44, 1.0]},
+        yaxis2=style | {"domain": [0.0, 0.36], "anchor": "x"},
+        xaxis={"anchor": "y2"},
+    )
+    plot.layout.yaxis2.title.text = below  # type: ignore[attr-defined]
+    return plot
+
+
 def line(
     plot: go.Figure,
     x: ArrayLike,

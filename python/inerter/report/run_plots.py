@@ -11,7 +11,7 @@ from scipy.signal import welch
 from inerter.diagnose.result import RunCurves
 from inerter.report import thinning
 from inerter.report.palette import LIGHT
-from inerter.report.plotting import figure, line, points, positive
+from inerter.report.plotting import figure, line, points, positive, two_over_time
 from inerter.report.runs import judged
 from inerter.report.thinning import Mask
 
@@ -40,14 +40,7 @@ def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
 
 def _over_time(run: RunCurves, limit: int) -> go.Figure:
     """Force above, residual below, one time axis."""
-    plot = figure("time [s]", "force [N]")
-    style = plot.layout.yaxis.to_plotly_json()  # type: ignore[attr-defined]
-    plot.update_layout(
-        yaxis={"domain": [0.44, 1.0]},
-        yaxis2=style | {"domain": [0.0, 0.36], "anchor": "x"},
-        xaxis={"anchor": "y2"},
-    )
-    plot.layout.yaxis2.title.text = "error [N]"  # type: ignore[attr-defined]
+    plot = two_over_time("force [N]", "error [N]")
     lines: list[tuple[str, np.ndarray, str, float, str]] = [
         ("measured", run.force, "measured", 3.0, "y"),
         (BEFORE, run.baseline, "before", 1.4, "y"),

@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 
 from inerter.core import parameters
 from inerter.report import thinning
-from inerter.report.plotting import figure, line
+from inerter.report.plotting import figure, line, two_over_time
 from inerter.simulate.run import Run
 from inerter.simulate.sample import DeviceRun
 
@@ -65,14 +65,7 @@ def model_plots(run: Run) -> dict[str, go.Figure]:
 
 def _forces_and_motion(run: Run, device: DeviceRun) -> go.Figure:
     """Forces above, displacement below, one time axis."""
-    plot = figure("time [s]", "force [N]")
-    style = plot.layout.yaxis.to_plotly_json()  # type: ignore[attr-defined]
-    plot.update_layout(
-        yaxis={"domain": [0.44, 1.0]},
-        yaxis2=style | {"domain": [0.0, 0.36], "anchor": "x"},
-        xaxis={"anchor": "y2"},
-    )
-    plot.layout.yaxis2.title.text = "displacement [m]"  # type: ignore[attr-defined]
+    plot = two_over_time("force [N]", "displacement [m]")
     columns = device.columns
     _over_time(plot, run.time, columns["inertance_force"], INERTANCE, "inertance", width=3.0)
     if has_friction(device):
