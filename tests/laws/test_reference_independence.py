@@ -1,11 +1,17 @@
-"""The reference is a second telling: it must not lean on any other part of the package."""
+"""The reference is a second telling: it must not lean on any other part of the package.
+
+One module of the package it may read: the published numbers of the models, which are data.
+"""
 
 import ast
+import sys
 from pathlib import Path
 
+import inerter.model_parameters
 import inerter.reference
 
 FOLDER = Path(inerter.reference.__file__).parent
+DATA = "inerter.model_parameters"
 ALLOWED = {
     "__future__", "collections", "dataclasses", "difflib", "functools", "itertools", "pathlib",
     "types", "typing", "numpy", "scipy",
@@ -32,4 +38,17 @@ def test_reference_imports_nothing_of_the_core() -> None:
             if level:
                 assert level <= depth, f"{path.name} imports from outside reference/: {name}"
             else:
-                assert name.split(".")[0] in ALLOWED, f"{path.name} imports {name}"
+                assert name == DATA or name.split(".")[0] in ALLOWED, f"{path.name} imports {name}"
+
+
+def test_the_shared_numbers_are_data() -> None:
+    """Frozen records and constants: nothing imported but the standard library, no law within."""
+    path = Path(inerter.model_parameters.__file__)
+    found = imports(path)
+    assert found
+    for level, name in found:
+        assert level == 0, f"{path.name} imports from the package: {name}"
+        assert name.split(".")[0] in sys.stdlib_module_names, f"{path.name} imports {name}"
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    allowed = (ast.ImportFrom, ast.ClassDef, ast.Assign, ast.Expr)
+    assert all(isinstance(node, allowed) for node in tree.body)

@@ -1,6 +1,7 @@
 """The readable telling of the physics: NumPy and SciPy only, from the papers.
 
-It shares no code with the fast core; the two meet in tests and in `inerter validate`.
+It shares no code with the fast core; the two meet in tests and in `inerter validate`. The
+published numbers of the models, plain data, come from `inerter/model_parameters.py`.
 
     laws/            one force law per file
     device.py        the device: inertance, springs, dampers, friction, series element
@@ -9,7 +10,6 @@ It shares no code with the fast core; the two meet in tests and in `inerter vali
     contacts.py      integration that locates the contacts of a backlash
     strut.py         spring, damper and device in one of three layouts
     structure.py     bodies with struts between them, solved jointly
-    model_parameters.py   published numbers of the models
     quarter_car.py   the quarter-car with the device in its strut
     vehicle.py       what the two next share
     half_car.py      heave and pitch on two struts
@@ -22,6 +22,16 @@ It shares no code with the fast core; the two meet in tests and in `inerter vali
 """
 
 from __future__ import annotations
+
+from inerter.model_parameters import (
+    FLUID_INERTER,
+    FRAME,
+    FULL_CAR,
+    HALF_CAR,
+    QUARTER_CAR,
+    SHAKER,
+    TEST_RIG,
+)
 
 from .bench import EFFECTS, HYSTERETIC_LAWS, HiddenCase, HiddenRun, NoiseLevels, hide_effect
 from .device import ReferenceDevice
@@ -36,7 +46,6 @@ from .fluid_inerter import (
 from .full_car import FullCar, FullCarResult
 from .half_car import HalfCar, HalfCarResult
 from .laws import FRICTION_LAWS, GAS_LAWS, friction_level
-from .model_parameters import FLUID_INERTER, FRAME, FULL_CAR, HALF_CAR, SHAKER
 from .motion import Motion, Response, response, sine_motion
 from .motions import chirp, scaled, strokes, sum_of_sines, windowed_sines
 from .quarter_car import LAYOUTS, QuarterCar, QuarterCarResult
@@ -66,7 +75,9 @@ __all__ = [
     "HALF_CAR",
     "HYSTERETIC_LAWS",
     "LAYOUTS",
+    "QUARTER_CAR",
     "SHAKER",
+    "TEST_RIG",
     "WANG_SU_DEVICE",
     "Corner",
     "FloorDevice",

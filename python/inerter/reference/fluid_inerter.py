@@ -17,17 +17,19 @@ Not modelled: channel losses beyond c_f and c_a, cavitation that makes the air c
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import csd
 
+from inerter.model_parameters import FLUID_INERTER, SHAKER, FluidInerterParameters, ShakerParameters
+
 from .device import ReferenceDevice
-from .model_parameters import FLUID_INERTER, SHAKER, FluidInerterParameters, ShakerParameters
-from .structure import Array, Structure
+from .structure import Array, RunOptions, Structure
 from .strut import Strut
 
 SWEEP_START, SWEEP_END, SWEEP_TIME = 0.5, 12.0, 60.0
@@ -152,30 +154,19 @@ class FluidInerterTest:
         self,
         voltage: Callable[[float], float],
         times: ArrayLike,
-        *,
-        initial: ArrayLike | None = None,
-        method: str = "Radau",
-        rtol: float = 1e-7,
-        atol: float = 1e-10,
-        breakpoints: Sequence[float] = (),
+        **options: Unpack[RunOptions],
     ) -> FluidInerterResult:
         """Drive the shaker with `voltage`: time [s] -> input [V] before the gain.
 
-        Other arguments and what is raised: as for `Structure.simulate`.
+        Other arguments and what is raised: as for `Structure.simulate`, but rtol is 1e-7 and atol
+        1e-10 unless given.
         """
 
         def forces(t: float) -> Array:
             return np.array([0.0, self.shaker.gain * float(voltage(t))])
 
-        run = self.structure.simulate(
-            forces,
-            times,
-            initial=initial,
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            breakpoints=breakpoints,
-        )
+        options = RunOptions(rtol=1e-7, atol=1e-10) | options
+        run = self.structure.simulate(forces, times, **options)
         x, states = run.position[:, 0], run.device_states[0]
         inside = self.device.gas_valid(x, self.device.state_argument(states))
         return FluidInerterResult(

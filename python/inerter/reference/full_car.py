@@ -1,7 +1,7 @@
 """Full car: heave, pitch and roll of a body on four struts.
 
 Equations and signs in `vehicle.py`; wheels in the order front left, front right, rear left, rear
-right. Default parameters: `FULL_CAR` of `model_parameters.py`.
+right. Default parameters: `FULL_CAR` of `inerter/model_parameters.py`.
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Unpack
 
 from numpy.typing import ArrayLike
 
-from .model_parameters import FULL_CAR
-from .structure import Array, Structure
+from inerter.model_parameters import FULL_CAR
+
+from .structure import Array, RunOptions, Structure
 from .vehicle import Corner, Road, VehicleResult, assemble, corner_of, drive, require_positive
 
 
@@ -80,12 +82,8 @@ class FullCar:
         roads: Sequence[Road],
         times: ArrayLike,
         *,
-        initial: ArrayLike | None = None,
         body_load: Callable[[float], ArrayLike] | None = None,
-        method: str = "Radau",
-        rtol: float = 1e-9,
-        atol: float = 1e-12,
-        breakpoints: Sequence[float] = (),
+        **options: Unpack[RunOptions],
     ) -> FullCarResult:
         """Drive over a road.
 
@@ -95,7 +93,7 @@ class FullCar:
             Displacement [m] under each of the four wheels, each called with a time [s].
         body_load
             time -> (force [N] up, pitch moment, roll moment [N m]) on the body; none if not given.
-        times, initial, method, rtol, atol, breakpoints
+        times, options
             As for `Structure.simulate`.
 
         Raises
@@ -111,11 +109,7 @@ class FullCar:
             roads,
             times,
             body_load,
-            initial=initial,
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            breakpoints=breakpoints,
+            **options,
         )
         return FullCarResult(
             roll=run.position[:, 2],

@@ -1,7 +1,7 @@
 """Half-car: heave and pitch of a body on a front and a rear strut.
 
 Equations and signs in `vehicle.py`; front at x = l_f, rear at x = -l_r, no roll.
-Default parameters: `HALF_CAR` of `model_parameters.py`.
+Default parameters: `HALF_CAR` of `inerter/model_parameters.py`.
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Unpack
 
 from numpy.typing import ArrayLike
 
-from .model_parameters import HALF_CAR
-from .structure import Structure
+from inerter.model_parameters import HALF_CAR
+
+from .structure import RunOptions, Structure
 from .vehicle import Corner, Road, VehicleResult, assemble, corner_of, drive, require_positive
 
 
@@ -60,12 +62,8 @@ class HalfCar:
         roads: Sequence[Road],
         times: ArrayLike,
         *,
-        initial: ArrayLike | None = None,
         body_load: Callable[[float], ArrayLike] | None = None,
-        method: str = "Radau",
-        rtol: float = 1e-9,
-        atol: float = 1e-12,
-        breakpoints: Sequence[float] = (),
+        **options: Unpack[RunOptions],
     ) -> HalfCarResult:
         """Drive over a road.
 
@@ -75,7 +73,7 @@ class HalfCar:
             Displacement [m] under the front and under the rear wheel, each called with a time.
         body_load
             time -> (force [N] up, pitch moment [N m]) on the body; none if not given.
-        times, initial, method, rtol, atol, breakpoints
+        times, options
             As for `Structure.simulate`.
 
         Raises
@@ -91,10 +89,6 @@ class HalfCar:
             roads,
             times,
             body_load,
-            initial=initial,
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            breakpoints=breakpoints,
+            **options,
         )
         return HalfCarResult(**shared)  # pyright: ignore[reportArgumentType]

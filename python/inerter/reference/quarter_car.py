@@ -16,15 +16,18 @@ The device's force depends on the acceleration it causes; that is solved exactly
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.model_parameters import QUARTER_CAR
+
 from .device import ReferenceDevice
-from .structure import Structure, StructureRun
+from .structure import RunOptions, Structure, StructureRun
 from .strut import LAYOUTS, Strut
 
 __all__ = ["LAYOUTS", "QuarterCar", "QuarterCarResult"]
@@ -58,7 +61,9 @@ class QuarterCarResult:
 
 @dataclass(frozen=True, kw_only=True)
 class QuarterCar:
-    """Quarter-car of Wang and Su; the default masses and tyre are theirs.
+    """Quarter-car of Wang and Su: the defaults are `QUARTER_CAR` with the damper of its S2.
+
+    `device` stands in the strut as `layout` says; the default one does nothing.
 
     The state is (zs, zu, zs', zu'), for S3 then (y, y') (y alone if the device has a series
     element), then the device's states.
@@ -70,12 +75,12 @@ class QuarterCar:
     """
 
     layout: str = "S2"
-    stiffness: float = 120e3
-    damping: float = 3705.4
+    stiffness: float = QUARTER_CAR.stiffness
+    damping: float = QUARTER_CAR.struts["S2"].damping
     device: ReferenceDevice = field(default_factory=ReferenceDevice)
-    sprung_mass: float = 181.75
-    unsprung_mass: float = 25.0
-    tyre_stiffness: float = 120e3
+    sprung_mass: float = QUARTER_CAR.sprung_mass
+    unsprung_mass: float = QUARTER_CAR.unsprung_mass
+    tyre_stiffness: float = QUARTER_CAR.tyre_stiffness
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
@@ -115,12 +120,8 @@ class QuarterCar:
         road: Callable[[float], float],
         times: ArrayLike,
         *,
-        initial: ArrayLike | None = None,
         body_force: Callable[[float], float] | None = None,
-        method: str = "Radau",
-        rtol: float = 1e-9,
-        atol: float = 1e-12,
-        breakpoints: Sequence[float] = (),
+        **options: Unpack[RunOptions],
     ) -> QuarterCarResult:
         """Drive over a road.
 
@@ -128,24 +129,15 @@ class QuarterCar:
         ----------
         road
             zr(t) [m], called with one time [s].
-        times
-            Requested times [s], shape (n,), increasing; the run starts at `times[0]`.
-        initial
-            State at `times[0]`, shape (nstate,); rest if not given.
         body_force
             F_s(t) [N] on the body; none if not given.
-        method
-            A method of `scipy.integrate.solve_ivp`: "Radau" for friction, which is stiff,
-            "DOP853" for smooth devices.
-        rtol, atol
-            Tolerances of the solver; `atol` [m, m/s] is for every state alike.
-        breakpoints
-            Times [s] where road or body force jump or kink; the solver restarts there.
+        times, options
+            As for `Structure.simulate`.
 
         Raises
         ------
         ValueError
-            `initial` has the wrong length, or the times do not increase.
+            A wrong initial state, or times that do not increase.
         RuntimeError
             The solver gave up.
         """
@@ -154,15 +146,7 @@ class QuarterCar:
         def forces(t: float) -> NDArray[np.float64]:
             return np.array([float(push(t)), self.tyre_stiffness * float(road(t))])
 
-        run = self.structure.simulate(
-            forces,
-            times,
-            initial=initial,
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            breakpoints=breakpoints,
-        )
+        run = self.structure.simulate(forces, times, **options)
         return self._result(run, np.array([float(road(t)) for t in run.time]))
 
     def _result(self, run: StructureRun, roads: NDArray[np.float64]) -> QuarterCarResult:

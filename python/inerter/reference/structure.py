@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise, product
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +30,17 @@ from .strut import Strut, StrutPoint
 
 Array = NDArray[np.float64]
 Forces = Callable[[float], Array]
+
+
+class RunOptions(TypedDict, total=False):
+    """What the models hand on to `Structure.simulate`; meaning and defaults stand there."""
+
+    initial: ArrayLike | None
+    method: str
+    rtol: float
+    atol: float
+    max_step: float
+    breakpoints: Sequence[float]
 
 
 @dataclass(frozen=True)

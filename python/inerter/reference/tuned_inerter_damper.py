@@ -21,14 +21,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
+from inerter.model_parameters import FRAME
+
 from .device import ReferenceDevice
-from .model_parameters import FRAME
-from .structure import Array, Structure
+from .structure import Array, RunOptions, Structure
 from .strut import Strut
 
 
@@ -148,11 +150,7 @@ class ShearFrame:
         *,
         ground_acceleration: Callable[[float], float] | None = None,
         floor_forces: Callable[[float], ArrayLike] | None = None,
-        initial: ArrayLike | None = None,
-        method: str = "Radau",
-        rtol: float = 1e-9,
-        atol: float = 1e-12,
-        breakpoints: Sequence[float] = (),
+        **options: Unpack[RunOptions],
     ) -> FrameResult:
         """Shake the frame.
 
@@ -162,7 +160,7 @@ class ShearFrame:
             time [s] -> acceleration of the ground [m/s^2].
         floor_forces
             time [s] -> forces on the floors [N], shape (floors,).
-        times, initial, method, rtol, atol, breakpoints
+        times, options
             As for `Structure.simulate`.
 
         Raises
@@ -181,15 +179,7 @@ class ShearFrame:
             pushed = 0.0 if floor_forces is None else np.asarray(floor_forces(t), dtype=np.float64)
             return pushed - mass * ground(t)
 
-        run = self.structure.simulate(
-            forces,
-            times,
-            initial=initial,
-            method=method,
-            rtol=rtol,
-            atol=atol,
-            breakpoints=breakpoints,
-        )
+        run = self.structure.simulate(forces, times, **options)
         below = np.array([[ground(float(t))] for t in run.time])
         return FrameResult(
             time=run.time,

@@ -16,13 +16,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.model_parameters import AxleParameters
+
 from .device import ReferenceDevice
-from .model_parameters import AxleParameters
-from .structure import Structure, StructureRun
+from .structure import RunOptions, Structure, StructureRun
 from .strut import Strut
 
 Array = NDArray[np.float64]
@@ -113,7 +115,7 @@ def drive(
     roads: Sequence[Road],
     times: ArrayLike,
     loads: Callable[[float], ArrayLike] | None,
-    **options: object,
+    **options: Unpack[RunOptions],
 ) -> tuple[StructureRun, dict[str, object]]:
     """Run over the roads; the second result are the fields that all vehicles share.
 
@@ -132,7 +134,7 @@ def drive(
         on_body = np.zeros(parts) if loads is None else np.asarray(loads(t), dtype=np.float64)
         return np.concatenate((on_body, tyres * surface(t)))
 
-    run = structure.simulate(forces, times, **options)  # pyright: ignore[reportArgumentType]
+    run = structure.simulate(forces, times, **options)
     wheels = run.position[:, parts:]
     shared: dict[str, object] = {
         "time": run.time,

@@ -15,13 +15,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.model_parameters import TEST_RIG
+
 from .device import ReferenceDevice
 from .laws import Quantity
 from .motion import Motion, response
 from .motions import Jet, motion_of, product, total, window, windowed_sines
 from .record import write_record
 
-WANG_SU_DEVICE = ReferenceDevice(inertance=113.0, friction="coulomb", coulomb_force=10.0)
+WANG_SU_DEVICE = ReferenceDevice(
+    inertance=TEST_RIG.inertance, friction="coulomb", coulomb_force=TEST_RIG.coulomb_force
+)
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,39 @@
 """Published parameter sets of the models, each number once; SI units.
 
-The reference models take them as defaults, and the shipped MuJoCo and Exudyn models use the same
-numbers. What is not published but chosen here stands in a field's own sentence.
+Plain data, and nothing else: the reference models take it as defaults, the Exudyn models are built
+from it, and tests hold the MJCF files to it. What is not published but chosen here stands in a
+field's own sentence.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrutParameters:
+    """Damper and inerter of a strut: `damping` [N s/m], `inertance` [kg], 0 without inerter."""
+
+    damping: float
+    inertance: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuarterCarParameters:
+    """Quarter-car: `sprung_mass`, `unsprung_mass` [kg], `tyre_stiffness`, `stiffness` [N/m].
+
+    `struts` has the damper and the inerter of each layout, "S1", "S2" and "S3". `strut_length` [m]
+    at rest is this project's.
+    """
+
+    sprung_mass: float
+    unsprung_mass: float
+    tyre_stiffness: float
+    stiffness: float
+    struts: Mapping[str, StrutParameters]
+    strut_length: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,27 +55,39 @@ class AxleParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class HalfCarParameters:
-    """Half-car: `body_mass` [kg], `pitch_inertia` [kg m^2] about the centre of mass, two axles."""
+    """Half-car: `body_mass` [kg], `pitch_inertia` [kg m^2] about the centre of mass, two axles.
+
+    `strut_length` [m] at rest, upright, and `centre_height`, `wheel_height` [m] of the centres of
+    mass above the road are this project's.
+    """
 
     body_mass: float
     pitch_inertia: float
     front: AxleParameters
     rear: AxleParameters
+    strut_length: float
+    centre_height: float
+    wheel_height: float
 
 
 @dataclass(frozen=True, kw_only=True)
 class FullCarParameters:
     """Full car: as the half-car, with `roll_inertia` [kg m^2] and `track` [m] between wheels.
 
-    `front` and `rear` are each one of the axle's two equal wheels.
+    `front` and `rear` are each one of the axle's two equal wheels. `yaw_inertia` [kg m^2], which
+    counts when the car both pitches and rolls far, is this project's.
     """
 
     body_mass: float
     pitch_inertia: float
     roll_inertia: float
+    yaw_inertia: float
     track: float
     front: AxleParameters
     rear: AxleParameters
+    strut_length: float
+    centre_height: float
+    wheel_height: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,10 +152,64 @@ class FluidInerterParameters:
     air_column: float
 
 
+@dataclass(frozen=True, kw_only=True)
+class BenchDeviceParameters:
+    """A ball-screw inerter on a bench: `screw_inertance`, `flywheel_inertance` [kg].
+
+    `coulomb_force` [N]; `series_stiffness` [N/m], `series_damping` [N s/m] of the shaft; `backlash`
+    [m], half of the play. `table_mass` [kg] of the bench that imposes the motion is this
+    project's: so heavy that no device moves it.
+    """
+
+    screw_inertance: float
+    flywheel_inertance: float
+    coulomb_force: float
+    series_stiffness: float
+    series_damping: float
+    backlash: float
+    table_mass: float
+
+    @property
+    def inertance(self) -> float:
+        """Screw and flywheel [kg]."""
+        return self.screw_inertance + self.flywheel_inertance
+
+
+QUARTER_CAR = QuarterCarParameters(
+    sprung_mass=181.75,
+    unsprung_mass=25.0,
+    tyre_stiffness=120e3,
+    stiffness=120e3,
+    struts=MappingProxyType(
+        {
+            "S1": StrutParameters(damping=4981.0, inertance=0.0),
+            "S2": StrutParameters(damping=3705.4, inertance=128.57),
+            "S3": StrutParameters(damping=7544.2, inertance=366.52),
+        }
+    ),
+    strut_length=0.5,
+)
+"""Wang and Su, "Inerter nonlinearities and the impact on suspension control", ACC 2008: masses and
+tyre, and at k = 120 kN/m the damping and inertance that minimise the ride comfort index J1 (Table
+1, recomputed)."""
+
+TEST_RIG = BenchDeviceParameters(
+    screw_inertance=5.0,
+    flywheel_inertance=108.0,
+    coulomb_force=10.0,
+    series_stiffness=1e6,
+    series_damping=3200.0,
+    backlash=0.0,
+    table_mass=1e12,
+)
+"""The bench device that Wang and Su identified, in the same paper; the model on the test rig has
+its inertance alone."""
+
 FULL_CAR = FullCarParameters(
     body_mass=1460.0,
     pitch_inertia=2460.0,
     roll_inertia=460.0,
+    yaw_inertia=2600.0,
     track=1.51,
     front=AxleParameters(
         distance=1.011,
@@ -134,6 +227,9 @@ FULL_CAR = FullCarParameters(
         tyre_stiffness=175500.0,
         inertance=30.0,
     ),
+    strut_length=0.55,
+    centre_height=0.55,
+    wheel_height=0.31,
 )
 """A passenger car: Table 2 of "Equivalent air spring suspension model for quarter-passive model
 of passenger vehicles", ISRN (Hindawi) 2015, 974020; the set goes back to Bouazara and Richard,
@@ -145,6 +241,9 @@ HALF_CAR = HalfCarParameters(
     pitch_inertia=FULL_CAR.pitch_inertia / 2.0,
     front=FULL_CAR.front,
     rear=FULL_CAR.rear,
+    strut_length=FULL_CAR.strut_length,
+    centre_height=FULL_CAR.centre_height,
+    wheel_height=FULL_CAR.wheel_height,
 )
 """One side of `FULL_CAR`: half its body, one wheel of each axle."""
 
