@@ -54,6 +54,7 @@ $(VENV)/dev: $(SOURCES) | $(VENV)/created
 	@echo 'installing inerter with the lab and the tools (a minute when it is the first time)'
 	@$(PIP) '.[lab,exudyn,dev]' $(TOOLS) || { \
 	  echo 'again, without Exudyn'; $(PIP) '.[lab,dev]' $(TOOLS); }
+	@$(PIP) '.[oracles]' || echo 'no OpenSees for this Python: its tests are skipped'
 	@touch $(VENV)/lab $@
 
 #------------------------------ use ----------------------------------------------------------------
