@@ -21,6 +21,7 @@ from inerter.exudyn.user_functions import (
     force_function,
     mass_function,
     mass_matrix,
+    recalled,
     symbolic_force,
 )
 
@@ -248,9 +249,10 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
                 numberOfODE2Coordinates=len(names),
             )
         )
+    at = recalled(kinematics)
     compiled = element.recordable if symbolic is None else symbolic
-    force = symbolic_force(element, mbs) if compiled else force_function(element)
-    mass = 0 if element.constant_mass else mass_function(element)
+    force = symbolic_force(element, mbs) if compiled else force_function(element, at)
+    mass = 0 if element.constant_mass else mass_function(element, at)
     number = mbs.AddObject(
         itemInterface.ObjectGenericODE2(
             name=name,

@@ -20,8 +20,10 @@ from inerter.exudyn import device as law
 from inerter.exudyn import flywheel, series
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.functions import NUMBERS, expressions
-from inerter.exudyn.kinematics import Line, Span
+from inerter.exudyn.kinematics import Line, Motion, Span
 from inerter.exudyn.parameters import Parameters
+
+Kinematics = Callable[[Sequence[float], Sequence[float]], Motion]
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,18 @@ class Element:
         return isinstance(self.kinematics, Line) and not self.loaded
 
 
+def recalled(kinematics: Line | Span) -> Kinematics:
+    """The kinematics with a memory of one: forces and mass matrix are asked at the same point."""
+    last: list[Any] = [None, None, None]
+
+    def at(q: Sequence[float], q_t: Sequence[float]) -> Motion:
+        if q != last[0] or q_t != last[1]:
+            last[:] = q, q_t, kinematics.at(q, q_t)
+        return last[2]
+
+    return at
+
+
 def mass_matrix(element: Element) -> np.ndarray:
     """The mass matrix of a device at rest, shape (size, size); constant where it is constant."""
     matrix = np.zeros((element.size, element.size))
@@ -74,15 +88,16 @@ def mass_matrix(element: Element) -> np.ndarray:
     return matrix
 
 
-def mass_function(element: Element) -> Callable[..., np.ndarray]:
+def mass_function(element: Element, at: Kinematics | None = None) -> Callable[..., np.ndarray]:
     """massMatrixUserFunction(mbs, t, itemNumber, q, q_t)."""
     p, first = element.device, element.kinematics.size
+    motion_at = at or recalled(element.kinematics)
     matrix = mass_matrix(element)
 
     def massMatrixUserFunction(  # noqa: N802 - Exudyn's name
         mbs: Any, t: float, itemNumber: int, q: Sequence[float], q_t: Sequence[float]
     ) -> np.ndarray:
-        motion = element.kinematics.at(q, q_t)
+        motion = motion_at(q, q_t)
         x, row = motion.length - p.rest_length, np.array(motion.row)
         sign = load_sign(mbs, itemNumber, element, x, motion.rate, motion.bias, motion.row)
         inertance = law.mass(NUMBERS, p, x, motion.rate, sign)
@@ -92,15 +107,16 @@ def mass_function(element: Element) -> Callable[..., np.ndarray]:
     return massMatrixUserFunction
 
 
-def force_function(element: Element) -> Callable[..., list[float]]:
+def force_function(element: Element, at: Kinematics | None = None) -> Callable[..., list[float]]:
     """forceUserFunction(mbs, t, itemNumber, q, q_t), on numbers."""
     p, first = element.device, element.kinematics.size
+    motion_at = at or recalled(element.kinematics)
     through_mass = not element.constant_mass
 
     def forceUserFunction(  # noqa: N802 - Exudyn's name
         mbs: Any, t: float, itemNumber: int, q: Sequence[float], q_t: Sequence[float]
     ) -> list[float]:
-        motion = element.kinematics.at(q, q_t)
+        motion = motion_at(q, q_t)
         x, v, z = motion.length - p.rest_length, motion.rate, q_t[first:]
         at_terminals = 0.0
         rates = [0.0] * element.states
