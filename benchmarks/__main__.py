@@ -8,6 +8,7 @@ import platform
 from pathlib import Path
 from typing import Any
 
+from inerter.exudyn.engine import installed
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
@@ -39,7 +40,7 @@ def main() -> None:
     results: dict[str, Any] = {"machine": platform.processor() or platform.machine()}
     for name in track(BENCHMARKS, description="benchmarks", console=console):
         title, run = BENCHMARKS[name]
-        if name == "exudyn_cost" and not exudyn_cost.available():
+        if name == "exudyn_cost" and not installed():
             console.print('exudyn_cost is left out: `pip install "inerter[exudyn]"`')
             continue
         results[name] = run(options.quick)

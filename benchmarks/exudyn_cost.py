@@ -48,15 +48,6 @@ ELEMENTS: dict[str, dict[str, Any]] = {
 }
 
 
-def available() -> bool:
-    """Whether Exudyn can be imported."""
-    try:
-        exudyn()
-    except ImportError:
-        return False
-    return True
-
-
 def _friction(v: float, z: float, law: dict[str, float]) -> tuple[float, float]:
     """Force and state rate of LuGre, as short as Python can say it."""
     s0, s1, fc, fs, vs = (law[key] for key in LUGRE)

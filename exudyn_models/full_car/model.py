@@ -1,6 +1,6 @@
 """Full car in Exudyn: a body that heaves, pitches and rolls on four struts with inerters.
 
-Coordinates, layouts and numbers: README.md; wheel, tyre and strut: `inerter.exudyn_corner`. Run
+Coordinates, layouts and numbers: README.md; wheel, tyre, strut: `inerter.exudyn.model_corner`. Run
 this file for a bump on the right.
 """
 
@@ -13,8 +13,8 @@ import exudyn as exu
 import numpy as np
 from exudyn import graphics
 from exudyn.rigidBodyUtilities import RigidBodyInertia
-from inerter.exudyn_corner import add_corner, lock
-from inerter.exudyn_parts import Model, device_parameters, named, save_picture, simulate
+from inerter.exudyn.model_corner import add_corner, lock
+from inerter.exudyn.model_parts import Model, device_parameters, named, save_picture, simulate
 from inerter.model_parameters import FULL_CAR
 
 CORNERS = ("front_left", "front_right", "rear_left", "rear_right")

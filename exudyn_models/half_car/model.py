@@ -1,6 +1,6 @@
 """Half-car in Exudyn: a body that heaves and pitches on two struts with inerters.
 
-Coordinates, layouts and numbers: README.md; wheel, tyre and strut: `inerter.exudyn_corner`. Run
+Coordinates, layouts and numbers: README.md; wheel, tyre, strut: `inerter.exudyn.model_corner`. Run
 this file for a bump.
 """
 
@@ -13,8 +13,8 @@ import exudyn as exu
 import numpy as np
 from exudyn import graphics
 from exudyn.rigidBodyUtilities import RigidBodyInertia
-from inerter.exudyn_corner import add_corner, lock
-from inerter.exudyn_parts import Model, device_parameters, named, save_picture, simulate
+from inerter.exudyn.model_corner import add_corner, lock
+from inerter.exudyn.model_parts import Model, device_parameters, named, save_picture, simulate
 from inerter.model_parameters import HALF_CAR
 
 COORDINATES = ("heave", "pitch", "wheel_front", "wheel_rear")

@@ -15,7 +15,7 @@ import numpy as np
 from exudyn.itemInterface import Mass1D, Node1D
 from inerter.core import Device
 from inerter.exudyn import CreateInerter
-from inerter.exudyn_parts import (
+from inerter.exudyn.model_parts import (
     Model,
     device_parameters,
     drive_coordinate,

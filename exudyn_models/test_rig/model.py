@@ -13,7 +13,7 @@ import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import Mass1D, Node1D
 from inerter.exudyn import CreateInerter
-from inerter.exudyn_parts import Model, drive_coordinate, named, save_picture, simulate
+from inerter.exudyn.model_parts import Model, drive_coordinate, named, save_picture, simulate
 from inerter.model_parameters import TEST_RIG
 
 COORDINATES = ("table",)

@@ -14,7 +14,7 @@ import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import Mass1D, Node1D
 from inerter.exudyn import CreateInerter
-from inerter.exudyn_parts import (
+from inerter.exudyn.model_parts import (
     Model,
     drive_coordinate,
     named,

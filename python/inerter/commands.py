@@ -198,6 +198,57 @@ def simulate_command(
             out.print(f"Video: {video}")
 
 
+@app.command("validate")
+def validate_command(
+    model: Annotated[
+        list[str] | None,
+        typer.Option(help="A model, or one layout as in quarter_car/S2; may be given again."),
+    ] = None,
+    law: Annotated[list[str] | None, typer.Option(help="A law; may be given again.")] = None,
+    engine: Annotated[
+        list[str] | None, typer.Option(help="mujoco or exudyn; may be given again.")
+    ] = None,
+    integrator: Annotated[
+        list[str] | None, typer.Option(help="An integrator; may be given again.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A few cases, in a minute.")] = False,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/validate"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print validation.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Run models, laws and inputs in every engine and integrator, against the reference equations.
+
+    Writes validation.json and validation.png. Exit status 1 if something misses its bound.
+    """
+    from inerter.validate import Selection, SelectionError, validate
+    from inerter.validate.output import json_text, write_validation
+    from inerter.validate.table import print_validation
+
+    try:
+        refuse_folder(out_dir)
+        names = (tuple(given or ()) for given in (model, law, engine, integrator))
+        with _progress_bar("validating", as_json) as progress:
+            result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
+        files = write_validation(result, out_dir)
+    except SelectionError as error:
+        _refuse(str(error))
+    except OSError as error:
+        _refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(json_text(result), end="")
+    else:
+        print_validation(result, out)
+        out.print(f"Written to {out_dir}: {', '.join(files)}")
+    if result.missed:
+        raise typer.Exit(1)
+
+
 @app.command()
 def demo(
     out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(

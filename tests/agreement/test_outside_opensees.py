@@ -225,7 +225,7 @@ def in_mujoco(device: str, place: str) -> Array:
 def in_exudyn(device: str, place: str) -> Array:
     """Floors of the shipped model under RK44."""
     exu: Any = pytest.importorskip("exudyn")
-    from inerter.exudyn_parts import simulate
+    from inerter.exudyn.model_parts import simulate
 
     mbs = exu.SystemContainer().AddSystem()
     model = exudyn_model("tuned_inerter_damper").build(

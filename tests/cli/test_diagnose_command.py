@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from inerter.exudyn.engine import installed
 
 
 def inerter(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -58,7 +58,7 @@ def test_json_alone_on_stdout(diagnosed) -> None:
     assert offset["value"] == pytest.approx(5, abs=0.1)
     assert offset["unit"] == "N"
     assert {record["role"] for record in printed["records"]} == {"fit", "holdout"}
-    for engine in ("mujoco", "reference", *(["exudyn"] if find_spec("exudyn") else [])):
+    for engine in ("mujoco", "reference", *(["exudyn"] if installed() else [])):
         rmse = printed["engines"][engine]["rmse"]
         assert rmse == pytest.approx(printed["extended"]["rmse"], rel=1e-3), engine
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
-
 import numpy as np
 import pytest
 from hidden import solve
+from inerter.exudyn.engine import installed
 from inerter.reference import EFFECTS, HiddenCase, ReferenceDevice
 
 CASES: list[tuple[str, str | None]] = [
@@ -77,7 +76,7 @@ def test_engines_agree_with_the_diagnosis(solved) -> None:
     """
     _, diagnosis = solved
     assert diagnosis.engines["mujoco"] == pytest.approx(diagnosis.extended.rmse, rel=1e-3)
-    for engine in ("reference", *(["exudyn"] if find_spec("exudyn") else [])):
+    for engine in ("reference", *(["exudyn"] if installed() else [])):
         assert diagnosis.engines[engine] == pytest.approx(diagnosis.extended.rmse, rel=0.02), engine
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter import rig
 from inerter.core import Device
+from inerter.exudyn.engine import installed
 from inerter.identify.bench import Run
 from inerter.identify.fit import Model, delayed, first_state
 from inerter.reference import Motion, ReferenceDevice, response
@@ -28,7 +28,7 @@ def simulate_engines(
     motion (a bristle too stiff for the samples, a friction level that reaches zero).
     """
     found: dict[str, float | None] = {"mujoco": _error(_mujoco, model, runs, masks)}
-    others = {"exudyn": _exudyn if find_spec("exudyn") else None, "reference": _reference}
+    others = {"exudyn": _exudyn if installed() else None, "reference": _reference}
     for name, along in others.items():
         try:
             found[name] = along and _error(along, model, runs, masks)

@@ -81,11 +81,12 @@ class Inerter:
             return np.zeros(0)
         values = self._coordinates("Coordinates_t", configuration)[self.element.kinematics.size :]
         device = self.device
-        if device.backlash and not device.series_damping:
-            # without a damper the position in the play follows from the deflection
-            deflection = values[self.stateNames.index("series_deflection")]
-            place = np.clip(deflection, -device.backlash, device.backlash)
-            values[self.stateNames.index("gap_position")] = place
+        if device.backlash:
+            # within the play, past whose edge a last step may have gone; without a damper the
+            # position follows from the deflection
+            gap = self.stateNames.index("gap_position")
+            place = values[gap if device.series_damping else gap - 2]
+            values[gap] = np.clip(place, -device.backlash, device.backlash)
         return values
 
     def Evaluate(self, configuration: Any = None) -> dict[str, Any]:  # noqa: N802
@@ -180,6 +181,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     symbolic: bool | None = None,
     initialStates: Mapping[str, float] | None = None,
     dissipatedEnergy: bool = False,
+    smoothPlay: bool = False,
     show: bool = True,
     drawSize: float = -1.0,
     color: Sequence[float] | None = None,
@@ -208,6 +210,10 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         States at the start by name, as in `Inerter.stateNames`; 0 for those not given.
     dissipatedEnergy
         Whether to add up the dissipated energy [J], as one more state.
+    smoothPlay
+        Whether the teeth of a damped backlash begin to press a little before they meet, without a
+        jump of the force: for implicit solvers, whose steps may else have no solution. The play
+        then seems smaller by some c_s v / (10 k_s).
     show, drawSize, color
         Whether and how a device between points is drawn.
     **parameters
@@ -229,7 +235,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     itemInterface = exudyn("itemInterface")
     device = Device(**parameters)
     nodes, kinematics = terminals(mbs, name, itemNumbers, (localPosition0, localPosition1))
-    element = Element(Parameters.of(device), kinematics, dissipatedEnergy)
+    element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
     if symbolic and not element.recordable:
         raise ValueError(
             "symbolic: True, but Exudyn can evaluate by itself only devices on 1D coordinates, "

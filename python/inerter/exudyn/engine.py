@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import functools
 import importlib
+import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
+
+
+def installed() -> bool:
+    """Whether Exudyn can be imported; a mere folder of its name does not count."""
+    found = importlib.util.find_spec("exudyn")
+    return found is not None and found.origin is not None
 
 
 @functools.cache
@@ -18,13 +25,12 @@ def exudyn(module: str = "") -> Any:
     ImportError
         It is not installed; the message says how to install it.
     """
-    try:
-        package = importlib.import_module("exudyn")
-    except ImportError as error:
+    if not installed():
         raise ImportError(
             'Exudyn is not installed; run `pip install "inerter[exudyn]"` '
             "(it has wheels for the usual Pythons)"
-        ) from error
+        )
+    package = importlib.import_module("exudyn")
     if not module or hasattr(package, module):
         return getattr(package, module) if module else package
     return importlib.import_module(f"exudyn.{module}")

@@ -9,6 +9,10 @@ Symbols: s series deflection [m], g position within the play [m], |g| <= eps `ba
 press at g = eps while r > 0 and at g = -eps while r < 0; elsewhere the shaft relaxes with g' = r.
 Sign: tension positive. Source: Nordin, Galic and Gutman 1997.
 
+At the edge the force of a damped shaft jumps, and a step of an implicit solver may have no
+solution. `smooth_play` makes a corner of the jump: the teeth press from r = K (eps - g) on, K being
+`EAGER` k_s / c_s; the play then seems shorter by r / K.
+
 A solver's last step may carry g a little past the edge; the force takes the edge, and g is drawn
 back at the shaft's own rate k_s / c_s.
 """
@@ -19,6 +23,9 @@ from typing import NamedTuple
 
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
+
+EAGER = 10.0
+"""With smooth play the teeth begin to press this many times faster than the shaft relaxes."""
 
 
 class Series(NamedTuple):
@@ -41,6 +48,11 @@ def at(f: Functions, p: Parameters, s: Value, rate: Value, gap: Value) -> Series
     if not p.series_damping:
         return Series(_spring(f, p, s - position(f, p, s, gap)), 0.0)
     relaxing = rate + _spring(f, p, s - position(f, p, s, gap)) / p.series_damping
+    if p.smooth_play and p.series_stiffness:
+        eager = EAGER * p.series_stiffness / p.series_damping
+        upper = f.greatest(0.0, relaxing + eager * (gap - eps))
+        pressing = upper + f.least(0.0, relaxing + eager * (gap + eps))
+        return Series(p.series_damping * pressing, relaxing - pressing)
     pressing = f.choose(
         gap >= eps, f.greatest(0.0, relaxing), f.choose(gap <= -eps, f.least(0.0, relaxing), 0.0)
     )
@@ -71,10 +83,12 @@ def dissipated_power(f: Functions, p: Parameters, s: Value, rate: Value, gap: Va
         return 0.0
     if not p.backlash:
         return p.series_damping * rate * rate
-    spring = _spring(f, p, s - position(f, p, s, gap))
+    spring, shaft = _spring(f, p, s - position(f, p, s, gap)), at(f, p, s, rate, gap)
     # (F_s - phi) / c_s is the rate at which the shaft itself deforms
-    deforming = (at(f, p, s, rate, gap).force - spring) / p.series_damping
-    return p.series_damping * deforming * deforming
+    deforming = (shaft.force - spring) / p.series_damping
+    heat = p.series_damping * deforming * deforming
+    # teeth that press before the edge give way
+    return heat + shaft.force * shaft.gap_rate if p.smooth_play else heat
 
 
 def _inside(f: Functions, p: Parameters, d: Value) -> Value:

@@ -185,7 +185,8 @@ def _line(mbs: Any, places: list[Place], starts: dict[int, int], size: int) -> L
         coordinate = place.coordinate or 0
         if not 0 <= coordinate < count:
             raise ValueError(
-                f"itemNumbers: coordinate {coordinate} of node {int(place.node)}, which has {count}"
+                f"itemNumbers: coordinate {coordinate} of node {int(place.node)}, which has "
+                f"{count}, counted from 0"
             )
         found.append((starts[int(place.node)] + coordinate, weight))
     return Line(size, tuple(place for place, _ in found), tuple(weight for _, weight in found))

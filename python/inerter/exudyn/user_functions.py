@@ -145,7 +145,8 @@ def force_function(element: Element, at: Kinematics | None = None) -> Callable[.
 def last_acceleration(mbs: Any, itemNumber: int, row: Sequence[float], bias: float) -> float:
     """The latest relative acceleration that the solver knows [m/s^2]."""
     kind = exudyn().OutputVariableType.Coordinates_tt
-    found = mbs.GetObjectOutputBody(itemNumber, kind, [0.0, 0.0, 0.0])
+    # one coordinate alone comes as a number
+    found = np.atleast_1d(mbs.GetObjectOutputBody(itemNumber, kind, [0.0, 0.0, 0.0]))
     return float(np.dot(row, found[: len(row)])) + bias
 
 

@@ -20,7 +20,7 @@ from exudyn import graphics
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from inerter.exudyn import CreateInerter
-from inerter.exudyn_parts import Drive, drive_coordinate, spring_damper
+from inerter.exudyn.model_parts import Drive, drive_coordinate, spring_damper
 from inerter.model_parameters import AxleParameters, FullCarParameters, HalfCarParameters
 
 Z = 2

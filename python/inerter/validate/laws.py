@@ -1,0 +1,118 @@
+"""The laws that are compared, each acting: friction sticks and slides, play opens, stops are hit.
+
+Parameters are those of a quarter-car with an inertance of 128.57 kg. For another model they are
+read in other units: a law written in (kg, m, s) is the same law in (mass kg, length m, s), and so
+acts in the same way on motions that are `length` times as large with forces
+`mass * length` times as large. What each parameter's unit says decides; nothing is listed by hand.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from inerter.core import parameters
+
+Kind = Literal["smooth", "corner", "contact"]
+INERTANCE = 128.57
+"""Inertance [kg] to which the parameters below belong."""
+
+# kg, m of each unit that a parameter is declared in; seconds are not changed
+_UNITS = {"1": (0, 0), "kg": (1, 0), "m": (0, 1), "s": (0, 0), "N": (1, 1), "Pa": (1, -1)}
+
+
+@dataclass(frozen=True)
+class Law:
+    """A named set of device parameters.
+
+    `kind` says how smooth its force is along a motion: "smooth" (all derivatives that an
+    integrator of fourth order wants), "corner" (a kink, or a rise steeper than a step resolves),
+    "contact" (a state that starts and stops).
+    """
+
+    name: str
+    kind: Kind
+    device: dict[str, float | str]
+
+
+def _law(name: str, kind: Kind, **device: float | str) -> Law:
+    # a channel's geometry gives the inertance
+    own = {} if "channel_area" in device else {"inertance": INERTANCE}
+    return Law(name, kind, own | device)
+
+
+_SLIDING = {"coulomb_force": 200.0, "static_force": 300.0, "stribeck_velocity": 0.05}
+_SHAFT = {"series_stiffness": 1e6, "series_damping": 3200.0}
+
+LAWS = {
+    law.name: law
+    for law in (
+        _law("ideal", "smooth"),
+        _law("linear", "smooth", viscous=500.0, stiffness=2e4, force_offset=20.0),
+        _law("cubic_stiffness", "smooth", stiffness_cubic=2e8),
+        _law("gas_spring", "smooth", gas_pressure=5e5, gas_area=2e-3, gas_volume=1e-4),
+        _law("variable_inertance", "smooth", inertance_gradient=8.0, inertance_curvature=500.0),
+        _law("series", "smooth", **_SHAFT),
+        _law("series_hardening", "smooth", **_SHAFT, series_hardening=200.0,
+             flywheel_viscous=100.0),
+        _law("brown_mcphee", "smooth", friction="brown_mcphee", coulomb_force=200.0,
+             static_force=300.0, stribeck_velocity=0.2),
+        _law("quadratic_damping", "corner", quadratic_damping=5e3),
+        _law("speed_inertance", "corner", inertance_speed_gradient=1.0),
+        _law("channel", "corner", piston_area=1.649e-3, channel_area=2.827e-5, channel_length=1.34,
+             fluid_density=998.0, fluid_viscosity=1e-3, channel_roughness=1e-5, minor_loss=2.5),
+        _law("load_friction", "corner", load_friction=0.1, transition_velocity=2e-2),
+        _law("coulomb", "corner", friction="coulomb", coulomb_force=200.0,
+             transition_velocity=2e-3),
+        _law("stribeck", "corner", friction="stribeck", **_SLIDING, transition_velocity=2e-3),
+        _law("dahl", "corner", friction="dahl", coulomb_force=200.0, bristle_stiffness=1e5),
+        _law("lugre", "corner", friction="lugre", **_SLIDING, bristle_stiffness=1e5,
+             bristle_damping=300.0),
+        _law("bouc_wen", "corner", friction="bouc_wen", bw_stiffness=1e5, bw_beta=400.0,
+             bw_gamma=100.0, bw_ratio=0.05),
+        _law("end_stops", "corner", stop_lower=-5e-3, stop_upper=6e-3, stop_stiffness=1e6,
+             stop_damping=0.5),
+        _law("backlash", "contact", **_SHAFT, backlash=5e-4),
+    )
+}  # fmt: skip
+"""The laws by name."""
+
+
+def exponents(name: str, device: dict[str, float | str] | None = None) -> tuple[float, float]:
+    """Powers of mass and length in the unit of a parameter; `m^-n` takes n from `device`."""
+    unit = parameters()[name].unit
+    power = float((device or {}).get("bw_exponent", parameters()["bw_exponent"].initial))
+    mass = length = 0.0
+    sign = 1
+    for part in re.split(r"([*/])", unit):
+        if part in ("*", "/"):
+            sign = 1 if part == "*" else -1
+            continue
+        base, _, raised = part.partition("^")
+        times = sign * (-power if raised == "-n" else int(raised or 1))
+        mass, length = mass + times * _UNITS[base][0], length + times * _UNITS[base][1]
+    return mass, length
+
+
+def in_units(
+    device: dict[str, float | str], *, mass: float = 1.0, length: float = 1.0
+) -> dict[str, float | str]:
+    """The same device for forces `mass * length` times and motions `length` times as large.
+
+    Parameters that are not given but have a default with such a unit (`transition_velocity`,
+    `stribeck_velocity`, `bristle_stiffness`) are written down where the law reads them.
+    """
+    friction = str(device.get("friction", "none"))
+    found: dict[str, float | str] = {}
+    for name, declared in parameters().items():
+        read = friction in declared.laws or (
+            name == "transition_velocity" and (friction != "none" or "load_friction" in device)
+        )
+        value = device.get(name, declared.initial if read else math.nan)
+        if isinstance(value, str) or math.isnan(value) or (value == 0.0 and name not in device):
+            continue
+        of_mass, of_length = exponents(name, device)
+        found[name] = value * mass**of_mass * length**of_length
+    return {name: value for name, value in device.items() if isinstance(value, str)} | found

@@ -1,0 +1,162 @@
+"""The element's own laws against the C core, and recorded as expressions against themselves."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+import pytest
+from inerter.core import Device
+from laws.core_draws import (  # pyright: ignore[reportMissingImports]
+    LAWS,
+    draw_complete,
+    draw_friction,
+    draw_levels,
+    draw_states,
+)
+
+pytest.importorskip("exudyn.itemInterface")
+
+from element_systems import Array, line
+from inerter.exudyn import CreateInerter
+from inerter.exudyn import device as law
+from inerter.exudyn.functions import NUMBERS
+from inerter.exudyn.parameters import Parameters
+from inerter.exudyn.user_functions import force_function
+
+SAME = 1e-11
+"""Relative to the sizes of what is added up; 1e-13 is seen."""
+POINTS = 8
+
+
+@functools.cache
+def devices(friction: str) -> list[tuple[Device, Array, Array]]:
+    """Random complete devices with one friction law, motions (points, 3), states."""
+    rng = np.random.default_rng(LAWS.index(friction))
+    found = []
+    for _ in range(80):
+        chosen = draw_complete(rng)
+        for name in ("coulomb_force", "bristle_stiffness", "dahl_exponent"):
+            chosen.pop(name, None)
+        levels = draw_levels(rng)
+        if friction in ("none", "bouc_wen"):
+            levels = {"transition_velocity": levels["transition_velocity"]}
+        chosen |= draw_friction(rng, friction) | levels
+        motion = np.column_stack(
+            [
+                rng.normal(0.0, 0.02, POINTS),
+                rng.normal(0.0, 1.0, POINTS) * 10 ** rng.uniform(-4, 0, POINTS),
+                rng.normal(0.0, 10.0, POINTS),
+            ]
+        )
+        states = draw_states(rng, POINTS, chosen)
+        device = Device(**chosen)
+        if device.backlash:
+            # what is a little outside belongs to solvers' steps, see below
+            states[:, -1] = np.clip(states[:, -1], -device.backlash, device.backlash)
+            if not device.series_damping:
+                states[:, -1] = np.clip(states[:, -3], -device.backlash, device.backlash)
+        found.append((device, motion, states))
+    return found
+
+
+def telling(device: Device, x: float, v: float, a: float, z: Array) -> dict[str, float]:
+    """All that the element says of a device at one point."""
+    p, states = Parameters.of(device), z.tolist()
+    stretch = x - device.rest_length
+    said = law.forces(p, stretch, v, a, states)
+    through = said["inertance"]
+    said["stored_energy"] = law.stored_energy(p, stretch, v, states)
+    said["dissipated_power"] = law.dissipated_power(NUMBERS, p, stretch, v, states, through)
+    return said
+
+
+def rigid(device: Device) -> bool:
+    return "series_deflection" not in device.state_names
+
+
+def core_telling(device: Device, motion: Array, states: Array) -> dict[str, Array]:
+    x, v, a = motion.T
+    return device.evaluate(x, v, a, states if device.nstate else 0.0)
+
+
+@pytest.mark.parametrize("friction", LAWS)
+def test_forces_and_energies_are_the_cores(friction: str) -> None:
+    worst: dict[str, float] = {}
+    for device, motion, states in devices(friction):
+        true = core_telling(device, motion, states)
+        for i, (x, v, a) in enumerate(motion.tolist()):
+            for name, value in telling(device, x, v, a, states[i]).items():
+                scale = abs(true[name][i]) + 1e-3 * (1.0 + abs(true["inertance"][i]))
+                worst[name] = max(worst.get(name, 0.0), abs(value - true[name][i]) / scale)
+    assert len(worst) == 5
+    assert max(worst.values()) < SAME, worst
+
+
+@pytest.mark.parametrize("friction", LAWS)
+def test_terms_add_up_to_the_force_and_the_state_rates(friction: str) -> None:
+    """What Exudyn integrates: mass times acceleration plus the terms, and the terms' rates."""
+    for device, motion, states in devices(friction):
+        p, true = Parameters.of(device), core_telling(device, motion, states)
+        rates = true["state_rate"].reshape(POINTS, -1)
+        for i, (x, v, a) in enumerate(motion.tolist()):
+            stretch, z = x - device.rest_length, states[i].tolist()
+            total, found = 0.0, np.zeros(device.nstate)
+            for term in law.terms(NUMBERS, p, stretch, v, z):
+                total += term.terminals * term.value
+                for place, share in term.rates:
+                    found[place] += share * term.value
+            sign = np.sign(true["inertance"][i])
+            total += law.mass(NUMBERS, p, stretch, v, sign) * a
+            if rigid(device):
+                total += law.load_rest(p, stretch, v, sign)
+            assert total == pytest.approx(true["total"][i], rel=SAME, abs=SAME * 1e3)
+            for name, rate, expected in zip(device.state_names, found, rates[i], strict=False):
+                if name == "gap_position" and not device.series_damping:
+                    # it follows from the deflection, GetStates says it
+                    assert rate == 0.0
+                else:
+                    assert rate == pytest.approx(expected, rel=SAME, abs=SAME)
+
+
+def test_a_gap_position_beyond_the_edge() -> None:
+    """A step may end there: force and heat are the edge's, and the position is drawn back."""
+    values: dict[str, Any] = {
+        "inertance": 5.0, "series_stiffness": 1e4, "series_damping": 20.0, "backlash": 1e-3,
+    }  # fmt: skip
+    p = Parameters.of(Device(**values))
+    for side in (1.0, -1.0):
+        for speed in (0.5, -0.5):
+            z = [side * 3e-3, speed, side * 1e-3]
+            past = [side * 3e-3, speed, side * 1.1e-3]
+            assert law.forces(p, 0.0, 0.1, 0.0, past) == law.forces(p, 0.0, 0.1, 0.0, z)
+            edge, beyond = (law.terms(NUMBERS, p, 0.0, 0.1, at)[-2].value for at in (z, past))
+            assert beyond - edge == pytest.approx(-side * 1e-4 * 1e4 / 20.0)
+
+
+@pytest.mark.parametrize("heat", [False, True])
+@pytest.mark.parametrize("friction", LAWS)
+def test_expressions_are_the_numbers(friction: str, heat: bool) -> None:
+    """The same laws, recorded and evaluated in C++."""
+    compared = 0
+    for device, motion, states in devices(friction)[::4]:
+        system = line([2.0, 3.0], [0.0, 0.0])
+        given: dict[str, Any] = device.given
+        if rigid(device):
+            # that one Exudyn cannot evaluate by itself
+            given["load_friction"] = 0.0
+        made = CreateInerter(
+            system.mbs, "d", system.parts, symbolic=True, dissipatedEnergy=heat, **given
+        )
+        recorded, plain = system.mbs.variables["inerter"][0], force_function(made.element)
+        for i, (x, v, a) in enumerate(motion.tolist()):
+            own = [*states[i].tolist(), *([0.3] if heat else [])]
+            q = [-0.4 * x, 0.6 * x, *([0.0] * len(own))]
+            q_t = [-0.1 * v, 0.9 * v, *own]
+            fast = np.array(recorded.Evaluate(system.mbs, a, 0, q, q_t))
+            slow = np.array(plain(system.mbs, a, 0, q, q_t))
+            assert fast.shape == slow.shape == (2 + device.nstate + heat,)
+            np.testing.assert_allclose(fast, slow, rtol=SAME, atol=SAME * np.abs(slow).max())
+            compared += 1
+    assert compared == 20 * POINTS
