@@ -1,0 +1,173 @@
+"""Independent pieces of work on several processes, or on a Dask cluster.
+
+Every piece is there in the end, once, in the order in which it was given, with the same numbers
+wherever it ran; a worker that dies takes no result with it.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from importlib.util import find_spec
+from typing import Any, TypeVar
+from uuid import uuid4
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Progress = Callable[[float], None]
+
+# libraries' own threads would fight the processes for the processors
+_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+_ATTEMPTS = 5
+_PATIENCE = 20.0
+
+
+class WorkError(ValueError):
+    """Work that cannot be done as asked: names the scheduler or the piece, says what to do."""
+
+
+def run_all(
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    progress: Progress = lambda share: None,
+) -> list[Result]:
+    """The function of every item, in their order.
+
+    Parameters
+    ----------
+    function
+        A function at the top of a module, so that another process finds it.
+    items
+        What it is called with, one at a time.
+    jobs
+        Processes on this machine: as many as processors if not given; 1 stays in this one.
+    scheduler
+        Address of a Dask scheduler, such as "tcp://host:8786", whose workers have this package;
+        `jobs` does not count then.
+    progress
+        Called with the share that is done, 0 to 1.
+
+    Raises
+    ------
+    WorkError
+        The scheduler cannot be reached or has no workers, Dask is not installed, or a piece of
+        work ended worker after worker.
+    Exception
+        What the function raises.
+    """
+    if jobs is not None and jobs < 1:
+        raise WorkError(f"jobs: {jobs} must be at least 1")
+    if not items:
+        return []
+    found: dict[int, Result] = {}
+    if scheduler is not None:
+        source = _on_cluster(function, items, scheduler)
+    else:
+        source = _on_processes(function, items, min(jobs or os.cpu_count() or 1, len(items)))
+    for number, result in source:
+        found[number] = result
+        progress(len(found) / len(items))
+    return [found[number] for number in range(len(items))]
+
+
+def _on_processes(
+    function: Callable[[Item], Result], items: Sequence[Item], workers: int
+) -> Iterator[tuple[int, Result]]:
+    if workers == 1:
+        for number, item in enumerate(items):
+            yield number, function(item)
+        return
+    with _environment(_THREADS):
+        # a fresh interpreter each: engines do not outlive a fork
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
+            try:
+                for future in as_completed(waiting):
+                    yield waiting[future], future.result()
+            except BrokenProcessPool:
+                raise WorkError(
+                    "jobs: a process ended without a result; is memory short? Take fewer --jobs"
+                ) from None
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+
+
+def _on_cluster(
+    function: Callable[[Item], Result], items: Sequence[Item], address: str
+) -> Iterator[tuple[int, Result]]:
+    if find_spec("distributed") is None:
+        raise WorkError(
+            'scheduler: Dask is not installed; run `pip install "inerter[cluster]"` here and on '
+            "the workers"
+        )
+    import distributed
+
+    with _client(distributed, address) as client:
+        run = uuid4().hex
+
+        def submit(number: int, attempt: int) -> Any:
+            # a key of its own: no result of another run or attempt is taken for this one
+            key = f"inerter-{run}-{number}-{attempt}"
+            return client.submit(function, items[number], key=key, pure=False)
+
+        futures = {submit(number, 0): (number, 0) for number in range(len(items))}
+        waiting = distributed.as_completed(list(futures), loop=client.loop)
+        for future in waiting:
+            number, attempt = futures.pop(future)
+            try:
+                result = future.result()
+            except distributed.KilledWorker:
+                # it was on workers that died, perhaps by chance; a few times more
+                if attempt + 1 == _ATTEMPTS:
+                    raise WorkError(
+                        f"scheduler: piece {number} of {len(items)} ended every worker that took "
+                        "it; give the workers more memory, or look into their logs"
+                    ) from None
+                again = submit(number, attempt + 1)
+                futures[again] = number, attempt + 1
+                waiting.add(again)
+                continue
+            future.release()
+            yield number, result
+
+
+@contextmanager
+def _client(distributed: Any, address: str) -> Iterator[Any]:
+    try:
+        client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise WorkError(
+            f"scheduler: no Dask scheduler answers at {address!r} ({type(error).__name__}); give "
+            "an address such as tcp://host:8786"
+        ) from None
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=_PATIENCE)
+        except TimeoutError:
+            raise WorkError(
+                f"scheduler: {address} has no workers; start some: `dask worker {address}`"
+            ) from None
+        yield client
+
+
+@contextmanager
+def _environment(values: dict[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

@@ -1,0 +1,118 @@
+"""Work on processes and on a cluster: every result once, in order, whoever dies."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from inerter.parallel import WorkError, run_all
+
+COUNT = 24
+
+
+def square(number: int) -> int:
+    return number * number
+
+
+def fail(number: int) -> int:
+    raise ValueError(f"number {number} cannot be")
+
+
+def die_once(task: tuple[int, str]) -> int:
+    """Every tenth piece ends its process the first time that it is begun."""
+    number, folder = task
+    mark = Path(folder) / str(number)
+    if number % 10 == 0 and not mark.exists():
+        mark.touch()
+        os._exit(1)
+    return number * number
+
+
+def die(number: int) -> int:
+    os._exit(1)
+
+
+@pytest.mark.parametrize("jobs", [1, 2, None])
+def test_processes(jobs: int | None) -> None:
+    shares: list[float] = []
+    found = run_all(square, range(COUNT), jobs=jobs, progress=shares.append)
+    assert found == [number**2 for number in range(COUNT)]
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert len(shares) == COUNT
+
+
+def test_nothing_to_do() -> None:
+    assert run_all(square, []) == []
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_an_error_of_the_function_arrives(jobs: int) -> None:
+    with pytest.raises(ValueError, match="number 0 cannot be"):
+        run_all(fail, [0], jobs=jobs)
+
+
+def test_a_process_that_dies_is_told() -> None:
+    with pytest.raises(WorkError, match="a process ended without a result"):
+        run_all(die, range(4), jobs=2)
+
+
+def test_no_jobs() -> None:
+    with pytest.raises(WorkError, match="jobs: 0 must be at least 1"):
+        run_all(square, [1], jobs=0)
+
+
+# a cluster on this machine
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
+    ) as found:
+        yield found
+
+
+pytestmark = pytest.mark.filterwarnings("default")
+
+
+def test_cluster_gives_the_same(cluster: Any) -> None:
+    assert run_all(square, range(COUNT), scheduler=cluster.scheduler_address) == [
+        number**2 for number in range(COUNT)
+    ]
+
+
+def test_workers_that_die_lose_nothing(cluster: Any, tmp_path: Path) -> None:
+    """Three pieces of twenty-four end the worker that they are on, once each."""
+    shares: list[float] = []
+    tasks = [(number, str(tmp_path)) for number in range(COUNT)]
+    found = run_all(die_once, tasks, scheduler=cluster.scheduler_address, progress=shares.append)
+    assert found == [number**2 for number in range(COUNT)]
+    assert len(shares) == COUNT
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_a_piece_that_ends_every_worker_is_named(
+    cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("inerter.parallel._ATTEMPTS", 1)
+    with pytest.raises(WorkError, match="piece 0 of 1 ended every worker"):
+        run_all(die, [0], scheduler=cluster.scheduler_address)
+
+
+def test_no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("inerter.parallel._PATIENCE", 1.0)
+    with pytest.raises(WorkError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
+        run_all(square, [1], scheduler="tcp://127.0.0.1:9")
+
+
+def test_an_address_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("inerter.parallel._PATIENCE", 1.0)
+    with pytest.raises(WorkError, match="no Dask scheduler answers at 'nowhere'"):
+        run_all(square, [1], scheduler="nowhere")
