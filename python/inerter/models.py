@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+from inerter.exudyn.engine import installed
+
 # in an installed wheel the models lie inside the package, in a checkout beside `python/`
 _PLACES = (Path(__file__).parent, Path(__file__).parents[2])
 
@@ -65,8 +67,7 @@ def exudyn_model(name: str) -> ModuleType:
     if not path.exists():
         there = ", ".join(exudyn_model_names())
         raise ValueError(f"no Exudyn model {name!r}; the models are {there}")
-    found = importlib.util.find_spec("exudyn")
-    if found is None or found.origin is None:
+    if not installed():
         raise ImportError(
             f"the model {name!r} needs Exudyn, which is not installed: "
             '`pip install "inerter[exudyn]"`'

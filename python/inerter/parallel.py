@@ -87,6 +87,7 @@ def _on_processes(
     with _environment(_THREADS):
         # a fresh interpreter each: engines do not outlive a fork
         context = multiprocessing.get_context("spawn")
+        others = set(multiprocessing.active_children())
         with ProcessPoolExecutor(workers, mp_context=context) as pool:
             waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
             try:
@@ -97,6 +98,9 @@ def _on_processes(
                     "jobs: a process ended without a result; is memory short? Take fewer --jobs"
                 ) from None
             except BaseException:
+                # whoever interrupts does not wait for the pieces that run
+                for worker in set(multiprocessing.active_children()) - others:
+                    worker.terminate()
                 pool.shutdown(cancel_futures=True)
                 raise
 

@@ -295,6 +295,11 @@ def test_without_exudyn_it_is_left_out_with_a_sentence(monkeypatch: pytest.Monke
     assert 'pip install "inerter[exudyn]"' in console.export_text()
 
 
+def test_exudyn_alone_without_exudyn() -> None:
+    with pytest.raises(SelectionError, match="Exudyn, which is not installed: pip install"):
+        plan.plan(Selection(engines=("exudyn",)), exudyn=False)
+
+
 def test_names_that_are_none() -> None:
     with pytest.raises(SelectionError, match=r"--law: no 'lugra'.*did you mean lugre\?"):
         Selection(laws=("lugra",))

@@ -21,6 +21,7 @@ pytest.importorskip("exudyn.itemInterface")
 from element_systems import Array, line
 from inerter.exudyn import CreateInerter
 from inerter.exudyn import device as law
+from inerter.exudyn.create import FUNCTIONS
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.parameters import Parameters
 from inerter.exudyn.user_functions import force_function
@@ -149,7 +150,7 @@ def test_expressions_are_the_numbers(friction: str, heat: bool) -> None:
         made = CreateInerter(
             system.mbs, "d", system.parts, symbolic=True, dissipatedEnergy=heat, **given
         )
-        recorded, plain = system.mbs.variables["inerter"][0], force_function(made.element)
+        recorded, plain = system.mbs.variables[FUNCTIONS][0], force_function(made.element)
         for i, (x, v, a) in enumerate(motion.tolist()):
             own = [*states[i].tolist(), *([0.3] if heat else [])]
             q = [-0.4 * x, 0.6 * x, *([0.0] * len(own))]

@@ -128,9 +128,10 @@ def points(mbs: Any) -> dict[str, Any]:
         ("marker", [1.0, 0.0, 0.0], "beside marker 0, which has a place of its own"),
         ("body", [1.0, 0.0], r"localPosition1: \[1.0, 0.0\] is not three finite numbers"),
         ("body", [1.0, 0.0, float("nan")], "localPosition1: .* is not three finite numbers"),
+        ("body", "top", "localPosition1: 'top' is not three finite numbers"),
     ],
 )
-def test_local_positions(which: str, point: list[float], message: str) -> None:
+def test_local_positions(which: str, point: Any, message: str) -> None:
     made = empty()
     found = points(made.mbs)
     first = None if which != "ground node" else found["body"]
@@ -144,9 +145,11 @@ def test_local_positions(which: str, point: list[float], message: str) -> None:
         ({}, {"friction_state": 1.0}, "'friction_state' is no state of this device; it has none"),
         (LUGRE, {"bristle": 1.0}, "'bristle' is no state of this device; it has friction_state"),
         (LUGRE, {"friction_state": float("inf")}, "friction_state is inf; give a finite number"),
+        (LUGRE, {"friction_state": "low"}, "friction_state is 'low'; give a finite number"),
+        (LUGRE, [1.0], r"\[1.0\] is no dict; give {name: value}"),
     ],
 )
-def test_initial_states(device: dict[str, Any], start: dict[str, float], message: str) -> None:
+def test_initial_states(device: dict[str, Any], start: Any, message: str) -> None:
     system = line([1.0], [0.0])
     with pytest.raises(ValueError, match=f"initialStates: {message}"):
         CreateInerter(

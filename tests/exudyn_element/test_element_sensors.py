@@ -126,5 +126,7 @@ def test_names() -> None:
     sensors = [inerter.AddSensor("total") for inerter in pair]
     solve(system.mbs, settings(END, STEP))
     assert [system.mbs.GetSensor(s)["name"] for s in sensors] == ["a_total", "b_total"]
+    again = system.mbs.GetSensor(pair[0].AddSensor("total"))["name"]
+    assert again not in ("a_total", "b_total")
     first, second = (stored(system, sensor)[1:, 0] for sensor in sensors)
     np.testing.assert_allclose(second, 3.0 * first, rtol=1e-12)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import re
 import subprocess
 import sys
@@ -168,7 +167,7 @@ def test_an_unknown_model_is_named() -> None:
 
 
 def test_without_exudyn_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr("inerter.models.installed", lambda: False)
     with pytest.raises(ImportError, match=r'pip install "inerter\[exudyn\]"'):
         exudyn_model("quarter_car")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,11 @@ def die_once(task: tuple[int, str]) -> int:
         mark.touch()
         os._exit(1)
     return number * number
+
+
+def wait(seconds: float) -> float:
+    time.sleep(seconds)
+    return seconds
 
 
 def die(number: int) -> int:
@@ -116,3 +122,15 @@ def test_an_address_that_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("inerter.parallel._PATIENCE", 1.0)
     with pytest.raises(WorkError, match="no Dask scheduler answers at 'nowhere'"):
         run_all(square, [1], scheduler="nowhere")
+
+
+def test_whoever_interrupts_does_not_wait() -> None:
+    """An interrupt of one's own ends the pieces that run, which would take a minute."""
+
+    def interrupt(share: float) -> None:
+        raise KeyboardInterrupt
+
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        run_all(wait, [0.0, 60.0, 60.0], jobs=2, progress=interrupt)
+    assert time.perf_counter() - began < 30.0

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -35,6 +37,8 @@ QUANTITIES = (
     "dissipated_power",
 )
 """What `Inerter.Evaluate` tells, and sensors can measure."""
+FUNCTIONS = "inerter_user_functions"
+"""Where in `mbs.variables` the user functions are kept."""
 
 
 @dataclass(frozen=True)
@@ -135,20 +139,29 @@ class Inerter:
         if quantity not in known:
             raise ValueError(f"quantity: {quantity!r} is none of {', '.join(known)}")
 
+        name = f"{self.name}_{quantity}"
+        if self.mbs.GetSensorNumber(name) != -1:
+            name = f"{name}_{self.mbs.systemData.NumberOfSensors()}"
+
+        # a system that held itself by its sensors would never be freed
+        unbound = replace(self, mbs=None)
+
         def sensorUserFunction(  # noqa: N802
             mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
         ) -> list[float]:
+            inerter = replace(unbound, mbs=mbs)
             if quantity == "states":
-                return self.GetStates(configuration).tolist()
-            if quantity in self.stateNames:
-                return [float(self.GetStates(configuration)[self.stateNames.index(quantity)])]
-            found = self.Evaluate(configuration)
+                return inerter.GetStates(configuration).tolist()
+            if quantity in inerter.stateNames:
+                place = inerter.stateNames.index(quantity)
+                return [float(inerter.GetStates(configuration)[place])]
+            found = inerter.Evaluate(configuration)
             names = FORCES if quantity == "forces" else (quantity,)
             return [float(found[name]) for name in names]
 
         return self.mbs.AddSensor(
             exudyn("itemInterface").SensorUserFunction(
-                name=f"{self.name}_{quantity}",
+                name=name,
                 sensorUserFunction=sensorUserFunction,
                 fileName=fileName,
                 writeToFile=bool(fileName),
@@ -194,7 +207,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     mbs
         The MainSystem, before `Assemble`.
     name
-        Name of the object.
+        Name of the object; if empty, a number is given it as by Exudyn.
     itemNumbers
         Terminals 1 and 2: each a body (ObjectIndex) at `localPosition0` or `localPosition1`, a
         node (NodeIndex), a marker (MarkerIndex), or None, the ground. Two points on bodies: the
@@ -234,6 +247,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     """
     itemInterface = exudyn("itemInterface")
     device = Device(**parameters)
+    # what belongs to the device is named after it
+    name = name or f"inerter{mbs.systemData.NumberOfObjects()}"
     nodes, kinematics = terminals(mbs, name, itemNumbers, (localPosition0, localPosition1))
     element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
     if symbolic and not element.recordable:
@@ -270,19 +285,21 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         )
     )
     # expressions live as long as the system that evaluates them
-    mbs.variables.setdefault("inerter", []).append(force)
+    mbs.variables.setdefault(FUNCTIONS, []).append(force)
     if show and isinstance(kinematics, Span):
         _draw(mbs, name, itemNumbers, (localPosition0, localPosition1), drawSize, color)
     return Inerter(mbs, name, device, number, tuple(nodes), own, names, bool(compiled), element)
 
 
 def _initial_states(names: Sequence[str], given: Mapping[str, float]) -> list[float]:
+    if not isinstance(given, Mapping):
+        raise ValueError(f"initialStates: {given!r} is no dict; give {{name: value}}")
     for key, value in given.items():
         if key not in names:
             there = ", ".join(names) or "none"
             raise ValueError(f"initialStates: {key!r} is no state of this device; it has {there}")
-        if not np.isfinite(value):
-            raise ValueError(f"initialStates: {key} is {value}; give a finite number")
+        if not isinstance(value, Real) or not math.isfinite(value):
+            raise ValueError(f"initialStates: {key} is {value!r}; give a finite number")
     return [float(given.get(key, 0.0)) for key in names]
 
 

@@ -88,9 +88,12 @@ def terminals(
 
 
 def _vector(point: Sequence[float], index: int) -> tuple[float, float, float]:
-    found = np.asarray(point, dtype=float)
+    try:
+        found = np.asarray(point, dtype=float)
+    except (TypeError, ValueError):
+        found = np.empty(0)
     if found.shape != (3,) or not np.all(np.isfinite(found)):
-        raise ValueError(f"localPosition{index}: {point} is not three finite numbers [m]")
+        raise ValueError(f"localPosition{index}: {point!r} is not three finite numbers [m]")
     return tuple(float(value) for value in found)  # pyright: ignore[reportReturnType]
 
 

@@ -185,7 +185,8 @@ def symbolic_force(element: Element, mbs: Any) -> Any:
     function = symbolic.UserFunction()
     contents = {
         "functionName": "forceUserFunction",
-        "argList": [mbs, *arguments],
+        # Exudyn never reads the system here; naming it would keep it alive for ever
+        "argList": [None, *arguments],
         "argTypeList": ["MainSystem", "Real", "Index", "StdVector", "StdVector"],
         "returnValue": result,
         "returnType": "StdVector",

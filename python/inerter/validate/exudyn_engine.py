@@ -8,7 +8,6 @@ sizes, so that for negative values it shrinks and can pass through zero.
 
 from __future__ import annotations
 
-import importlib.util
 from typing import Any
 
 import numpy as np
@@ -30,11 +29,6 @@ LATE = (
 
 TOLERANCE = 1e-10
 """Absolute tolerance of DOPRI5 [m, m/s, rad ...], for motions of the reference's size."""
-
-
-def is_installed() -> bool:
-    """Whether Exudyn can be imported."""
-    return importlib.util.find_spec("exudyn") is not None
 
 
 def is_late(case: Case, integrator: str) -> bool:

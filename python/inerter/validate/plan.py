@@ -65,6 +65,11 @@ def plan(selection: Selection, exudyn: bool = True) -> list[Task]:
         wanted = tuple(_wanted(case, selection, exudyn))
         if wanted:
             tasks.append(Task(case, wanted))
+    if not tasks and not exudyn:
+        raise SelectionError(
+            "no case is left without Exudyn, which is not installed: "
+            'pip install "inerter[exudyn]", or ask for --engine mujoco'
+        )
     if not tasks:
         raise SelectionError(
             "no case is left by --model, --law, --engine and --integrator together; "

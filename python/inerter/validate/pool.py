@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 
+from inerter.exudyn.engine import installed
 from inerter.parallel import Progress, run_all
-from inerter.validate import exudyn_engine
 from inerter.validate.plan import Selection, plan
 from inerter.validate.result import Validation
 from inerter.validate.task import run_task
@@ -34,7 +34,7 @@ def validate(
         The selection leaves nothing to run.
     """
     chosen = selection or Selection()
-    began, there = time.perf_counter(), exudyn_engine.is_installed()
-    tasks = plan(chosen, there)
+    began = time.perf_counter()
+    tasks = plan(chosen, installed())
     rows = run_all(run_task, tasks, jobs=jobs, progress=progress)
     return Validation(chosen, [row for found in rows for row in found], time.perf_counter() - began)
