@@ -140,7 +140,7 @@ class Inerter:
             raise ValueError(f"quantity: {quantity!r} is none of {', '.join(known)}")
 
         name = f"{self.name}_{quantity}"
-        if self.mbs.GetSensorNumber(name) != -1:
+        if int(self.mbs.GetSensorNumber(name)) >= 0:
             name = f"{name}_{self.mbs.systemData.NumberOfSensors()}"
 
         # a system that held itself by its sensors would never be freed
