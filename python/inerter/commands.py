@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
 import typer
-from rich.console import Console
-from rich.progress import Progress
 from rich.table import Table
 
+from inerter.console import out, progress_bar, refuse, status
 from inerter.core import DeviceError, parameters
 from inerter.diagnose import Diagnosis, diagnose
 from inerter.diagnose.output import refuse_folder, write_outputs
 from inerter.models import data_path
 from inerter.plugin import plugin_path
 from inerter.records import RecordError
+from inerter.suspension.commands import app as suspension_app
 
 app = typer.Typer(
     add_completion=False,
@@ -30,29 +27,12 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong.",
 )
-out = Console()
-notes = Console(stderr=True)
+app.add_typer(suspension_app, name="suspension")
 
 
 def run() -> None:
     """Run the command line."""
     app()
-
-
-def _refuse(message: str) -> NoReturn:
-    """End with one clear line and status 2: the input cannot be used."""
-    print(f"inerter: {' '.join(message.split())}", file=sys.stderr)
-    raise typer.Exit(2)
-
-
-@contextmanager
-def _progress(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """A line that says what is being done, on a terminal's stderr."""
-    if quiet or not notes.is_terminal:
-        yield lambda text: None
-        return
-    with notes.status("starting") as status:
-        yield lambda text: status.update(text)
 
 
 @app.command("diagnose")
@@ -97,14 +77,14 @@ def _diagnose(
     try:
         refuse_folder(folder)
         # a user's data that overflow are judged by what comes out, not by numpy's warnings
-        with _progress(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
+        with status(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
             simplefilter("ignore", RuntimeWarning)
             result = diagnose(record, device, model, holdout, progress)
             write_outputs(result, folder)
     except (RecordError, DeviceError, ValueError) as error:
-        _refuse(str(error))
+        refuse(str(error))
     except OSError as error:
-        _refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
+        refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json.dumps(result.json(), indent=2))
     else:
@@ -113,17 +93,6 @@ def _diagnose(
         print_summary(result, out)
         out.print(f"Written to {folder}: report.html, diagnosis.json, device.toml, model.xml")
     return result
-
-
-@contextmanager
-def _progress_bar(text: str, quiet: bool) -> Iterator[Callable[[float], None]]:
-    """A bar for a share of the work, on a terminal's stderr."""
-    if quiet or not notes.is_terminal:
-        yield lambda share: None
-        return
-    with Progress(console=notes, transient=True) as progress:
-        task = progress.add_task(text, total=1.0)
-        yield lambda share: progress.update(task, completed=share)
 
 
 @app.command("simulate")
@@ -173,7 +142,7 @@ def simulate_command(
         refuse_folder(out_dir)
         if video is not None:
             refuse_video(video)
-        with _progress_bar("simulating", as_json) as progress:
+        with progress_bar("simulating", as_json) as progress:
             run = run_model(
                 model, duration, timestep=timestep, integrator=integrator, keyframe=keyframe,
                 control=control, rate=rate, frame_rate=FRAME_RATE if video else 0.0,
@@ -181,14 +150,14 @@ def simulate_command(
             )  # fmt: skip
         files = write_run(run, out_dir)
         if video is not None:
-            with _progress_bar("rendering", as_json) as progress:
+            with progress_bar("rendering", as_json) as progress:
                 write_video(run.model, run.frames, video, progress)
     except (SimulationError, DeviceError) as error:
-        _refuse(str(error))
+        refuse(str(error))
     except mujoco.FatalError as error:
-        _refuse(f"{model}: {engine_text(error)}")
+        refuse(f"{model}: {engine_text(error)}")
     except OSError as error:
-        _refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json.dumps(summary(run), indent=2))
     else:
@@ -226,6 +195,7 @@ def validate_command(
 
     Writes validation.json and validation.png. Exit status 1 if something misses its bound.
     """
+    from inerter.parallel import WorkError
     from inerter.validate import Selection, SelectionError, validate
     from inerter.validate.output import json_text, write_validation
     from inerter.validate.table import print_validation
@@ -233,13 +203,13 @@ def validate_command(
     try:
         refuse_folder(out_dir)
         names = (tuple(given or ()) for given in (model, law, engine, integrator))
-        with _progress_bar("validating", as_json) as progress:
+        with progress_bar("validating", as_json) as progress:
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
         files = write_validation(result, out_dir)
-    except SelectionError as error:
-        _refuse(str(error))
+    except (SelectionError, WorkError) as error:
+        refuse(str(error))
     except OSError as error:
-        _refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json_text(result), end="")
     else:

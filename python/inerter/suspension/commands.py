@@ -1,0 +1,102 @@
+"""The commands of `inerter suspension`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from inerter.console import out, progress_bar, refuse
+from inerter.model_parameters import QUARTER_CAR
+from inerter.suspension.quarter_car import Road
+from inerter.suspension.time_domain.command import evaluate_command
+
+app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="How much an inerter gains in a suspension, and what its nonlinearities take back.",
+)
+
+app.command("evaluate")(evaluate_command)
+
+_ROAD = Road()
+
+
+@app.command("optimize")
+def optimize_command(
+    layout: Annotated[
+        str, typer.Option(help="Layouts S1 ... S6, with commas between.")
+    ] = "S1,S2,S3",
+    index: Annotated[
+        str, typer.Option(help="J1 comfort, J3 tyre load, J5 load carrying; with commas.")
+    ] = "J1,J3,J5",
+    stiffness: Annotated[
+        str, typer.Option(help="k [N/m]: numbers and ranges FIRST:LAST:COUNT, with commas.")
+    ] = f"{QUARTER_CAR.stiffness:g}",
+    series: Annotated[
+        str,
+        typer.Option(help="none (ideal), soft, hard or KS/CS [N/m, N s/m]; with commas."),
+    ] = "none",
+    sprung_mass: Annotated[float, typer.Option(help="ms [kg].")] = QUARTER_CAR.sprung_mass,
+    unsprung_mass: Annotated[float, typer.Option(help="mu [kg].")] = QUARTER_CAR.unsprung_mass,
+    tyre_stiffness: Annotated[float, typer.Option(help="kt [N/m].")] = QUARTER_CAR.tyre_stiffness,
+    velocity: Annotated[float, typer.Option(help="V [m/s].")] = _ROAD.velocity,
+    roughness: Annotated[float, typer.Option(help="kappa [m^3/cycle].")] = _ROAD.roughness,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler to work on, tcp://HOST:8786; needs inerter[cluster]."),
+    ] = None,
+    out_dir: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder for optimum.json and, over a range, the figures."),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the rows alone on stdout, a JSON list.")
+    ] = False,
+) -> None:
+    """Damping and inertance that minimise an index of a quarter-car, globally and exactly."""
+    from inerter.diagnose.output import refuse_folder
+    from inerter.suspension.output import rows_json, write_sweep
+    from inerter.suspension.quarter_car import QuarterCar
+    from inerter.suspension.study import (
+        Study,
+        read_indices,
+        read_layouts,
+        read_series,
+        read_stiffnesses,
+    )
+    from inerter.suspension.sweep import sweep
+    from inerter.suspension.table import print_rows
+
+    files: list[str] = []
+    try:
+        study = Study(
+            layouts=read_layouts(layout),
+            indices=read_indices(index),
+            stiffnesses=read_stiffnesses(stiffness),
+            series=read_series(series),
+            car=QuarterCar(
+                sprung_mass=sprung_mass, unsprung_mass=unsprung_mass, tyre_stiffness=tyre_stiffness
+            ),
+            road=Road(velocity=velocity, roughness=roughness),
+        )
+        if out_dir is not None:
+            refuse_folder(out_dir)
+        with progress_bar("optimising", as_json) as progress:
+            rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)
+        if out_dir is not None:
+            files = write_sweep(study, rows, out_dir)
+    except ValueError as error:
+        refuse(str(error))
+    except OSError as error:
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(rows_json(rows), end="")
+        return
+    print_rows(rows, out)
+    if out_dir is not None:
+        out.print(f"Written to {out_dir}: {', '.join(files)}")

@@ -1,0 +1,142 @@
+"""The best design of a layout: global search, exact polish, and what the optimum looks like.
+
+Every local minimum of a coarse grid over the whole range is polished, and the best result counts.
+Nothing is drawn at random: the same problem has the same answer on every machine.
+
+Where J5 is at its lower bound 1/k + 1/kt (soft springs: no strut can do better, it is the yielding
+under a constant load) a whole region of designs has it. The design of that region with the smallest
+J1 is given, to about a thousandth.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inerter.suspension.coarse_search import starting_points
+from inerter.suspension.polish_peaks import local_peaks, polish_peaks
+from inerter.suspension.polish_smooth import polish_smooth
+from inerter.suspension.problem import Array, Problem
+
+# relative: what counts as equal to the lower bound of J5
+_EQUAL = 1e-9
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The best design.
+
+    Attributes
+    ----------
+    value
+        The index, SI units.
+    damping, inertance
+        c [N s/m], b [kg]; 0 without inerter.
+    relaxation_stiffness
+        k_b [N/m]; None where the layout has none.
+    peaks
+        Of J5: (frequency [Hz], gain [m/N]) of every local maximum of the gain, the static one too.
+    notes
+        Sentences on what a reader should know: a bound was met, the optimum is not unique.
+    """
+
+    value: float
+    damping: float
+    inertance: float
+    relaxation_stiffness: float | None
+    peaks: tuple[tuple[float, float], ...]
+    notes: tuple[str, ...]
+
+
+def optimise(problem: Problem) -> Optimum:
+    """Minimise an index over all designs of a layout."""
+    best, value, point = problem, *_best(problem)
+    # without inertance counts as a design where the strut still is one
+    if problem.network.may_vanish and not problem.massless:
+        other = problem.without()
+        without, there = _best(other)
+        if without <= value * (1.0 + 1e-12):
+            best, value, point = other, without, there
+    notes = []
+    if problem.index == "J5" and value <= _static(problem) * (1.0 + _EQUAL):
+        value, point = _static(problem), _softest(best, point)
+        notes.append(
+            "J5 is 1/k + 1/kt, which no strut can lower; of the designs that reach it the one "
+            "with the smallest J1 is given"
+        )
+    design = dict(zip(best.variables, map(_rounded, np.exp(point)), strict=True))
+    if best is not problem:
+        notes.append("best without inertance")
+    notes += _at_bounds(best, point)
+    return Optimum(
+        value=value,
+        damping=design["damping"],
+        inertance=design.get("inertance", 0.0),
+        relaxation_stiffness=design.get("relaxation_stiffness"),
+        peaks=_peaks(best, point) if problem.index == "J5" else (),
+        notes=tuple(notes),
+    )
+
+
+def _best(problem: Problem) -> tuple[float, Array]:
+    polish = polish_smooth if problem.objective.smooth else polish_peaks
+    best, at = np.inf, np.empty(0)
+    for start in starting_points(problem):
+        value, point = polish(problem, start, best)
+        # of equal ones the first, which alone was followed to its last digits
+        if value < best * (1.0 - 1e-8):
+            best, at = value, point
+        # nothing is below the lower bound
+        if problem.index == "J5" and best <= _static(problem) * (1.0 + _EQUAL):
+            break
+    return best, at
+
+
+def _rounded(value: float) -> float:
+    """Without what a logarithm and back leave in the last digits."""
+    return float(f"{value:.13g}")
+
+
+def _static(problem: Problem) -> float:
+    return problem.car.static_compliance(problem.stiffness)
+
+
+def _softest(problem: Problem, start: Array) -> Array:
+    """The design with the smallest J1 among those whose J5 is the static compliance."""
+    comfort = replace(problem, index="J1")
+    limit = _static(problem) * (1.0 + _EQUAL)
+    low, high = problem.bounds.T
+    count = len(start)
+    stencil = np.array(list(itertools.product(np.linspace(-1.0, 1.0, 7), repeat=count)))
+    point, size = start, np.full(count, 1.0)
+    # the box shrinks only when its middle is best, so the region can be walked along
+    for _ in range(60):
+        around = np.clip(np.vstack([point, point + stencil * size]), low, high)
+        values = np.where(problem.value(around) <= limit, comfort.value(around), np.inf)
+        best = int(np.argmin(values))
+        if best == 0 or not np.isfinite(values[best]):
+            size = size / 2.5
+        else:
+            point = around[best]
+        if size[0] < 1e-4:
+            break
+    return point
+
+
+def _peaks(problem: Problem, point: Array) -> tuple[tuple[float, float], ...]:
+    frequency, gain = local_peaks(problem.load_function(point))
+    pairs = zip(frequency / (2.0 * np.pi), gain, strict=True)
+    return tuple((float(f), float(g)) for f, g in pairs)
+
+
+def _at_bounds(problem: Problem, point: Array) -> list[str]:
+    notes = []
+    for name, at, (low, high) in zip(problem.variables, point, problem.bounds, strict=True):
+        word = name.replace("_", " ")
+        if at <= low + 1e-6:
+            notes.append(f"{word} at the lower end of its range: the layout is best without it")
+        elif at >= high - 1e-6:
+            notes.append(f"{word} at the upper end of its range: the layout is best with it rigid")
+    return notes

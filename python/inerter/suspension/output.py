@@ -1,0 +1,62 @@
+"""The JSON and the files of a sweep: all of them or none."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from inerter.diagnose.output import refuse_folder
+from inerter.suspension.figures import page, picture
+from inerter.suspension.study import Study
+from inerter.suspension.sweep import Row
+
+
+def rows_json(rows: list[Row]) -> str:
+    """The list that --json prints."""
+    return json.dumps([row.json() for row in rows], indent=2, allow_nan=False) + "\n"
+
+
+def write_sweep(study: Study, rows: list[Row], folder: Path) -> list[str]:
+    """Write optimum.json and, where stiffness was varied, optimum.png and .html; their names.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
+    files = {"optimum.json": json.dumps(_full(study, rows), indent=2, allow_nan=False).encode()}
+    if len(study.stiffnesses) > 1:
+        files |= {"optimum.png": picture(rows), "optimum.html": page(rows).encode()}
+    refuse_folder(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    staging = Path(tempfile.mkdtemp(prefix=".optimum-", dir=folder))
+    try:
+        for name, content in files.items():
+            (staging / name).write_bytes(content)
+        for name in files:
+            os.replace(staging / name, folder / name)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+    return list(files)
+
+
+def _full(study: Study, rows: list[Row]) -> dict[str, Any]:
+    return {
+        "schema": "inerter.suspension/1",
+        "car": asdict(study.car),
+        "road": asdict(study.road),
+        "series": {name: pair and asdict(pair) for name, pair in study.series.items()},
+        "rows": [
+            row.json()
+            | {
+                "peaks": [{"frequency": f, "gain": g} for f, g in row.optimum.peaks],
+                "notes": list(row.optimum.notes),
+            }
+            for row in rows
+        ],
+    }

@@ -1,0 +1,150 @@
+"""Which optima are asked for, in a user's words, and the errors of those words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from inerter.suspension.indices import INDICES
+from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, SeriesPair
+from inerter.suspension.problem import Problem
+from inerter.suspension.quarter_car import QuarterCar, Road
+
+SERIES: Mapping[str, SeriesPair | None] = {"none": None, "soft": SOFT, "hard": HARD}
+"""Series pairs that have a name."""
+
+
+class StudyError(ValueError):
+    """What is asked for cannot be computed: one sentence with the value and what is allowed."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One optimum that is asked for: its name in the results and the problem behind it."""
+
+    layout: str
+    index: str
+    stiffness: float
+    series: str
+    problem: Problem
+
+
+@dataclass(frozen=True)
+class Study:
+    """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name."""
+
+    layouts: tuple[str, ...]
+    indices: tuple[str, ...]
+    stiffnesses: tuple[float, ...]
+    series: Mapping[str, SeriesPair | None]
+    car: QuarterCar = field(default_factory=QuarterCar)
+    road: Road = field(default_factory=Road)
+
+    def cases(self) -> Iterator[Case]:
+        """The combinations in order. S1 has no inerter: its problem is the same in each series."""
+        for layout in self.layouts:
+            for index in self.indices:
+                for name, pair in self.series.items():
+                    used = pair if LAYOUTS[layout].has_inerter else None
+                    for k in self.stiffnesses:
+                        problem = Problem(self.car, self.road, layout, index, k, used)
+                        yield Case(layout, index, k, name, problem)
+
+
+def read_names(text: str, known: Iterable[str], what: str) -> tuple[str, ...]:
+    """Names from a list with commas.
+
+    Raises
+    ------
+    StudyError
+        One of them is not known.
+    """
+    allowed = {name.lower(): name for name in known}
+    words = _words(text, what)
+    for word in words:
+        if word.lower() not in allowed:
+            raise StudyError(f"{what} {word!r} is not known: choose from {', '.join(known)}")
+    return tuple(dict.fromkeys(allowed[word.lower()] for word in words))
+
+
+def read_layouts(text: str) -> tuple[str, ...]:
+    """Names of layouts from a list with commas."""
+    return read_names(text, LAYOUTS, "layout")
+
+
+def read_indices(text: str) -> tuple[str, ...]:
+    """Names of indices from a list with commas."""
+    return read_names(text, INDICES, "index")
+
+
+def read_stiffnesses(text: str) -> tuple[float, ...]:
+    """Stiffnesses [N/m]: numbers and ranges first:last:count, with commas between.
+
+    Raises
+    ------
+    StudyError
+        Not a number, not positive, or not a range.
+    """
+    values: list[float] = []
+    for word in _words(text, "stiffness"):
+        parts = word.split(":")
+        if len(parts) == 1:
+            values.append(_positive(word, "stiffness"))
+        elif len(parts) == 3:
+            first, last = (_positive(part, "stiffness") for part in parts[:2])
+            if not (parts[2].strip().isdigit() and 2 <= int(parts[2]) <= 100_000):
+                raise StudyError(
+                    f"stiffness range {word!r}: the count {parts[2]!r} is not a whole number "
+                    "from 2; give FIRST:LAST:COUNT as in 10e3:300e3:59"
+                )
+            values += np.linspace(first, last, int(parts[2])).tolist()
+        else:
+            raise StudyError(
+                f"stiffness {word!r} is neither a number nor a range FIRST:LAST:COUNT, "
+                "as in 120e3 or 10e3:300e3:59"
+            )
+    return tuple(dict.fromkeys(values))
+
+
+def read_series(text: str) -> dict[str, SeriesPair | None]:
+    """Series pairs by name, or KS/CS in N/m and N s/m, with commas between.
+
+    Raises
+    ------
+    StudyError
+        Neither a name nor two positive numbers.
+    """
+    pairs: dict[str, SeriesPair | None] = {}
+    for word in _words(text, "series"):
+        if word.lower() in SERIES:
+            pairs[word.lower()] = SERIES[word.lower()]
+            continue
+        parts = word.split("/")
+        if len(parts) != 2:
+            raise StudyError(
+                f"series {word!r} is not known: choose from {', '.join(SERIES)} or give KS/CS "
+                "in N/m and N s/m, as in 1e6/3200"
+            )
+        stiffness = _positive(parts[0], "series stiffness")
+        pairs[word] = SeriesPair(stiffness, _positive(parts[1], "series damping"))
+    return pairs
+
+
+def _words(text: str, what: str) -> list[str]:
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    if not words:
+        raise StudyError(f"{what} is empty: give one or more, with commas between")
+    return words
+
+
+def _positive(text: str, what: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise StudyError(f"{what} {text.strip()!r} is not a number") from None
+    if not (math.isfinite(value) and value > 0.0):
+        raise StudyError(f"{what} is {text.strip()}: give a positive number")
+    return value

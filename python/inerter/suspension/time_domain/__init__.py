@@ -1,0 +1,1 @@
+"""Quarter-cars with nonlinear inerters in the time domain, on the MuJoCo models."""

@@ -1,0 +1,101 @@
+"""Evaluations as JSON, as a CSV file and in the terminal."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from inerter.suspension.time_domain.evaluate import CONFIDENCE, Evaluation, Plan
+
+SCHEMA = "inerter.suspension.evaluation/1"
+
+_SCALE = {"J1": (1.0, "m/s^2"), "J3": (1.0, "N"), "J5": (1e5, "1e-5 m/N")}
+_FLAT = [f.name for f in fields(Evaluation) if f.name != "peaks"]
+
+
+def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
+    """The whole evaluation, one document; SI units."""
+    document = {
+        "schema": SCHEMA,
+        "road": plan.road.name,
+        "roads": plan.seeds,
+        "confidence": CONFIDENCE,
+        "amplitude": plan.amplitude,
+        "reoptimise": plan.reoptimise,
+        "rows": [row.json() for row in rows],
+    }
+    return json.dumps(document, indent=2, allow_nan=False) + "\n"
+
+
+def write_evaluation(plan: Plan, rows: Sequence[Evaluation], folder: Path) -> tuple[str, ...]:
+    """Write evaluation.json and evaluation.csv; the names of the files."""
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(_FLAT)
+    writer.writerows([getattr(row, name) for name in _FLAT] for row in rows)
+    folder.mkdir(parents=True, exist_ok=True)
+    texts = {"evaluation.json": json_text(plan, rows), "evaluation.csv": table.getvalue()}
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return tuple(texts)
+
+
+def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -> None:
+    """A table for each index and stiffness."""
+    groups = dict.fromkeys((row.stiffness, row.index) for row in rows)
+    for stiffness, index in groups:
+        scale, unit = _SCALE[index]
+        of = f"{plan.seeds} roads {plan.road.name}" if index != "J5" else f"{plan.amplitude:g} N"
+        table = Table(
+            title=f"{index} ({unit}) at k = {stiffness / 1e3:g} kN/m, {of}",
+            title_justify="left",
+            box=box.SIMPLE_HEAD,
+            pad_edge=False,
+            padding=(0, 1, 0, 0),
+        )
+        for name in ("strut", "case", "paper"):
+            table.add_column(name, no_wrap=True)
+        for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
+            table.add_column(name, justify="right", no_wrap=True)
+        for row in rows:
+            if (row.stiffness, row.index) != (stiffness, index):
+                continue
+            ideal = row.case == "ideal" and not row.change
+            table.add_row(
+                row.layout,
+                row.case,
+                row.numbers,
+                _with_error(scale * row.value, 0.5 * scale * (row.high - row.low)),
+                "" if row.exact is None else f"{scale * row.exact:.5g}",
+                "" if ideal else _change(row),
+                f"{row.damping:.0f}",
+                f"{row.inertance:.1f}" if row.layout != "S1" else "",
+            )
+        console.print(table)
+    console.print(
+        "paper: table.case of Wang and Su. exact: norm of the transfer function, where the case is "
+        "linear. loss: against the ideal inerter at its own optimum, road by road. c [N s/m], b "
+        "[kg].",
+        markup=False,
+    )
+
+
+def _with_error(value: float, half: float) -> str:
+    text = f"{value:.5g}"
+    if half < 5e-6 * abs(value):
+        return text
+    return f"{text} ± {half:.1g}"
+
+
+def _change(row: Evaluation) -> str:
+    half = 50.0 * (row.change_high - row.change_low)
+    text = f"{100.0 * row.change:+.2f}"
+    return text if half < 0.005 else f"{text} ± {half:.2f}"

@@ -1,0 +1,174 @@
+"""Periodic random roads: sums of sinusoids with random phases, made by FFT.
+
+    zr(t) = sum_i A_i sin(w_i t + phase_i),   A_i^2 / 2 = S(f_i) df,   S(f) = strength / f^2
+
+Symbols: zr [m], f = w / 2 pi [Hz], df = 0.1 Hz the spacing (the road repeats every 1/df = 10 s),
+S(f) [m^2/Hz] the one-sided density, `strength` [m^2 Hz], phases uniform in 0..2 pi.
+
+Paper: A_i = sqrt(8 pi kappa V dw) / w_i at 0.1, 0.2 ... 1000 Hz, which is strength = 2 kappa V:
+its kappa V / f^2 is a two-sided density. Source: Wang and Su, ACC 2008, eq. (10).
+ISO 8608: one-sided G(n) = G(n0) (n / n0)^-2 along the road, n = f / V [cycles/m], n0 = 0.1
+cycles/m, so that strength = G(n0) n0^2 V. Sinusoids where 0.01 <= n <= 10 cycles/m, the range that
+the standard speaks of for roads.
+
+A simulation holds the road over each of its steps. `held` gives those values: the road in the
+middle of the step, each sinusoid divided by sinc(f h). The staircase then contains every sinusoid
+exactly, in amplitude and phase, and only images beyond 1/(2h) are wrong, to which a car hardly
+answers. Sinusoids at and above 1/(2h) cannot be followed; `left_out` has their mean square.
+Not modelled: discrete events, changes along the road.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.suspension.quarter_car import Road as Roughness
+
+Array = NDArray[np.float64]
+
+SPACING = 0.1
+"""Distance of the frequencies [Hz], of Wang and Su."""
+
+REFERENCE_FREQUENCY = 0.1
+"""n0 of ISO 8608 [cycles/m]."""
+
+ISO_RANGE = (0.01, 10.0)
+"""Spatial frequencies of ISO roads [cycles/m]: the limits that ISO 8608 names for on-road use."""
+
+ISO_CLASSES: Mapping[str, float] = MappingProxyType(
+    {name: 16e-6 * 4.0**i for i, name in enumerate("ABCDE")}
+)
+"""G(n0) [m^3] of classes A to E: the geometric means of ISO 8608."""
+
+
+@dataclass(frozen=True)
+class PeriodicRoad:
+    """Sinusoids `first` to `last` times `SPACING`, of density strength / f^2.
+
+    `name` to be shown, `strength` [m^2 Hz] one-sided.
+
+    Raises
+    ------
+    ValueError
+        No sinusoid, or a strength that is not positive.
+    """
+
+    name: str
+    strength: float
+    first: int = 1
+    last: int = 10_000
+
+    def __post_init__(self) -> None:
+        """Check what was given, see Raises."""
+        if not (math.isfinite(self.strength) and self.strength > 0.0):
+            raise ValueError(f"strength of the road is {self.strength:g}: give a positive number")
+        if not 1 <= self.first <= self.last:
+            raise ValueError(
+                f"sinusoids {self.first} to {self.last} of the road: count from 1 upwards"
+            )
+
+    @property
+    def period(self) -> float:
+        """[s]."""
+        return 1.0 / SPACING
+
+    @property
+    def frequencies(self) -> Array:
+        """[Hz], shape (sinusoids,)."""
+        return np.asarray(SPACING * np.arange(self.first, self.last + 1), dtype=np.float64)
+
+    @property
+    def amplitudes(self) -> Array:
+        """[m], shape (sinusoids,)."""
+        return math.sqrt(2.0 * self.strength * SPACING) / self.frequencies
+
+    @property
+    def rms(self) -> float:
+        """Root mean square [m] over a period."""
+        return float(np.sqrt(0.5 * np.sum(self.amplitudes**2)))
+
+    def phases(self, seed: int) -> Array:
+        """[rad], shape (sinusoids,)."""
+        return np.random.default_rng([seed]).uniform(0.0, 2.0 * np.pi, self.amplitudes.size)
+
+    def at(self, times: Array | float, seed: int) -> Array:
+        """The road [m] at times [s] of any shape, sinusoid by sinusoid."""
+        angles = np.multiply.outer(times, 2.0 * np.pi * self.frequencies) + self.phases(seed)
+        return np.sin(angles) @ self.amplitudes
+
+    def instants(self, seed: int, count: int) -> Array:
+        """The road [m] at `count` equidistant instants of its period, from 0; shape (count,).
+
+        Without the sinusoids that `count` steps per period cannot follow.
+        """
+        kept = self._kept(count)
+        return self._sum(self.amplitudes[:kept], self.phases(seed)[:kept], count)
+
+    def held(self, seed: int, count: int) -> Array:
+        """Values to hold over each of `count` steps per period [m], see the module; (count,)."""
+        kept = self._kept(count)
+        share = self.frequencies[:kept] * self.period / count
+        amplitudes = self.amplitudes[:kept] / np.sinc(share)
+        return self._sum(amplitudes, self.phases(seed)[:kept] + np.pi * share, count)
+
+    def left_out(self, count: int) -> float:
+        """Mean square [m^2] of the sinusoids that `count` steps per period cannot follow."""
+        return float(0.5 * np.sum(self.amplitudes[self._kept(count) :] ** 2))
+
+    def _kept(self, count: int) -> int:
+        """Number of sinusoids below half the sampling rate."""
+        return max(min(self.last, (count - 1) // 2) - self.first + 1, 0)
+
+    def _sum(self, amplitudes: Array, phases: Array, count: int) -> Array:
+        """The sum of the lowest sinusoids at `count` instants."""
+        lines = np.zeros(count // 2 + 1, dtype=complex)
+        lines[self.first : self.first + amplitudes.size] = amplitudes * np.exp(1j * phases)
+        # the imaginary part of the sum of exponentials
+        return 0.5 * count * np.fft.irfft(-1j * lines, count)
+
+
+def paper_road(roughness: Roughness | None = None) -> PeriodicRoad:
+    """The road of Wang and Su: 10 000 sinusoids, 20.3 mm rms at their speed and roughness."""
+    given = roughness or Roughness()
+    return PeriodicRoad("paper", 2.0 * given.roughness * given.velocity)
+
+
+def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
+    """The road of an ISO 8608 class, "A" to "E", at `speed` [m/s].
+
+    Raises
+    ------
+    ValueError
+        No such class, or a speed that is not positive.
+    """
+    if name not in ISO_CLASSES:
+        raise ValueError(f"ISO 8608 class {name!r}: there are {', '.join(ISO_CLASSES)}")
+    if not (math.isfinite(speed) and speed > 0.0):
+        raise ValueError(f"speed is {speed:g} m/s: give a positive number")
+    strength = ISO_CLASSES[name] * REFERENCE_FREQUENCY**2 * speed
+    # a hair of slack, so that a limit that is a multiple of the spacing counts
+    first = max(1, math.ceil(ISO_RANGE[0] * speed / SPACING - 1e-9))
+    last = max(first, math.floor(ISO_RANGE[1] * speed / SPACING + 1e-9))
+    return PeriodicRoad(f"iso:{name}", strength, first, last)
+
+
+def road_named(name: str, speed: float = 25.0) -> PeriodicRoad:
+    """A road by its name: "paper", or "iso:A" to "iso:E".
+
+    Raises
+    ------
+    ValueError
+        No such road.
+    """
+    if name == "paper":
+        return paper_road(Roughness(velocity=speed))
+    kind, colon, letter = name.partition(":")
+    if kind == "iso" and colon and letter.upper() in ISO_CLASSES:
+        return iso_road(letter.upper(), speed)
+    raise ValueError(f"road {name!r}: give paper or iso:A, iso:B ... iso:E")

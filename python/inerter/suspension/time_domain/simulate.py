@@ -1,0 +1,271 @@
+"""Indices of many designs on many roads, and gains under a sinusoidal load.
+
+    J1 = sqrt(mean zs''^2),   J3 = sqrt(mean Fr^2),   Fr = kt (zu - zr)          over a road
+    gain(w) = sqrt(int zs^2 / int Fs^2)                                          Fs = A sin(w t)
+
+Means over one whole period of the road, or whole periods of the load, after `settle` seconds that
+begin from rest and fade the input in. They are summed while the simulations run: memory does not
+grow with the number of roads or designs.
+
+The road is held over a step (see `road.py`). What it does to the tyre and, through a rigid
+inertance in S2, to the body *at once* is put right at every instant with the road's own value
+there. Frequencies beyond half the sampling rate (500 Hz at 1 ms) are not simulated: body and wheel
+move by less than 1e-3 of their height. What they do at once is added to the mean squares in closed
+form, so that the indices do not depend on the step.
+
+RK4 needs nothing more at its default step. discrete (S3 with an elastic shaft, whose node has
+no mass) is of first order: mean squares from steps h and h/2 are extrapolated, 2 S(h/2) - S(h).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.suspension.time_domain.model import CarModel, Design
+from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.time_domain.stepping import step_all
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+FADE = 1.0
+"""Seconds over which an input is faded in."""
+
+_LOAD_BLOCK = 16
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunSettings:
+    """How simulations are run; results do not depend on `jobs` and `block`.
+
+    `step` [s] of RK4, the largest one; discrete takes half of it, and a quarter. `settle` [s]
+    before the means begin. `jobs` threads, 0 for every processor. `block` simulations at a time.
+
+    Raises
+    ------
+    ValueError
+        A value out of range.
+    """
+
+    step: float = 1e-3
+    settle: float = 4.0
+    jobs: int = 0
+    block: int = 128
+
+    def __post_init__(self) -> None:
+        """Check what was given, see Raises."""
+        if not 0.0 < self.step <= 5e-3:
+            raise ValueError(f"step is {self.step:g} s: give one above 0, up to 0.005")
+        if not (math.isfinite(self.settle) and self.settle >= FADE):
+            raise ValueError(f"settle is {self.settle:g} s: give {FADE:g} or more")
+        if self.jobs < 0 or self.block < 1:
+            raise ValueError("jobs and block: give 0 or more threads, 1 or more simulations")
+
+
+def road_indices(
+    car: CarModel,
+    designs: Sequence[Design],
+    road: PeriodicRoad,
+    seeds: Sequence[int],
+    settings: RunSettings | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Array]:
+    """J1 [m/s^2] and J3 [N] of every design on every road.
+
+    Parameters
+    ----------
+    car
+        The model.
+    designs, seeds
+        Every pair of them is a simulation.
+    road
+        Of which the seeds choose the phases.
+    settings
+        Step, settling, threads.
+    progress
+        Called with the share that is done.
+
+    Returns
+    -------
+    dict of ndarray (designs, seeds)
+        "J1" and "J3".
+
+    Raises
+    ------
+    ValueError
+        A design that cannot be, or that diverges (`StepError`).
+    """
+    settings = settings or RunSettings()
+    tell = progress or (lambda share: None)
+    pairs = [(d, s) for s in range(len(seeds)) for d in range(len(designs))]
+    squares = np.empty((2, len(designs), len(seeds)))
+    for design in designs:
+        car.refuse(design, settings.step)
+    for start in range(0, len(pairs), settings.block):
+        part = pairs[start : start + settings.block]
+        chosen, drawn = [designs[d] for d, _ in part], [seeds[s] for _, s in part]
+
+        def at(step: float, chosen: list[Design] = chosen, drawn: list[int] = drawn) -> Array:
+            return _road_squares(car, chosen, road, drawn, step, settings)
+
+        d, s = np.array(part).T
+        squares[:, d, s] = _extrapolated(car, settings.step, at)
+        tell((start + len(part)) / len(pairs))
+    return dict(zip(("J1", "J3"), np.sqrt(squares), strict=True))
+
+
+def load_gains(
+    car: CarModel,
+    designs: Sequence[Design],
+    frequencies: ArrayLike,
+    amplitude: float = 1000.0,
+    settings: RunSettings | None = None,
+) -> Array:
+    """Root of the energy ratio of body displacement and load [m/N], after the transient.
+
+    Parameters
+    ----------
+    car, designs
+        The model, and the designs.
+    frequencies
+        [Hz], shape (designs, n).
+    amplitude
+        A [N] of the load on the body.
+    settings
+        Step, settling, threads.
+
+    Returns
+    -------
+    ndarray (designs, n)
+        The gains.
+
+    Raises
+    ------
+    ValueError
+        A design that cannot be, or that diverges (`StepError`); a value that is not positive.
+    """
+    settings = settings or RunSettings()
+    table = np.asarray(frequencies, dtype=np.float64)
+    if table.ndim != 2 or len(table) != len(designs) or not np.all(table > 0.0):
+        raise ValueError("frequencies: give positive ones, a row for each design")
+    if not amplitude > 0.0:
+        raise ValueError(f"amplitude is {amplitude:g} N: give a positive number")
+    for design in designs:
+        car.refuse(design, settings.step)
+
+    # low frequencies take longest: few and alike ones run together
+    size = min(settings.block, _LOAD_BLOCK)
+    row, column = np.unravel_index(np.argsort(table, axis=None), table.shape)
+    squares = np.empty(table.shape)
+    for start in range(0, table.size, size):
+        r, c = (index[start : start + size] for index in (row, column))
+        chosen = [designs[i] for i in r]
+
+        def at(step: float, chosen: list[Design] = chosen, f: Array = table[r, c]) -> Array:
+            return _load_squares(car, chosen, f, amplitude, step, settings)
+
+        squares[r, c] = _extrapolated(car, settings.step, at)
+    return np.sqrt(squares)
+
+
+def _extrapolated(car: CarModel, step: float, at: Callable[[float], Array]) -> Array:
+    """Mean squares without the error of first order, where the integrator has one."""
+    if not car.implicit:
+        return at(step)
+    return 2.0 * at(0.25 * step) - at(0.5 * step)
+
+
+def _road_squares(
+    car: CarModel,
+    designs: Sequence[Design],
+    road: PeriodicRoad,
+    seeds: Sequence[int],
+    step: float,
+    settings: RunSettings,
+) -> Array:
+    """Mean squares of zs'' and Fr, shape (2, simulations)."""
+    # a whole number of steps makes the period
+    count = math.ceil(road.period / step - 1e-9)
+    step = road.period / count
+    settle = math.ceil(settings.settle / step)
+    shown = np.array([road.instants(seed, count) for seed in _once(seeds)])
+    make = road.instants if car.implicit else road.held
+    driven = np.array([make(seed, count) for seed in _once(seeds)])
+    which = [_once(seeds).index(seed) for seed in seeds]
+    at_once = np.array([car.acceleration_per_force(d.inertance) for d in designs])[:, None]
+
+    def control(first: int, number: int) -> Array:
+        steps = np.arange(first, first + number)
+        return driven[:, (steps - settle) % count][which] * _fade(steps * step)
+
+    sums = np.zeros((2, len(designs)))
+    kt = car.car.tyre_stiffness
+    steps = np.full(len(designs), step)
+    run = step_all(car, designs, steps, settle + count, car.road, control, settings.jobs)
+    for chunk in run:
+        skip = max(settle - chunk.first, 0)
+        now = np.arange(chunk.first + skip, chunk.first + chunk.body.shape[1]) - settle
+        if now.size == 0:
+            continue
+        height = shown[:, now][which]
+        sudden = kt * (height - chunk.control[:, skip:])
+        sums[0] += _squares(chunk.acceleration[:, skip:] + at_once * sudden)
+        sums[1] += _squares(kt * (chunk.wheel[:, skip:] - height))
+    # sinusoids too quick for the step move nothing; they press the tyre
+    rest = road.left_out(count) * kt**2
+    return sums / count + rest * np.array([at_once[:, 0] ** 2, np.ones(len(designs))])
+
+
+def _load_squares(
+    car: CarModel,
+    designs: Sequence[Design],
+    frequencies: Array,
+    amplitude: float,
+    step: float,
+    settings: RunSettings,
+) -> Array:
+    """Mean square of zs per mean square of the load, shape (simulations,)."""
+    # whole periods of whole steps: at least two of them, and a second
+    per_period = np.ceil(1.0 / (frequencies * step) - 1e-9)
+    per_period = np.maximum(per_period, 24.0)
+    steps = 1.0 / (frequencies * per_period)
+    begin = np.ceil(settings.settle * frequencies) * per_period
+    length = np.maximum(np.ceil(frequencies), 2.0) * per_period
+    turn = 2.0 * np.pi / per_period[:, None]
+    # RK4 holds the load over the step, discrete takes it at its beginning
+    shift, gain = (0.0, amplitude) if car.implicit else (0.5, amplitude / np.sinc(1 / per_period))
+    gain = np.broadcast_to(gain, per_period.shape)[:, None]
+
+    def control(first: int, number: int) -> Array:
+        index = np.arange(first, first + number)
+        wave = gain * np.sin(turn * (index + shift))
+        return wave * _fade(index * steps[:, None])
+
+    sums = np.zeros(len(designs))
+    count = int((begin + length).max())
+    for chunk in step_all(car, designs, steps, count, car.load, control, settings.jobs):
+        index = np.arange(chunk.first, chunk.first + chunk.body.shape[1])
+        inside = (index >= begin[:, None]) & (index < (begin + length)[:, None])
+        sums += _squares(np.where(inside, chunk.body, 0.0))
+    return sums / length / (0.5 * amplitude**2)
+
+
+def _fade(times: NDArray[Any]) -> Array:
+    """0 to 1 over the first second, smoothly."""
+    return 0.5 - 0.5 * np.cos(np.pi * np.minimum(times / FADE, 1.0))
+
+
+def _squares(values: Array) -> Array:
+    """Sum of squares along each row."""
+    return np.square(values).sum(axis=1)
+
+
+def _once(seeds: Sequence[int]) -> list[int]:
+    """The seeds without repetition, in their order."""
+    return list(dict.fromkeys(seeds))
