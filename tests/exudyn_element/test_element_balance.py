@@ -58,6 +58,7 @@ DEVICES: dict[str, tuple[dict[str, Any], float]] = {
     "dashpot": ({"series_damping": 3.0}, 1e-8),
     "series, load friction": ({**SOFT, "load_friction": 0.2, **SMOOTH}, 1e-6),
     "play": (LOOSE, 5e-3),
+    "smooth play": ({**LOOSE, "smoothPlay": True}, 1e-4),
     "play, no damper": ({**LOOSE, "series_damping": 0.0}, 1e-4),
     "stops": ({"stop_stiffness": 2e3, "stop_damping": 0.5, "stop_upper": 0.62,
                "stop_lower": 0.58}, 1e-4),
