@@ -36,7 +36,7 @@ def test_force_along_a_sine(name: str) -> None:
     device, tolerance = DEVICES[name]
     motion = sine_motion(AMPLITUDE, FREQUENCY, PHASE)
     x, v, a = (
-        np.asarray(signal(TIMES))
+        np.asarray(signal(TIMES), dtype=float)  # pyright: ignore[reportArgumentType]
         for signal in (motion.displacement, motion.velocity, motion.acceleration)
     )
     true = response(ReferenceDevice(inertance=100.0, **device), motion, TIMES)

@@ -9,7 +9,7 @@ from inerter.suspension.layouts import LAYOUTS, SOFT, SeriesPair
 from inerter.suspension.optimum import Optimum, optimise
 from inerter.suspension.problem import Problem
 from inerter.suspension.quarter_car import QuarterCar, Road
-from scipy.optimize import differential_evolution
+from scipy.optimize import differential_evolution, minimize
 
 CAR, ROAD = QuarterCar(), Road()
 EVERY = [
@@ -87,27 +87,43 @@ def test_a_dense_grid_is_not_better(layout: str, index: str, k: float) -> None:
     assert values.min() <= found.value * 1.1
 
 
+def evolved(problem: Problem) -> float:
+    """The least value that differential evolution finds."""
+    found = differential_evolution(
+        lambda x: np.log(problem.value(x.T)), problem.bounds, vectorized=True, polish=False,
+        updating="deferred", popsize=20, maxiter=150, tol=0.0, rng=np.random.default_rng(3),
+    )  # fmt: skip
+    return float(np.exp(found.fun))
+
+
 @pytest.mark.parametrize("layout", ["S2", "S3", "S4", "S5", "S6"])
 @pytest.mark.parametrize("index", ["J1", "J5"])
 def test_differential_evolution_finds_the_same(layout: str, index: str) -> None:
     problem, found, _ = solved(layout, index, 120e3, SOFT)
-    other = differential_evolution(
-        lambda x: np.log(problem.value(x.T)), problem.bounds, vectorized=True, polish=False,
-        updating="deferred", popsize=20, maxiter=150, tol=0.0, rng=np.random.default_rng(3),
-    )  # fmt: skip
+    other = evolved(problem)
     # with a relaxation spring at the rigid end of its range values are certain to 1e-10
-    assert np.exp(other.fun) >= found.value * (1.0 - 1e-9)
-    assert np.exp(other.fun) == pytest.approx(found.value, rel=2e-3)
+    assert other >= found.value * (1.0 - 1e-9)
+    assert other == pytest.approx(found.value, rel=2e-3)
 
 
 def test_the_deeper_of_two_minima() -> None:
-    """S6, tyre load on a very soft spring: a second minimum lies only 0.1 % higher."""
-    problem, found, _ = solved("S6", "J3", 10e3, None)
-    best = differential_evolution(
-        lambda point: float(problem.value(point[None])[0]),
-        problem.bounds, seed=2, tol=1e-12, popsize=40,
-    )  # fmt: skip
-    assert found.value <= best.fun * (1.0 + 1e-9)
+    """S6, tyre load on a very soft spring: the wider of two minima lies only 0.1 % higher.
+
+    It is where forty polished random designs end; the narrow one is lower.
+    """
+    problem, found, point = solved("S6", "J3", 10e3, None)
+    low, high = problem.bounds.T
+    anywhere = np.random.default_rng(5).uniform(low, high, (20000, len(low)))
+    starts = anywhere[np.argsort(problem.value(anywhere))[:40]]
+    polished = [
+        minimize(
+            lambda point: float(problem.value(point[None])[0]), start, method="Nelder-Mead",
+            bounds=problem.bounds, options={"xatol": 1e-7, "fatol": 1e-9, "maxiter": 4000},
+        ).fun
+        for start in starts
+    ]  # fmt: skip
+    assert float(problem.value(point[None])[0]) == pytest.approx(found.value, rel=1e-12)
+    assert 5e-4 < min(polished) / found.value - 1.0 < 2e-3
 
 
 def test_a_stiffer_pair_comes_to_the_ideal_inerter() -> None:
