@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.diagnose import diagnose
-from inerter.diagnose.preparation import prepare
+from inerter.identify.preparation import prepare
 from inerter.identify.bench import thin
 from inerter.identify.fit import Model, Problem
 from inerter.records import read_records

@@ -14,7 +14,6 @@ from inerter.diagnose import wording
 from inerter.diagnose.acceptance import visible, visible_delay
 from inerter.diagnose.effects import EFFECTS, effects_of, simpler_laws, submodel
 from inerter.diagnose.engines import simulate_engines
-from inerter.diagnose.preparation import Preparation, prepare
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -25,7 +24,6 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
-from inerter.diagnose.split import Split, blocks, split
 from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, scales, thin, whole
@@ -38,6 +36,8 @@ from inerter.identify.fit import (
     parameter_errors,
     stated_values,
 )
+from inerter.identify.preparation import Preparation, prepare
+from inerter.identify.split import Split, blocks, split
 from inerter.records import Record
 
 Array = NDArray[np.float64]

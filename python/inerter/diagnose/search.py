@@ -22,10 +22,10 @@ from inerter.diagnose.effects import (
     simpler_laws,
     without_effect,
 )
-from inerter.diagnose.split import Split, blocks
 from inerter.diagnose.statistics import Array, advantage, block_squares, win_shares
 from inerter.identify.bench import Run, head, head_size
 from inerter.identify.fit import Fit, Model, Problem
+from inerter.identify.split import Split, blocks
 
 # what a richer model must win by: standard errors over paired blocks, and share of the rms error.
 # 4 standard errors: about one false alarm in 30,000 candidates on noise alone. A gain many times

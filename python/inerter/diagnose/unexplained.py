@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.result import Unexplained
-from inerter.diagnose.split import Split
 from inerter.identify.bench import Run
+from inerter.identify.split import Split
 
 Array = NDArray[np.float64]
 

@@ -7,6 +7,8 @@ is the combination that the data see:
     presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
     bw_level        largest hysteretic Bouc-Wen force (alpha = 1)                      [N]
     bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
+    series_frequency  sqrt(series_stiffness / inertance) / 2 pi, of the inertance on its shaft  [Hz]
+    series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
     delay           time by which the force channel is late           [s], not a device parameter
 """
 
@@ -64,7 +66,14 @@ class Coordinate:
 
 
 # force per coordinate: these enter the force linearly, with these columns
-LINEAR = ("inertance", "viscous", "stiffness", "force_offset", "quadratic_damping")
+LINEAR = (
+    "inertance",
+    "viscous",
+    "stiffness",
+    "stiffness_cubic",
+    "force_offset",
+    "quadratic_damping",
+)
 
 
 @functools.lru_cache(maxsize=512)
@@ -75,12 +84,17 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
 
     # what the velocity changes by within the smoother's memory: nothing narrower can be seen
     resolution = 0.5 * a / (2 * np.pi * scales.cutoff)
+
+    # frequency of the motion, and the highest one that is told from noise
+    slow = float(np.sqrt(a / x)) / (2 * np.pi)
+    fast = scales.cutoff if np.isfinite(scales.cutoff) else 100 * slow
     table = {
         "inertance": Coordinate(force / a, 0, infinity),
         "inertance_gradient": Coordinate(0.1 / x, -3 / x, 3 / x),
         "inertance_curvature": Coordinate(0.1 / x**2, -3 / x**2, 3 / x**2),
         "viscous": Coordinate(force / v, 0, infinity),
         "stiffness": Coordinate(force / x, -infinity, infinity),
+        "stiffness_cubic": Coordinate(force / x**3, -infinity, infinity),
         "force_offset": Coordinate(force, -infinity, infinity),
         "quadratic_damping": Coordinate(force / v**2, 0, infinity),
         "load_friction": Coordinate(0.1, 0, 0.95),
@@ -99,6 +113,12 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "bw_shape": Coordinate(0.5, 0.0, 5.0),
         "bw_ratio": Coordinate(0.1, -0.5, 0.9),
         "bw_exponent": Coordinate(1.0, 1.0, 6.0),
+        "series_frequency": Coordinate(slow, 0.1 * slow, 30 * fast, logarithmic=True),
+        "series_loss": Coordinate(0.1, 1e-4, 1e2, logarithmic=True),
+        "series_hardening": Coordinate(0.1 / x, -3 / x, 3 / x),
+        "flywheel_viscous": Coordinate(force / v, 0, infinity),
+        "inertance_speed_gradient": Coordinate(0.1 / v, -3 / v, 3 / v),
+        "backlash": Coordinate(x, 1e-5 * x, 2 * x, logarithmic=True),
         "delay": Coordinate(1e-3, -0.05, 0.05),
     }
     return table[name]
@@ -109,9 +129,14 @@ def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
     values = dict(coordinates)
     values.pop("delay", None)
     presliding = values.pop("presliding", None)
+    if (frequency := values.pop("series_frequency", None)) is not None:
+        rate, inertance = 2 * np.pi * frequency, values["inertance"]
+        values["series_stiffness"] = inertance * rate**2
+        if (loss := values.pop("series_loss", None)) is not None:
+            values["series_damping"] = 2 * loss * rate * inertance
     if (excess := values.pop("static_excess", None)) is not None:
         values["static_force"] = values["coulomb_force"] + excess
-        if presliding is None and "transition_velocity" in values:
+        if presliding is None and {"transition_velocity", "stribeck_velocity"} <= values.keys():
             # a rise wider than the fall would take breakaway away again
             narrow = values["stribeck_velocity"] / 5
             values["transition_velocity"] = min(values["transition_velocity"], narrow)

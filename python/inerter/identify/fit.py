@@ -20,6 +20,20 @@ Masks = Sequence[NDArray[np.bool_]]
 
 # free coordinates that make up for how a law is smoothed, and name no effect
 NUISANCES = ("transition_velocity",)
+# with one of these the force is no longer the inertance times the acceleration
+ENTANGLED = (
+    "load_friction",
+    "inertance_gradient",
+    "inertance_curvature",
+    "inertance_speed_gradient",
+    "flywheel_viscous",
+    "gas_pressure",
+    "series_frequency",
+    "series_stiffness",
+    "series_damping",
+)
+# residuals beyond this many standard deviations count less in robust fits
+ROBUST = 1.345
 
 
 @dataclass(frozen=True)
@@ -174,12 +188,17 @@ class Fit:
         Measured minus predicted force per run [N].
     covariance : ndarray (p, p)
         Of the free coordinates, robust against correlated residuals.
+    evaluations : int
+        How often the optimiser asked for the residual.
+    cost : float
+        What was minimised, without unit.
     """
 
     model: Model
     residual: list[Array]
     covariance: Array
     evaluations: int
+    cost: float = 0.0
 
     def rmse(self, masks: Masks) -> float:
         """Root mean square residual over masked samples [N]."""
@@ -215,17 +234,18 @@ class Problem:
         """Derivative of the residual by one search variable, over all samples of all runs."""
         index = model.free.index(name)
         how = coordinate(name, self.scales)
-        entangled = ("load_friction", "inertance_gradient", "inertance_curvature")
         if name in LINEAR and not (
-            name == "inertance" and any(other in model.values for other in entangled)
+            name == "inertance" and any(other in model.values for other in ENTANGLED)
         ):
             columns = []
             for run in self.runs:
                 v = run.velocity
+                stretch = run.displacement - model.values.get("rest_length", 0.0)
                 column = {
                     "inertance": run.acceleration,
                     "viscous": v,
-                    "stiffness": run.displacement - model.values.get("rest_length", 0.0),
+                    "stiffness": stretch,
+                    "stiffness_cubic": stretch**3,
                     "force_offset": np.ones_like(v),
                     "quadratic_damping": v * np.abs(v),
                 }[name]
@@ -239,6 +259,32 @@ class Problem:
         there = self.residual(self._decode(model, moved))
         return (np.concatenate(there) - np.concatenate(base)) / step
 
+    def variables(self, model: Model) -> Array:
+        """The search variables of the model's free coordinates, shape (p,)."""
+        how = [coordinate(name, self.scales) for name in model.free]
+        return np.array([c.encode(model.values[n]) for c, n in zip(how, model.free, strict=True)])
+
+    def jacobian(self, model: Model) -> Array:
+        """Derivatives of the residual [N] by the search variables, shape (n, p)."""
+        here, base = self.variables(model), self.residual(model)
+        selected = np.concatenate(self.masks)
+        columns = [self._column(name, model, here, base)[selected] for name in model.free]
+        return np.column_stack(columns) if columns else np.zeros((int(selected.sum()), 0))
+
+    def moved(self, model: Model, step: Array) -> Model:
+        """The model with its search variables moved, within their bounds."""
+        return self._decode(model, self.variables(model) + step)
+
+    def units(self, model: Model) -> Array:
+        """Coordinate per search variable, shape (p,)."""
+        how = [coordinate(name, self.scales) for name in model.free]
+        return np.array(
+            [
+                model.values[name] if each.logarithmic else each.size
+                for name, each in zip(model.free, how, strict=True)
+            ]
+        )
+
     def _decode(self, model: Model, variables: Array) -> Model:
         values = {
             name: coordinate(name, self.scales).decode(variable)
@@ -246,10 +292,13 @@ class Problem:
         }
         return replace(model, values={**model.values, **values})
 
-    def fit(self, model: Model, evaluations: int = 40) -> Fit:
-        """Bounded least squares over the model's free coordinates, from its present values."""
+    def fit(self, model: Model, evaluations: int = 40, loss: str = "linear") -> Fit:
+        """Bounded least squares over the model's free coordinates, from its present values.
+
+        A robust `loss` (see `scipy.optimize.least_squares`) lets samples far off count less.
+        """
         how = [coordinate(name, self.scales) for name in model.free]
-        start = np.array([c.encode(model.values[n]) for c, n in zip(how, model.free, strict=True)])
+        start = self.variables(model)
         lower, upper = np.array([c.bounds for c in how]).reshape(-1, 2).T
         if not model.free:
             return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
@@ -284,6 +333,8 @@ class Problem:
             inside,
             jac=jacobian,  # pyright: ignore[reportArgumentType]
             bounds=(lower, upper),
+            loss=loss,
+            f_scale=self._typical(at(inside)) / size if loss != "linear" else 1.0,
             xtol=1e-7,
             ftol=1e-9,
             gtol=1e-10,
@@ -291,39 +342,57 @@ class Problem:
         )
         fitted = self._decode(model, solution.x)
         residual = at(solution.x)
-        covariance = self._covariance(fitted, solution.x, jacobian(solution.x) * size, residual)
-        return Fit(fitted, residual, covariance, int(solution.nfev))
-
-    def _covariance(
-        self, model: Model, variables: Array, jacobian: Array, residual: list[Array]
-    ) -> Array:
-        """Covariance of the free coordinates by the sandwich over blocks of samples.
-
-        Residuals of neighbouring samples are correlated, so the scores are summed over blocks
-        before their spread is taken (a cluster-robust estimate).
-        """
         flat = self._masked(residual)
-        blocks = np.array_split(np.arange(flat.size), min(60, max(flat.size // 20, 2)))
-        scores = np.array([jacobian[block].T @ flat[block] for block in blocks])
-        bread = np.linalg.pinv(jacobian.T @ jacobian)
-        count = len(blocks)
-        covariance = bread @ (scores.T @ scores) @ bread * count / max(count - 1, 1)
+        weight = robust_weight(flat, self._typical(residual), loss)
+        covariance = self._covariance(fitted, jacobian(solution.x) * size, flat, weight)
+        return Fit(fitted, residual, covariance, int(solution.nfev), float(solution.cost))
+
+    def _typical(self, residual: list[Array]) -> float:
+        """Size of a residual from which on a robust fit lets it count less [N]."""
+        return ROBUST * 1.4826 * float(np.median(np.abs(self._masked(residual)))) + 1e-300
+
+    def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
+        """Covariance of the free coordinates, see `sandwich`."""
+        covariance = sandwich(jacobian, flat, weight)
 
         # a coordinate without effect on the force is not known at all, whatever the sandwich says
         effect = np.sum(jacobian**2, axis=0)
         least = np.mean(flat**2) / np.maximum(effect, 1e-12 * np.max(effect) + 1e-300)
         covariance[np.diag_indices_from(covariance)] = np.maximum(np.diag(covariance), least)
 
-        # to coordinates: logarithms scale with the value
-        factor = np.array(
-            [
-                model.values[name]
-                if (how := coordinate(name, self.scales)).logarithmic
-                else how.size
-                for name in model.free
-            ]
-        )
+        factor = self.units(model)
         return covariance * np.outer(factor, factor)
+
+
+def robust_weight(residual: Array, typical: float, loss: str) -> Array:
+    """What each sample counts in a fit: 1 with the linear loss, less far off with others."""
+    z = (residual / typical) ** 2
+    return {
+        "linear": np.ones_like(z),
+        "soft_l1": 1 / np.sqrt(1 + z),
+        "huber": 1 / np.sqrt(np.maximum(z, 1)),
+        "cauchy": 1 / (1 + z),
+        "arctan": 1 / (1 + z**2),
+    }[loss]
+
+
+def sandwich(jacobian: Array, residual: Array, weight: Array) -> Array:
+    """Covariance of a least-squares estimate, robust against correlated residuals, shape (p, p).
+
+    Residuals of neighbouring samples are correlated, so the scores are summed over blocks before
+    their spread is taken (a cluster-robust estimate).
+
+    Parameters
+    ----------
+    jacobian, residual, weight : ndarray (n, p), (n,), (n,)
+        Derivatives of the residual, the residual, and what each sample counts.
+    """
+    blocks = np.array_split(np.arange(residual.size), min(60, max(residual.size // 20, 2)))
+    weighted = weight * residual
+    scores = np.array([jacobian[block].T @ weighted[block] for block in blocks])
+    bread = np.linalg.pinv(jacobian.T @ (weight[:, None] * jacobian))
+    count = len(blocks)
+    return bread @ (scores.T @ scores) @ bread * count / max(count - 1, 1)
 
 
 def parameter_errors(fit: Fit) -> dict[str, tuple[float, float]]:

@@ -8,7 +8,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from inerter.diagnose.output import refuse_folder
+from inerter.folder import refuse_folder
 from inerter.simulate.page import render_page
 from inerter.simulate.record import device_csv, device_names, vehicle_csv
 from inerter.simulate.run import Run

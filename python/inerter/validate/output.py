@@ -8,7 +8,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from inerter.diagnose.output import refuse_folder
+from inerter.folder import refuse_folder
 from inerter.validate.picture import picture
 from inerter.validate.result import Validation
 

@@ -1,0 +1,103 @@
+"""`inerter identify`: parameters of a device from bench records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from inerter.console import out, progress_bar, refuse
+
+
+def identify_command(
+    record: Annotated[
+        list[str],
+        typer.Argument(help="Records: files, folders or globs; several are fitted together."),
+    ],
+    law: Annotated[
+        str,
+        typer.Option(
+            help="Laws, with commas; parts joined by + as in lugre+series+offset. Laws: ideal, "
+            "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, fluid; parts: "
+            "series, backlash, offset, stiffness, hardening, quadratic, load, asymmetry, "
+            "position, variable, delay."
+        ),
+    ] = "ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen",
+    fix: Annotated[
+        list[str] | None, typer.Option(help="KEY=VALUE of a known parameter (SI); again for more.")
+    ] = None,
+    holdout: Annotated[
+        list[str] | None, typer.Option(help="Name of a run to judge on; may be given again.")
+    ] = None,
+    loss: Annotated[
+        str, typer.Option(help="linear; or soft_l1, huber, cauchy: outliers count less.")
+    ] = "linear",
+    intervals: Annotated[
+        str, typer.Option(help="profile, or normal: 1.96 standard errors, quicker.")
+    ] = "profile",
+    starts: Annotated[
+        int | None, typer.Option(min=1, help="Starting points; default 24 per nonlinear parameter.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/identification"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print identification.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Parameters of a device with errors and intervals, laws compared on held-out data.
+
+    Writes identification.json, identification.png, device.toml and model.xml of the best law.
+    """
+    from inerter.folder import refuse_folder
+    from inerter.identify.estimate import identify
+    from inerter.identify.output import (
+        json_text,
+        print_identification,
+        write_identification,
+    )
+    from inerter.records import read_records
+
+    try:
+        refuse_folder(out_dir)
+        records = read_records(record, "bench")
+        with progress_bar("identifying", as_json) as progress:
+            result = identify(
+                records, _names(law), fixed=_fixed(fix or []), holdout=holdout or (), loss=loss,
+                intervals=intervals, starts=starts, progress=progress,
+            )  # fmt: skip
+        files = write_identification(result, out_dir)
+    except ValueError as error:
+        refuse(str(error))
+    except OSError as error:
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(json_text(result), end="")
+        return
+    print_identification(result, out)
+    out.print(f"Written to {out_dir}: {', '.join(files)}")
+
+
+def _names(text: str) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+    if not names:
+        raise ValueError("--law is empty; see --help")
+    return names
+
+
+def _fixed(pairs: list[str]) -> dict[str, float | str]:
+    """KEY=VALUE pairs; words for the names of laws."""
+    found: dict[str, float | str] = {}
+    for pair in pairs:
+        key, sign, value = pair.partition("=")
+        if not sign or not value.strip():
+            raise ValueError(f"--fix {pair!r}: give KEY=VALUE, as in inertance=113")
+        if key.strip() == "gas_law":
+            found["gas_law"] = value.strip()
+            continue
+        try:
+            found[key.strip()] = float(value)
+        except ValueError:
+            raise ValueError(f"--fix {pair!r}: {value!r} is not a number") from None
+    return found

@@ -1,0 +1,440 @@
+"""Parameters of a device from bench records: value, error, interval, and what is left open.
+
+Every law is fitted to the runs that are not held out, from many starts; noise of the motion is
+allowed for; laws are compared by their force error on the held-out data.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from inerter.core import Device, DeviceError, parameters
+from inerter.identify.bench import Run, thin, whole
+from inerter.identify.coordinates import coordinate, device_values
+from inerter.identify.fit import NUISANCES, Fit, Model, Problem, parameter_errors
+from inerter.identify.identifiability import Combination, identifiability
+from inerter.identify.laws import LAWS, Law, law_named
+from inerter.identify.multistart import search
+from inerter.identify.noise import effect_of_noise
+from inerter.identify.preparation import Preparation, prepare
+from inerter.identify.profile import profile_interval
+from inerter.identify.split import Split, blocks, split
+from inerter.records import Record
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+INTERVALS = ("profile", "normal")
+
+# share of blocks drawn anew for the interval of a held-out error
+_RESAMPLES = 400
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: `value`, standard error, 95 % interval (None: no end), unit."""
+
+    value: float
+    stderr: float
+    low: float | None
+    high: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class Identified:
+    """A law fitted to data.
+
+    Attributes
+    ----------
+    law
+        As asked for.
+    device
+        The device, ready for a simulation.
+    delay
+        Time by which the force channel is late [s].
+    parameters
+        What was fitted, by name.
+    correlation
+        Of the estimates, in the order of `parameters`, shape (p, p).
+    undetermined
+        Groups of parameters that the data cannot tell apart.
+    combinations
+        What of them the data do determine.
+    fit_rmse, rmse
+        Force error [N] on the data fitted and on those held out; `low`, `high` its 95 % interval.
+    nrmse
+        `rmse` per standard deviation of the held-out force.
+    ends
+        Force errors [N] at which the fits from different starts ended.
+    notes
+        Sentences on what a reader should know.
+    seconds
+        Time the fit took.
+    """
+
+    law: str
+    device: Device
+    delay: float
+    parameters: Mapping[str, Estimate]
+    correlation: Array
+    undetermined: tuple[tuple[str, ...], ...]
+    combinations: tuple[Combination, ...]
+    fit_rmse: float
+    rmse: float
+    low: float
+    high: float
+    nrmse: float
+    ends: tuple[float, ...]
+    notes: tuple[str, ...]
+    seconds: float
+    model: Model = field(repr=False)
+
+    def json(self) -> dict[str, Any]:
+        """Plain data."""
+        return {
+            "law": self.law,
+            "device": self.device.given,
+            "delay": self.delay,
+            "parameters": {
+                name: {
+                    "value": each.value,
+                    "stderr": each.stderr,
+                    "interval": [each.low, each.high],
+                    "unit": each.unit,
+                }
+                for name, each in self.parameters.items()
+            },
+            "correlation": {
+                "names": list(self.parameters),
+                "matrix": self.correlation.tolist(),
+            },
+            "undetermined": [list(group) for group in self.undetermined],
+            "combinations": [
+                {"expression": c.expression, "value": c.value, "relative_error": c.relative_error}
+                for c in self.combinations
+            ],
+            "fit_rmse": self.fit_rmse,
+            "rmse": self.rmse,
+            "rmse_interval": [self.low, self.high],
+            "nrmse": self.nrmse,
+            "starts": list(self.ends),
+            "notes": list(self.notes),
+            "seconds": self.seconds,
+        }
+
+
+@dataclass(frozen=True)
+class Identification:
+    """`results` by held-out error, the best first; how the data were prepared and divided."""
+
+    records: tuple[Record, ...]
+    results: tuple[Identified, ...]
+    preparation: Preparation
+    split: Split
+    runs: tuple[Run, ...]
+
+    @property
+    def best(self) -> Identified:
+        """The law with the smallest held-out error."""
+        return self.results[0]
+
+    def json(self) -> dict[str, Any]:
+        """Plain data; schema inerter.identification/1."""
+        return {
+            "schema": "inerter.identification/1",
+            "records": [
+                {
+                    "name": record.name,
+                    "samples": record.samples,
+                    "sample_rate": record.sample_rate,
+                    "role": self.split.role(i),
+                    "warnings": [{"code": w.code, "text": w.text} for w in record.warnings],
+                }
+                for i, record in enumerate(self.records)
+            ],
+            "preparation": {
+                "cutoff": self.preparation.cutoff,
+                "channels": ["displacement", *self.preparation.channels],
+                "noise_floor": self.preparation.noise_floor,
+            },
+            "held_out": self.split.description,
+            "results": [result.json() for result in self.results],
+        }
+
+
+def identify(
+    records: Sequence[Record],
+    laws: Sequence[str] = LAWS,
+    *,
+    fixed: Mapping[str, float | str] | None = None,
+    holdout: Sequence[str] = (),
+    loss: str = "linear",
+    intervals: str = "profile",
+    starts: int | None = None,
+    progress: Progress = lambda share, text: None,
+) -> Identification:
+    """Fit laws to bench records.
+
+    Parameters
+    ----------
+    records
+        One or several runs; all of them are fitted together.
+    laws
+        What to fit, see `inerter.identify.laws`.
+    fixed
+        Parameters that are known, SI units.
+    holdout
+        Names of runs to judge on; by default the most typical one, or blocks of a single run.
+    loss
+        "linear", or one that lets outliers count less: "soft_l1", "huber", "cauchy".
+    intervals
+        "profile", or "normal" for 1.96 standard errors, which is quicker.
+    starts
+        Starting points of a search.
+    progress
+        Told the share that is done, and what is being done.
+
+    Raises
+    ------
+    DeviceError
+        An unknown law or parameter, or values that do not fit together.
+    ValueError
+        Records that cannot be used, an unknown loss or kind of interval.
+    """
+    if loss not in LOSSES:
+        raise ValueError(f"loss {loss!r}: choose from {', '.join(LOSSES)}")
+    if intervals not in INTERVALS:
+        raise ValueError(f"intervals {intervals!r}: choose from {', '.join(INTERVALS)}")
+    chosen = [law_named(name) for name in laws]
+    known = dict(fixed or {})
+    for name in known:
+        if name not in (*parameters(), "gas_law"):
+            Device(**known)
+    refuse_still(records)
+    with threadpool_limits(limits=1, user_api="blas"):
+        progress(0.0, "smoothing")
+        preparation = prepare(records)
+        runs = [thin(motion) for motion in preparation.motions]
+        parted = split(runs, holdout)
+        raw = [whole(motion) for motion in preparation.motions]
+        data = _Data(records, preparation, runs, parted, raw, known)
+        results = []
+        for done, law in enumerate(chosen):
+            progress((done + 0.1) / len(chosen), law.name)
+            results.append(data.identified(law, loss, intervals, starts))
+        progress(1.0, "done")
+    results.sort(key=lambda result: result.rmse)
+    return Identification(tuple(records), tuple(results), preparation, parted, tuple(raw))
+
+
+def refuse_still(records: Sequence[Record]) -> None:
+    """Raise ValueError for a run that does not move: it says nothing about a device."""
+    for record in records:
+        for name in ("displacement", "force"):
+            values = getattr(record, name)
+            if np.ptp(values) == 0:
+                raise ValueError(
+                    f"{record.name}: column '{name}' does not change ({values[0]:g} throughout); "
+                    "leave this run out"
+                )
+
+
+@dataclass(frozen=True)
+class _Data:
+    """What every law is fitted to."""
+
+    records: Sequence[Record]
+    preparation: Preparation
+    runs: Sequence[Run]
+    parted: Split
+    raw: Sequence[Run]
+    fixed: Mapping[str, float | str]
+
+    def identified(self, law: Law, loss: str, intervals: str, starts: int | None) -> Identified:
+        begin = time.perf_counter()
+        used = [i for i, mask in enumerate(self.parted.fit) if mask.any()]
+        masks = [self.parted.fit[i] for i in used]
+        problem = Problem([self.runs[i] for i in used], masks)
+        found = search(problem, law, self.fixed, loss=loss, starts=starts)
+        fit, jacobian = found.best, problem.jacobian(found.best.model)
+        noise = effect_of_noise(problem, fit.model, jacobian, self.preparation, self.records, used)
+        better, inflation = _allowed_for(problem, fit, jacobian, noise.bias,
+                                         noise.covariance, noise.smoothing)  # fmt: skip
+        estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
+        told = identifiability(
+            problem, fit.model, float(np.median(inflation)) if inflation.size else 1.0,
+            tuple(self.fixed),
+        )  # fmt: skip
+        model = better.model
+        device = Device(friction=law.friction, **device_values(model.values), **model.texts)
+        rmse, low, high, nrmse = self._held_out(model)
+        return Identified(
+            law=law.name,
+            device=_bare(device),
+            delay=model.delay,
+            parameters=estimates,
+            correlation=correlation,
+            undetermined=told.groups,
+            combinations=told.combinations,
+            fit_rmse=self._raw_error(model, self.parted.fit)[0],
+            rmse=rmse,
+            low=low,
+            high=high,
+            nrmse=nrmse,
+            ends=found.ends,
+            notes=tuple(_notes(problem, fit, found.ends)),
+            seconds=time.perf_counter() - begin,
+            model=model,
+        )
+
+    def _estimates(
+        self, problem: Problem, fit: Fit, better: Fit, inflation: Array, intervals: str
+    ) -> tuple[dict[str, Estimate], Array]:
+        errors = {
+            name: pair for name, pair in parameter_errors(better).items() if name not in NUISANCES
+        }
+        typical = float(np.median(inflation)) if inflation.size else 1.0
+        found = {}
+        for name, (value, error) in errors.items():
+            low: float | None = value - 1.96 * error
+            high: float | None = value + 1.96 * error
+            if intervals == "profile" and error > 0:
+                low, high = _profile(problem, fit, name, value, error, typical)
+            unit = "s" if name == "delay" else parameters()[name].unit
+            found[name] = Estimate(value, error, low, high, unit)
+        return found, _correlation(better, tuple(found))
+
+    def _raw_error(self, model: Model, masks: Sequence[NDArray[np.bool_]]) -> tuple[float, Array]:
+        """Force error [N] at the measured rate, and its squares over blocks."""
+        steps = [r.thinned for r in self.runs]
+        full = [
+            np.repeat(mask, step)[: run.force.size] & run.inner[: mask.size * step]
+            if step > 1
+            else mask & run.inner
+            for mask, step, run in zip(masks, steps, self.raw, strict=True)
+        ]
+        wide = [np.zeros(run.force.size, bool) for run in self.raw]
+        for target, mask in zip(wide, full, strict=True):
+            target[: mask.size] = mask
+        problem = Problem(self.raw, wide)
+        residual = problem.residual(model)
+        parts = blocks(self.raw, problem.masks)
+        squares = np.array([[np.sum(residual[i][at] ** 2), at.size] for i, at in parts])
+        if not len(squares):
+            return math.nan, np.zeros((0, 2))
+        return float(np.sqrt(squares[:, 0].sum() / squares[:, 1].sum())), squares
+
+    def _held_out(self, model: Model) -> tuple[float, float, float, float]:
+        """Error, its interval from resampled blocks, and the error per spread of the force."""
+        value, squares = self._raw_error(model, self.parted.holdout)
+        if not squares.size:
+            return value, math.nan, math.nan, math.nan
+        random = np.random.default_rng(0)
+        drawn = random.integers(0, len(squares), (_RESAMPLES, len(squares)))
+        sums = squares[drawn].sum(axis=1)
+        low, high = np.quantile(np.sqrt(sums[:, 0] / sums[:, 1]), (0.025, 0.975))
+        held = [r.force for r, m in zip(self.raw, self.parted.holdout, strict=True) if m.any()]
+        return value, float(low), float(high), value / float(np.std(np.concatenate(held)))
+
+
+def _allowed_for(
+    problem: Problem, fit: Fit, jacobian: Array, bias: Array, spread: Array, smoothing: Array
+) -> tuple[Fit, Array]:
+    """The fit without the bias of noise, its covariance whole; variance per naive variance."""
+    units = problem.units(fit.model)
+    covariance = spread * np.outer(units, units)
+
+    # what the residuals show beyond the channels' noise counts too
+    shown, drawn = np.diag(fit.covariance), np.maximum(np.diag(covariance), 1e-300)
+    more = np.sqrt(np.maximum(1.0, shown / drawn))
+    covariance = covariance * np.outer(more, more) + np.diag((bias**2 + smoothing**2) * units**2)
+    flat = np.concatenate([r[m] for r, m in zip(fit.residual, problem.masks, strict=True)])
+    naive = np.linalg.pinv(jacobian.T @ jacobian) * float(np.mean(flat**2))
+    own = np.diag(naive) * units**2
+    # a coordinate without effect has no variance of its own to compare with
+    inflation = np.where(own > 0, np.diag(covariance) / np.where(own > 0, own, 1.0), 1.0)
+    model = problem.moved(fit.model, -bias)
+    try:
+        model.device()
+    except DeviceError:
+        model = fit.model
+    return replace(fit, model=model, covariance=covariance), inflation
+
+
+def _profile(
+    problem: Problem, fit: Fit, name: str, value: float, error: float, inflation: float
+) -> tuple[float | None, float | None]:
+    """Ends of the interval, moved by what the noise's bias moved the value by."""
+
+    def quantity(model: Model) -> float:
+        if name == "delay":
+            return model.delay
+        return float(device_values(model.values)[name])
+
+    naive = parameter_errors(fit)[name][1]
+    ratio = (error / naive) ** 2 if naive > 0 else 1.0
+    low, high = profile_interval(problem, fit.model, quantity, error, max(inflation, ratio))
+    shift = value - quantity(fit.model)
+    return (None if low is None else low + shift, None if high is None else high + shift)
+
+
+def _correlation(fit: Fit, names: tuple[str, ...]) -> Array:
+    """Correlation of device parameters."""
+    base = _parameters(fit.model)
+    gradient = np.zeros((len(names), len(fit.model.free)))
+    for i, free in enumerate(fit.model.free):
+        value = fit.model.values[free]
+        step = 1e-6 * (abs(value) or math.sqrt(max(fit.covariance[i, i], 0.0)) or 1.0)
+        there = _parameters(replace(fit.model, values={**fit.model.values, free: value + step}))
+        gradient[:, i] = [(there[name] - base[name]) / step for name in names]
+    covariance = gradient @ fit.covariance @ gradient.T
+    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    return covariance / np.outer(errors, errors)
+
+
+def _parameters(model: Model) -> dict[str, float]:
+    return device_values(model.values) | {"delay": model.delay}
+
+
+def _bare(device: Device) -> Device:
+    """Without parameters that its friction law does not read, and without zeros."""
+    known = parameters()
+    kept = {
+        name: value
+        for name, value in device.given.items()
+        if name not in known
+        or (
+            value != 0
+            and (not known[name].laws or device.friction in known[name].laws)
+            and not (name in NUISANCES and device.friction not in ("coulomb", "stribeck"))
+        )
+    }
+    return Device(**kept)
+
+
+def _notes(problem: Problem, fit: Fit, ends: tuple[float, ...]) -> list[str]:
+    notes = []
+    for name in fit.model.free:
+        if name in NUISANCES:
+            continue
+        how, value = coordinate(name, problem.scales), fit.model.values[name]
+        words = name.replace("_", " ")
+        if math.isfinite(how.upper) and value >= how.upper * (1 - 1e-4):
+            notes.append(f"{words} is at the upper end of its range, {how.upper:.4g}")
+        elif value <= how.lower * (1 + 1e-4) and (how.lower != 0 or value <= 1e-6 * how.size):
+            notes.append(f"{words} is at the lower end of its range, {how.lower:.4g}")
+    if len(ends) > 1 and ends[0] > 0:
+        other = sum(end > 1.01 * ends[0] for end in ends)
+        if other == len(ends) - 1:
+            notes.append("only one start led to this fit: more starts may find a better one")
+    return notes

@@ -1,0 +1,226 @@
+"""Fits from many starting points, so that no local minimum is taken for the best one.
+
+A Halton sequence covers the ranges of the coordinates that enter the force nonlinearly. With those
+held, the force is linear in the rest (inertance, damping, stiffness, friction level ...), which a
+bounded linear fit finds at once. The best few starts that differ are then fitted in full. Nothing
+is random: the same data give the same answer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
+from scipy.stats import qmc
+
+from inerter.core import DeviceError
+from inerter.identify.coordinates import coordinate
+from inerter.identify.fit import NUISANCES, Fit, Model, Problem, force_along
+from inerter.identify.laws import LEVEL, Law, unit_of
+
+Array = NDArray[np.float64]
+
+# starts per nonlinear coordinate, and how many are fitted in full
+_STARTS = 24
+_FITTED = 4
+# starts closer than this in every coordinate (logarithms) count as one
+_APART = 0.5
+_ROUGH, _THOROUGH = 25, 200
+# width of sign(v) in fits, per rms velocity
+_TRANSITION = 0.005
+
+
+@dataclass(frozen=True)
+class Search:
+    """`best` fit, and the rms errors [N] that the fits from the other starts ended at."""
+
+    best: Fit
+    ends: tuple[float, ...]
+
+
+def search(
+    problem: Problem,
+    law: Law,
+    fixed: Mapping[str, float | str],
+    *,
+    loss: str = "linear",
+    starts: int | None = None,
+) -> Search:
+    """The best fit of a law.
+
+    Parameters
+    ----------
+    problem
+        Runs and masks.
+    law
+        What to fit.
+    fixed
+        Parameters of the device that are known, SI units, or words such as gas_law.
+    loss
+        As in `scipy.optimize.least_squares`: "linear", or robust: "soft_l1", "huber", "cauchy".
+    starts
+        Points of the sequence; by default 24 per nonlinear coordinate.
+
+    Raises
+    ------
+    DeviceError
+        What is fixed does not fit to the law.
+    """
+    models = list(_starts(problem, law, fixed, starts))
+    scored = sorted(
+        ((error, model) for model in models if math.isfinite(error := _error(problem, model))),
+        key=lambda each: each[0],
+    )
+    if not scored:
+        models[0].device()
+        raise DeviceError(f"law {law.name}: no start gives a finite force; check what is fixed")
+    chosen = _distinct([model for _, model in scored], law)[:_FITTED]
+    fits = [problem.fit(model, _ROUGH, loss) for model in chosen]
+    order = sorted(range(len(fits)), key=lambda i: fits[i].cost)
+    best = problem.fit(fits[order[0]].model, _THOROUGH, loss)
+    return Search(best, tuple(fits[i].rmse(problem.masks) for i in order))
+
+
+def _starts(
+    problem: Problem, law: Law, fixed: Mapping[str, float | str], count: int | None
+) -> list[Model]:
+    """Models at the points of the sequence, linear coordinates fitted."""
+    sizes = problem.scales
+    free = {name: ends for name, ends in law.starts.items() if not _is_fixed(name, fixed)}
+    spread = [name for name, (low, high) in free.items() if high > low]
+    number = count or _STARTS * len(spread)
+    points = np.zeros((1, 0))
+    if spread:
+        # the first point of the sequence is a corner
+        points = qmc.Halton(len(spread), scramble=False).random(number + 1)[1:]
+    models = []
+    for point in points:
+        values = {name: low * unit_of(name, sizes) for name, (low, _) in free.items()}
+        for name, share in zip(spread, point, strict=True):
+            low, high = np.log(np.array(free[name]) * unit_of(name, sizes))
+            values[name] = float(np.exp(low + share * (high - low)))
+        models.append(_with_linear(problem, law, values, fixed))
+    return models
+
+
+_FIXES = {
+    "presliding": "bristle_stiffness",
+    "static_excess": "static_force",
+    "series_frequency": "series_stiffness",
+    "series_loss": "series_damping",
+}
+
+
+def _is_fixed(name: str, fixed: Mapping[str, float | str]) -> bool:
+    """Whether what is known leaves nothing for this coordinate to say."""
+    return name in fixed or _FIXES.get(name) in fixed
+
+
+def _with_linear(
+    problem: Problem, law: Law, values: dict[str, float], fixed: Mapping[str, float | str]
+) -> Model:
+    """The model at these values, with inertance, damping and friction level fitted to the data."""
+    sizes = problem.scales
+    numbers = {name: float(v) for name, v in fixed.items() if not isinstance(v, str)}
+    texts = {name: v for name, v in fixed.items() if isinstance(v, str)}
+    level = {"none": None, "bouc_wen": "bw_level"}.get(law.friction, "coulomb_force")
+    start = {"inertance": sizes.force / sizes.acceleration, **values, **numbers}
+    if law.friction in ("coulomb", "stribeck"):
+        start.setdefault("transition_velocity", max(1e-4, _TRANSITION * sizes.velocity))
+        values = {**values, "transition_velocity": start["transition_velocity"]}
+    start.update({name: 0.0 for name in law.linear if name not in start})
+    names = [name for name in law.linear if name not in fixed]
+    if level and level not in fixed:
+        start[level] = LEVEL * sizes.force
+        names.append(level)
+    free = dict.fromkeys((*names, *values))
+    model = Model(law.friction, start, tuple(n for n in free if n not in fixed), texts)
+    return _solved(problem, model, names, level)
+
+
+def _solved(problem: Problem, model: Model, names: Sequence[str], level: str | None) -> Model:
+    """Linear coordinates by a bounded linear fit; what scales with them is scaled along."""
+    sizes = problem.scales
+    # what is proportional to the friction level, to the inertance
+    along = {
+        level or "": ("static_excess", "bristle_damping"),
+        "inertance": ("flywheel_viscous",),
+    }
+    lower, upper = np.array([coordinate(name, sizes).bounds for name in names]).T
+    units = np.array([coordinate(name, sizes).size for name in names])
+    try:
+        base = _masked(problem, _only(model, names, None))
+        columns = [_masked(problem, _only(model, names, name)) - base for name in names]
+    except DeviceError:
+        return model
+    matrix = np.column_stack(columns)
+    size = np.array([model.values[n] or 1.0 for n in names]) / units
+    target = np.concatenate([r.force[m] for r, m in zip(problem.runs, problem.masks, strict=True)])
+    if not np.isfinite(matrix).all():
+        return model
+    found = lsq_linear(matrix / size, target - base, (lower, upper), lsmr_tol="auto").x * units
+    values = dict(model.values)
+    for name, value in zip(names, found, strict=True):
+        how = coordinate(name, sizes)
+        # a bound is no place to start from
+        least = 0.02 * how.size if how.lower >= 0 else -math.inf
+        value = max(float(value), least)
+        before = values[name] or 1.0
+        for other in along.get(name, ()):
+            if other in model.free:
+                values[other] *= value / before
+        values[name] = value
+    return replace(model, values=values)
+
+
+def _only(model: Model, names: Sequence[str], chosen: str | None) -> Model:
+    """The model with one of the linear coordinates, the others as good as absent."""
+    values = dict(model.values)
+    for name in names:
+        if name != chosen:
+            # an inertance and a friction level have to be there
+            tiny = name in ("coulomb_force", "bw_level") or (
+                name == "inertance" and "series_frequency" in values
+            )
+            values[name] = 1e-9 * (values[name] or 1.0) if tiny else 0.0
+            if tiny and name == "coulomb_force":
+                for other in {"static_excess", "bristle_damping"} & values.keys():
+                    values[other] *= 1e-9
+        elif values[name] == 0.0:
+            values[name] = 1.0
+    return replace(model, values=values)
+
+
+def _masked(problem: Problem, model: Model) -> Array:
+    forces = [force_along(model, run) for run in problem.runs]
+    return np.concatenate([f[m] for f, m in zip(forces, problem.masks, strict=True)])
+
+
+def _error(problem: Problem, model: Model) -> float:
+    """Rms error [N]; infinite where the device cannot be."""
+    try:
+        residual = problem.residual(model)
+    except DeviceError:
+        return math.inf
+    squares = [float(np.sum(r[m] ** 2)) for r, m in zip(residual, problem.masks, strict=True)]
+    value = math.sqrt(sum(squares))
+    return value if math.isfinite(value) else math.inf
+
+
+def _distinct(models: Sequence[Model], law: Law) -> list[Model]:
+    """Models that differ in a nonlinear coordinate, in their order."""
+    names = [name for name in law.starts if name in models[0].free and name not in NUISANCES]
+    kept: list[Array] = []
+    chosen: list[Model] = []
+    for model in models:
+        at = np.log([abs(model.values[name]) + 1e-12 for name in names])
+        if all(np.abs(at - other).max(initial=0.0) > _APART for other in kept):
+            kept.append(at)
+            chosen.append(model)
+        if not names:
+            break
+    return chosen

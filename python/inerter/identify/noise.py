@@ -1,0 +1,146 @@
+"""What the noise of the measurement does to an estimate: bias and spread.
+
+Noise on the displacement becomes noise on the velocity and acceleration, along which a model is
+run. Least squares takes them for exact, so an estimate is biased, a little, and its errors are not
+those of the force alone. Smoothing adds a bias of its own. Both are measured here: the fitted model
+is driven along the smoothed motion, noise as large as the record's is drawn anew on every channel,
+and the made-up record goes through the same smoothing. One Gauss-Newton step from the fit says
+where an estimate from it would end.
+
+Noise is taken for white, of the size that the upper third of each channel's spectrum shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identify.bench import Run, thin, whole
+from inerter.identify.fit import Model, Problem, force_along
+from inerter.identify.preparation import Preparation
+from inerter.records import Record
+from inerter.records.motion import smooth, white_noise
+
+Array = NDArray[np.float64]
+
+DRAWS = 60
+SEED = 0
+NEIGHBOURS = (0.7, 1.4)
+"""Other cut-offs, per cut-off of the fit, that would have served as well."""
+
+
+@dataclass(frozen=True)
+class NoiseEffect:
+    """Of a fit's search variables: `bias` (p,), `covariance` (p, p) and `smoothing` (p,).
+
+    `smoothing` is by how much the estimate moves (rms) where the cut-off is another one.
+    """
+
+    bias: Array
+    covariance: Array
+    smoothing: Array
+
+
+def effect_of_noise(
+    problem: Problem,
+    model: Model,
+    jacobian: Array,
+    preparation: Preparation,
+    records: Sequence[Record],
+    used: Sequence[int],
+    draws: int = DRAWS,
+) -> NoiseEffect:
+    """Bias and covariance of the free search variables that the channels' noise brings.
+
+    Parameters
+    ----------
+    problem, model
+        What was fitted, and to what.
+    jacobian
+        Derivatives of the residual [N] by the search variables at the fit, shape (n, p).
+    preparation
+        How the records were smoothed.
+    records
+        Every record, as the motions of the preparation.
+    used
+        Which of them the runs of the problem are.
+    draws
+        Made-up sets of records.
+    """
+    random = np.random.default_rng(SEED)
+    projector = np.linalg.pinv(jacobian)
+    truths = [_truth(model, records[i], preparation) for i in used]
+    steps = np.empty((draws, jacobian.shape[1]))
+    for draw in range(draws):
+        runs = [truth.drawn(random, preparation) for truth in truths]
+        steps[draw] = -projector @ _flat(problem, model, runs)
+    bias = steps.mean(axis=0)
+    covariance = np.cov(steps.T).reshape(bias.size, bias.size)
+    return NoiseEffect(bias, covariance, _smoothing(problem, model, preparation, records, used))
+
+
+def _smoothing(
+    problem: Problem,
+    model: Model,
+    preparation: Preparation,
+    records: Sequence[Record],
+    used: Sequence[int],
+) -> Array:
+    """How far one Gauss-Newton step goes on the records at neighbouring cut-offs, rms (p,)."""
+    steps = []
+    for factor in NEIGHBOURS:
+        cutoff = factor * preparation.cutoff
+        runs = [thin(smooth(records[i], cutoff, preparation.channels)) for i in used]
+        # which samples count, at the instants of these runs
+        masks = [
+            np.interp(new.time, old.time, mask.astype(float)) > 0.99
+            for new, old, mask in zip(runs, problem.runs, problem.masks, strict=True)
+        ]
+        other = Problem(runs, masks, problem.scales)
+        residual = [r[m] for r, m in zip(other.residual(model), other.masks, strict=True)]
+        steps.append(np.linalg.pinv(other.jacobian(model)) @ np.concatenate(residual))
+    return 0.7 * np.sqrt(np.mean(np.square(steps), axis=0))
+
+
+@dataclass(frozen=True)
+class _Truth:
+    """A record without noise, and the noise of its channels by name."""
+
+    record: Record
+    noise: dict[str, float]
+
+    def drawn(self, random: np.random.Generator, preparation: Preparation) -> Run:
+        noisy = {
+            name: getattr(self.record, name) + size * random.standard_normal(self.record.samples)
+            for name, size in self.noise.items()
+        }
+        record = replace(self.record, **noisy)
+        return thin(smooth(record, preparation.cutoff, preparation.channels))
+
+
+def _truth(model: Model, record: Record, preparation: Preparation) -> _Truth:
+    """The record that the model would leave along a motion with more of its detail kept."""
+    motion = smooth(record, preparation.cutoff, preparation.channels)
+    # at rest the smoothed velocity is noise, and would turn friction about
+    still = thin(motion).measured
+    assert still is not None
+    exact = replace(whole(motion), velocity=still[1])
+    channels = {
+        "displacement": motion.displacement,
+        "force": force_along(model, exact),
+        **{name: getattr(motion, name) for name in preparation.channels},
+    }
+    noise = {name: white_noise(getattr(record, name)) for name in channels}
+    return _Truth(Record(name=record.name, time=motion.time, **channels), noise)
+
+
+def _flat(problem: Problem, model: Model, runs: Sequence[Run]) -> Array:
+    """Measured minus predicted force on the samples that count, shape (n,)."""
+    parts = [
+        (run.force - force_along(model, run))[mask]
+        for run, mask in zip(runs, problem.masks, strict=True)
+    ]
+    return np.concatenate(parts)

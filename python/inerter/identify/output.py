@@ -1,0 +1,94 @@
+"""The files of an identification, and its summary in the terminal."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from inerter.device_file import device_text
+from inerter.folder import write_files
+from inerter.identify.estimate import Estimate, Identification
+from inerter.identify.figures import picture
+from inerter.rig import device_mjcf
+
+
+def json_text(result: Identification) -> str:
+    """What --json prints."""
+    return json.dumps(_finite(result.json()), indent=2, allow_nan=False) + "\n"
+
+
+def write_identification(result: Identification, folder: Path) -> list[str]:
+    """Write identification.json, identification.png, device.toml and model.xml; their names.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
+    best = result.best
+    comments = {
+        name: f"{each.unit} (standard error {each.stderr:.2g})".removeprefix("1 ")
+        for name, each in best.parameters.items()
+    }
+    names = ", ".join(record.name for record in result.records)
+    title = f"identified by inerter identify from {names}: {best.law}"
+    return write_files(
+        folder,
+        {
+            "identification.json": json_text(result),
+            "identification.png": picture(result),
+            "device.toml": device_text(best.device, comments, best.delay, title),
+            "model.xml": device_mjcf(best.device, "identified_device"),
+        },
+    )
+
+
+def print_identification(result: Identification, out: Console) -> None:
+    """Laws by their held-out error, then the parameters of the best one."""
+    laws = Table(title=f"force error on held-out data ({result.split.description})")
+    for column in ("law", "rms error [N]", "95 % interval", "on fitted data", "seconds"):
+        laws.add_column(column, justify="left" if column == "law" else "right")
+    for each in result.results:
+        laws.add_row(
+            each.law, f"{each.rmse:.4g}", f"{each.low:.4g} ... {each.high:.4g}",
+            f"{each.fit_rmse:.4g}", f"{each.seconds:.1f}",
+        )  # fmt: skip
+    out.print(laws)
+    best = result.best
+    values = Table(title=f"parameters of {best.law}")
+    for column in ("parameter", "value", "standard error", "95 % interval", "unit"):
+        values.add_column(column, justify="left" if column in ("parameter", "unit") else "right")
+    for name, each in best.parameters.items():
+        values.add_row(name, f"{each.value:.5g}", f"{each.stderr:.2g}", _interval(each), each.unit)
+    out.print(values)
+    for group in best.undetermined:
+        out.print(f"These data cannot tell apart: {', '.join(group)}.")
+    for each in best.combinations:
+        out.print(
+            f"  known: {each.expression} = {each.value:.5g} (+- {100 * each.relative_error:.2g} %)"
+        )
+    for note in best.notes:
+        out.print(f"Note: {note}.")
+    for record in result.records:
+        for warning in record.warnings:
+            out.print(f"Warning, {record.name}: {warning.text}")
+
+
+def _interval(each: Estimate) -> str:
+    low = "no end" if each.low is None else f"{each.low:.5g}"
+    high = "no end" if each.high is None else f"{each.high:.5g}"
+    return f"{low} ... {high}"
+
+
+def _finite(value: object) -> object:
+    """JSON has no NaN and no infinity: null in their place."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(each) for each in value]
+    if isinstance(value, float) and not abs(value) < float("inf"):
+        return None
+    return value
