@@ -1,0 +1,1 @@
+"""The ball-screw inerter: friction of its balls, inertance against load."""

@@ -1,0 +1,1 @@
+"""The fluid inerter: a piston that drives a liquid through a channel."""
