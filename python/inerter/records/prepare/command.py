@@ -1,0 +1,140 @@
+"""`inerter prepare`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.table import Table
+
+from inerter.console import out, refuse, status
+
+
+def prepare_command(
+    record: Annotated[
+        list[str], typer.Argument(help="Records: files, folders or globs; CSV, Parquet, .mat.")
+    ],
+    denoise: Annotated[str, typer.Option(help="emd, savgol, lowpass, spline or none.")] = "none",
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(help="Column to denoise; may be given again. Default: force."),
+    ] = None,
+    noise: Annotated[
+        float | None,
+        typer.Option(help="Rms of the channel's white noise, SI units. Default: estimated."),
+    ] = None,
+    resample: Annotated[
+        float | None, typer.Option(help="Samples per second of the result.")
+    ] = None,
+    derivatives: Annotated[
+        bool,
+        typer.Option("--derivatives", help="Add velocity and acceleration where not measured."),
+    ] = False,
+    cutoff: Annotated[
+        float | None,
+        typer.Option(
+            help="Cut-off [Hz] of lowpass, derivatives and delay. Default: chosen from the data."
+        ),
+    ] = None,
+    delay: Annotated[
+        str | None,
+        typer.Option(help="Seconds by which the force is late, or 'auto' to estimate them."),
+    ] = None,
+    form: Annotated[str, typer.Option("--format", help="csv or parquet.")] = "csv",
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/prepared"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print preparation.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Clock, channel delay, denoising, derivatives, resampling of records; a picture of each.
+
+    Writes NAME.csv (SI units), NAME.png and preparation.json. A diagnosis wants the records as
+    measured: denoise for the eye, not for a fit.
+    """
+    from inerter.folder import refuse_folder
+    from inerter.records import RecordError, read_records
+    from inerter.records.prepare.options import Options
+    from inerter.records.prepare.output import FILE, Format, summary, write_prepared
+    from inerter.records.prepare.pipeline import prepare_records
+
+    forms: dict[str, Format] = {"csv": "csv", "parquet": "parquet"}
+    if form not in forms:
+        refuse(f"--format is {form!r}; take one of {', '.join(forms)}")
+    try:
+        refuse_folder(out_dir)
+        chosen: dict[str, Any] = {"channels": tuple(channel)} if channel else {}
+        options = Options(
+            denoise=denoise, noise=noise, rate=resample, derivatives=derivatives, cutoff=cutoff,
+            delay=_delay(delay), **chosen,
+        )  # fmt: skip
+        with status(as_json) as progress:
+            progress("reading")
+            records = read_records(record)
+            progress("preparing")
+            prepared = prepare_records(records, options)
+            progress("writing")
+            files = write_prepared(prepared, options, out_dir, forms[form])
+    except RecordError as error:
+        refuse(str(error))
+    except OSError as error:
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    said = summary(prepared, options, forms[form])
+    if as_json:
+        print(json.dumps(said, indent=2, allow_nan=False))
+        return
+    _print(said)
+    out.print(f"Written to {out_dir}: {(len(files) - 1) // 2} records, a picture of each, {FILE}")
+
+
+def _delay(given: str | None) -> float | str | None:
+    if given is None or given == "auto":
+        return given
+    try:
+        return float(given)
+    except ValueError:
+        return given
+
+
+def _print(said: dict[str, Any]) -> None:
+    table = Table(
+        "record", "samples", "per second", "taken away (rms)", "delay [ms]", "derivatives"
+    )
+    for row in said["records"]:
+        denoised = [
+            f"{name}: {_taken(d)}, noise {d['noise']:.3g}" for name, d in row["denoised"].items()
+        ]
+        derived = row["derivatives"]
+        table.add_row(
+            row["name"],
+            f"{row['samples'][1]}",
+            f"{row['sample_rate'][1]:.6g}",
+            "\n".join(denoised) or "-",
+            _delay_text(row["delay"]),
+            f"cut-off {derived['cutoff']:.3g} Hz" if derived else "-",
+        )
+    out.print(table)
+    for row in said["records"]:
+        for warning in row["warnings"]:
+            out.print(f"{row['name']}: {warning['code']}: {warning['text']}", markup=False)
+        for note in row["notes"]:
+            out.print(f"{row['name']}: {note}", markup=False)
+
+
+def _taken(denoised: dict[str, Any]) -> str:
+    """Rms that a denoiser took away; what is rounding is nothing."""
+    removed = denoised["removed_rms"]
+    return f"{removed:.3g}" if removed > 1e-6 * denoised["noise"] else "nothing"
+
+
+def _delay_text(delay: dict[str, Any] | None) -> str:
+    if delay is None:
+        return "-"
+    if delay["how"] == "stated":
+        return f"{1e3 * delay['applied']:.4g} as stated"
+    mine = delay["this_record"]
+    text = f"{1e3 * mine['value']:.4g} ± {1e3 * mine['stderr']:.2g}"
+    return text if delay["significant"] else f"{text}, left as it is"
