@@ -13,11 +13,16 @@ from rich.table import Table
 
 from inerter.console import out, progress_bar, refuse, status
 from inerter.core import DeviceError, parameters
+from inerter.design.commands import app as design_app
 from inerter.diagnose import Diagnosis, diagnose
-from inerter.diagnose.output import refuse_folder, write_outputs
+from inerter.diagnose.output import write_outputs
+from inerter.folder import refuse_folder
+from inerter.identify.command import identify_command
 from inerter.models import data_path
 from inerter.plugin import plugin_path
 from inerter.records import RecordError
+from inerter.records.prepare.command import prepare_command
+from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
 
 app = typer.Typer(
@@ -28,6 +33,10 @@ app = typer.Typer(
     help="Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong.",
 )
 app.add_typer(suspension_app, name="suspension")
+app.command("identify")(identify_command)
+app.add_typer(design_app, name="design")
+app.command("prepare")(prepare_command)
+app.add_typer(study_app, name="study")
 
 
 def run() -> None:

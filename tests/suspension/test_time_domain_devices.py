@@ -140,32 +140,36 @@ def test_a_batch_is_a_loop_of_steps(layout: str, case: str) -> None:
         for c, b in ((3000.0, 100.0), (9000.0, 300.0))
     ]
     steps, count = np.array([1e-3, 5e-4]), 700
+    (strut,), (wheel_of,) = car.struts, car.wheels
     drive = 1e-2 * np.sin(np.outer([0.03, 0.02], np.arange(count)))
     chunks = list(
-        step_all(car, designs, steps, count, car.road, lambda i, n: drive[:, i : i + n], 2)
+        step_all(
+            car, designs, steps, count, [wheel_of.road], lambda i, n: drive[:, i : i + n, None], 2
+        )
     )
-    wheel = np.hstack([chunk.wheel for chunk in chunks])
+    wheel = np.hstack([chunk.wheels[:, :, 0] for chunk in chunks])
     body = np.hstack([chunk.body for chunk in chunks])
     integrators = mujoco.mjtIntegrator
-    assert car.device is not None
+    device = strut.device
+    assert device is not None
     for i, design in enumerate(designs):
         model = car.model.__copy__()
         model.opt.integrator = integrators.mjINT_DISCRETE if car.implicit else integrators.mjINT_RK4
         model.opt.timestep = steps[i]
-        model.tendon_stiffness[car.spring] = design.stiffness
-        model.tendon_damping[car.damper] = design.damping
+        model.tendon_stiffness[strut.spring] = design.stiffness
+        model.tendon_damping[strut.damper] = design.damping
         for key, value in CASES[case].parameters.items():
-            model.numeric_data[car.device.live[key]] = value
-        if "inertance" in car.device.live:
-            model.numeric_data[car.device.live["inertance"]] = design.inertance
+            model.numeric_data[device.live[key]] = value
+        if "inertance" in device.live:
+            model.numeric_data[device.live["inertance"]] = design.inertance
         else:
-            model.actuator_armature[car.device.actuator] = design.inertance
+            model.actuator_armature[device.actuator] = design.inertance
         data = mujoco.MjData(model)
         mujoco.mj_setConst(model, data)
         data = mujoco.MjData(model)
         rows = []
         for held in drive[i]:
-            data.ctrl[car.road] = held
+            data.ctrl[wheel_of.road] = held
             mujoco.mj_step(model, data)
             rows.append([data.sensor("wheel").data[0], data.sensor("body").data[0]])
         assert np.array_equal(np.array(rows), np.column_stack([wheel[i], body[i]]))

@@ -13,10 +13,13 @@ import typer
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.cases import CASES
 from inerter.suspension.time_domain.command import evaluate_command
-from inerter.suspension.time_domain.evaluate import Plan, evaluate, interval, reoptimised, samples
+from inerter.suspension.time_domain.evaluate import evaluate
 from inerter.suspension.time_domain.linear import linear_optimum
 from inerter.suspension.time_domain.model import compiled
+from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.road import iso_road
+from inerter.suspension.time_domain.samples import interval, samples
+from inerter.suspension.time_domain.search import reoptimised
 from inerter.suspension.time_domain.simulate import RunSettings
 from typer.testing import CliRunner
 

@@ -32,15 +32,39 @@ def optimize_command(
         str, typer.Option(help="J1 comfort, J3 tyre load, J5 load carrying; with commas.")
     ] = "J1,J3,J5",
     stiffness: Annotated[
-        str, typer.Option(help="k [N/m]: numbers and ranges FIRST:LAST:COUNT, with commas.")
-    ] = f"{QUARTER_CAR.stiffness:g}",
+        str | None,
+        typer.Option(
+            help="k [N/m]: numbers and ranges FIRST:LAST:COUNT, with commas; of a half- or full "
+            "car the front's, or KF/KR.",
+            show_default=f"{QUARTER_CAR.stiffness:g}, or the half- and full car's own",
+        ),
+    ] = None,
     series: Annotated[
         str,
         typer.Option(help="none (ideal), soft, hard or KS/CS [N/m, N s/m]; with commas."),
     ] = "none",
-    sprung_mass: Annotated[float, typer.Option(help="ms [kg].")] = QUARTER_CAR.sprung_mass,
-    unsprung_mass: Annotated[float, typer.Option(help="mu [kg].")] = QUARTER_CAR.unsprung_mass,
-    tyre_stiffness: Annotated[float, typer.Option(help="kt [N/m].")] = QUARTER_CAR.tyre_stiffness,
+    car: Annotated[
+        str, typer.Option(help="quarter (Wang and Su's), half or full (a published passenger car).")
+    ] = "quarter",
+    equal: Annotated[
+        bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
+    ] = False,
+    correlation: Annotated[
+        float | None,
+        typer.Option(help="Full: of the left and the right road, 0 to 1.", show_default="0.5"),
+    ] = None,
+    sprung_mass: Annotated[
+        float | None,
+        typer.Option(help="Quarter: ms [kg].", show_default=f"{QUARTER_CAR.sprung_mass:g}"),
+    ] = None,
+    unsprung_mass: Annotated[
+        float | None,
+        typer.Option(help="Quarter: mu [kg].", show_default=f"{QUARTER_CAR.unsprung_mass:g}"),
+    ] = None,
+    tyre_stiffness: Annotated[
+        float | None,
+        typer.Option(help="Quarter: kt [N/m].", show_default=f"{QUARTER_CAR.tyre_stiffness:g}"),
+    ] = None,
     velocity: Annotated[float, typer.Option(help="V [m/s].")] = _ROAD.velocity,
     roughness: Annotated[float, typer.Option(help="kappa [m^3/cycle].")] = _ROAD.roughness,
     jobs: Annotated[
@@ -58,31 +82,30 @@ def optimize_command(
         bool, typer.Option("--json", help="Print the rows alone on stdout, a JSON list.")
     ] = False,
 ) -> None:
-    """Damping and inertance that minimise an index of a quarter-car, globally and exactly."""
-    from inerter.diagnose.output import refuse_folder
+    """Damping and inertance that minimise an index of a car, globally and exactly."""
+    from inerter.folder import refuse_folder
+    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses
     from inerter.suspension.output import rows_json, write_sweep
-    from inerter.suspension.quarter_car import QuarterCar
-    from inerter.suspension.study import (
-        Study,
-        read_indices,
-        read_layouts,
-        read_series,
-        read_stiffnesses,
-    )
+    from inerter.suspension.study import Study, read_indices, read_layouts, read_series
     from inerter.suspension.sweep import sweep
     from inerter.suspension.table import print_rows
 
     files: list[str] = []
     try:
+        quarter = {
+            "sprung_mass": sprung_mass,
+            "unsprung_mass": unsprung_mass,
+            "tyre_stiffness": tyre_stiffness,
+        }
+        which = chosen_car(car, quarter, equal=equal, correlation=correlation)
         study = Study(
             layouts=read_layouts(layout),
             indices=read_indices(index),
-            stiffnesses=read_stiffnesses(stiffness),
+            stiffnesses=chosen_stiffnesses(stiffness, which),
             series=read_series(series),
-            car=QuarterCar(
-                sprung_mass=sprung_mass, unsprung_mass=unsprung_mass, tyre_stiffness=tyre_stiffness
-            ),
+            car=which,
             road=Road(velocity=velocity, roughness=roughness),
+            equal=equal,
         )
         if out_dir is not None:
             refuse_folder(out_dir)

@@ -65,7 +65,7 @@ def picture(rows: list[Row]) -> bytes:
             axes.margins(x=0.0)
         right.axhline(0.0, color=LIGHT["soft"], lw=0.8)
     for axes in grid[-1]:
-        axes.set_xlabel("stiffness k [kN/m]", fontsize=9, color=LIGHT["soft"])
+        axes.set_xlabel(_abscissa(rows), fontsize=9, color=LIGHT["soft"])
     handles, labels = grid[0][0].get_legend_handles_labels()
     figure.legend(
         handles, labels, loc="outside lower center", ncols=min(len(labels), 7), frameon=False,
@@ -111,8 +111,14 @@ def page(rows: list[Row]) -> str:
     plot.update_annotations(font={"size": 13})
     plot.update_xaxes(gridcolor=LIGHT["grid"], showticklabels=True)
     plot.update_yaxes(gridcolor=LIGHT["grid"], zerolinecolor=LIGHT["line"])
-    plot.update_xaxes(title="stiffness k [kN/m]", row=len(indices))
+    plot.update_xaxes(title=_abscissa(rows), row=len(indices))
     return plot.to_html(include_plotlyjs=True, full_html=True)
+
+
+def _abscissa(rows: list[Row]) -> str:
+    if all(row.case.rear is None for row in rows):
+        return "stiffness k [kN/m]"
+    return "front stiffness k [kN/m], the rear in proportion"
 
 
 def _indices(rows: list[Row]) -> list[str]:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +49,13 @@ class Optimum:
     relaxation_stiffness: float | None
     peaks: tuple[tuple[float, float], ...]
     notes: tuple[str, ...]
+
+    def design(self) -> dict[str, Any]:
+        """Its part in a row of the command's JSON."""
+        design = {"damping": self.damping, "inertance": self.inertance}
+        if self.relaxation_stiffness is not None:
+            design["relaxation_stiffness"] = self.relaxation_stiffness
+        return design
 
 
 def optimise(problem: Problem) -> Optimum:

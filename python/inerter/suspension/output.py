@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from inerter.diagnose.output import refuse_folder
+from inerter.folder import write_files
 from inerter.suspension.figures import page, picture
+from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.study import Study
 from inerter.suspension.sweep import Row
 
@@ -32,23 +30,15 @@ def write_sweep(study: Study, rows: list[Row], folder: Path) -> list[str]:
     files = {"optimum.json": json.dumps(_full(study, rows), indent=2, allow_nan=False).encode()}
     if len(study.stiffnesses) > 1:
         files |= {"optimum.png": picture(rows), "optimum.html": page(rows).encode()}
-    refuse_folder(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=".optimum-", dir=folder))
-    try:
-        for name, content in files.items():
-            (staging / name).write_bytes(content)
-        for name in files:
-            os.replace(staging / name, folder / name)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-    return list(files)
+    return write_files(folder, files)
 
 
 def _full(study: Study, rows: list[Row]) -> dict[str, Any]:
+    equal = {} if isinstance(study.car, QuarterCar) else {"equal": study.equal}
     return {
         "schema": "inerter.suspension/1",
         "car": asdict(study.car),
+        **equal,
         "road": asdict(study.road),
         "series": {name: pair and asdict(pair) for name, pair in study.series.items()},
         "rows": [

@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from scipy.optimize import minimize
 
-from inerter.suspension.problem import Array, Problem
+from inerter.suspension.problem import Array
 
 _HESSIAN_STEP = 1e-4
 _NEWTON_STEPS = 4
 _SAME = 1e-10
 
 
-def polish_smooth(problem: Problem, start: Array, known: float) -> tuple[float, Array]:
+class Smooth(Protocol):
+    """What is polished: a value and an exact gradient over logarithms within bounds."""
+
+    @property
+    def bounds(self) -> Array:
+        """Lower and upper bound of each variable, shape (variables, 2)."""
+        ...
+
+    def value(self, points: Array) -> Array:
+        """The value of each point, shape (n, variables)."""
+        ...
+
+    def logarithm(self, point: Array) -> tuple[float, Array]:
+        """Logarithm of the value at one point and its gradient."""
+        ...
+
+
+def polish_smooth(problem: Smooth, start: Array, known: float) -> tuple[float, Array]:
     """Value and point of the local minimum that a start leads to, within the bounds.
 
     A minimum of value `known` has been found before: its last digits are not computed again.
@@ -45,7 +64,7 @@ def polish_smooth(problem: Problem, start: Array, known: float) -> tuple[float, 
     return float(problem.value(point[None])[0]), point
 
 
-def _hessian(problem: Problem, point: Array) -> Array:
+def _hessian(problem: Smooth, point: Array) -> Array:
     rows = [
         (problem.logarithm(point + step)[1] - problem.logarithm(point - step)[1])
         for step in np.eye(len(point)) * _HESSIAN_STEP

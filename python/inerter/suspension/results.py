@@ -36,11 +36,11 @@ def improvement(rows: Iterable[Row]) -> dict[int, float]:
     """Improvement over S1 in per cent of each row by its place, where S1 was asked for too."""
     listed = list(rows)
     base = {
-        (row.case.index, row.case.stiffness): row.optimum.value
+        (row.case.index, row.case.stiffness, row.case.rear): row.optimum.value
         for row in listed
         if row.case.layout == "S1"
     }
-    keys = [(row.case.index, row.case.stiffness) for row in listed]
+    keys = [(row.case.index, row.case.stiffness, row.case.rear) for row in listed]
     return {
         n: 100.0 * (1.0 - row.optimum.value / base[key])
         for n, (row, key) in enumerate(zip(listed, keys, strict=True))

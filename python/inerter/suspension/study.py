@@ -12,6 +12,8 @@ from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, SeriesPair
 from inerter.suspension.problem import Problem
 from inerter.suspension.quarter_car import QuarterCar, Road
+from inerter.suspension.vehicle.cars import Vehicle
+from inerter.suspension.vehicle.problem import VehicleProblem
 
 SERIES: Mapping[str, SeriesPair | None] = {"none": None, "soft": SOFT, "hard": HARD}
 """Series pairs that have a name."""
@@ -23,25 +25,34 @@ class StudyError(ValueError):
 
 @dataclass(frozen=True)
 class Case:
-    """One optimum that is asked for: its name in the results and the problem behind it."""
+    """One optimum that is asked for: its name in the results and the problem behind it.
+
+    `stiffness` is that of the front where front and `rear` have their own.
+    """
 
     layout: str
     index: str
     stiffness: float
     series: str
-    problem: Problem
+    problem: Problem | VehicleProblem
+    rear: float | None = None
 
 
 @dataclass(frozen=True)
 class Study:
-    """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name."""
+    """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
+
+    A half- or full car has `stiffnesses` of front and rear, and struts that may be `equal` but for
+    those.
+    """
 
     layouts: tuple[str, ...]
     indices: tuple[str, ...]
-    stiffnesses: tuple[float, ...]
+    stiffnesses: tuple[float, ...] | tuple[tuple[float, float], ...]
     series: Mapping[str, SeriesPair | None]
-    car: QuarterCar = field(default_factory=QuarterCar)
+    car: QuarterCar | Vehicle = field(default_factory=QuarterCar)
     road: Road = field(default_factory=Road)
+    equal: bool = False
 
     def cases(self) -> Iterator[Case]:
         """The combinations in order. S1 has no inerter: its problem is the same in each series."""
@@ -50,8 +61,25 @@ class Study:
                 for name, pair in self.series.items():
                     used = pair if LAYOUTS[layout].has_inerter else None
                     for k in self.stiffnesses:
-                        problem = Problem(self.car, self.road, layout, index, k, used)
-                        yield Case(layout, index, k, name, problem)
+                        yield self._case(layout, index, k, name, used)
+
+    def _case(
+        self,
+        layout: str,
+        index: str,
+        stiffness: float | tuple[float, float],
+        name: str,
+        pair: SeriesPair | None,
+    ) -> Case:
+        if isinstance(self.car, QuarterCar):
+            if isinstance(stiffness, tuple):
+                raise StudyError("stiffness: a quarter-car has one, not front and rear")
+            problem = Problem(self.car, self.road, layout, index, stiffness, pair)
+            return Case(layout, index, stiffness, name, problem)
+        if not isinstance(stiffness, tuple):
+            raise StudyError("stiffness: a half- or full car has two, front and rear")
+        problem = VehicleProblem(self.car, self.road, layout, index, stiffness, pair, self.equal)
+        return Case(layout, index, stiffness[0], name, problem, stiffness[1])
 
 
 def read_names(text: str, known: Iterable[str], what: str) -> tuple[str, ...]:
@@ -105,6 +133,35 @@ def read_stiffnesses(text: str) -> tuple[float, ...]:
             raise StudyError(
                 f"stiffness {word!r} is neither a number nor a range FIRST:LAST:COUNT, "
                 "as in 120e3 or 10e3:300e3:59"
+            )
+    return tuple(dict.fromkeys(values))
+
+
+def read_axle_stiffnesses(text: str | None, car: Vehicle) -> tuple[tuple[float, float], ...]:
+    """Stiffnesses [N/m] of front and rear: KF/KR, or as `read_stiffnesses` for the front.
+
+    Where the front's is given alone the rear's follows with the ratio of the car's own; without a
+    text both are the car's own.
+
+    Raises
+    ------
+    StudyError
+        Not a number, not positive, not a range or not a pair.
+    """
+    ratio = car.rear.stiffness / car.front.stiffness
+    if text is None:
+        return ((car.front.stiffness, car.rear.stiffness),)
+    values: list[tuple[float, float]] = []
+    for word in _words(text, "stiffness"):
+        parts = word.split("/")
+        if len(parts) == 2:
+            front, rear = (_positive(part, "stiffness") for part in parts)
+            values.append((front, rear))
+        elif len(parts) == 1:
+            values += [(k, k * ratio) for k in read_stiffnesses(word)]
+        else:
+            raise StudyError(
+                f"stiffness {word!r} is not of the form KF/KR, front and rear, as in 20e3/18e3"
             )
     return tuple(dict.fromkeys(values))
 

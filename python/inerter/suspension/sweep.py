@@ -11,9 +11,12 @@ from inerter.parallel import Progress, run_all
 from inerter.suspension.optimum import Optimum, optimise
 from inerter.suspension.problem import Problem
 from inerter.suspension.study import Case, Study
+from inerter.suspension.vehicle.optimum import VehicleOptimum, optimise_vehicle
+from inerter.suspension.vehicle.problem import VehicleProblem
 
-# below this, starting processes takes longer than the work
+# below this, starting processes takes longer than the work; vehicles take about ten times as long
 _WORTH_PROCESSES = 40
+_WORTH_PROCESSES_VEHICLE = 4
 
 
 @dataclass(frozen=True)
@@ -21,22 +24,21 @@ class Row:
     """One optimum and what it was asked for."""
 
     case: Case
-    optimum: Optimum
+    optimum: Optimum | VehicleOptimum
 
     def json(self) -> dict[str, Any]:
         """The row of the command's JSON."""
-        row = {
+        problem = self.case.problem
+        car = {"car": problem.car.name} if isinstance(problem, VehicleProblem) else {}
+        return {
+            **car,
             "layout": self.case.layout,
             "index": self.case.index,
             "stiffness": self.case.stiffness,
             "series": self.case.series,
             "value": self.optimum.value,
-            "damping": self.optimum.damping,
-            "inertance": self.optimum.inertance,
+            **self.optimum.design(),
         }
-        if self.optimum.relaxation_stiffness is not None:
-            row["relaxation_stiffness"] = self.optimum.relaxation_stiffness
-        return row
 
 
 def sweep(
@@ -66,14 +68,19 @@ def sweep(
     """
     cases = list(study.cases())
     problems = list(dict.fromkeys(case.problem for case in cases))
-    if jobs is None and len(problems) < _WORTH_PROCESSES:
+    vehicles = any(isinstance(problem, VehicleProblem) for problem in problems)
+    if jobs is None and len(problems) < (
+        _WORTH_PROCESSES_VEHICLE if vehicles else _WORTH_PROCESSES
+    ):
         jobs = 1
     optima = run_all(_optimum, problems, jobs=jobs, scheduler=scheduler, progress=progress)
     found = dict(zip(problems, optima, strict=True))
     return [Row(case, found[case.problem]) for case in cases]
 
 
-def _optimum(problem: Problem) -> Optimum:
+def _optimum(problem: Problem | VehicleProblem) -> Optimum | VehicleOptimum:
     # threads would fight over matrices of seven rows, and change the last digits
     with threadpool_limits(1):
+        if isinstance(problem, VehicleProblem):
+            return optimise_vehicle(problem)
         return optimise(problem)

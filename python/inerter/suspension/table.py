@@ -9,34 +9,49 @@ from rich.text import Text
 from inerter.suspension.indices import INDICES
 from inerter.suspension.results import improvement, notes
 from inerter.suspension.sweep import Row
+from inerter.suspension.vehicle.optimum import VehicleOptimum
+from inerter.suspension.vehicle.strut import VehicleStrut
 
 
 def print_rows(rows: list[Row], console: Console) -> None:
-    """Print a table of the optima, the peaks of J5 where they are few, and the remarks."""
+    """Print a table of the optima, the peaks of J5 where they are few, and the remarks.
+
+    Struts of a half- or full car stand one below the other, the front's first.
+    """
+    vehicles = any(isinstance(row.optimum, VehicleOptimum) for row in rows)
     table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
     for name in ("layout", "index", "series"):
         table.add_column(name, no_wrap=True)
-    for name, unit in (
+    if vehicles:
+        table.add_column("axle", no_wrap=True)
+    # two axles are wide enough without a column that is empty
+    sprung = not vehicles or any("relaxation_stiffness" in _names(row) for row in rows)
+    columns = [
         ("k", "[kN/m]"), ("value", ""), ("unit", ""), ("over S1", "[%]"), ("c", "[N s/m]"),
-        ("b", "[kg]"), ("k_b", "[kN/m]"),
-    ):  # fmt: skip
+        ("b", "[kg]"), *([("k_b", "[kN/m]")] if sprung else []),
+    ]  # fmt: skip
+    for name, unit in columns:
         justify = "left" if name == "unit" else "right"
         table.add_column(f"{name}\n{unit}", justify=justify, no_wrap=True)
     gains = improvement(rows)
+    digits = ".4g" if vehicles else "g"
     for n, row in enumerate(rows):
-        case, best = row.case, row.optimum
-        spring = best.relaxation_stiffness
+        case, struts = row.case, _struts(row)
+        springs = [strut.relaxation_stiffness for strut in struts]
+        inerter = case.problem.network.has_inerter
         table.add_row(
             case.layout,
             case.index,
             case.series,
-            f"{case.stiffness / 1e3:g}",
-            f"{best.value:.5g}",
+            *(["front\nrear"] if vehicles else []),
+            "\n".join(f"{strut.stiffness / 1e3:{digits}}" for strut in struts),
+            f"{row.optimum.value:.5g}",
             INDICES[case.index].unit,
-            f"{gains[n]:.2f}" if n in gains else "",
-            f"{best.damping:.5g}",
-            f"{best.inertance:.5g}" if case.problem.network.has_inerter else "",
-            "" if spring is None else f"{spring / 1e3:.5g}",
+            # what rounding leaves of nothing has no sign
+            f"{round(gains[n], 2) + 0.0:.2f}" if n in gains else "",
+            "\n".join(f"{strut.damping:.5g}" for strut in struts),
+            "\n".join(f"{strut.inertance:.5g}" for strut in struts) if inerter else "",
+            *([_lines(springs)] if sprung else []),
         )
     console.print(table)
     for row in rows if len(rows) <= 30 else []:
@@ -44,6 +59,23 @@ def print_rows(rows: list[Row], console: Console) -> None:
             console.print(Text(_peaks(row), style="dim"), soft_wrap=True)
     for note in notes(rows):
         console.print(Text(note), soft_wrap=True)
+
+
+def _struts(row: Row) -> tuple[VehicleStrut, ...]:
+    """The strut of a quarter-car, or those of both axles."""
+    best = row.optimum
+    if isinstance(best, VehicleOptimum):
+        return best.struts
+    k = row.case.stiffness
+    return (VehicleStrut(k, best.damping, best.inertance, best.relaxation_stiffness),)
+
+
+def _names(row: Row) -> tuple[str, ...]:
+    return row.case.problem.network.variables
+
+
+def _lines(springs: list[float | None]) -> str:
+    return "\n".join("" if spring is None else f"{spring / 1e3:.5g}" for spring in springs)
 
 
 def _peaks(row: Row) -> str:

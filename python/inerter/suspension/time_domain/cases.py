@@ -41,12 +41,21 @@ _STATES = {"dahl": 1, "lugre": 1, "bouc_wen": 1}
 
 @dataclass(frozen=True)
 class Case:
-    """`friction` law and `parameters` of a device by their key (SI), without the inertance."""
+    """`friction` law and `parameters` of a device by their key (SI), without the inertance.
+
+    `stiff`: faster than a step of RK4 can follow, so that another integrator steps it.
+    """
 
     name: str
     meaning: str
     friction: str = "none"
     parameters: Mapping[str, float] = field(default_factory=dict)
+    stiff: bool = False
+
+    @property
+    def ideal(self) -> bool:
+        """Whether there is nothing but the inertance."""
+        return self.friction == "none" and not self.parameters
 
     @property
     def pair(self) -> SeriesPair | None:

@@ -12,33 +12,70 @@ from inerter.console import out, progress_bar, refuse
 
 def evaluate_command(
     layout: Annotated[str, typer.Option(help="S1, S2, S3, with commas.")] = "S1,S2,S3",
+    car: Annotated[str, typer.Option(help="quarter, or half: heave and pitch, two struts.")] = (
+        "quarter"
+    ),
     stiffness: Annotated[
-        str, typer.Option(help="Spring of the strut [N/m]; several with commas.")
-    ] = "120e3",
+        str | None,
+        typer.Option(
+            help="Spring of the strut [N/m], of a half-car the front one, whose rear one follows; "
+            "several with commas. Default: 120e3, of a half-car the published 19960."
+        ),
+    ] = None,
     case: Annotated[
-        str,
+        str | None,
         typer.Option(
             help="ideal, friction, friction100, elastic, hard, backlash, both, all, dahl, lugre, "
-            "bouc_wen, with commas; tables: all of the paper's Tables 2 and 3."
+            "bouc_wen, with commas; tables: all of the paper's Tables 2 and 3. Default: ideal, "
+            "friction, elastic, both; beside --device only ideal."
         ),
-    ] = "ideal,friction,elastic,both",
+    ] = None,
+    device: Annotated[
+        Path | None,
+        typer.Option(help="device.toml of a measured device: the case named device."),
+    ] = None,
     index: Annotated[str, typer.Option(help="J1, J3, J5, with commas.")] = "J1,J3,J5",
     road: Annotated[str, typer.Option(help="paper, or iso:A to iso:E.")] = "paper",
     speed: Annotated[float, typer.Option(help="Speed [m/s].")] = 25.0,
     seeds: Annotated[int, typer.Option(help="Number of roads, each with its own phases.")] = 20,
     reoptimise: Annotated[
-        bool,
-        typer.Option(
-            "--reoptimise", help="Seek c and b anew for every nonlinear case (minutes each)."
-        ),
+        bool, typer.Option("--reoptimise", help="Seek c and b anew for every nonlinear case.")
     ] = False,
     search_seeds: Annotated[
         int, typer.Option(help="Roads that the search of --reoptimise uses.")
     ] = 4,
-    amplitude: Annotated[float, typer.Option(help="Sinusoidal load for J5 [N].")] = 1000.0,
+    damping: Annotated[
+        str | None,
+        typer.Option(
+            help="c [N s/m] of one given design in place of an optimum; of a half-car also "
+            "FRONT/REAR."
+        ),
+    ] = None,
+    inertance: Annotated[
+        str | None,
+        typer.Option(
+            help="b [kg] of the given design; default: that of --device. Of a half-car also "
+            "FRONT/REAR."
+        ),
+    ] = None,
+    amplitude: Annotated[
+        float | None,
+        typer.Option(help="Sinusoidal load for J5 [N]; default 1000, of a half-car 2000."),
+    ] = None,
     step: Annotated[float, typer.Option(help="Largest time step [s].")] = 1e-3,
+    settle: Annotated[
+        float | None,
+        typer.Option(help="Seconds before the means begin; default 4, of a half-car 10."),
+    ] = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Threads; default: one per processor.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            help="Dask scheduler to work on, tcp://HOST:8786; needs inerter[cluster]. --jobs are "
+            "then the threads of each piece of work, 1 if not given."
+        ),
     ] = None,
     out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
         "out/suspension"
@@ -47,41 +84,51 @@ def evaluate_command(
         bool, typer.Option("--json", help="Print evaluation.json alone on stdout.")
     ] = False,
 ) -> None:
-    """Indices of a quarter-car whose inerter has friction, elasticity, play, with error bars.
+    """Indices of a car whose inerters have friction, elasticity, play, with error bars.
 
     Runs the MuJoCo models over many random roads. Writes evaluation.json and evaluation.csv.
     """
-    from inerter.diagnose.output import refuse_folder
-    from inerter.suspension.time_domain.cases import CASES, NUMBERED, case_named
-    from inerter.suspension.time_domain.evaluate import Plan, evaluate
+    from inerter.folder import refuse_folder
+    from inerter.suspension.time_domain.asked import (
+        car_named,
+        cases_asked,
+        given_struts,
+        numbers,
+        words,
+    )
+    from inerter.suspension.time_domain.evaluate import evaluate
     from inerter.suspension.time_domain.output import (
         json_text,
         print_evaluation,
         write_evaluation,
     )
+    from inerter.suspension.time_domain.plan import Plan
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
 
     try:
         refuse_folder(out_dir)
-        wanted = _names(case, "case")
-        if wanted == ("tables",):
-            numbered = {each.case for each in NUMBERED}
-            wanted = tuple(name for name in CASES if name in numbered)
+        asked = car_named(car)
+        settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
+        cases, own = cases_asked(case, device, step)
         plan = Plan(
-            layouts=_names(layout, "layout"),
-            cases=tuple(case_named(name) for name in wanted),
-            indices=_names(index, "index"),
-            stiffnesses=_numbers(stiffness, "stiffness"),
+            layouts=words(layout, "layout"),
+            cases=cases,
+            indices=words(index, "index"),
+            stiffnesses=(
+                (asked.stiffness,) if stiffness is None else numbers(stiffness, "stiffness")
+            ),
             road=road_named(road, speed),
             seeds=seeds,
             search_seeds=search_seeds,
             reoptimise=reoptimise,
-            amplitude=amplitude,
-            settings=RunSettings(step=step, jobs=jobs or 0),
+            given=given_struts(damping, inertance, own, car),
+            amplitude=asked.amplitude if amplitude is None else amplitude,
+            car=asked.car,
+            settings=settings,
         )
         with progress_bar("starting", as_json) as progress:
-            rows = evaluate(plan, progress)
+            rows = evaluate(plan, progress, scheduler=scheduler)
         files = write_evaluation(plan, rows, out_dir)
     except ValueError as error:
         refuse(str(error))
@@ -92,20 +139,3 @@ def evaluate_command(
         return
     print_evaluation(plan, rows, out)
     out.print(f"Written to {out_dir}: {', '.join(files)}")
-
-
-def _names(text: str, option: str) -> tuple[str, ...]:
-    """Names separated by commas, each once."""
-    found = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
-    if not found:
-        raise ValueError(f"--{option} is empty; see --help")
-    return found
-
-
-def _numbers(text: str, option: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(name) for name in _names(text, option))
-    except ValueError:
-        raise ValueError(
-            f"--{option} is {text!r}: give numbers, such as 120e3, with commas between them"
-        ) from None

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.time_domain.model import CarModel, Design
+from inerter.suspension.time_domain.car_model import CarModel
+from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.simulate import RunSettings, load_gains
 
 Array = NDArray[np.float64]
@@ -24,7 +25,9 @@ SWEEP = (0.5, 30.0, 29)
 """Lowest and highest frequency [Hz] and number of the first sweep."""
 
 _REFINED = 7
-_CLOSE = 0.006
+CLOSE = 0.006
+"""Relative distance of the points beside the top of a peak."""
+
 _PEAKS = 4
 
 
@@ -52,7 +55,7 @@ def load_peaks(
     return peaks_of(
         lambda chosen, f: load_gains(car, [designs[i] for i in chosen], f, amplitude, settings),
         len(designs),
-        [_static(car, design) for design in designs],
+        [car.static_compliance(design) for design in designs],
     )
 
 
@@ -81,11 +84,11 @@ def peaks_of(
         f = np.array([np.geomspace(grid[j - 1], grid[j + 1], _REFINED + 2) for _, j in places])
         g = np.array([coarse[i, j - 1 : j + 2] for i, j in places])
         g = np.column_stack([g[:, 0], gains(owners, f[:, 1:-1]), g[:, 2]])
-        tops = np.array([_vertex(*each)[0] for each in zip(f, g, strict=True)])
-        close = tops[:, None] * np.array([1.0 - _CLOSE, 1.0, 1.0 + _CLOSE])
+        tops = np.array([vertex(*each)[0] for each in zip(f, g, strict=True)])
+        close = tops[:, None] * np.array([1.0 - CLOSE, 1.0, 1.0 + CLOSE])
         highest = g.max(axis=1)
         for i, f3, g3, seen in zip(owners, close, gains(owners, close), highest, strict=True):
-            frequency, top = _vertex(f3, g3)
+            frequency, top = vertex(f3, g3)
             found[i].append((frequency, max(top, float(seen))))
     results = []
     for i in range(count):
@@ -100,7 +103,7 @@ def peaks_of(
     return results
 
 
-def _vertex(f: Array, g: Array) -> tuple[float, float]:
+def vertex(f: Array, g: Array) -> tuple[float, float]:
     """Frequency and gain of the maximum, by a parabola in logarithms."""
     k = int(np.clip(np.argmax(g), 1, g.size - 2))
     x, y = np.log(f[k - 1 : k + 2]), np.log(g[k - 1 : k + 2])
@@ -108,9 +111,3 @@ def _vertex(f: Array, g: Array) -> tuple[float, float]:
     at = np.clip(-0.5 * b / a, x[0] - x[1], x[2] - x[1]) if a < 0.0 else 0.0
     top = max(float(np.exp(y[1] + c + at * (b + a * at))), float(g.max()))
     return float(np.exp(x[1] + at)), top
-
-
-def _static(car: CarModel, design: Design) -> float | None:
-    if car.layout == "S2" and car.case.friction != "none":
-        return None
-    return car.car.static_compliance(design.stiffness)

@@ -13,7 +13,9 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from inerter.suspension.time_domain.evaluate import CONFIDENCE, Evaluation, Plan
+from inerter.suspension.time_domain.evaluation import Evaluation
+from inerter.suspension.time_domain.plan import Plan
+from inerter.suspension.time_domain.samples import CONFIDENCE
 
 SCHEMA = "inerter.suspension.evaluation/1"
 
@@ -25,6 +27,7 @@ def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
     """The whole evaluation, one document; SI units."""
     document = {
         "schema": SCHEMA,
+        "car": plan.car_name,
         "road": plan.road.name,
         "roads": plan.seeds,
         "confidence": CONFIDENCE,
@@ -61,10 +64,12 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             pad_edge=False,
             padding=(0, 1, 0, 0),
         )
-        for name in ("strut", "case", "paper"):
+        quarter = plan.car_name == "quarter"
+        for name in ("strut", "case", *(["paper"] if quarter else [])):
             table.add_column(name, no_wrap=True)
         for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
             table.add_column(name, justify="right", no_wrap=True)
+        digits = ".4g" if quarter else ".3g"
         for row in rows:
             if (row.stiffness, row.index) != (stiffness, index):
                 continue
@@ -72,20 +77,28 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             table.add_row(
                 row.layout,
                 row.case,
-                row.numbers,
+                *([row.numbers] if quarter else []),
                 _with_error(scale * row.value, 0.5 * scale * (row.high - row.low)),
                 "" if row.exact is None else f"{scale * row.exact:.5g}",
                 "" if ideal else _change(row),
-                f"{row.damping:.0f}",
-                f"{row.inertance:.1f}" if row.layout != "S1" else "",
+                _both(f"{row.damping:.0f}", row.rear_damping, ".0f"),
+                _both(f"{row.inertance:{digits}}", row.rear_inertance, digits)
+                if row.layout != "S1"
+                else "",
             )
         console.print(table)
     console.print(
-        "paper: table.case of Wang and Su. exact: norm of the transfer function, where the case is "
+        ("paper: table.case of Wang and Su. " if plan.car_name == "quarter" else "")
+        + "exact: norm of the transfer function, where the case is "
         "linear. loss: against the ideal inerter at its own optimum, road by road. c [N s/m], b "
-        "[kg].",
+        "[kg]" + ("; front/rear." if plan.car_name == "half" else "."),
         markup=False,
     )
+
+
+def _both(front: str, rear: float | None, form: str) -> str:
+    """The front strut's value, and after a slash the rear strut's."""
+    return front if rear is None else f"{front}/{rear:{form}}"
 
 
 def _with_error(value: float, half: float) -> str:

@@ -21,7 +21,7 @@ Not modelled: discrete events, changes along the road.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -51,7 +51,7 @@ ISO_CLASSES: Mapping[str, float] = MappingProxyType(
 class PeriodicRoad:
     """Sinusoids `first` to `last` times `SPACING`, of density strength / f^2.
 
-    `name` to be shown, `strength` [m^2 Hz] one-sided.
+    `name` to be shown, `strength` [m^2 Hz] one-sided, `speed` V [m/s] at which later axles follow.
 
     Raises
     ------
@@ -63,9 +63,12 @@ class PeriodicRoad:
     strength: float
     first: int = 1
     last: int = 10_000
+    speed: float = 25.0
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
+        if not (math.isfinite(self.speed) and self.speed > 0.0):
+            raise ValueError(f"speed is {self.speed:g} m/s: give a positive number")
         if not (math.isfinite(self.strength) and self.strength > 0.0):
             raise ValueError(f"strength of the road is {self.strength:g}: give a positive number")
         if not 1 <= self.first <= self.last:
@@ -102,24 +105,32 @@ class PeriodicRoad:
         angles = np.multiply.outer(times, 2.0 * np.pi * self.frequencies) + self.phases(seed)
         return np.sin(angles) @ self.amplitudes
 
-    def instants(self, seed: int, count: int) -> Array:
+    def instants(self, seed: int, count: int, behind: float = 0.0) -> Array:
         """The road [m] at `count` equidistant instants of its period, from 0; shape (count,).
 
-        Without the sinusoids that `count` steps per period cannot follow.
+        Under an axle that is `behind` [m] the first one. Without the sinusoids that `count` steps
+        per period cannot follow.
         """
         kept = self._kept(count)
-        return self._sum(self.amplitudes[:kept], self.phases(seed)[:kept], count)
+        return self._sum(self.amplitudes[:kept], self._later(seed, behind)[:kept], count)
 
-    def held(self, seed: int, count: int) -> Array:
+    def held(self, seed: int, count: int, behind: float = 0.0) -> Array:
         """Values to hold over each of `count` steps per period [m], see the module; (count,)."""
         kept = self._kept(count)
         share = self.frequencies[:kept] * self.period / count
         amplitudes = self.amplitudes[:kept] / np.sinc(share)
-        return self._sum(amplitudes, self.phases(seed)[:kept] + np.pi * share, count)
+        return self._sum(amplitudes, self._later(seed, behind)[:kept] + np.pi * share, count)
 
-    def left_out(self, count: int) -> float:
-        """Mean square [m^2] of the sinusoids that `count` steps per period cannot follow."""
-        return float(0.5 * np.sum(self.amplitudes[self._kept(count) :] ** 2))
+    def left_out(self, count: int, behind: Sequence[float] = (0.0,)) -> Array:
+        """Mean products [m^2] of what `count` steps per period cannot follow, (axles, axles)."""
+        kept = self._kept(count)
+        lags = np.subtract.outer(behind, behind) / self.speed
+        turns = np.multiply.outer(lags, 2.0 * np.pi * self.frequencies[kept:])
+        return np.cos(turns) @ (0.5 * self.amplitudes[kept:] ** 2)
+
+    def _later(self, seed: int, behind: float) -> Array:
+        """Phases [rad] under an axle that is `behind` [m]."""
+        return self.phases(seed) - 2.0 * np.pi * self.frequencies * (behind / self.speed)
 
     def _kept(self, count: int) -> int:
         """Number of sinusoids below half the sampling rate."""
@@ -136,7 +147,8 @@ class PeriodicRoad:
 def paper_road(roughness: Roughness | None = None) -> PeriodicRoad:
     """The road of Wang and Su: 10 000 sinusoids, 20.3 mm rms at their speed and roughness."""
     given = roughness or Roughness()
-    return PeriodicRoad("paper", 2.0 * given.roughness * given.velocity)
+    strength = 2.0 * given.roughness * given.velocity
+    return PeriodicRoad("paper", strength, speed=given.velocity)
 
 
 def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
@@ -155,7 +167,7 @@ def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
     # a hair of slack, so that a limit that is a multiple of the spacing counts
     first = max(1, math.ceil(ISO_RANGE[0] * speed / SPACING - 1e-9))
     last = max(first, math.floor(ISO_RANGE[1] * speed / SPACING + 1e-9))
-    return PeriodicRoad(f"iso:{name}", strength, first, last)
+    return PeriodicRoad(f"iso:{name}", strength, first, last, speed)
 
 
 def road_named(name: str, speed: float = 25.0) -> PeriodicRoad:

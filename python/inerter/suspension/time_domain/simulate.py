@@ -3,6 +3,10 @@
     J1 = sqrt(mean zs''^2),   J3 = sqrt(mean Fr^2),   Fr = kt (zu - zr)          over a road
     gain(w) = sqrt(int zs^2 / int Fs^2)                                          Fs = A sin(w t)
 
+zs is the body above a wheel, zu the wheel; with several axles the mean is also over them, each on
+the road of the first one, later by its distance over the speed. Under a load zs is the body where
+the load stands, of a half-car its centre of mass.
+
 Means over one whole period of the road, or whole periods of the load, after `settle` seconds that
 begin from rest and fade the input in. They are summed while the simulations run: memory does not
 grow with the number of roads or designs.
@@ -14,7 +18,9 @@ move by less than 1e-3 of their height. What they do at once is added to the mea
 form, so that the indices do not depend on the step.
 
 RK4 needs nothing more at its default step. discrete (S3 with an elastic shaft, whose node has
-no mass) is of first order: mean squares from steps h and h/2 are extrapolated, 2 S(h/2) - S(h).
+no mass) is of first order: mean squares from steps h and h/2 are extrapolated, 2 S(h/2) - S(h),
+with h half the step of RK4, a quarter of it for the half-car, whose struts are softer against
+their wheels and tyres.
 """
 
 from __future__ import annotations
@@ -27,7 +33,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.suspension.time_domain.model import CarModel, Design
+from inerter.suspension.time_domain.car_model import CarModel
+from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.road import PeriodicRoad
 from inerter.suspension.time_domain.stepping import step_all
 
@@ -44,7 +51,7 @@ _LOAD_BLOCK = 16
 class RunSettings:
     """How simulations are run; results do not depend on `jobs` and `block`.
 
-    `step` [s] of RK4, the largest one; discrete takes half of it, and a quarter. `settle` [s]
+    `step` [s] of RK4, the largest one; discrete takes fractions of it. `settle` [s]
     before the means begin. `jobs` threads, 0 for every processor. `block` simulations at a time.
 
     Raises
@@ -178,7 +185,7 @@ def _extrapolated(car: CarModel, step: float, at: Callable[[float], Array]) -> A
     """Mean squares without the error of first order, where the integrator has one."""
     if not car.implicit:
         return at(step)
-    return 2.0 * at(0.25 * step) - at(0.5 * step)
+    return 2.0 * at(0.5 * step / car.fineness) - at(step / car.fineness)
 
 
 def _road_squares(
@@ -189,37 +196,50 @@ def _road_squares(
     step: float,
     settings: RunSettings,
 ) -> Array:
-    """Mean squares of zs'' and Fr, shape (2, simulations)."""
+    """Mean squares of zs'' and Fr over time and axles, shape (2, simulations)."""
     # a whole number of steps makes the period
     count = math.ceil(road.period / step - 1e-9)
     step = road.period / count
     settle = math.ceil(settings.settle / step)
-    shown = np.array([road.instants(seed, count) for seed in _once(seeds)])
+    seen = _once(seeds)
     make = road.instants if car.implicit else road.held
-    driven = np.array([make(seed, count) for seed in _once(seeds)])
-    which = [_once(seeds).index(seed) for seed in seeds]
-    at_once = np.array([car.acceleration_per_force(d.inertance) for d in designs])[:, None]
+    behind = [wheel.behind for wheel in car.wheels]
+    # shape (roads, count, wheels)
+    shown = np.array([[road.instants(seed, count, x) for x in behind] for seed in seen])
+    driven = np.array([[make(seed, count, x) for x in behind] for seed in seen])
+    shown, driven = np.moveaxis(shown, 1, 2), np.moveaxis(driven, 1, 2)
+    which = [seen.index(seed) for seed in seeds]
+    kt = np.array([wheel.tyre_stiffness for wheel in car.wheels])
+    # accelerations per height of the road, (simulations, points, wheels)
+    at_once = np.array([car.accelerations_per_force(design) * kt for design in designs])
 
     def control(first: int, number: int) -> Array:
         steps = np.arange(first, first + number)
-        return driven[:, (steps - settle) % count][which] * _fade(steps * step)
+        return driven[:, (steps - settle) % count][which] * _fade(steps * step)[:, None]
 
     sums = np.zeros((2, len(designs)))
-    kt = car.car.tyre_stiffness
     steps = np.full(len(designs), step)
-    run = step_all(car, designs, steps, settle + count, car.road, control, settings.jobs)
-    for chunk in run:
+    roads = [wheel.road for wheel in car.wheels]
+    for chunk in step_all(car, designs, steps, settle + count, roads, control, settings.jobs):
         skip = max(settle - chunk.first, 0)
         now = np.arange(chunk.first + skip, chunk.first + chunk.body.shape[1]) - settle
         if now.size == 0:
             continue
         height = shown[:, now][which]
-        sudden = kt * (height - chunk.control[:, skip:])
-        sums[0] += _squares(chunk.acceleration[:, skip:] + at_once * sudden)
-        sums[1] += _squares(kt * (chunk.wheel[:, skip:] - height))
-    # sinusoids too quick for the step move nothing; they press the tyre
-    rest = road.left_out(count) * kt**2
-    return sums / count + rest * np.array([at_once[:, 0] ** 2, np.ones(len(designs))])
+        sudden = height - chunk.control[:, skip:]
+        corrected = chunk.accelerations[:, skip:] + sudden @ at_once.transpose(0, 2, 1)
+        sums[0] += _squares(corrected)
+        sums[1] += _squares(kt * (chunk.wheels[:, skip:] - height))
+    # sinusoids too quick for the step move nothing; they press the tyres
+    rest = road.left_out(count, behind)
+    quick = np.einsum("spw,wv,spv->s", at_once, rest, at_once)
+    points, wheels = at_once.shape[1:]
+    return np.array(
+        [
+            (sums[0] / count + quick) / points,
+            (sums[1] / count + float(np.sum(kt**2 * np.diag(rest)))) / wheels,
+        ]
+    )
 
 
 def _load_squares(
@@ -245,11 +265,11 @@ def _load_squares(
     def control(first: int, number: int) -> Array:
         index = np.arange(first, first + number)
         wave = gain * np.sin(turn * (index + shift))
-        return wave * _fade(index * steps[:, None])
+        return (wave * _fade(index * steps[:, None]))[:, :, None]
 
     sums = np.zeros(len(designs))
     count = int((begin + length).max())
-    for chunk in step_all(car, designs, steps, count, car.load, control, settings.jobs):
+    for chunk in step_all(car, designs, steps, count, [car.load], control, settings.jobs):
         index = np.arange(chunk.first, chunk.first + chunk.body.shape[1])
         inside = (index >= begin[:, None]) & (index < (begin + length)[:, None])
         sums += _squares(np.where(inside, chunk.body, 0.0))
@@ -262,8 +282,8 @@ def _fade(times: NDArray[Any]) -> Array:
 
 
 def _squares(values: Array) -> Array:
-    """Sum of squares along each row."""
-    return np.square(values).sum(axis=1)
+    """Sum of squares of each simulation."""
+    return np.square(values).reshape(len(values), -1).sum(axis=1)
 
 
 def _once(seeds: Sequence[int]) -> list[int]:

@@ -1,4 +1,4 @@
-"""Steps many quarter-cars at once and hands out what happens, in chunks, at the instants.
+"""Steps many cars at once and hands out what happens, in chunks, at the instants.
 
 Simulations differ in design, time step and controls; `mujoco.batch` runs them on threads and gives
 each the numbers of a loop over `mj_step`, whatever the number of threads or of neighbours.
@@ -10,7 +10,9 @@ is (w_k+1 - w_k) / h, the second difference of the motion.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 
 import mujoco
@@ -19,7 +21,8 @@ from mujoco import batch
 from numpy.typing import NDArray
 
 from inerter.simulate.checks import engine_warnings
-from inerter.suspension.time_domain.model import CarModel, Design
+from inerter.suspension.time_domain.car_model import CarModel
+from inerter.suspension.time_domain.design import Design
 
 Array = NDArray[np.float64]
 Control = Callable[[int, int], Array]
@@ -30,16 +33,17 @@ CHUNK = 500
 
 @dataclass(frozen=True)
 class Chunk:
-    """Steps `first` to `first + n`, arrays (simulations, n): at the beginning of each step.
+    """Steps `first` to `first + n`, arrays (simulations, n, ...): at the beginning of each step.
 
-    `body`, `wheel` displacement [m], `acceleration` of the body [m/s^2] under the held control,
-    `control` as given.
+    `body` displacement under the load [m], `wheels` displacements [m] (..., wheels),
+    `accelerations` of the body's points [m/s^2] (..., points) under the held control, `control` as
+    given.
     """
 
     first: int
     body: Array
-    wheel: Array
-    acceleration: Array
+    wheels: Array
+    accelerations: Array
     control: Array
 
 
@@ -52,7 +56,7 @@ def step_all(
     designs: Sequence[Design],
     steps: Array,
     count: int,
-    address: int,
+    addresses: Sequence[int],
     control: Control,
     threads: int,
 ) -> Iterator[Chunk]:
@@ -68,11 +72,11 @@ def step_all(
         Time step of each simulation [s], shape (simulations,).
     count
         Number of steps.
-    address
-        Which control is driven: `car.road` or `car.load`.
+    addresses
+        Which controls are driven: the wheels' `road`, or `car.load`.
     control
         Called with the first step and the number of steps: values to hold, shape
-        (simulations, number).
+        (simulations, number, addresses).
     threads
         0 for every processor.
 
@@ -83,31 +87,28 @@ def step_all(
     """
     model = car.model
     worlds = _worlds(car, designs, steps, threads)
-    dofs = [int(model.joint(name).dofadr[0]) for name in ("wheel", "travel")]
-    places = {name: int(model.sensor(name).adr[0]) for name in ("wheel", "body")}
-    upward = int(model.sensor("body_acceleration").adr[0]) + 2
-    speed = np.zeros((len(designs), 1))
+    heights = [wheel.height for wheel in car.wheels]
+    before = np.zeros((len(designs), 1, model.nv))
     for first in range(0, count, CHUNK):
         number = min(CHUNK, count - first)
         held = control(first, number)
         inputs = np.zeros((len(designs), number, model.nu))
-        inputs[:, :, address] = held
+        inputs[:, :, list(addresses)] = held
         record = ("sensordata", "qvel") if car.implicit else ("sensordata",)
         try:
-            with engine_warnings():
+            with _quietly():
                 found = worlds.rollout(number, inputs, record=record)
         except batch.SimulationError as error:
             raise StepError(" ".join(str(error).split())) from None
         sensors = found["sensordata"]
         if car.implicit:
-            after = found["qvel"][:, :, dofs].sum(axis=2)
-            before = np.concatenate([speed, after[:, :-1]], axis=1)
-            acceleration, speed = (after - before) / steps[:, None], after[:, -1:].copy()
+            after = found["qvel"]
+            rates = np.diff(np.concatenate([before, after], axis=1), axis=1)
+            accelerations = rates @ car.by_rates.T / steps[:, None, None]
+            before = after[:, -1:].copy()
         else:
-            acceleration = sensors[:, :, upward]
-        yield Chunk(
-            first, sensors[:, :, places["body"]], sensors[:, :, places["wheel"]], acceleration, held
-        )
+            accelerations = sensors @ car.by_sensors.T
+        yield Chunk(first, sensors[:, :, car.body], sensors[:, :, heights], accelerations, held)
     _refuse_divergence(car, worlds, designs, count * steps)
 
 
@@ -120,17 +121,20 @@ def _worlds(car: CarModel, designs: Sequence[Design], steps: Array, threads: int
         integrators.mjINT_DISCRETE if car.implicit else integrators.mjINT_RK4
     )
     worlds.expand("opt.timestep")[:] = steps
-    worlds.expand("tendon_stiffness")[:, car.spring] = [d.stiffness for d in designs]
-    worlds.expand("tendon_damping")[:, car.damper] = [d.damping for d in designs]
-    if car.device is not None:
-        live = car.device.live
-        inertances = [d.inertance for d in designs]
+    for i, place in enumerate(car.struts):
+        struts = [design.struts[i] for design in designs]
+        worlds.expand("tendon_stiffness")[:, place.spring] = [s.stiffness for s in struts]
+        worlds.expand("tendon_damping")[:, place.damper] = [s.damping for s in struts]
+        if place.device is None:
+            continue
+        live = place.device.live
+        inertances = [s.inertance for s in struts]
         if "inertance" in live:
             worlds.expand("numeric_data")[:, live["inertance"]] = inertances
         else:
-            worlds.expand("actuator_armature")[:, car.device.actuator] = inertances
+            worlds.expand("actuator_armature")[:, place.device.actuator] = inertances
         for key, value in car.case.parameters.items():
-            column = [d.parameters.get(key, value) for d in designs]
+            column = [s.parameters.get(key, value) for s in struts]
             worlds.expand("numeric_data")[:, live[key]] = column
     worlds.set_const()
     return worlds
@@ -143,9 +147,34 @@ def _refuse_divergence(
     time = worlds.bind("time").reshape(len(designs))
     late = np.flatnonzero(~(np.abs(time - ends) < 1e-6 * ends))
     if late.size:
-        design = designs[int(late[0])]
+        struts = designs[int(late[0])].struts
+        values = " and ".join(
+            f"damping {strut.damping:g} N s/m and inertance {strut.inertance:g} kg"
+            for strut in struts
+        )
         raise StepError(
-            f"layout {car.layout}, case {car.case.name}: the simulation with damping "
-            f"{design.damping:g} N s/m and inertance {design.inertance:g} kg diverged; "
+            f"layout {car.layout}, case {car.case.name}: the simulation with {values} diverged; "
             "shorten the step"
         )
+
+
+_lock = threading.Lock()
+_stack = ExitStack()
+_running = 0
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep the engine's warnings from the terminal; for several threads of a worker at once."""
+    global _running
+    with _lock:
+        if _running == 0:
+            _stack.enter_context(engine_warnings())
+        _running += 1
+    try:
+        yield
+    finally:
+        with _lock:
+            _running -= 1
+            if _running == 0:
+                _stack.close()

@@ -1,0 +1,133 @@
+"""What a user asks for, in words: cars, cases, designs, and the errors of those words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from inerter.model_parameters import QUARTER_CAR
+from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.time_domain.cases import CASES, NUMBERED, Case, case_named
+from inerter.suspension.time_domain.device_case import NAME, read_case
+from inerter.suspension.time_domain.model import Car
+from inerter.suspension.vehicle.cars import half_car
+
+_DEFAULT = "ideal,friction,elastic,both"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A car with what goes with it: front `stiffness` [N/m], `amplitude` [N], `settle` [s]."""
+
+    car: Car
+    stiffness: float
+    amplitude: float
+    settle: float
+
+
+def car_named(name: str) -> Asked:
+    """The quarter-car of Wang and Su, or the published half-car, whose pitch rings for longer.
+
+    Raises
+    ------
+    ValueError
+        No such car.
+    """
+    if name == "quarter":
+        return Asked(QuarterCar(), QUARTER_CAR.stiffness, 1000.0, 4.0)
+    if name == "half":
+        car = half_car()
+        return Asked(car, car.front.stiffness, 2000.0, 10.0)
+    raise ValueError(f"car {name!r} has no MuJoCo model here: take quarter or half")
+
+
+def cases_asked(
+    text: str | None, device: Path | None, step: float
+) -> tuple[tuple[Case, ...], float | None]:
+    """The cases, and the inertance of the device's file [kg], None without a device.
+
+    Raises
+    ------
+    ValueError
+        A case that is not known, a file that cannot be used.
+    """
+    default = _DEFAULT if device is None else "ideal"
+    wanted = words(default if text is None else text, "case")
+    if wanted == ("tables",):
+        numbered = {each.case for each in NUMBERED}
+        wanted = tuple(name for name in CASES if name in numbered)
+    if device is None:
+        if NAME in wanted:
+            raise ValueError(f"case {NAME!r} is that of a file: give it with --device device.toml")
+        return tuple(case_named(name) for name in wanted), None
+    case, own = read_case(device, step)
+    return (*(case_named(name) for name in wanted if name != NAME), case), own
+
+
+def given_struts(
+    damping: str | None, inertance: str | None, own: float | None, car: str
+) -> tuple[tuple[float, float], ...]:
+    """(c, b) of every strut; empty where c and b are to be optimal.
+
+    `own` is the inertance of the device's file [kg].
+
+    Raises
+    ------
+    ValueError
+        One of the two is missing, or they are not numbers.
+    """
+    if damping is None:
+        if inertance is not None:
+            raise ValueError("--inertance is given without --damping: give both for one design")
+        return ()
+    if inertance is None:
+        if own is None:
+            raise ValueError("--damping is given without --inertance: give both for one design")
+        inertance = repr(own)
+    dampings = _struts(damping, "damping", car)
+    inertances = _struts(inertance, "inertance", car)
+    count = max(len(dampings), len(inertances))
+    dampings, inertances = (x * (count // len(x)) for x in (dampings, inertances))
+    return tuple(zip(dampings, inertances, strict=True))
+
+
+def words(text: str, option: str) -> tuple[str, ...]:
+    """Names separated by commas, each once.
+
+    Raises
+    ------
+    ValueError
+        There are none.
+    """
+    found = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+    if not found:
+        raise ValueError(f"--{option} is empty; see --help")
+    return found
+
+
+def numbers(text: str, option: str) -> tuple[float, ...]:
+    """Numbers separated by commas.
+
+    Raises
+    ------
+    ValueError
+        One of them is none.
+    """
+    try:
+        return tuple(float(name) for name in words(text, option))
+    except ValueError:
+        raise ValueError(
+            f"--{option} is {text!r}: give numbers, such as 120e3, with commas between them"
+        ) from None
+
+
+def _struts(text: str, option: str, car: str) -> tuple[float, ...]:
+    """One number, or front/rear."""
+    parts = text.split("/")
+    if len(parts) > (1 if car == "quarter" else 2):
+        raise ValueError(f"--{option} is {text!r}: give one number for the {car}-car's strut")
+    try:
+        return tuple(float(part) for part in parts)
+    except ValueError:
+        form = "a number" if car == "quarter" else "a number or FRONT/REAR"
+        raise ValueError(f"--{option} is {text!r}: give {form}") from None

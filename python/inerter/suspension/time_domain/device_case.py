@@ -1,0 +1,106 @@
+"""A user's own device as a case: what of a device.toml the study carries, and what it refuses.
+
+Carried as it stands: friction with its parameters, series element, backlash, flywheel friction,
+viscous and quadratic damping, load friction, parallel stiffness, end stops, inertance that varies.
+Displacements count from the ride height, so `rest_length` has no part. The inertance is the
+design's. A sign(v) whose width is not stated has the study's, `TRANSITION_VELOCITY`: that of the
+device model's default, a tenth of it, is not felt by a strut but asks for shorter steps.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from inerter.core import Device
+from inerter.device_file import read_device
+from inerter.suspension.time_domain.cases import TRANSITION_VELOCITY, Case
+
+NAME = "device"
+
+_FLUID = "gives the inertance by geometry; state the inertance of `inerter design fluid` instead"
+_GAS = "is of a gas spring; the study has one spring beside the device, linear: --stiffness"
+_REFUSED = {
+    "force_offset": "moves the ride height, in S3 without end; leave it out",
+    **dict.fromkeys(
+        (
+            "piston_area",
+            "channel_area",
+            "channel_length",
+            "fluid_density",
+            "fluid_viscosity",
+            "channel_roughness",
+            "minor_loss",
+        ),
+        _FLUID,
+    ),
+    **dict.fromkeys(
+        ("gas_pressure", "gas_area", "gas_volume", "gas_exponent", "gas_law"),
+        _GAS,
+    ),
+}
+# laws whose friction follows sign(v)
+_SIGN = ("coulomb", "stribeck")
+# speed of a strut on a rough road [m/s], and the rate at which RK4 ends
+_SPEED, _RATE = 0.5, 2.5
+
+
+def read_case(path: Path, step: float) -> tuple[Case, float]:
+    """The case "device" of a file, and the inertance that the file states [kg].
+
+    `step` [s] is that of the simulations.
+
+    Raises
+    ------
+    ValueError
+        The file cannot be read (`DeviceError`), or it has a key that the study cannot carry.
+    """
+    try:
+        return case_of(read_device(path), step)
+    except ValueError as error:
+        text = str(error)
+        raise ValueError(text if text.startswith(str(path)) else f"{path}: {text}") from None
+
+
+def case_of(device: Device, step: float) -> tuple[Case, float]:
+    """The same of a device.
+
+    Raises
+    ------
+    ValueError
+        A key that the study cannot carry: named, with what to do.
+    """
+    given = device.given
+    for key, value in given.items():
+        if key in _REFUSED and value not in (0.0, ""):
+            raise ValueError(f"{key} = {value} {_REFUSED[key]}")
+    values = {
+        key: float(value)
+        for key, value in given.items()
+        if not isinstance(value, str) and key not in {*_REFUSED, "inertance", "rest_length"}
+    }
+    if values.get("stiffness", 0.0) < 0.0:
+        raise ValueError(
+            f"stiffness = {values['stiffness']:g} is negative: behind a damper it has no "
+            "equilibrium; leave it out, and lower --stiffness by as much"
+        )
+    # what is 0 is not there
+    absent = ("series_stiffness", "series_damping", "backlash", "stiffness", "force_offset")
+    values = {key: value for key, value in values.items() if value or key not in absent}
+    if "backlash" in values and not {"series_stiffness", "series_damping"} & set(values):
+        raise ValueError("backlash without series_stiffness: state the stiffness of the contact")
+    if device.friction in _SIGN or "load_friction" in values:
+        values.setdefault("transition_velocity", TRANSITION_VELOCITY)
+    meaning = f"the device: {', '.join([device.friction, *values])}"
+    case = Case(NAME, meaning, device.friction, values, stiff=_stiff(device, values, step))
+    return case, float(given.get("inertance", 0.0))
+
+
+def _stiff(device: Device, values: dict[str, float], step: float) -> bool:
+    """Whether bristles or the series element are faster than a step of RK4 can follow."""
+    rate = 0.0
+    level = values.get("coulomb_force", 0.0)
+    if device.friction in ("dahl", "lugre") and level > 0.0:
+        rate = device.bristle_stiffness * _SPEED / level
+    if device.friction == "bouc_wen":
+        rate = (abs(device.bw_beta) + abs(device.bw_gamma)) * _SPEED
+    return rate * step > _RATE

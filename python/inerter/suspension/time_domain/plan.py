@@ -1,0 +1,99 @@
+"""What is to be evaluated: every layout with every case that it can have."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.time_domain.cases import CASES, Case
+from inerter.suspension.time_domain.model import Car, compiled
+from inerter.suspension.time_domain.road import PeriodicRoad, paper_road
+from inerter.suspension.time_domain.simulate import RunSettings
+
+INDEX_NAMES = ("J1", "J3", "J5")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """Rows to be evaluated and how.
+
+    Attributes
+    ----------
+    layouts, cases, indices, stiffnesses
+        Every combination is a row; S1 has the ideal case only. Stiffness [N/m] of the front strut.
+    road
+        Of which `seeds` roads are drawn; `search_seeds` of them are those of a search.
+    reoptimise
+        Seek c and b for every case that is not linear.
+    given
+        (c [N s/m], b [kg]) of every strut, front first, in place of an optimum; one pair counts
+        for both struts of a half-car.
+    amplitude
+        [N] of the load for J5.
+    car, settings
+        The car, and how it is stepped.
+
+    Raises
+    ------
+    ValueError
+        An unknown name, or a number out of range.
+    """
+
+    layouts: tuple[str, ...] = ("S1", "S2", "S3")
+    cases: tuple[Case, ...] = (CASES["ideal"],)
+    indices: tuple[str, ...] = INDEX_NAMES
+    stiffnesses: tuple[float, ...] = (120e3,)
+    road: PeriodicRoad = field(default_factory=paper_road)
+    seeds: int = 20
+    search_seeds: int = 4
+    reoptimise: bool = False
+    given: tuple[tuple[float, float], ...] = ()
+    amplitude: float = 1000.0
+    car: Car = field(default_factory=QuarterCar)
+    settings: RunSettings = field(default_factory=RunSettings)
+
+    def __post_init__(self) -> None:
+        """Check what was given, see Raises."""
+        for index in self.indices:
+            if index not in INDEX_NAMES:
+                raise ValueError(f"index {index!r}: there are {', '.join(INDEX_NAMES)}")
+        for stiffness in self.stiffnesses:
+            if not 0.0 < stiffness < math.inf:
+                raise ValueError(f"stiffness is {stiffness:g} N/m: give a positive number")
+        if self.seeds < 2:
+            raise ValueError(f"seeds is {self.seeds}: give 2 or more, for an interval")
+        if self.search_seeds < 1:
+            raise ValueError(f"search_seeds is {self.search_seeds}: give 1 or more")
+        if not 0.0 < self.amplitude < math.inf:
+            raise ValueError(f"amplitude is {self.amplitude:g} N: give a positive number")
+        if self.given and self.reoptimise:
+            raise ValueError("a given damping and inertance cannot be sought anew: take one of two")
+        if len(self.given) not in (0, 1, 1 if self.car_name == "quarter" else 2):
+            raise ValueError(f"{len(self.given)} struts given, but the car is a {self.car_name}")
+        for damping, inertance in self.given:
+            if not 0.0 < damping < math.inf:
+                raise ValueError(f"damping is {damping:g} N s/m: give a positive number")
+            if not 0.0 <= inertance < math.inf:
+                raise ValueError(f"inertance is {inertance:g} kg: give a number that is 0 or above")
+        for layout in self.layouts:
+            compiled(layout, CASES["ideal"], self.car)
+        if not self.rows:
+            raise ValueError("layout S1 has no inerter: nothing but the case ideal is one of it")
+
+    @property
+    def car_name(self) -> str:
+        """Name of the car, quarter or half."""
+        return "quarter" if isinstance(self.car, QuarterCar) else "half"
+
+    @property
+    def rows(self) -> list[tuple[float, str, str, Case]]:
+        """Stiffness, index, layout, case of every row."""
+        return [
+            (k, index, layout, case)
+            for k in self.stiffnesses
+            for index in self.indices
+            for layout in self.layouts
+            for case in self.cases
+            if layout != "S1" or case.ideal
+        ]

@@ -1,0 +1,52 @@
+"""An index of one design on every road, and its mean with an interval."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+from inerter.suspension.time_domain.car_model import CarModel
+from inerter.suspension.time_domain.design import Design
+from inerter.suspension.time_domain.load_peaks import load_peaks
+from inerter.suspension.time_domain.plan import Plan
+from inerter.suspension.time_domain.simulate import road_indices
+
+Array = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Samples:
+    """An index of one design: `values` on every road, shape (roads,), one for J5 with its peaks."""
+
+    values: Array
+    peaks: tuple[tuple[float, float], ...] = ()
+
+
+def samples(plan: Plan, model: CarModel, index: str, design: Design, seeds: int) -> Samples:
+    """An index of a design on `seeds` roads.
+
+    Raises
+    ------
+    ValueError
+        A design that cannot be simulated (`StepError` if it diverged).
+    """
+    if index == "J5":
+        (found,) = load_peaks(model, [design], plan.amplitude, plan.settings)
+        return Samples(np.array([found.value]), found.peaks)
+    return Samples(road_indices(model, [design], plan.road, range(seeds), plan.settings)[index][0])
+
+
+def interval(values: Array) -> tuple[float, float, float]:
+    """Mean and the ends of its 95 % interval; all three equal for a single value."""
+    mean = float(np.mean(values))
+    if values.size < 2:
+        return mean, mean, mean
+    spread = float(np.std(values, ddof=1)) / math.sqrt(values.size)
+    half = spread * float(student.ppf(0.5 + 0.5 * CONFIDENCE, values.size - 1))
+    return mean, mean - half, mean + half

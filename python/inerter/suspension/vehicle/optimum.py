@@ -1,0 +1,147 @@
+"""The best struts of a half- or full car: many starts, exact polish, and what the optimum is like.
+
+The same problem has the same answer on every machine. Where J5 is at its lower bound, the yielding
+of the centre of mass under a constant load, a whole region of designs has it: the one with the
+smallest J1 is given.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from inerter.suspension.layouts import SeriesPair
+from inerter.suspension.problem import Array
+from inerter.suspension.quarter_car import Road
+from inerter.suspension.vehicle.cars import Vehicle
+from inerter.suspension.vehicle.load_bound import NEAR, in_the_limit, softest_at_bound
+from inerter.suspension.vehicle.load_peaks import peaks
+from inerter.suspension.vehicle.problem import VehicleProblem
+from inerter.suspension.vehicle.search import at_bound, best_point
+from inerter.suspension.vehicle.strut import VehicleStrut
+
+
+@dataclass(frozen=True)
+class VehicleOptimum:
+    """The best design.
+
+    Attributes
+    ----------
+    value
+        The index, SI units.
+    struts
+        Front and rear.
+    peaks
+        Of J5: (frequency [Hz], gain [m/N]) of every local maximum of the gain, the static one too.
+    notes
+        Sentences on what a reader should know: a bound was met, the optimum is not unique.
+    """
+
+    value: float
+    struts: tuple[VehicleStrut, VehicleStrut]
+    peaks: tuple[tuple[float, float], ...]
+    notes: tuple[str, ...]
+
+    def design(self) -> dict[str, Any]:
+        """Its part in a row of the command's JSON."""
+        return {
+            axle: {name: value for name, value in vars(strut).items() if value is not None}
+            for axle, strut in zip(("front", "rear"), self.struts, strict=True)
+        }
+
+
+def vehicle_optimum(
+    index: str,
+    car: Vehicle,
+    layout: str,
+    stiffnesses: tuple[float, float],
+    pair: SeriesPair | None = None,
+    road: Road | None = None,
+    *,
+    equal: bool = False,
+) -> VehicleOptimum:
+    """Damping, inertance and relaxation spring of both axles that minimise an index.
+
+    Parameters
+    ----------
+    index, car, layout, pair, road
+        As in `vehicle_index`; the layout by its name.
+    stiffnesses
+        k [N/m], front and rear.
+    equal
+        The same damping, inertance and relaxation spring at both axles.
+    """
+    problem = VehicleProblem(car, road or Road(), layout, index, stiffnesses, pair, equal)
+    return optimise_vehicle(problem)
+
+
+def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
+    """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
+    notes = []
+    best, value, point = problem, *(in_the_limit(problem) or best_point(problem, more))
+    # without inertance counts as a design where the strut still is one
+    variants = [problem, *(problem.without(massless) for massless in _less(problem))]
+    for other in variants[1:]:
+        if at_bound(problem, value):
+            break
+        without, there = best_point(other, more)
+        if without <= value * (1.0 + 1e-12):
+            best, value, point = other, without, there
+    if at_bound(problem, value):
+        value = problem.static_compliance()
+        best, point = softest_at_bound(variants, best, point)
+        notes.append(
+            "J5 is what springs and tyres yield under a constant load, which no strut can lower; "
+            "of the designs that reach it the one with the smallest J1 is given"
+        )
+    elif problem.index == "J5" and value <= problem.static_compliance() * (1.0 + NEAR):
+        notes.append(
+            "J5 comes as near as one likes to what springs and tyres yield under a constant load, "
+            "which no strut can lower; a design within 1e-5 of it is given"
+        )
+    notes += [
+        f"best without inertance {where}"
+        for where, now, before in zip(
+            ("in front", "at the rear"), best.massless, problem.massless, strict=True
+        )
+        if now and not before
+    ]
+    notes += _at_bounds(best, point)
+    return VehicleOptimum(
+        value=value,
+        struts=best.struts(point),
+        peaks=_peaks(best, point) if problem.index == "J5" else (),
+        notes=tuple(notes),
+    )
+
+
+def _less(problem: VehicleProblem) -> list[tuple[bool, bool]]:
+    """Which axles may go without inertance."""
+    if not problem.network.may_vanish:
+        return []
+    ways = [(True, True)] if problem.equal else [(True, False), (False, True), (True, True)]
+    return [way for way in ways if way != problem.massless]
+
+
+def _peaks(problem: VehicleProblem, point: Array) -> tuple[tuple[float, float], ...]:
+    load, static = problem.load(point), problem.static_compliance()
+    frequency, gain = peaks(load)
+    # a swelling beside w = 0 that is no more than rounding is the static value
+    small = len(gain) > 0 and frequency[0] > 0.0 and gain[0] <= static * (1.0 + 2.0 * NEAR)
+    if small and load.gain(0.5 * frequency[:1])[0] >= static:
+        frequency[0], gain[0] = 0.0, static
+    return tuple((float(w / (2.0 * np.pi)), float(g)) for w, g in zip(frequency, gain, strict=True))
+
+
+def _at_bounds(problem: VehicleProblem, point: Array) -> list[str]:
+    notes = []
+    for (axle, name), at, (low, high) in zip(problem.variables, point, problem.bounds, strict=True):
+        where = "" if problem.equal else ("front ", "rear ")[axle]
+        word = where + name.replace("_", " ")
+        if at <= low + 1e-6:
+            notes.append(f"{word} at the lower end of its range: the layout is best without it")
+        elif at >= high - 1e-6:
+            notes.append(f"{word} at the upper end of its range: the layout is best with it rigid")
+    return notes

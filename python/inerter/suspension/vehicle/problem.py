@@ -1,0 +1,177 @@
+"""One optimisation of a half- or full car; designs as logarithms of what is free at each axle.
+
+Bounds are those of the quarter-cars at the corners: damping 1e-3 ... 1e3 times sqrt(kt m),
+inertance 1e-3 ... 1e6 times m, relaxation stiffness 1e-3 ... 1e5 times kt, with kt and m = ms + mu
+of the axle; for equal struts geometric means of both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.suspension.indices import INDICES, Index
+from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
+from inerter.suspension.problem import Array, Problem
+from inerter.suspension.quarter_car import Road
+from inerter.suspension.vehicle.cars import Vehicle
+from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
+from inerter.suspension.vehicle.load import Load
+from inerter.suspension.vehicle.load_peaks import largest_gain
+from inerter.suspension.vehicle.strut import VehicleStrut, branch
+
+_COMPLEX_STEP = 1e-30
+
+
+@dataclass(frozen=True)
+class VehicleProblem:
+    """What is to be minimised over which designs.
+
+    A point is the logarithms of the variables of the front, then of the rear; or of both at once
+    where they are to be equal. Arrays of points have shape (n, variables).
+
+    Attributes
+    ----------
+    layout, index
+        Names in `LAYOUTS` and `INDICES`.
+    stiffnesses
+        k [N/m], front and rear.
+    pair
+        Series pair of the inerters; ideal without.
+    equal
+        The same damping, inertance and relaxation spring at both axles.
+    massless
+        Front, rear: only designs without inertance there.
+    """
+
+    car: Vehicle
+    road: Road
+    layout: str
+    index: str
+    stiffnesses: tuple[float, float]
+    pair: SeriesPair | None = None
+    equal: bool = False
+    massless: tuple[bool, bool] = (False, False)
+
+    @property
+    def network(self) -> Layout:
+        """The layout by its name."""
+        return LAYOUTS[self.layout]
+
+    @property
+    def objective(self) -> Index:
+        """The index by its name, for its unit and meaning."""
+        return INDICES[self.index]
+
+    @property
+    def variables(self) -> tuple[tuple[int, str], ...]:
+        """What is free: axle (0 front, 1 rear) and name."""
+        axles = (0,) if self.equal else (0, 1)
+        return tuple(
+            (axle, name)
+            for axle in axles
+            for name in self.network.variables
+            if not (self.massless[axle] and name == "inertance")
+        )
+
+    @property
+    def bounds(self) -> Array:
+        """Lower and upper bound of each variable, logarithms, shape (variables, 2)."""
+        front, rear = (
+            dict(zip(corner.variables, corner.bounds, strict=True)) for corner in self.corners()
+        )
+        if self.equal:
+            front = rear = {name: 0.5 * (front[name] + rear[name]) for name in front}
+        return np.array([(front, rear)[axle][name] for axle, name in self.variables])
+
+    def corners(self) -> tuple[Problem, Problem]:
+        """The problems of the quarter-cars at the axles."""
+        cars = self.car.side.corners()
+        front, rear = (
+            Problem(car, self.road, self.layout, self.index, k, self.pair, no_inerter)
+            for car, k, no_inerter in zip(cars, self.stiffnesses, self.massless, strict=True)
+        )
+        return front, rear
+
+    def without(self, massless: tuple[bool, bool]) -> VehicleProblem:
+        """The same without inertance in front, at the rear or at both."""
+        return replace(self, massless=massless)
+
+    def static_compliance(self) -> float:
+        """What no strut can take J5 below [m/N]."""
+        return self.car.side.static_compliance(self.stiffnesses) / self.car.sides
+
+    def branches(self, points: NDArray[Any]) -> Branches:
+        """The struts of each point."""
+        values: tuple[dict[str, Any], dict[str, Any]] = {}, {}
+        for (axle, name), value in zip(
+            self.variables, np.moveaxis(np.exp(points), -1, 0), strict=True
+        ):
+            values[axle][name] = value
+            if self.equal:
+                values[1][name] = value
+        front, rear = (
+            branch(self.network, k, pair=None if no_inerter else self.pair, **own)
+            for k, own, no_inerter in zip(self.stiffnesses, values, self.massless, strict=True)
+        )
+        return front, rear
+
+    def struts(self, point: Array) -> tuple[VehicleStrut, VehicleStrut]:
+        """The design of a point."""
+        own: tuple[dict[str, float], dict[str, float]] = {}, {}
+        for (axle, name), value in zip(self.variables, np.exp(point).tolist(), strict=True):
+            # without what a logarithm and back leave in the last digits
+            own[axle][name] = float(f"{value:.13g}")
+        if self.equal:
+            own[1].update(own[0])
+        front, rear = (VehicleStrut(k, **one) for k, one in zip(self.stiffnesses, own, strict=True))
+        return front, rear
+
+    def point(self, struts: tuple[VehicleStrut, VehicleStrut]) -> Array:
+        """The point of a design, the inverse of `struts`, or the nearest within the bounds."""
+        low, high = np.exp(self.bounds.T)
+        values = [getattr(struts[axle], name) for axle, name in self.variables]
+        return np.log(np.clip(values, low, high))
+
+    def value(self, points: NDArray[Any]) -> Array:
+        """The index of each point, exactly, one after another."""
+        if self.index == "J5":
+            return np.array([largest_gain(self.load(point)) for point in points])
+        return np.array(
+            [
+                rms_index(self.index, self.car, self.road, self.branches(point))[0]
+                for point in points
+            ]
+        )
+
+    def quick(self, points: Array) -> Array:
+        """J1 or J3 of each point, good enough for a search."""
+        return quick_rms_index(self.index, self.car, self.road, self.branches(points))
+
+    def logarithm(self, point: Array) -> tuple[float, Array]:
+        """Logarithm of J1 or J3 at one point and its gradient, exact."""
+        perturbed = self.branches(self._perturbed(point))
+        value, slope = rms_index(self.index, self.car, self.road, perturbed, _COMPLEX_STEP)
+        return float(np.log(value)), slope / value
+
+    def load(self, points: Array) -> Load:
+        """zc/F of each point."""
+        return load_of(self.car, self.branches(points))
+
+    def levels(self, point: Array, frequency: Array) -> tuple[Array, Array]:
+        """Logarithm of |zc/F| at each frequency [rad/s] and its gradient.
+
+        The gradient has shape (frequencies, variables).
+        """
+        perturbed = self.branches(self._perturbed(point))
+        slopes = [one.parameter_slopes(1j * frequency, _COMPLEX_STEP) for one in perturbed]
+        logs, gradient = self.load(point).sensitivity(frequency, (slopes[0], slopes[1]))
+        return logs, gradient.T
+
+    @staticmethod
+    def _perturbed(point: Array) -> NDArray[np.complex128]:
+        steps = np.vstack([np.zeros(len(point)), np.eye(len(point))])
+        return point + 1j * _COMPLEX_STEP * steps
