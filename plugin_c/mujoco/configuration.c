@@ -22,3 +22,13 @@ int configuration_read(const mjModel* m, int instance, InerterDevice* device,
   }
   return 0;
 }
+
+uint64_t configuration_print(const mjModel* m, int instance) {
+  // FNV-1a over the texts of the attributes, which lie one after another
+  int end = instance + 1 < m->nplugin ? m->plugin_attradr[instance + 1] : (int)m->npluginattr;
+  uint64_t print = UINT64_C(14695981039346656037);
+  for (int i = m->plugin_attradr[instance]; i < end; i++) {
+    print = (print ^ (unsigned char)m->plugin_attr[i]) * UINT64_C(1099511628211);
+  }
+  return print;
+}

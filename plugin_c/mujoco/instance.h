@@ -22,6 +22,9 @@ typedef struct LiveParameter_ {
 // What an mjData keeps of an instance between the callbacks of one step. Everything that has to
 // survive a step is in mjData.act and mjData.plugin_state.
 typedef struct Instance_ {
+  const mjModel* model;  // whose configuration this is, seen at this time (plugin.c)
+  mjtNum time;
+  uint64_t print;
   InerterDevice stated;  // as configured, nothing derived yet
   InerterDevice device;  // as it is now, with what the engine integrates of it; rest_length: 0
   InerterDevice share;   // the device without that: what the plugin's force is made of

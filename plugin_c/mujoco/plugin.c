@@ -98,6 +98,30 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   return 0;
 }
 
+// An mjData may be stepped with another model than it was made for: rollouts over a list of models
+// do so. What is configured there counts. Looked at where the model is another one or time has gone
+// back, which costs nothing in between.
+static void follow_model(const mjModel* m, const mjData* d, int instance) {
+  Instance* self = instance_of(d, instance);
+  int same = m == self->model && d->time >= self->time;
+  self->time = d->time;
+  if (same) {
+    return;
+  }
+  self->model = m;
+  uint64_t print = configuration_print(m, instance);
+  if (print == self->print) {
+    return;
+  }
+  char message[INERTER_MESSAGE_SIZE];
+  self->print = print;
+  if (prepare(m, instance, self, message)) {
+    const char* name = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
+    mju_error("inerter.device, actuator \"%.60s\", in a model that the data was not made for: %s",
+              name ? name : "", message);
+  }
+}
+
 static int init(const mjModel* m, mjData* d, int instance) {
   char message[INERTER_MESSAGE_SIZE];
   Instance* self = mju_malloc(sizeof(Instance));
@@ -107,6 +131,9 @@ static int init(const mjModel* m, mjData* d, int instance) {
     mju_free(self);
     return -1;
   }
+  self->model = m;
+  self->time = d->time;
+  self->print = configuration_print(m, instance);
   d->plugin_data[instance] = (uintptr_t)self;
   return 0;
 }
@@ -132,6 +159,7 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
 
 static void act_dot(const mjModel* m, mjData* d, int instance) {
   Instance* self = instance_of(d, instance);
+  follow_model(m, d, instance);
   live_update(m, self);
   int nstate = inerter_nstate(&self->device);
   if (!nstate) {
@@ -213,6 +241,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   if (!(capability & mjPLUGIN_ACTUATOR)) {
     return;
   }
+  follow_model(m, d, instance);
   compute_force(m, d, self);
   if (!self->last || self->probing) {
     return;

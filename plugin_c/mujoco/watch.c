@@ -47,10 +47,14 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
 static double mobility(const mjModel* m, int actuator) {
   double gear = m->actuator_gear[6 * m->actuator_outadr[actuator]];
   int target = m->actuator_trnid[2 * actuator];
-  double weight = m->actuator_trntype[actuator] == mjTRN_TENDON
-                      ? m->tendon_invweight0[target]
-                      : m->dof_invweight0[m->jnt_dofadr[target]];
-  return gear * gear * weight;
+  if (m->actuator_trntype[actuator] == mjTRN_TENDON) {
+    return gear * gear * m->tendon_invweight0[target];
+  }
+  double weight = gear * gear * m->dof_invweight0[m->jnt_dofadr[target]];
+
+  // for bodies that only slide the engine takes 1 / mass, without armature
+  int sliding = m->body_simple[m->jnt_bodyid[target]] == 2;
+  return sliding ? weight / (1 + weight * m->actuator_armature[actuator]) : weight;
 }
 
 // slope of the friction force over velocity at rest, for laws without memory [N s/m]

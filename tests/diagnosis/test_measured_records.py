@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.diagnose import diagnose
-from inerter.identify.preparation import prepare
 from inerter.identify.bench import thin
 from inerter.identify.fit import Model, Problem
+from inerter.identify.preparation import prepare
 from inerter.records import read_records
 
 

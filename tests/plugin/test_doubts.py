@@ -150,6 +150,25 @@ def test_what_is_too_stiff_is_said_once(
     assert cause not in said(capfd)
 
 
+@pytest.mark.parametrize("where", ['joint="j"', 'tendon="t"'])
+def test_an_inertance_on_a_light_carriage_counts_as_its_mass(
+    capfd: pytest.CaptureFixture, where: str
+) -> None:
+    """100 N s/m on 60 kg are slow, whatever the engine takes for the weight of a sliding body."""
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
+        <option integrator="RK4" timestep="0.001"/>
+        <worldbody><body><joint name="j" type="slide"/>
+        <inertial pos="0 0 0" mass="1e-3" diaginertia="1e-6 1e-6 1e-6"/></body></worldbody>
+        <tendon><fixed name="t"><joint joint="j" coef="1"/></fixed></tendon>
+        <actuator><plugin plugin="inerter.device" {where}>
+        <config key="inertance" value="60"/><config key="viscous" value="100"/></plugin></actuator>
+        </mujoco>"""
+    )
+    run(model)
+    assert "too stiff" not in said(capfd)
+
+
 def test_stiffness_is_looked_at_again_when_the_options_change(
     capfd: pytest.CaptureFixture,
 ) -> None:

@@ -41,7 +41,9 @@ class Run:
     thinned : int
         Measured samples per sample here.
     first_force : float
-        Mean measured force over the first 10 ms [N], which tells the state a run begins with.
+        Mean measured force over 10 ms [N] at the sample `first`, which tells the state there.
+    first : int
+        The first sample at which the motion is known; the device is followed from there.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Run:
     cutoff: float
     measured: tuple[Array, Array, Array] | None = None
     thinned: int = 1
+    first: int = 0
 
     def friction(self, device: Device, state: float | Array) -> Array:
         """Friction force of a device through the low-pass of the measured force [N], shape (n,).
@@ -66,11 +69,11 @@ class Run:
         """
         if self.measured is None:
             raise ValueError(f"{self.name}: a run at the measured rate has no band")
-        x, v, a = self.measured
+        x, v, a = (channel[self.first * self.thinned :] for channel in self.measured)
         spacing = self.spacing / self.thinned
-        friction = device.along(spacing, x, v, a, state)["friction"]
+        friction = held(device.along(spacing, x, v, a, state)["friction"], self.measured[0].size)
         if "_response" not in self.__dict__:
-            frequency = rfftfreq(2 * x.size - 2, spacing)
+            frequency = rfftfreq(2 * friction.size - 2, spacing)
             object.__setattr__(self, "_response", response(frequency, self.cutoff))
         return filtered(friction, self.__dict__["_response"])[:: self.thinned]
 
@@ -87,7 +90,7 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
     """
     rate = rate or SAMPLES_PER_PERIOD * motion.cutoff
     step = max(1, int(1 / (rate * motion.spacing)))
-    first = max(1, round(0.01 / motion.spacing))
+    first = int(np.argmax(motion.inner[::step]))
     force = lowpass(motion.force, motion.spacing, motion.cutoff)
     velocity = np.where(_resting(motion), 0.0, motion.velocity)
     return Run(
@@ -99,11 +102,25 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
         np.ascontiguousarray(motion.acceleration[::step]),
         np.ascontiguousarray(force[::step]),
         motion.inner[::step],
-        float(np.mean(motion.force[:first])),
+        _force_at(motion, first * step),
         motion.cutoff,
         (motion.displacement, velocity, motion.acceleration),
         step,
+        first,
     )
+
+
+def held(values: Array, count: int) -> Array:
+    """Values that begin late, the first one held before them, shape (count,)."""
+    missing = count - values.size
+    return np.concatenate([np.full(missing, values[0]), values]) if missing else values
+
+
+def _force_at(motion: Motion, index: int) -> float:
+    """Mean measured force over 10 ms [N], at the beginning from it on, else around the sample."""
+    width = max(1, round(0.01 / motion.spacing))
+    begin = max(0, index - width // 2) if index else 0
+    return float(np.mean(motion.force[begin : begin + width]))
 
 
 def _resting(motion: Motion) -> NDArray[np.bool_]:
@@ -118,7 +135,7 @@ def _resting(motion: Motion) -> NDArray[np.bool_]:
 
 def whole(motion: Motion) -> Run:
     """A run at the record's own rate with the force as measured: what figures are reported on."""
-    first = max(1, round(0.01 / motion.spacing))
+    first = int(np.argmax(motion.inner))
     return Run(
         motion.name,
         motion.start,
@@ -128,8 +145,9 @@ def whole(motion: Motion) -> Run:
         motion.acceleration,
         motion.force,
         motion.inner,
-        float(np.mean(motion.force[:first])),
+        _force_at(motion, first),
         np.inf,
+        first=first,
     )
 
 

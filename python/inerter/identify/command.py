@@ -19,9 +19,9 @@ def identify_command(
         str,
         typer.Option(
             help="Laws, with commas; parts joined by + as in lugre+series+offset. Laws: ideal, "
-            "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, fluid; parts: "
-            "series, backlash, offset, stiffness, hardening, quadratic, load, asymmetry, "
-            "position, variable, delay."
+            "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, bouc_wen_any, "
+            "fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, load, "
+            "asymmetry, position, variable, delay."
         ),
     ] = "ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen",
     fix: Annotated[
@@ -39,6 +39,13 @@ def identify_command(
     starts: Annotated[
         int | None, typer.Option(min=1, help="Starting points; default 24 per nonlinear parameter.")
     ] = None,
+    simulate: Annotated[
+        bool,
+        typer.Option(
+            "--simulate",
+            help="Then fit the best law's motion under the measured force, without derivatives.",
+        ),
+    ] = False,
     out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
         "out/identification"
     ),
@@ -57,6 +64,7 @@ def identify_command(
         print_identification,
         write_identification,
     )
+    from inerter.identify.refine import simulated
     from inerter.records import read_records
 
     try:
@@ -67,6 +75,9 @@ def identify_command(
                 records, _names(law), fixed=_fixed(fix or []), holdout=holdout or (), loss=loss,
                 intervals=intervals, starts=starts, progress=progress,
             )  # fmt: skip
+            if simulate:
+                progress(1.0, f"simulating {result.best.law}")
+                result = simulated(result)
         files = write_identification(result, out_dir)
     except ValueError as error:
         refuse(str(error))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -22,12 +22,13 @@ from inerter.identify.coordinates import coordinate, device_values
 from inerter.identify.fit import NUISANCES, Fit, Model, Problem, parameter_errors
 from inerter.identify.identifiability import Combination, identifiability
 from inerter.identify.laws import LAWS, Law, law_named
-from inerter.identify.multistart import search
+from inerter.identify.multistart import Search, search
 from inerter.identify.noise import effect_of_noise
-from inerter.identify.preparation import Preparation, prepare
+from inerter.identify.preparation import Preparation, prepare, prepare_again
 from inerter.identify.profile import profile_interval
 from inerter.identify.split import Split, blocks, split
 from inerter.records import Record
+from inerter.records.motion import Motion as BenchMotion
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -37,6 +38,9 @@ INTERVALS = ("profile", "normal")
 
 # share of blocks drawn anew for the interval of a held-out error
 _RESAMPLES = 400
+# how often the cut-off is chosen anew for a fit, and how long the fit then goes on
+_CUTOFFS = 3
+_EVALUATIONS = 100
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,18 @@ class Estimate:
     low: float | None
     high: float | None
     unit: str
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Of a fit by simulation: rms displacement error [m] on the data fitted and on those held out.
+
+    `relative` is the latter per standard deviation of the displacement.
+    """
+
+    fit_rmse: float
+    rmse: float
+    relative: float
 
 
 @dataclass(frozen=True)
@@ -80,6 +96,13 @@ class Identified:
         Sentences on what a reader should know.
     seconds
         Time the fit took.
+    cutoff
+        Below which the motion was used [Hz], chosen for the law.
+    runs
+        The records at their own rate, smoothed so.
+    motion
+        Displacement errors, where the fit was by simulation; the force errors are then those of
+        the fit before.
     """
 
     law: str
@@ -98,6 +121,9 @@ class Identified:
     notes: tuple[str, ...]
     seconds: float
     model: Model = field(repr=False)
+    cutoff: float
+    runs: tuple[Run, ...] = field(repr=False)
+    motion: Motion | None = None
 
     def json(self) -> dict[str, Any]:
         """Plain data."""
@@ -130,6 +156,8 @@ class Identified:
             "starts": list(self.ends),
             "notes": list(self.notes),
             "seconds": self.seconds,
+            "cutoff": self.cutoff,
+            "motion": asdict(self.motion) if self.motion else None,
         }
 
 
@@ -141,7 +169,6 @@ class Identification:
     results: tuple[Identified, ...]
     preparation: Preparation
     split: Split
-    runs: tuple[Run, ...]
 
     @property
     def best(self) -> Identified:
@@ -219,22 +246,32 @@ def identify(
     known = dict(fixed or {})
     for name in known:
         if name not in (*parameters(), "gas_law"):
-            Device(**known)
+            # says what it may have meant
+            Device(**{name: known[name]})
     refuse_still(records)
     with threadpool_limits(limits=1, user_api="blas"):
         progress(0.0, "smoothing")
         preparation = prepare(records)
-        runs = [thin(motion) for motion in preparation.motions]
-        parted = split(runs, holdout)
-        raw = [whole(motion) for motion in preparation.motions]
-        data = _Data(records, preparation, runs, parted, raw, known)
+        data = prepared(records, preparation, holdout, known)
         results = []
         for done, law in enumerate(chosen):
             progress((done + 0.1) / len(chosen), law.name)
             results.append(data.identified(law, loss, intervals, starts))
         progress(1.0, "done")
     results.sort(key=lambda result: result.rmse)
-    return Identification(tuple(records), tuple(results), preparation, parted, tuple(raw))
+    return Identification(tuple(records), tuple(results), preparation, data.parted)
+
+
+def prepared(
+    records: Sequence[Record],
+    preparation: Preparation,
+    holdout: Sequence[str],
+    fixed: Mapping[str, float | str],
+) -> _Data:
+    """Smoothed records as what a law is fitted to and judged on."""
+    runs = [thin(motion) for motion in preparation.motions]
+    raw = [whole(motion) for motion in preparation.motions]
+    return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout)
 
 
 def refuse_still(records: Sequence[Record]) -> None:
@@ -259,14 +296,48 @@ class _Data:
     parted: Split
     raw: Sequence[Run]
     fixed: Mapping[str, float | str]
+    holdout: Sequence[str]
 
     def identified(self, law: Law, loss: str, intervals: str, starts: int | None) -> Identified:
         begin = time.perf_counter()
-        used = [i for i, mask in enumerate(self.parted.fit) if mask.any()]
-        masks = [self.parted.fit[i] for i in used]
-        problem = Problem([self.runs[i] for i in used], masks)
-        found = search(problem, law, self.fixed, loss=loss, starts=starts)
-        fit, jacobian = found.best, problem.jacobian(found.best.model)
+        found = search(self._problem(), law, self.fixed, loss=loss, starts=starts)
+        data, fit = self, found.best
+        for _ in range(_CUTOFFS):
+            again = data._smoothed_for(fit.model)
+            if again is data:
+                break
+            data, fit = again, again._problem().fit(fit.model, _EVALUATIONS, loss)
+        return data._told(law, found, fit, intervals, begin)
+
+    def _problem(self) -> Problem:
+        """The runs that are fitted."""
+        return Problem([self.runs[i] for i in self._used], [self.parted.fit[i] for i in self._used])
+
+    @property
+    def _used(self) -> list[int]:
+        return [i for i, mask in enumerate(self.parted.fit) if mask.any()]
+
+    def _smoothed_for(self, model: Model) -> _Data:
+        """The same data, smoothed as suits the model; itself where that changes nothing."""
+
+        def error(motions: Sequence[BenchMotion]) -> float:
+            used = [whole(motions[i]) for i in self._used]
+            if not all(run.inner.any() for run in used):
+                return math.inf
+            problem = Problem(used, [run.inner for run in used])
+            residual = zip(problem.residual(model), problem.masks, strict=True)
+            return float(np.sqrt(np.mean(np.concatenate([r[m] for r, m in residual]) ** 2)))
+
+        preparation = prepare_again(self.records, self.preparation, error)
+        return (
+            self
+            if preparation is self.preparation
+            else prepared(self.records, preparation, self.holdout, self.fixed)
+        )
+
+    def _told(self, law: Law, found: Search, fit: Fit, intervals: str, begin: float) -> Identified:
+        problem, used = self._problem(), self._used
+        jacobian = problem.jacobian(fit.model)
         noise = effect_of_noise(problem, fit.model, jacobian, self.preparation, self.records, used)
         better, inflation = _allowed_for(problem, fit, jacobian, noise.bias,
                                          noise.covariance, noise.smoothing)  # fmt: skip
@@ -295,6 +366,8 @@ class _Data:
             notes=tuple(_notes(problem, fit, found.ends)),
             seconds=time.perf_counter() - begin,
             model=model,
+            cutoff=self.preparation.cutoff,
+            runs=tuple(self.raw),
         )
 
     def _estimates(

@@ -67,7 +67,7 @@ def _errors(axes: Axes, result: Identification) -> None:
 def _shown(result: Identification) -> tuple:
     """The longest held-out run at the measured rate, and which samples are drawn."""
     held = [i for i, mask in enumerate(result.split.holdout) if mask.any()]
-    run = max((result.runs[i] for i in held), key=lambda each: each.force.size)
+    run = max((result.best.runs[i] for i in held), key=lambda each: each.force.size)
     inner = np.flatnonzero(run.inner)
     begin, end = (int(inner[0]), int(inner[-1]) + 1) if inner.size else (0, run.force.size)
     return run, slice(begin, end, max(1, (end - begin) // _POINTS))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from inerter.core import Device, DeviceError, parameters
-from inerter.identify.bench import Run, scales
+from inerter.identify.bench import Run, held, scales
 from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_values
 
 Array = NDArray[np.float64]
@@ -151,14 +151,15 @@ def delayed(force: Array, delay: float, spacing: float) -> Array:
 
 
 def first_state(device: Device, run: Run) -> float | Array:
-    """State a run begins with, read off its first force, within what the friction law can hold.
+    """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
     A number for a device with at most one state, else an array (nstate,).
     """
     if device.nstate == 0:
         return 0.0
+    i = run.first
     return device.state_of_force(
-        run.displacement[0], run.velocity[0], run.acceleration[0], run.first_force
+        run.displacement[i], run.velocity[i], run.acceleration[i], run.first_force
     )
 
 
@@ -166,16 +167,43 @@ def force_along(model: Model, run: Run) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,)."""
     device = model.device()
     state = first_state(device, run)
-    motion = (run.displacement, run.velocity, run.acceleration)
+    x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
     if np.isinf(run.cutoff) or (device.friction == "none" and not device.load_friction):
-        total = device.along(run.spacing, *motion, state)["total"]
+        total = held(device.along(run.spacing, x, v, a, state)["total"], run.force.size)
     else:
         # friction is not linear in the motion: it has to pass the low-pass of the measured force
         smooth_device = model.without_friction()
         rest = np.atleast_1d(state)[-smooth_device.nstate :] if smooth_device.nstate else 0.0
-        smooth = smooth_device.along(run.spacing, *motion, rest)["total"]
-        total = smooth + run.friction(device, state)
+        smooth = smooth_device.along(run.spacing, x, v, a, rest)["total"]
+        total = held(smooth, run.force.size) + run.friction(device, state)
     return delayed(total, model.delay, run.spacing)
+
+
+def without_transient(
+    device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_]
+) -> Array:
+    """A residual without the decay of the series element's unknown first state, shape (n,).
+
+    Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
+    oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0; the share of the
+    masked samples that has this form is taken out.
+    """
+    b = device.inertance
+    damping = device.series_damping + device.flywheel_viscous
+    roots = np.roots([b, damping, device.series_stiffness])
+    at = np.arange(residual.size)[mask]
+    if at.size < 4 or not np.isfinite(roots).all():
+        return residual
+    time = spacing * np.arange(residual.size)
+    with np.errstate(under="ignore"):
+        if abs(roots[0].imag) > 0:
+            wave = np.exp(roots[0] * time)
+            basis = np.column_stack([wave.real, wave.imag])
+        else:
+            basis = np.column_stack([np.exp(root.real * time) for root in roots])
+    basis /= np.max(np.abs(basis), axis=0) + 1e-300
+    share = np.linalg.lstsq(basis[at], residual[at], rcond=1e-9)[0]
+    return residual - basis @ share
 
 
 @dataclass(frozen=True)
@@ -225,7 +253,12 @@ class Problem:
 
     def residual(self, model: Model) -> list[Array]:
         """Measured minus predicted force of every run [N]."""
-        return [run.force - force_along(model, run) for run in self.runs]
+        residual = [run.force - force_along(model, run) for run in self.runs]
+        device = model.device()
+        if not device.series_stiffness or device.backlash:
+            return residual
+        parts = zip(residual, self.runs, self.masks, strict=True)
+        return [without_transient(device, r, run.spacing, mask) for r, run, mask in parts]
 
     def _masked(self, arrays: Sequence[Array]) -> Array:
         return np.concatenate([a[m] for a, m in zip(arrays, self.masks, strict=True)])
@@ -234,8 +267,11 @@ class Problem:
         """Derivative of the residual by one search variable, over all samples of all runs."""
         index = model.free.index(name)
         how = coordinate(name, self.scales)
-        if name in LINEAR and not (
-            name == "inertance" and any(other in model.values for other in ENTANGLED)
+        if (
+            name in LINEAR
+            # a state begins where the first force puts it, and so hangs on every term
+            and not model.device().nstate
+            and not (name == "inertance" and any(other in model.values for other in ENTANGLED))
         ):
             columns = []
             for run in self.runs:

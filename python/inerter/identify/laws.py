@@ -71,6 +71,11 @@ PARTS: Mapping[str, Part] = MappingProxyType(
                 "bouc_wen", "Bouc-Wen hysteresis", "bouc_wen", ("viscous",),
                 _BRISTLE | {"bw_shape": (0.3, 1.2), "bw_exponent": (1.05, 2.5)},
             ),
+            # beta and gamma of any sign: hysteresis that hardens has no largest force
+            Part(
+                "bouc_wen_any", "Bouc-Wen hysteresis, softening or hardening", "bouc_wen",
+                ("viscous", "bw_stiffness"), {"bw_beta": (0.03, 3.0), "bw_gamma": (0.0, 0.0)},
+            ),
             Part("series", "spring and damper in series with the inertance", None, (), _SERIES),
             Part(
                 "backlash", "free play in series with the inertance", None, (),
@@ -175,4 +180,5 @@ def unit_of(name: str, sizes: Scales) -> float:
         "flywheel_viscous": sizes.force / sizes.velocity,
         "series_frequency": slow,
         "backlash": sizes.displacement,
+        "bw_beta": 1 / sizes.displacement,
     }.get(name, 1.0)

@@ -128,6 +128,7 @@ def _with_linear(
     numbers = {name: float(v) for name, v in fixed.items() if not isinstance(v, str)}
     texts = {name: v for name, v in fixed.items() if isinstance(v, str)}
     level = {"none": None, "bouc_wen": "bw_level"}.get(law.friction, "coulomb_force")
+    level = None if "bw_stiffness" in law.linear else level
     start = {"inertance": sizes.force / sizes.acceleration, **values, **numbers}
     if law.friction in ("coulomb", "stribeck"):
         start.setdefault("transition_velocity", max(1e-4, _TRANSITION * sizes.velocity))
@@ -144,6 +145,8 @@ def _with_linear(
 
 def _solved(problem: Problem, model: Model, names: Sequence[str], level: str | None) -> Model:
     """Linear coordinates by a bounded linear fit; what scales with them is scaled along."""
+    if not names:
+        return model
     sizes = problem.scales
     # what is proportional to the friction level, to the inertance
     along = {
@@ -183,7 +186,7 @@ def _only(model: Model, names: Sequence[str], chosen: str | None) -> Model:
     for name in names:
         if name != chosen:
             # an inertance and a friction level have to be there
-            tiny = name in ("coulomb_force", "bw_level") or (
+            tiny = name in ("coulomb_force", "bw_level", "bw_stiffness") or (
                 name == "inertance" and "series_frequency" in values
             )
             values[name] = 1e-9 * (values[name] or 1.0) if tiny else 0.0

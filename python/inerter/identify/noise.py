@@ -102,7 +102,7 @@ def _smoothing(
         other = Problem(runs, masks, problem.scales)
         residual = [r[m] for r, m in zip(other.residual(model), other.masks, strict=True)]
         steps.append(np.linalg.pinv(other.jacobian(model)) @ np.concatenate(residual))
-    return 0.7 * np.sqrt(np.mean(np.square(steps), axis=0))
+    return 0.5 * np.sqrt(np.mean(np.square(steps), axis=0))
 
 
 @dataclass(frozen=True)

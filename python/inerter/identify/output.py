@@ -50,7 +50,8 @@ def print_identification(result: Identification, out: Console) -> None:
     """Laws by their held-out error, then the parameters of the best one."""
     laws = Table(title=f"force error on held-out data ({result.split.description})")
     for column in ("law", "rms error [N]", "95 % interval", "on fitted data", "seconds"):
-        laws.add_column(column, justify="left" if column == "law" else "right")
+        left = column == "law"
+        laws.add_column(column, justify="left" if left else "right", overflow="fold")
     for each in result.results:
         laws.add_row(
             each.law, f"{each.rmse:.4g}", f"{each.low:.4g} ... {each.high:.4g}",
@@ -58,6 +59,12 @@ def print_identification(result: Identification, out: Console) -> None:
         )  # fmt: skip
     out.print(laws)
     best = result.best
+    if best.motion:
+        out.print(
+            f"simulated from the measured force, the displacement is off by {best.motion.rmse:.3g} "
+            f"m rms on held-out data ({100 * best.motion.relative:.2g} % of its variation), "
+            f"{best.motion.fit_rmse:.3g} m on fitted data"
+        )
     values = Table(title=f"parameters of {best.law}")
     for column in ("parameter", "value", "standard error", "95 % interval", "unit"):
         values.add_column(column, justify="left" if column in ("parameter", "unit") else "right")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,6 +92,28 @@ def prepare(records: Sequence[Record]) -> Preparation:
     )
 
 
+def prepare_again(
+    records: Sequence[Record], preparation: Preparation, error: Callable[[Sequence[Motion]], float]
+) -> Preparation:
+    """The records smoothed at the cut-off at which a fitted model predicts the raw force best.
+
+    A broad linear model does not know a device's resonances, whose force may lie far above its
+    motion. `error` gives the model's force error [N] along motions.
+    """
+    use = preparation.channels
+    errors = np.array(
+        [error([smooth(r, cutoff, use) for r in records]) for cutoff in preparation.cutoffs]
+    )
+    if not np.isfinite(errors).any():
+        return preparation
+    best = float(np.nanmin(np.where(np.isfinite(errors), errors, np.nan)))
+    cutoff = float(preparation.cutoffs[np.flatnonzero(errors <= best * (1 + TOLERANCE))[0]])
+    if cutoff == preparation.cutoff:
+        return preparation
+    motions = [smooth(record, cutoff, use) for record in records]
+    return replace(preparation, motions=motions, cutoff=cutoff, errors=errors)
+
+
 def _dominant_frequency(record: Record) -> float:
     """Frequency below which half of the velocity's power lies [Hz]."""
     x = record.displacement - np.mean(record.displacement)
@@ -122,4 +144,9 @@ def _force_error(motions: Sequence[Motion]) -> float:
     matrix = matrix / (np.std(matrix, axis=0) + np.abs(np.mean(matrix, axis=0)) + 1e-300)
     gram, right = matrix.T @ matrix, matrix.T @ force
     solution = np.linalg.lstsq(gram, right, rcond=1e-12)[0]
-    return float(np.sqrt(np.mean((force - matrix @ solution) ** 2)))
+    square = float(np.mean((force - matrix @ solution) ** 2))
+
+    # a low-passed record has two free values per period of the cut-off; the fit takes some of them
+    values = sum(2 * m.cutoff * m.spacing * int(m.inner.sum()) for m in motions)
+    left = values - matrix.shape[1]
+    return float(np.sqrt(square * values / left)) if left > 0 else np.inf

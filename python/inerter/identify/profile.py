@@ -29,6 +29,10 @@ _LEVEL = math.sqrt(chi2.ppf(CONFIDENCE, 1))
 _ROUNDS = 4
 # an interval this many times wider than the parabola's is open
 _OPEN = 8.0
+# standard error per value from which on a positive parameter is known badly
+_BADLY = 0.15
+# a parameter that can be this many times larger or smaller has no end there
+_FAR = 10.0
 _EVALUATIONS = 12
 
 
@@ -52,28 +56,41 @@ def profile_interval(
     count = sum(int(mask.sum()) for mask in problem.masks)
     unit = best / max(count - len(model.free), 1) * max(inflation, 1e-12) + 1e-300
 
+    value = quantity(model)
+    # one that is known badly, and is positive, is followed in its logarithm
+    wide = value > 0 and error > _BADLY * value
+    unit_step = error / value if wide else error
+
+    def target(side: int, distance: float) -> float:
+        return value * math.exp(side * distance) if wide else value + side * distance
+
+    def rise_at(side: int, distance: float, start: Model) -> tuple[Model, float]:
+        here = _tied(problem, start, quantity, target(side, distance))
+        return here, math.sqrt(max(_squares(problem, here) - best, 0.0) / unit)
+
     def end(side: int) -> float | None:
-        distance, here = _LEVEL * error, model
-        points = [(0.0, 0.0)]
-        for _ in range(_ROUNDS):
-            target = quantity(model) + side * distance
+        # where it costs nothing to go far, small bumps on the way are no end
+        if wide:
             try:
-                here = _tied(problem, here, quantity, target, error)
-                reached = abs(quantity(here) - quantity(model))
-                rise = math.sqrt(max(_squares(problem, here) - best, 0.0) / unit)
+                if rise_at(side, math.log(_FAR), model)[1] < _LEVEL:
+                    return None
             except (DeviceError, ValueError, np.linalg.LinAlgError):
-                # where the force is no longer finite nothing can be told
+                pass
+        here, points = model, [(0.0, 0.0)]
+        distance = min(_LEVEL * unit_step, math.log(_FAR)) if wide else _LEVEL * unit_step
+        for _ in range(_ROUNDS):
+            try:
+                here, rise = rise_at(side, distance, here)
+            except (DeviceError, ValueError, np.linalg.LinAlgError):
+                # at the edge of what the parameter can be, or the force is no longer finite
                 return None
-            points.append((reached, rise))
+            points.append((distance, rise))
             if abs(rise / _LEVEL - 1) < 0.03:
                 break
-            if rise < _LEVEL and reached < 0.9 * distance:
-                # at the edge of what the parameter can be
-                return None
             distance = _crossing(points)
-            if distance > _OPEN * _LEVEL * error:
+            if distance > _OPEN * _LEVEL * unit_step:
                 return None
-        return quantity(model) + side * _crossing(points)
+        return target(side, _crossing(points))
 
     return end(-1), end(1)
 
@@ -93,38 +110,86 @@ def _squares(problem: Problem, model: Model) -> float:
     return sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, problem.masks, strict=True))
 
 
-def _tied(problem: Problem, model: Model, quantity: Quantity, target: float, error: float) -> Model:
-    """The best fit with the quantity held at a value."""
+def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> Model:
+    """The best fit with the quantity held at a value.
+
+    One search variable, the pivot, follows from the others, so that the value is met exactly.
+
+    Raises
+    ------
+    DeviceError
+        No variable brings the quantity to the value.
+    """
     how = [coordinate(name, problem.scales) for name in model.free]
     lower, upper = np.array([each.bounds for each in how]).T
-    size = problem.scales.force
-    count = sum(int(mask.sum()) for mask in problem.masks)
-    # a deviation of a tenth of the error costs more than all residuals do
-    weight = 10 * math.sqrt(count) / error
+    slope = _slope(problem, model, quantity)
+    # logarithmic ones first: they reach far
+    order = sorted(range(len(how)), key=lambda i: (not how[i].logarithmic, -abs(slope[i])))
+    order = [i for i in order if abs(slope[i]) > 1e-9 * np.max(np.abs(slope))]
+    for pivot in order:
+        start = _solved(problem, model, quantity, target, pivot)
+        if start is not None:
+            break
+    else:
+        raise DeviceError(f"the quantity cannot be {target:g}")
+    if len(how) == 1:
+        return start
+    others = np.array([i for i in range(len(how)) if i != pivot])
+    base, size = problem.variables(start), problem.scales.force
 
-    def at(variables: Array) -> Model:
-        return problem.moved(model, variables - start)
+    def at(variables: Array) -> Model | None:
+        step = np.zeros(len(how))
+        step[others] = variables - base[others]
+        return _solved(problem, problem.moved(start, step), quantity, target, pivot)
 
     def residual(variables: Array) -> Array:
         here = at(variables)
+        if here is None:
+            return np.full(count, 1e3)
         parts = [r[m] / size for r, m in zip(problem.residual(here), problem.masks, strict=True)]
-        return np.append(np.concatenate(parts), weight * (quantity(here) - target))
+        return np.nan_to_num(np.concatenate(parts), nan=1e3)
 
     def jacobian(variables: Array) -> Array:
-        here = at(variables)
-        row = np.empty(variables.size)
-        for i in range(variables.size):
-            step = np.zeros(variables.size)
-            step[i] = 1e-6
-            row[i] = (quantity(problem.moved(here, step)) - quantity(here)) / 1e-6
-        return np.vstack([problem.jacobian(here) / size, weight * row])
+        here = at(variables) or start
+        slope, whole = _slope(problem, here, quantity), problem.jacobian(here) / size
+        along = -slope[others] / slope[pivot] if slope[pivot] else np.zeros(others.size)
+        return np.nan_to_num(whole[:, others] + np.outer(whole[:, pivot], along))
 
-    start = problem.variables(model)
-    if not (np.isfinite(residual(start)).all() and np.isfinite(jacobian(start)).all()):
-        raise DeviceError("the force is not finite there")
-    inside = np.clip(start, lower + 1e-9, upper - 1e-9)
+    count = sum(int(mask.sum()) for mask in problem.masks)
+    inside = np.clip(base[others], lower[others] + 1e-9, upper[others] - 1e-9)
     found = least_squares(
         residual, inside, jac=jacobian,  # pyright: ignore[reportArgumentType]
-        bounds=(lower, upper), xtol=1e-8, ftol=1e-8, gtol=1e-10, max_nfev=_EVALUATIONS,
+        bounds=(lower[others], upper[others]), xtol=1e-8, ftol=1e-8, gtol=1e-10,
+        max_nfev=_EVALUATIONS,
     )  # fmt: skip
-    return at(found.x)
+    return at(found.x) or start
+
+
+def _slope(problem: Problem, model: Model, quantity: Quantity) -> Array:
+    """Derivatives of the quantity by the search variables, shape (p,)."""
+    here = quantity(model)
+    steps = 1e-6 * np.eye(len(model.free))
+    return np.array([(quantity(problem.moved(model, step)) - here) / 1e-6 for step in steps])
+
+
+def _solved(
+    problem: Problem, model: Model, quantity: Quantity, target: float, pivot: int
+) -> Model | None:
+    """The model with its pivot moved until the quantity is at the target; None if it cannot be."""
+    step = np.zeros(len(model.free))
+    positive = target > 0
+    for _ in range(30):
+        here = quantity(problem.moved(model, step))
+        if abs(here - target) <= 1e-9 * abs(target):
+            return problem.moved(model, step)
+        more = step.copy()
+        more[pivot] += 1e-6
+        there = quantity(problem.moved(model, more))
+        if positive and here > 0 and there > 0:
+            slope, missing = math.log(there / here) / 1e-6, math.log(target / here)
+        else:
+            slope, missing = (there - here) / 1e-6, target - here
+        if slope == 0 or not math.isfinite(slope):
+            return None
+        step[pivot] += missing / slope
+    return None
