@@ -11,7 +11,8 @@ import argparse
 from dataclasses import dataclass
 
 import numpy as np
-from inerter.identify.estimate import Identified, identify
+from inerter.identify.estimate import identify
+from inerter.identify.result import Identified
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, response
 from inerter.reference.bench_motions import Drive, draw_drives

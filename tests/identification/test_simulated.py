@@ -10,7 +10,7 @@ from inerter.records import Record
 from scipy.integrate import solve_ivp
 
 H, N = 2e-3, 2500
-TIME = H * np.arange(N)
+TIME = np.asarray(H * np.arange(N), dtype=np.float64)
 TRUTH = {"inertance": 5.0, "viscous": 40.0, "stiffness": 8e3, "coulomb_force": 6.0,
          "presliding": 3e-4}  # fmt: skip
 MODEL = Model("dahl", TRUTH, tuple(TRUTH))
@@ -83,7 +83,7 @@ def test_records_that_cannot_be_simulated_are_refused() -> None:
     exact = record(0.0)
     with pytest.raises(ValueError, match=r"no longer than the 9 s left to settle"):
         Simulator(exact, settle=9.0)
-    uneven = TIME.copy()
+    uneven: np.ndarray = np.array(TIME, dtype=np.float64)
     uneven[1000:] += 5e-3
     gap = Record(name="gap", time=uneven, displacement=exact.displacement, force=exact.force)
     with pytest.raises(ValueError, match="gap: not uniformly sampled"):

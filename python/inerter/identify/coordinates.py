@@ -116,7 +116,7 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "bw_gamma": Coordinate(1 / x, -infinity, infinity),
         "bw_ratio": Coordinate(0.1, -0.5, 0.9),
         "bw_exponent": Coordinate(1.0, 1.0, 6.0),
-        "series_frequency": Coordinate(slow, 0.1 * slow, 30 * fast, logarithmic=True),
+        "series_frequency": Coordinate(slow, 0.1 * slow, 8 * fast, logarithmic=True),
         "series_loss": Coordinate(0.1, 1e-4, 1e2, logarithmic=True),
         "series_hardening": Coordinate(0.1 / x, -3 / x, 3 / x),
         "flywheel_viscous": Coordinate(force / v, 0, infinity),

@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from inerter.identify.estimate import Identification
 from inerter.identify.fit import force_along
+from inerter.identify.result import Identification
 from inerter.report.palette import LIGHT
 
 Array = NDArray[np.float64]

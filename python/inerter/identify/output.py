@@ -10,8 +10,8 @@ from rich.table import Table
 
 from inerter.device_file import device_text
 from inerter.folder import write_files
-from inerter.identify.estimate import Estimate, Identification
 from inerter.identify.figures import picture
+from inerter.identify.result import Estimate, Identification
 from inerter.rig import device_mjcf
 
 

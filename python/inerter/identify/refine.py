@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inerter.identify.estimate import Estimate, Identification, Motion
 from inerter.identify.fit import NUISANCES, Fit, parameter_errors
+from inerter.identify.result import Estimate, Identification, Motion
 from inerter.identify.simulated import Simulator, device_from, fit_simulated, start_from
 
 SHARE = 0.7

@@ -24,8 +24,9 @@ from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
 from inerter.identify.bench import scales, thin
 from inerter.identify.coordinates import Scales, coordinate, device_values
-from inerter.identify.fit import Model, sandwich
+from inerter.identify.fit import Model
 from inerter.identify.preparation import prepare
+from inerter.identify.residual import sandwich
 from inerter.mjspec import add_device
 from inerter.records import Record
 

@@ -1,0 +1,68 @@
+"""Of residuals: what counts how much, what their correlation does to an estimate, what decays."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+
+Array = NDArray[np.float64]
+
+
+def robust_weight(residual: Array, typical: float, loss: str) -> Array:
+    """What each sample counts in a fit: 1 with the linear loss, less far off with others."""
+    z = (residual / typical) ** 2
+    return {
+        "linear": np.ones_like(z),
+        "soft_l1": 1 / np.sqrt(1 + z),
+        "huber": 1 / np.sqrt(np.maximum(z, 1)),
+        "cauchy": 1 / (1 + z),
+        "arctan": 1 / (1 + z**2),
+    }[loss]
+
+
+def sandwich(jacobian: Array, residual: Array, weight: Array) -> Array:
+    """Covariance of a least-squares estimate, robust against correlated residuals, shape (p, p).
+
+    Residuals of neighbouring samples are correlated, so the scores are summed over blocks before
+    their spread is taken (a cluster-robust estimate).
+
+    Parameters
+    ----------
+    jacobian, residual, weight : ndarray (n, p), (n,), (n,)
+        Derivatives of the residual, the residual, and what each sample counts.
+    """
+    blocks = np.array_split(np.arange(residual.size), min(60, max(residual.size // 20, 2)))
+    weighted = weight * residual
+    scores = np.array([jacobian[block].T @ weighted[block] for block in blocks])
+    bread = np.linalg.pinv(jacobian.T @ (weight[:, None] * jacobian))
+    count = len(blocks)
+    return bread @ (scores.T @ scores) @ bread * count / max(count - 1, 1)
+
+
+def without_transient(
+    device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_]
+) -> Array:
+    """A residual without the decay of the series element's unknown first state, shape (n,).
+
+    Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
+    oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0; the share of the
+    masked samples that has this form is taken out.
+    """
+    b = device.inertance
+    damping = device.series_damping + device.flywheel_viscous
+    roots = np.roots([b, damping, device.series_stiffness])
+    at = np.arange(residual.size)[mask]
+    if at.size < 4 or not np.isfinite(roots).all():
+        return residual
+    time = spacing * np.arange(residual.size)
+    with np.errstate(under="ignore"):
+        if abs(roots[0].imag) > 0:
+            wave = np.exp(roots[0] * time)
+            basis = np.column_stack([wave.real, wave.imag])
+        else:
+            basis = np.column_stack([np.exp(root.real * time) for root in roots])
+    basis /= np.max(np.abs(basis), axis=0) + 1e-300
+    share = np.linalg.lstsq(basis[at], residual[at], rcond=1e-9)[0]
+    return residual - basis @ share

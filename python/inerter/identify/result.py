@@ -1,0 +1,176 @@
+"""What an identification gives: estimates, what is left open, errors on held-out data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+from inerter.identify.bench import Run
+from inerter.identify.fit import Model
+from inerter.identify.identifiability import Combination
+from inerter.identify.preparation import Preparation
+from inerter.identify.split import Split
+from inerter.records import Record
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: `value`, standard error, 95 % interval (None: no end), unit."""
+
+    value: float
+    stderr: float
+    low: float | None
+    high: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Of a fit by simulation: rms displacement error [m] on the data fitted and on those held out.
+
+    `relative` is the latter per standard deviation of the displacement.
+    """
+
+    fit_rmse: float
+    rmse: float
+    relative: float
+
+
+@dataclass(frozen=True)
+class Identified:
+    """A law fitted to data.
+
+    Attributes
+    ----------
+    law
+        As asked for.
+    device
+        The device, ready for a simulation.
+    delay
+        Time by which the force channel is late [s].
+    parameters
+        What was fitted, by name.
+    correlation
+        Of the estimates, in the order of `parameters`, shape (p, p).
+    undetermined
+        Groups of parameters that the data cannot tell apart.
+    combinations
+        What of them the data do determine.
+    fit_rmse, rmse
+        Force error [N] on the data fitted and on those held out; `low`, `high` its 95 % interval.
+    nrmse
+        `rmse` per standard deviation of the held-out force.
+    ends
+        Force errors [N] at which the fits from different starts ended.
+    notes
+        Sentences on what a reader should know.
+    seconds
+        Time the fit took.
+    cutoff
+        Below which the motion was used [Hz], chosen for the law.
+    runs
+        The records at their own rate, smoothed so.
+    motion
+        Displacement errors, where the fit was by simulation; the force errors are then those of
+        the fit before.
+    """
+
+    law: str
+    device: Device
+    delay: float
+    parameters: Mapping[str, Estimate]
+    correlation: Array
+    undetermined: tuple[tuple[str, ...], ...]
+    combinations: tuple[Combination, ...]
+    fit_rmse: float
+    rmse: float
+    low: float
+    high: float
+    nrmse: float
+    ends: tuple[float, ...]
+    notes: tuple[str, ...]
+    seconds: float
+    model: Model = field(repr=False)
+    cutoff: float
+    runs: tuple[Run, ...] = field(repr=False)
+    motion: Motion | None = None
+
+    def json(self) -> dict[str, Any]:
+        """Plain data."""
+        return {
+            "law": self.law,
+            "device": self.device.given,
+            "delay": self.delay,
+            "parameters": {
+                name: {
+                    "value": each.value,
+                    "stderr": each.stderr,
+                    "interval": [each.low, each.high],
+                    "unit": each.unit,
+                }
+                for name, each in self.parameters.items()
+            },
+            "correlation": {
+                "names": list(self.parameters),
+                "matrix": self.correlation.tolist(),
+            },
+            "undetermined": [list(group) for group in self.undetermined],
+            "combinations": [
+                {"expression": c.expression, "value": c.value, "relative_error": c.relative_error}
+                for c in self.combinations
+            ],
+            "fit_rmse": self.fit_rmse,
+            "rmse": self.rmse,
+            "rmse_interval": [self.low, self.high],
+            "nrmse": self.nrmse,
+            "starts": list(self.ends),
+            "notes": list(self.notes),
+            "seconds": self.seconds,
+            "cutoff": self.cutoff,
+            "motion": asdict(self.motion) if self.motion else None,
+        }
+
+
+@dataclass(frozen=True)
+class Identification:
+    """`results` by held-out error, the best first; how the data were prepared and divided."""
+
+    records: tuple[Record, ...]
+    results: tuple[Identified, ...]
+    preparation: Preparation
+    split: Split
+
+    @property
+    def best(self) -> Identified:
+        """The law with the smallest held-out error."""
+        return self.results[0]
+
+    def json(self) -> dict[str, Any]:
+        """Plain data; schema inerter.identification/1."""
+        return {
+            "schema": "inerter.identification/1",
+            "records": [
+                {
+                    "name": record.name,
+                    "samples": record.samples,
+                    "sample_rate": record.sample_rate,
+                    "role": self.split.role(i),
+                    "warnings": [{"code": w.code, "text": w.text} for w in record.warnings],
+                }
+                for i, record in enumerate(self.records)
+            ],
+            "preparation": {
+                "cutoff": self.preparation.cutoff,
+                "channels": ["displacement", *self.preparation.channels],
+                "noise_floor": self.preparation.noise_floor,
+            },
+            "held_out": self.split.description,
+            "results": [result.json() for result in self.results],
+        }
