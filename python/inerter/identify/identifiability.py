@@ -25,8 +25,8 @@ Array = NDArray[np.float64]
 _STEP = 1e-4
 # a direction known worse than this (logarithm) is not determined
 UNKNOWN = 0.5
-# part of a parameter in an undetermined direction that counts
-_PART = 0.1
+# largest error (logarithm) that is told from a larger one
+_WORST = 10.0
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,8 @@ def identifiability(
     weak = errors > UNKNOWN
     if not weak.any():
         return Identifiability((), ())
-    groups = _groups(names, vectors[:, weak])
+    # one direction that is not felt at all must not hide how badly others are known
+    groups = _groups(names, vectors[:, weak] * np.minimum(errors[weak], _WORST))
     values = np.array([_value(model, name) for name in names])
     known = [
         combination
@@ -136,10 +137,13 @@ def _forces(problem: Problem, model: Model, given: dict[str, float | str]) -> Ar
 
 
 def _groups(names: Sequence[str], weak: Array) -> tuple[tuple[str, ...], ...]:
-    """Parameters that share an undetermined direction."""
+    """Parameters whose own error is large, together where they make up for each other.
+
+    `weak` are the undetermined directions times their errors, shape (parameters, directions).
+    """
     size = np.sqrt(np.sum(weak**2, axis=1))
-    member = size > _PART
-    # those whose undetermined parts overlap belong together
+    member = size > UNKNOWN
+    # those whose errors go together belong together
     overlap = np.abs(weak @ weak.T) / np.maximum(np.outer(size, size), 1e-300) > 0.2
     left = [i for i in range(len(names)) if member[i]]
     groups = []
