@@ -1,0 +1,1 @@
+"""Published studies rebuilt: each makes its data, its figures and its tables anew."""

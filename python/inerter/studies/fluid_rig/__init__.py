@@ -1,0 +1,1 @@
+"""The fluid inerter's bench experiment from end to end: sweeps, noise, identification, figures."""

@@ -1,0 +1,68 @@
+"""`inerter study fluid-rig`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from inerter.console import out, progress_bar, refuse
+
+
+def fluid_rig_command(
+    objective: Annotated[
+        str, typer.Option(help="What is fitted: spectra (as the paper), time; with commas.")
+    ] = "spectra,time",
+    seeds: Annotated[
+        int, typer.Option(min=1, help="Draws of noise and starting values, one fit each.")
+    ] = 1,
+    duration: Annotated[float, typer.Option(help="Of every sweep [s]; 60 is the whole.")] = 60.0,
+    displacement_noise: Annotated[float, typer.Option(help="Rms [m].")] = 10e-6,
+    force_noise: Annotated[float, typer.Option(help="Rms [N].")] = 0.2,
+    factor: Annotated[
+        float, typer.Option(help="Starting values are off by up to this factor.")
+    ] = 2.0,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/fluid_rig"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print fluid_rig.json alone on stdout.")
+    ] = False,
+) -> None:
+    """The fluid inerter's experiment: its sweeps simulated, disturbed, identified, drawn.
+
+    Writes fluid_rig.json, fluid_rig.html, dry.png, complete.png and levels.png.
+    """
+    from inerter.folder import refuse_folder
+    from inerter.parallel import WorkError
+    from inerter.studies.fluid_rig.output import json_text, write_study
+    from inerter.studies.fluid_rig.settings import Settings, StudyError
+    from inerter.studies.fluid_rig.signals import Noise
+    from inerter.studies.fluid_rig.study import study
+    from inerter.studies.fluid_rig.summary import print_study
+
+    try:
+        settings = Settings(
+            objectives=tuple(name.strip() for name in objective.split(",")),
+            seeds=tuple(range(seeds)),
+            duration=duration,
+            noise=Noise(displacement_noise, force_noise),
+            factor=factor,
+        )
+        refuse_folder(out_dir)
+        with progress_bar("tests by the reference", as_json) as progress:
+            result = study(settings, jobs=jobs, progress=progress)
+        files = write_study(result, out_dir)
+    except (StudyError, WorkError, ValueError) as error:
+        refuse(str(error))
+    except OSError as error:
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(json_text(result), end="")
+    else:
+        print_study(result, out)
+        out.print(f"Written to {out_dir}: {', '.join(files)}")

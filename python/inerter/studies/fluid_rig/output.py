@@ -1,0 +1,45 @@
+"""The files of a study."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from inerter.folder import write_files
+from inerter.studies.fluid_rig.figures import picture
+from inerter.studies.fluid_rig.page import page
+from inerter.studies.fluid_rig.panels import pictures
+from inerter.studies.fluid_rig.study import Study
+from inerter.studies.fluid_rig.summary import study_json
+
+
+def json_text(study: Study) -> str:
+    """What --json prints."""
+    return json.dumps(_finite(study_json(study)), indent=2, allow_nan=False) + "\n"
+
+
+def write_study(study: Study, folder: Path) -> list[str]:
+    """Write fluid_rig.json, fluid_rig.html, dry.png, complete.png, levels.png; their names.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
+    files: dict[str, bytes | str] = {
+        "fluid_rig.json": json_text(study),
+        "fluid_rig.html": page(study),
+    }
+    files |= {f"{each.name}.png": picture(each) for each in pictures(study)}
+    return write_files(folder, files)
+
+
+def _finite(value: object) -> object:
+    """JSON has no NaN and no infinity: null in their place."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(each) for each in value]
+    if isinstance(value, float) and not abs(value) < float("inf"):
+        return None
+    return value

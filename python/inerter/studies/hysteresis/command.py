@@ -1,0 +1,66 @@
+"""`inerter study hysteresis`: the hysteresis paper rebuilt."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from inerter.console import out, progress_bar, refuse
+
+
+def hysteresis_command(
+    noise: Annotated[float, typer.Option(help="White noise on the force [N, rms].")] = 10.0,
+    rate: Annotated[float, typer.Option(help="Samples per second of the tests.")] = 1000.0,
+    duration: Annotated[float, typer.Option(help="Length of a test [s].")] = 6.0,
+    denoise: Annotated[
+        str,
+        typer.Option(
+            help="How the force is cleaned before fits: none, emd, emd_loudest (one mode, as in "
+            "the paper), lowpass, lowpass_both."
+        ),
+    ] = "emd",
+    draws: Annotated[int, typer.Option(help="Noises for the bias of estimates.")] = 10,
+    random_starts: Annotated[int, typer.Option(help="Random starts of each optimiser.")] = 20,
+    seed: Annotated[int, typer.Option(help="Of the noise and of the random starts.")] = 1,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Few draws and starts: rough, several times faster.")
+    ] = False,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/hysteresis"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print hysteresis.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Dahl, LuGre and Bouc-Wen on virtual bench tests of a ball-screw inerter, as in the paper.
+
+    Writes hysteresis.json, hysteresis.html and pictures.
+    """
+    from inerter.folder import refuse_folder
+    from inerter.studies.hysteresis.output import json_text, print_study, write_study
+    from inerter.studies.hysteresis.settings import Settings
+    from inerter.studies.hysteresis.study import study
+
+    try:
+        settings = Settings(
+            noise=noise, rate=rate, duration=duration, denoise=denoise, draws=draws,
+            random_starts=random_starts, seed=seed,
+        )  # fmt: skip
+        refuse_folder(out_dir)
+        with progress_bar("rebuilding the hysteresis paper", as_json) as progress:
+            result = study(settings.quick() if quick else settings, jobs=jobs, progress=progress)
+        files = write_study(result, out_dir)
+    except ValueError as error:
+        refuse(str(error))
+    except OSError as error:
+        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
+    if as_json:
+        print(json_text(result), end="")
+        return
+    print_study(result, out)
+    out.print(f"Written to {out_dir}: {', '.join(files)}")
