@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from inerter import rig
 from inerter.core import Device
 from inerter.exudyn.engine import installed
-from inerter.identify.bench import Run
+from inerter.identify.bench import Run, from_first, held
 from inerter.identify.fit import Model, delayed, first_state
 from inerter.reference import Motion, ReferenceDevice, response
 
@@ -46,7 +46,7 @@ def _error(
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
-        force = along(device, run, first_state(device, run))
+        force = held(along(device, from_first(run), first_state(device, run)), run.force.size)
         if not np.all(np.isfinite(force)):
             raise ValueError("the force is not finite")
         residual = run.force - delayed(force, model.delay, run.spacing)

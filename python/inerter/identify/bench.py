@@ -151,6 +151,13 @@ def whole(motion: Motion) -> Run:
     )
 
 
+def from_first(run: Run) -> Run:
+    """The part of a run at the measured rate whose motion is known from the beginning."""
+    arrays = ("displacement", "velocity", "acceleration", "force", "inner")
+    part = {name: getattr(run, name)[run.first :] for name in arrays}
+    return replace(run, **part, start=run.start + run.first * run.spacing, first=0)
+
+
 def head_size(run: Run, share: float) -> int:
     """Number of samples in the first part of a run."""
     return max(int(share * run.force.size), min(200, run.force.size))

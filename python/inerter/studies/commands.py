@@ -14,10 +14,5 @@ app = typer.Typer(
 )
 
 
-@app.callback()
-def _several() -> None:
-    """Keep the name of a study in the command while there is one only."""
-
-
 app.command("fluid-rig")(fluid_rig_command)
 app.command("hysteresis")(hysteresis_command)
