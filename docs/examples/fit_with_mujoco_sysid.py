@@ -16,7 +16,10 @@ import time
 import mujoco
 import numpy as np
 from inerter import load_plugin
+from inerter.identify.bench import thin
 from inerter.identify.estimate import identify
+from inerter.identify.fit import Model, Problem
+from inerter.identify.preparation import prepare
 from inerter.records import Record
 from mujoco import rollout, sysid
 
@@ -97,6 +100,12 @@ def point_of(values: dict[str, float]) -> np.ndarray:
     return np.log([*({**values, "static_force": excess}).values()])
 
 
+def start_values() -> dict[str, float]:
+    """Where fits begin: off by a third, up and down in turn."""
+    point = point_of(TRUTH)
+    return device_of(point + np.log(1.3) * np.where(np.arange(point.size) % 2, -1, 1))
+
+
 def write(spec: mujoco.MjSpec, parameter: sysid.Parameter) -> None:
     """The device of a parameter vector into the spec."""
     values = {key: repr(value) for key, value in device_of(parameter.value).items()}
@@ -111,7 +120,7 @@ def by_sysid(t: np.ndarray, force: np.ndarray, position: np.ndarray) -> dict[str
     data = mujoco.MjData(model)
     begin = sysid.create_initial_state(model, data.qpos, data.qvel, data.act)
     device = sysid.Parameter("device", truth, truth - 1.5, truth + 1.5, modifier=write)
-    device.value[:] = truth + np.log(1.3) * np.where(np.arange(truth.size) % 2, -1, 1)
+    device.value[:] = point_of(start_values())
     parameters = sysid.ParameterDict({"device": device})
     control = sysid.TimeSeries(t, np.column_stack([force, np.zeros_like(force)]))
     # after a step, a rollout has the sensors of the step's beginning
@@ -126,15 +135,31 @@ def by_sysid(t: np.ndarray, force: np.ndarray, position: np.ndarray) -> dict[str
     return device_of(found["device"].value)
 
 
+def by_one_fit(record: Record, guess: dict[str, float]) -> dict[str, float]:
+    """One fit of the force along the motion, from the start that mujoco.sysid has."""
+    runs = [thin(motion) for motion in prepare([record]).motions]
+    problem = Problem(runs, [np.ones(run.force.size, bool) for run in runs])
+    start = {**guess, "static_excess": guess["static_force"] - guess["coulomb_force"]}
+    start["presliding"] = guess["coulomb_force"] / start.pop("bristle_stiffness")
+    del start["static_force"]
+    fit = problem.fit(Model("lugre", start, tuple(start)), 100)
+    return {key: float(getattr(fit.model.device(), key)) for key in TRUTH}
+
+
 if __name__ == "__main__":
     logging.disable(logging.INFO)
     t, force, position = measured()
     begin = time.perf_counter()
     one = by_sysid(t, force, position)
     between = time.perf_counter()
-    other = identify([record_of(t, force, position)], ["lugre"]).best
+    record = record_of(t, force, position)
+    single = by_one_fit(record, start_values())
+    after = time.perf_counter()
+    other = identify([record], ["lugre"]).best
     end = time.perf_counter()
-    print(f"{'':20}{'truth':>12}{'mujoco.sysid':>14}{'identify':>12}")
+    print(f"{'':20}{'truth':>12}{'mujoco.sysid':>14}{'one fit':>12}{'identify':>12}")
     for key, value in TRUTH.items():
-        print(f"{key:20}{value:12.5g}{one[key]:14.5g}{other.parameters[key].value:12.5g}")
-    print(f"{'seconds':20}{'':12}{between - begin:14.1f}{end - between:12.1f}")
+        found = (one[key], single[key], other.parameters[key].value)
+        print(f"{key:20}{value:12.5g}{found[0]:14.5g}{found[1]:12.5g}{found[2]:12.5g}")
+    seconds = (between - begin, after - between, end - after)
+    print(f"{'seconds':20}{'':12}{seconds[0]:14.2f}{seconds[1]:12.2f}{seconds[2]:12.2f}")

@@ -7,11 +7,13 @@ import os
 from pathlib import Path
 
 import mujoco
+import numpy as np
 import pytest
 from inerter import load_plugin
 from inerter.commands import app
 from inerter.device_file import read_device
 from random_devices import Drawn, drawn
+from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
 
 RUNNER = CliRunner()
@@ -69,6 +71,31 @@ def test_the_terminal_shows_laws_and_parameters(folder: Path, tmp_path: Path) ->
     assert status == 0
     assert "held out" in stdout
     assert "inertance" in stdout
+
+
+def test_a_simulation_refines_the_best_law(tmp_path: Path) -> None:
+    """The force drives a damped mass on a spring; its displacement is 20 um noisy."""
+    t = np.linspace(0.0, 6.0, 3001)
+    force = 40 * np.sin(2 * np.pi * 1.3 * t) * np.minimum(t / 0.5, 1) + 20 * np.sin(30 * t)
+    rows = solve_ivp(
+        lambda s, y: [y[1], (np.interp(s, t, force) - 60 * y[1] - 9e3 * y[0]) / 10],
+        (0, 6), [0, 0], t_eval=t, rtol=1e-8, atol=1e-10, max_step=2e-3,
+    ).y[0]  # fmt: skip
+    rows = rows + 2e-5 * np.random.default_rng(0).standard_normal(t.size)
+    path = tmp_path / "run.csv"
+    table = np.column_stack([t, rows, force])
+    np.savetxt(path, table, delimiter=",", header="time,displacement,force", comments="")
+    status, stdout, stderr = run(
+        path, "--law", "viscous+stiffness", "--simulate", "--intervals", "normal", "--json",
+        "--out", tmp_path / "o",
+    )  # fmt: skip
+    assert status == 0, stderr
+    best = json.loads(stdout)["results"][0]
+    assert best["law"] == "viscous+stiffness, simulated"
+    assert best["motion"]["rmse"] == pytest.approx(2e-5, rel=0.1)
+    for name, truth in (("inertance", 10), ("viscous", 60), ("stiffness", 9e3)):
+        each = best["parameters"][name]
+        assert abs(each["value"] - truth) < 4 * each["stderr"] + 2e-3 * truth
 
 
 @pytest.mark.parametrize(
