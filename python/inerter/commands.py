@@ -11,7 +11,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
-from inerter.console import out, progress_bar, refuse, status
+from inerter.console import out, progress_bar, refuse, refusing, status
 from inerter.core import DeviceError, parameters
 from inerter.design.commands import app as design_app
 from inerter.diagnose import Diagnosis, diagnose
@@ -20,7 +20,6 @@ from inerter.folder import refuse_folder
 from inerter.identify.command import identify_command
 from inerter.models import data_path
 from inerter.plugin import plugin_path
-from inerter.records import RecordError
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
@@ -83,17 +82,13 @@ def _diagnose(
     folder: Path,
     as_json: bool,
 ) -> Diagnosis:
-    try:
+    with refusing(folder):
         refuse_folder(folder)
         # a user's data that overflow are judged by what comes out, not by numpy's warnings
         with status(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
             simplefilter("ignore", RuntimeWarning)
             result = diagnose(record, device, model, holdout, progress)
             write_outputs(result, folder)
-    except (RecordError, DeviceError, ValueError) as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json.dumps(result.json(), indent=2))
     else:
@@ -204,21 +199,16 @@ def validate_command(
 
     Writes validation.json and validation.png. Exit status 1 if something misses its bound.
     """
-    from inerter.parallel import WorkError
-    from inerter.validate import Selection, SelectionError, validate
+    from inerter.validate import Selection, validate
     from inerter.validate.output import json_text, write_validation
     from inerter.validate.table import print_validation
 
-    try:
+    with refusing(out_dir):
         refuse_folder(out_dir)
         names = (tuple(given or ()) for given in (model, law, engine, integrator))
         with progress_bar("validating", as_json) as progress:
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
         files = write_validation(result, out_dir)
-    except (SelectionError, WorkError) as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json_text(result), end="")
     else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import NoReturn
 
 import typer
@@ -19,6 +20,17 @@ def refuse(message: str) -> NoReturn:
     """End with one clear line and status 2: the input cannot be used."""
     print(f"inerter: {' '.join(message.split())}", file=sys.stderr)
     raise typer.Exit(2)
+
+
+@contextmanager
+def refusing(folder: Path | None) -> Iterator[None]:
+    """End as `refuse` does where the input cannot be used, or results cannot be written."""
+    try:
+        yield
+    except ValueError as error:
+        refuse(str(error))
+    except OSError as error:
+        refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from inerter.console import out, refuse
+from inerter.console import out, refusing
 from inerter.design.ball_screw.inputs import INPUTS as BALL_SCREW
 from inerter.design.fluid.inputs import INPUTS as FLUID
 from inerter.design.options import with_options
@@ -87,16 +87,12 @@ def _design(calculate: Callable[[], Any], folder: Path | None, as_json: bool) ->
     from inerter.folder import refuse_folder
 
     files: list[str] = []
-    try:
+    with refusing(folder):
         if folder is not None:
             refuse_folder(folder)
         design = calculate()
         if folder is not None:
             files = write_design(design, folder)
-    except ValueError as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(design_json(design), end="")
         return

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refuse
+from inerter.console import out, progress_bar, refusing
 
 
 def identify_command(
@@ -67,7 +67,7 @@ def identify_command(
     from inerter.identify.refine import simulated
     from inerter.records import read_records
 
-    try:
+    with refusing(out_dir):
         refuse_folder(out_dir)
         records = read_records(record, "bench")
         with progress_bar("identifying", as_json) as progress:
@@ -79,10 +79,6 @@ def identify_command(
                 progress(1.0, f"simulating {result.best.law}")
                 result = simulated(result)
         files = write_identification(result, out_dir)
-    except ValueError as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json_text(result), end="")
         return

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from inerter.device_file import device_text
+from inerter.folder import json_text as finite_json
 from inerter.folder import write_files
 from inerter.identify.figures import picture
 from inerter.identify.result import Estimate, Identification
@@ -17,7 +17,7 @@ from inerter.rig import device_mjcf
 
 def json_text(result: Identification) -> str:
     """What --json prints."""
-    return json.dumps(_finite(result.json()), indent=2, allow_nan=False) + "\n"
+    return finite_json(result.json())
 
 
 def write_identification(result: Identification, folder: Path) -> list[str]:
@@ -88,14 +88,3 @@ def _interval(each: Estimate) -> str:
     low = "no end" if each.low is None else f"{each.low:.5g}"
     high = "no end" if each.high is None else f"{each.high:.5g}"
     return f"{low} ... {high}"
-
-
-def _finite(value: object) -> object:
-    """JSON has no NaN and no infinity: null in their place."""
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(each) for each in value]
-    if isinstance(value, float) and not abs(value) < float("inf"):
-        return None
-    return value

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import tempfile
 from pathlib import Path
 
-from inerter.folder import refuse_folder
+from inerter.folder import write_files
 from inerter.simulate.page import render_page
 from inerter.simulate.record import device_csv, device_names, vehicle_csv
 from inerter.simulate.run import Run
@@ -37,16 +34,4 @@ def write_run(run: Run, folder: Path) -> list[str]:
         files["vehicle/record.csv"] = vehicle_csv(run)
     files["simulation.json"] = json.dumps(summary(run), indent=2, allow_nan=False) + "\n"
     files["simulation.html"] = render_page(run)
-    refuse_folder(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=".simulation-", dir=folder))
-    try:
-        for name, content in files.items():
-            (staging / name).parent.mkdir(exist_ok=True)
-            (staging / name).write_text(content, encoding="utf-8", errors="replace")
-        for name in files:
-            (folder / name).parent.mkdir(exist_ok=True)
-            os.replace(staging / name, folder / name)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-    return list(files)
+    return write_files(folder, files)

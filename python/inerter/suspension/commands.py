@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refuse
+from inerter.console import out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
@@ -91,7 +91,7 @@ def optimize_command(
     from inerter.suspension.table import print_rows
 
     files: list[str] = []
-    try:
+    with refusing(out_dir):
         quarter = {
             "sprung_mass": sprung_mass,
             "unsprung_mass": unsprung_mass,
@@ -113,10 +113,6 @@ def optimize_command(
             rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)
         if out_dir is not None:
             files = write_sweep(study, rows, out_dir)
-    except ValueError as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(rows_json(rows), end="")
         return

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import tempfile
 from pathlib import Path
 
-from inerter.folder import refuse_folder
+from inerter.folder import write_files
 from inerter.validate.picture import picture
 from inerter.validate.result import Validation
 
@@ -21,19 +18,10 @@ def write_validation(validation: Validation, folder: Path) -> list[str]:
     OSError
         The folder cannot be written.
     """
-    files = {"validation.json": json_text(validation).encode()}
-    files["validation.png"] = picture(validation)
-    refuse_folder(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=".validation-", dir=folder))
-    try:
-        for name, content in files.items():
-            (staging / name).write_bytes(content)
-        for name in files:
-            os.replace(staging / name, folder / name)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-    return list(files)
+    return write_files(
+        folder,
+        {"validation.json": json_text(validation), "validation.png": picture(validation)},
+    )
 
 
 def json_text(validation: Validation) -> str:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
-from inerter.console import out, refuse, status
+from inerter.console import out, refuse, refusing, status
 
 
 def prepare_command(
@@ -56,7 +56,7 @@ def prepare_command(
     measured: denoise for the eye, not for a fit.
     """
     from inerter.folder import refuse_folder
-    from inerter.records import RecordError, read_records
+    from inerter.records import read_records
     from inerter.records.prepare.options import Options
     from inerter.records.prepare.output import FILE, Format, summary, write_prepared
     from inerter.records.prepare.pipeline import prepare_records
@@ -64,7 +64,7 @@ def prepare_command(
     forms: dict[str, Format] = {"csv": "csv", "parquet": "parquet"}
     if form not in forms:
         refuse(f"--format is {form!r}; take one of {', '.join(forms)}")
-    try:
+    with refusing(out_dir):
         refuse_folder(out_dir)
         chosen: dict[str, Any] = {"channels": tuple(channel)} if channel else {}
         options = Options(
@@ -78,10 +78,6 @@ def prepare_command(
             prepared = prepare_records(records, options)
             progress("writing")
             files = write_prepared(prepared, options, out_dir, forms[form])
-    except RecordError as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     said = summary(prepared, options, forms[form])
     if as_json:
         print(json.dumps(said, indent=2, allow_nan=False))

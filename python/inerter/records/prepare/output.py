@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import shutil
-import tempfile
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
@@ -15,7 +12,7 @@ from typing import Any, Literal
 import polars as pl
 
 import inerter
-from inerter.folder import refuse_folder
+from inerter.folder import write_files
 from inerter.records.prepare.options import Options
 from inerter.records.prepare.picture import picture
 from inerter.records.prepare.pipeline import Prepared
@@ -127,22 +124,12 @@ def write_prepared(
             raise RecordError(
                 f"{folder / row['file']}: this is the record itself; choose another folder by --out"
             )
-    files: dict[str, bytes] = {}
+    files: dict[str, bytes | str] = {}
     for p, row in zip(prepared, said["records"], strict=True):
         files[row["file"]] = _content(p, form)
         files[row["picture"]] = picture(p)
     files[FILE] = (json.dumps(said, indent=2, allow_nan=False) + "\n").encode()
-    refuse_folder(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=".preparation-", dir=folder))
-    try:
-        for name, content in files.items():
-            (staging / name).write_bytes(content)
-        for name in files:
-            os.replace(staging / name, folder / name)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
-    return list(files)
+    return write_files(folder, files)
 
 
 def _content(prepared: Prepared, form: Format) -> bytes:

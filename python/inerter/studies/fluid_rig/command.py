@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refuse
+from inerter.console import out, progress_bar, refusing
 
 
 def fluid_rig_command(
@@ -38,14 +38,13 @@ def fluid_rig_command(
     Writes fluid_rig.json, fluid_rig.html, dry.png, complete.png and levels.png.
     """
     from inerter.folder import refuse_folder
-    from inerter.parallel import WorkError
     from inerter.studies.fluid_rig.output import json_text, write_study
-    from inerter.studies.fluid_rig.settings import Settings, StudyError
+    from inerter.studies.fluid_rig.settings import Settings
     from inerter.studies.fluid_rig.signals import Noise
     from inerter.studies.fluid_rig.study import study
     from inerter.studies.fluid_rig.summary import print_study
 
-    try:
+    with refusing(out_dir):
         settings = Settings(
             objectives=tuple(name.strip() for name in objective.split(",")),
             seeds=tuple(range(seeds)),
@@ -57,10 +56,6 @@ def fluid_rig_command(
         with progress_bar("tests by the reference", as_json) as progress:
             result = study(settings, jobs=jobs, progress=progress)
         files = write_study(result, out_dir)
-    except (StudyError, WorkError, ValueError) as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json_text(result), end="")
     else:

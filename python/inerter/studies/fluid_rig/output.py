@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
+from inerter.folder import json_text as finite_json
 from inerter.folder import write_files
 from inerter.studies.fluid_rig.figures import picture
 from inerter.studies.fluid_rig.page import page
@@ -15,7 +15,7 @@ from inerter.studies.fluid_rig.summary import study_json
 
 def json_text(study: Study) -> str:
     """What --json prints."""
-    return json.dumps(_finite(study_json(study)), indent=2, allow_nan=False) + "\n"
+    return finite_json(study_json(study))
 
 
 def write_study(study: Study, folder: Path) -> list[str]:
@@ -32,14 +32,3 @@ def write_study(study: Study, folder: Path) -> list[str]:
     }
     files |= {f"{each.name}.png": picture(each) for each in pictures(study)}
     return write_files(folder, files)
-
-
-def _finite(value: object) -> object:
-    """JSON has no NaN and no infinity: null in their place."""
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(each) for each in value]
-    if isinstance(value, float) and not abs(value) < float("inf"):
-        return None
-    return value

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refuse
+from inerter.console import out, progress_bar, refusing
 
 
 def hysteresis_command(
@@ -46,7 +46,7 @@ def hysteresis_command(
     from inerter.studies.hysteresis.settings import Settings
     from inerter.studies.hysteresis.study import study
 
-    try:
+    with refusing(out_dir):
         settings = Settings(
             noise=noise, rate=rate, duration=duration, denoise=denoise, draws=draws,
             random_starts=random_starts, seed=seed,
@@ -55,10 +55,6 @@ def hysteresis_command(
         with progress_bar("rebuilding the hysteresis paper", as_json) as progress:
             result = study(settings.quick() if quick else settings, jobs=jobs, progress=progress)
         files = write_study(result, out_dir)
-    except ValueError as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json_text(result), end="")
         return

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refuse
+from inerter.console import out, progress_bar, refusing
 
 
 def evaluate_command(
@@ -106,7 +106,7 @@ def evaluate_command(
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
 
-    try:
+    with refusing(out_dir):
         refuse_folder(out_dir)
         asked = car_named(car)
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
@@ -130,10 +130,6 @@ def evaluate_command(
         with progress_bar("starting", as_json) as progress:
             rows = evaluate(plan, progress, scheduler=scheduler)
         files = write_evaluation(plan, rows, out_dir)
-    except ValueError as error:
-        refuse(str(error))
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json_text(plan, rows), end="")
         return
