@@ -165,12 +165,10 @@ class _Data:
         """The same data, smoothed as suits the model; itself where that changes nothing."""
 
         def error(motions: Sequence[BenchMotion]) -> float:
-            used = [whole(motions[i]) for i in self._used]
-            if not all(run.inner.any() for run in used):
-                return math.inf
-            problem = Problem(used, [run.inner for run in used])
-            residual = zip(problem.residual(model), problem.masks, strict=True)
-            return float(np.sqrt(np.mean(np.concatenate([r[m] for r, m in residual]) ** 2)))
+            # what is held out has no say
+            smoothed = replace(self.preparation, motions=list(motions))
+            data = prepared(self.records, smoothed, self.holdout, self.fixed)
+            return data._raw_error(model, data.parted.fit)[0]
 
         preparation = prepare_again(self.records, self.preparation, error)
         return (
