@@ -209,5 +209,5 @@ def test_what_cannot_be_asked_is_refused_in_a_sentence(options: dict, message: s
 def test_a_run_that_stands_still_is_refused() -> None:
     t = np.linspace(0.0, 0.999, 1000)
     still = Record(name="still", time=t, displacement=np.zeros(1000), force=np.sin(t))
-    with pytest.raises(ValueError, match="still: column 'displacement' does not change"):
+    with pytest.raises(ValueError, match="still: column 'displacement' does not move"):
         identify([still], ["ideal"])

@@ -36,7 +36,7 @@ from inerter.identify.fit import (
     parameter_errors,
     stated_values,
 )
-from inerter.identify.preparation import Preparation, prepare
+from inerter.identify.preparation import Preparation, prepare, refuse_unusable
 from inerter.identify.split import Split, blocks, split
 from inerter.records import Record
 
@@ -103,25 +103,6 @@ def baseline_model(device: Device | None, sizes: Scales) -> Model:
     return Model(device.friction, values, free, texts)
 
 
-def _refuse_unusable(records: Sequence[Record]) -> None:
-    """A run that says nothing about a device is a mistake."""
-    for record in records:
-        for name, what in (("displacement", "does not move"), ("force", "does not change")):
-            values = getattr(record, name)
-            if np.ptp(values) == 0:
-                raise ValueError(
-                    f"{record.name}: column '{name}' {what} ({values[0]:g} throughout); leave this "
-                    "run out"
-                )
-        x = record.displacement
-        away = x - np.linspace(x[0], x[-1], x.size)
-        if np.ptp(away) < 1e-6 * np.ptp(x):
-            raise ValueError(
-                f"{record.name}: column 'displacement' grows evenly and never accelerates, which "
-                "says nothing about an inerter; leave this run out"
-            )
-
-
 def _refuse_too_little(split: Split, band: Problem, raw: Problem) -> None:
     """Where gaps and ends leave nothing to learn from or to judge on, there is no diagnosis."""
     learnt = band.with_masks(split.fit).masks
@@ -156,7 +137,7 @@ class _Bench:
         for record in records:
             if record.name in holdout and record not in self.records:
                 raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
-        _refuse_unusable(self.records)
+        refuse_unusable(self.records)
         progress("smoothing: choosing the cut-off")
         self.preparation: Preparation = prepare(self.records)
         self.runs: list[Run] = [thin(motion) for motion in self.preparation.motions]

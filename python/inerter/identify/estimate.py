@@ -23,7 +23,12 @@ from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
 from inerter.identify.multistart import Search, search
 from inerter.identify.noise import effect_of_noise
-from inerter.identify.preparation import Preparation, prepare, prepare_again
+from inerter.identify.preparation import (
+    Preparation,
+    prepare,
+    prepare_again,
+    refuse_unusable,
+)
 from inerter.identify.profile import profile_interval
 from inerter.identify.result import Estimate, Identification, Identified
 from inerter.identify.split import Split, blocks, split
@@ -92,7 +97,7 @@ def identify(
         if name not in (*parameters(), "gas_law"):
             # says what it may have meant
             Device(**{name: known[name]})
-    refuse_still(records)
+    refuse_unusable(records)
     with threadpool_limits(limits=1, user_api="blas"):
         progress(0.0, "smoothing")
         preparation = prepare(records)
@@ -116,18 +121,6 @@ def prepared(
     runs = [thin(motion) for motion in preparation.motions]
     raw = [whole(motion) for motion in preparation.motions]
     return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout)
-
-
-def refuse_still(records: Sequence[Record]) -> None:
-    """Raise ValueError for a run that does not move: it says nothing about a device."""
-    for record in records:
-        for name in ("displacement", "force"):
-            values = getattr(record, name)
-            if np.ptp(values) == 0:
-                raise ValueError(
-                    f"{record.name}: column '{name}' does not change ({values[0]:g} throughout); "
-                    "leave this run out"
-                )
 
 
 @dataclass(frozen=True)

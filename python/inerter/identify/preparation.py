@@ -92,6 +92,25 @@ def prepare(records: Sequence[Record]) -> Preparation:
     )
 
 
+def refuse_unusable(records: Sequence[Record]) -> None:
+    """Raise ValueError for a run that says nothing about a device: still, or moving evenly."""
+    for record in records:
+        for name, what in (("displacement", "does not move"), ("force", "does not change")):
+            values = getattr(record, name)
+            if np.ptp(values) == 0:
+                raise ValueError(
+                    f"{record.name}: column '{name}' {what} ({values[0]:g} throughout); leave this "
+                    "run out"
+                )
+        x = record.displacement
+        away = x - np.linspace(x[0], x[-1], x.size)
+        if np.ptp(away) < 1e-6 * np.ptp(x):
+            raise ValueError(
+                f"{record.name}: column 'displacement' grows evenly and never accelerates, which "
+                "says nothing about an inerter; leave this run out"
+            )
+
+
 def prepare_again(
     records: Sequence[Record], preparation: Preparation, error: Callable[[Sequence[Motion]], float]
 ) -> Preparation:
