@@ -120,9 +120,12 @@ def prepare_again(
     motion. `error` gives the model's force error [N] along motions.
     """
     use = preparation.channels
-    errors = np.array(
-        [error([smooth(r, cutoff, use) for r in records]) for cutoff in preparation.cutoffs]
-    )
+
+    def judged(cutoff: float) -> float:
+        motions = [smooth(r, cutoff, use) for r in records]
+        return np.inf if _too_short(motions) else error(motions)
+
+    errors = np.array([judged(float(cutoff)) for cutoff in preparation.cutoffs])
     if not np.isfinite(errors).any():
         return preparation
     best = float(np.nanmin(np.where(np.isfinite(errors), errors, np.nan)))
@@ -142,9 +145,14 @@ def _dominant_frequency(record: Record) -> float:
     return float(max(frequency[np.searchsorted(cumulative, 0.5 * cumulative[-1])], frequency[1]))
 
 
+def _too_short(motions: Sequence[Motion]) -> bool:
+    """A cut-off so low that the ends, where smoothing is unsure, are nearly the whole run."""
+    return min(int(motion.inner.sum()) for motion in motions) < SMALLEST
+
+
 def _force_error(motions: Sequence[Motion]) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory."""
-    if min(int(motion.inner.sum()) for motion in motions) < SMALLEST:
+    if _too_short(motions):
         return np.inf
     x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
     v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
