@@ -95,6 +95,9 @@ double series_heat(const InerterDevice* p, double v, const double* z);
 int series_valid(const InerterDevice* p, const double* z, char* message);
 void series_of_force(const InerterDevice* p, double v, double force, double* z);
 
+// series_exact.c: states after a time h, 1; 0 and nothing done where no closed form holds
+int series_exact(const InerterDevice* p, double v, double a, double jerk, double* z, double h);
+
 // series_step.c: states after a time h from x, v, acceleration a and its rate; force over a step
 // and states at its end, where the velocity is v, for a mobility of the terminals
 void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* z,

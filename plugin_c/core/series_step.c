@@ -149,10 +149,11 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
 }
 
 // parts of a sixteenth of a radian as long as they are not too many, else a few that settle
+enum { PER_RADIAN = 16, MOST_PARTS = 256, FEW_PARTS = 4 };
+
 static int count_parts(double radians) {
-  enum { PER_RADIAN = 16, MOST = 256, FEW = 4 };
-  if (!(PER_RADIAN * radians < MOST)) {
-    return FEW;
+  if (!(PER_RADIAN * radians < MOST_PARTS)) {
+    return FEW_PARTS;
   }
   return 1 + (int)(PER_RADIAN * radians);
 }
@@ -166,6 +167,9 @@ void series_step(const InerterDevice* p, double x, double v, double a, double je
   double stiffness = series_spring(p, z[S] - series_gap(p, z)).slope;
   double rate = sqrt(stiffness / inertance) + p->series_damping / inertance;
   int count = count_parts(fabs(h) * rate);
+  if (count > FEW_PARTS && series_exact(p, v, a, jerk, z, h)) {
+    return;
+  }
   double part = h / count;
   for (int i = 0; i < count; i++) {
     double t = part * i;
