@@ -11,6 +11,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
+from inerter.blind_test.command import blind_test_command
 from inerter.console import out, progress_bar, refuse, refusing, status
 from inerter.core import DeviceError, parameters
 from inerter.design.commands import app as design_app
@@ -35,6 +36,7 @@ app.add_typer(suspension_app, name="suspension")
 app.command("identify")(identify_command)
 app.add_typer(design_app, name="design")
 app.command("prepare")(prepare_command)
+app.command("blind-test")(blind_test_command)
 app.add_typer(study_app, name="study")
 
 
@@ -55,7 +57,18 @@ def diagnose_command(
     ] = None,
     model: Annotated[
         Path | None,
-        typer.Option(help="A MuJoCo model whose inerter.device is the baseline, like --device."),
+        typer.Option(
+            help="A MuJoCo model: bench records take its inerter.device as baseline, vehicle "
+            "records (time, road, ...) drive it."
+        ),
+    ] = None,
+    inputs: Annotated[
+        list[str] | None,
+        typer.Option("--input", help="COLUMN=ACTUATOR that it drives in --model; repeatable."),
+    ] = None,
+    sensors: Annotated[
+        list[str] | None,
+        typer.Option("--sensor", help="COLUMN=SENSOR of --model to compare with; repeatable."),
     ] = None,
     holdout: Annotated[
         list[str] | None, typer.Option(help="Name of a run to hold out; may be given again.")
@@ -71,7 +84,8 @@ def diagnose_command(
 
     Writes diagnosis.json, report.html, device.toml and model.xml.
     """
-    _diagnose(record, device, model, holdout or [], out_dir, as_json)
+    mapping = (inputs or [], sensors or [])
+    _diagnose(record, device, model, holdout or [], out_dir, as_json, mapping)
 
 
 def _diagnose(
@@ -81,13 +95,14 @@ def _diagnose(
     holdout: list[str],
     folder: Path,
     as_json: bool,
+    mapping: tuple[list[str], list[str]] = ([], []),
 ) -> Diagnosis:
     with refusing(folder):
         refuse_folder(folder)
         # a user's data that overflow are judged by what comes out, not by numpy's warnings
         with status(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
             simplefilter("ignore", RuntimeWarning)
-            result = diagnose(record, device, model, holdout, progress)
+            result = diagnose(record, device, model, holdout, progress, *mapping)
             write_outputs(result, folder)
     if as_json:
         print(json.dumps(result.json(), indent=2))

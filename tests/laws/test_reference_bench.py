@@ -1,5 +1,6 @@
 """Hidden cases: reproducible, sized as promised, true to their device, silent in their files."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -7,11 +8,18 @@ import pytest
 from inerter.reference import (
     EFFECTS,
     HYSTERETIC_LAWS,
+    UNKNOWN,
     HiddenCase,
+    HiddenRun,
     NoiseLevels,
+    compatible,
     hide_effect,
+    hide_unknown,
     wang_su_bench,
 )
+from inerter.reference.bench_devices import draw_limits, rms
+from inerter.reference.bench_motions import draw_drives, highest_frequency
+from scipy.signal import lsim
 
 QUIET = NoiseLevels(force=0.0, displacement=0.0)
 CASES = [(effect, None) for effect in EFFECTS if effect != "hysteretic_friction"]
@@ -116,6 +124,305 @@ def test_unknown_names_are_refused() -> None:
         hide_effect(1, "hysteretic_friction", law="coulomb")
     with pytest.raises(ValueError, match="law"):
         hide_effect(1, "none", law="dahl")
+
+
+def extra(case: HiddenCase, run: HiddenRun) -> np.ndarray:
+    """What is in a run's noise-free force beside b a."""
+    return run.truth.force - case.device.inertance * run.truth.acceleration
+
+
+SHARED = [
+    "friction_drift", "hardening_stiffness", "gas_spring", "end_stop", "variable_inertance",
+    "force_drift", "periodic_disturbance",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("effect", SHARED)
+@pytest.mark.parametrize("seed", [21, 22])
+def test_new_effects_have_their_share(seed: int, effect: str) -> None:
+    case = hide_effect(seed, effect, noise=QUIET)
+    force = forces(case)
+    share = rms(np.concatenate([extra(case, run) for run in case.runs])) / rms(force)
+    assert case.share == pytest.approx(share, rel=1e-12)
+    assert share <= 0.401
+    # a factor that stays near one need not reach the share drawn
+    assert share >= (0.01 if effect == "variable_inertance" else 0.049)
+    assert case.stated is None
+    for name in case.names[effect]:
+        if name in case.parameters:
+            owner = case.device if hasattr(case.device, name) else case.channel
+            assert case.parameters[name] == getattr(owner, name) != 0.0
+
+
+@pytest.mark.parametrize("seed", range(30, 36))
+def test_stated_inertance_is_off(seed: int) -> None:
+    case = hide_effect(seed, "inertance_error", noise=QUIET)
+    assert case.stated is not None
+    true = case.parameters["inertance"]
+    assert true == case.device.inertance
+    assert 0.0299 <= abs(case.stated["inertance"] / true - 1.0) <= 0.2001
+    for run in case.runs:
+        np.testing.assert_allclose(extra(case, run), 0.0, atol=1e-9)
+
+
+def test_friction_drifts_on_one_clock() -> None:
+    case = hide_effect(40, "friction_drift", noise=QUIET)
+    level, drift = case.parameters["coulomb_force"], case.parameters["friction_drift"]
+    ends = [(run.time[0], run.time[-1]) for run in case.runs]
+    assert ends[0][0] == 0.0
+    assert all(one[1] < other[0] for one, other in pairwise(ends))
+    assert 0.299 <= abs(drift) * ends[-1][1] <= 1.001
+    for run in case.runs:
+        np.testing.assert_allclose(run.time, run.truth.time)
+        sliding = abs(run.truth.velocity) > 20.0 * case.device.transition_velocity
+        friction = extra(case, run)[sliding] * np.sign(run.truth.velocity[sliding])
+        np.testing.assert_allclose(friction, level * (1.0 + drift * run.time[sliding]), rtol=1e-9)
+    assert all(run.time[0] == 0.0 for run in hide_effect(40, "force_drift").runs)
+
+
+def test_force_drift_and_hardening_are_their_formula() -> None:
+    drift = hide_effect(41, "force_drift", noise=QUIET)
+    for run in drift.runs:
+        expected = drift.parameters["force_drift"] * run.time
+        np.testing.assert_allclose(extra(drift, run), expected, atol=1e-9)
+    hard = hide_effect(41, "hardening_stiffness", noise=QUIET)
+    for run in hard.runs:
+        expected = hard.parameters["stiffness_cubic"] * run.truth.displacement**3
+        np.testing.assert_allclose(extra(hard, run), expected, atol=1e-9)
+        assert hard.device.stiffness == 0.0
+
+
+@pytest.mark.parametrize("seed", [42, 43])
+def test_gas_follows_its_polytrope(seed: int) -> None:
+    case = hide_effect(seed, "gas_spring", noise=QUIET)
+    p0, area, volume, exponent = (
+        case.parameters[f"gas_{name}"] for name in ("pressure", "area", "volume", "exponent")
+    )
+    for run in case.runs:
+        # p V^n stays; outside stands p0
+        now = volume + area * run.truth.displacement
+        assert np.min(now) > 0.1 * volume
+        inside = p0 * (volume / now) ** exponent
+        np.testing.assert_allclose(extra(case, run), area * (p0 - inside), atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(44, 50))
+def test_end_stop_is_hit_for_a_while(seed: int) -> None:
+    case = hide_effect(seed, "end_stop", noise=QUIET)
+    x = np.concatenate([run.truth.displacement for run in case.runs])
+    v = np.concatenate([run.truth.velocity for run in case.runs])
+    force = np.concatenate([extra(case, run) for run in case.runs])
+    above = x > case.parameters.get("stop_upper", np.inf)
+    below = x < case.parameters.get("stop_lower", -np.inf)
+    assert 0.028 <= np.mean(above | below) <= 0.202
+    np.testing.assert_allclose(force[~(above | below)], 0.0, atol=1e-9)
+
+    # it pushes back, harder on the way in than on the way out
+    assert np.min(force[above], initial=0.0) >= -1e-9
+    assert np.max(force[below], initial=0.0) <= 1e-9
+    assert float(force @ v) > 0.0
+
+
+@pytest.mark.parametrize("seed", range(50, 58))
+def test_variable_inertance_keeps_energy(seed: int) -> None:
+    case = hide_effect(seed, "variable_inertance", noise=QUIET)
+    b, d = case.device.inertance, case.device
+    for run in case.runs:
+        x, v = run.truth.displacement, run.truth.velocity
+        factor = 1.0 + d.inertance_gradient * x + d.inertance_curvature * x * x
+        assert np.min(factor) > 0.25
+        shape = 0.5 * v * v + d.inertance_speed_gradient * abs(v) ** 3 / 3.0
+        energy = b * factor * shape
+        power = run.force * v
+        work = np.concatenate(([0.0], np.cumsum(0.5 * (power[1:] + power[:-1]))))
+        work = work / run.sample_rate
+        np.testing.assert_allclose(work, energy - energy[0], atol=2e-3 * np.max(energy))
+
+
+def test_range_of_the_sensor_clips_a_known_share() -> None:
+    for seed in range(60, 66):
+        case = hide_effect(seed, "sensor_saturation", noise=NoiseLevels(0.0, 0.01))
+        lower, upper = case.channel.force_minimum, case.channel.force_maximum
+        truth = np.concatenate([run.truth.force for run in case.runs])
+        for force in (truth, forces(case)):
+            clipped = np.mean((force <= lower) | (force >= upper))
+            assert 0.01 <= clipped <= 0.165
+            assert np.min(force) >= lower
+            assert np.max(force) <= upper
+
+    # one-sided in a third of the cases, by 300 draws from one force
+    draw = np.random.default_rng(0)
+    force = draw.standard_normal(5000)
+    sides = [len(draw_limits(draw, force).channel) for _ in range(300)]
+    assert 0.25 < np.mean(np.array(sides) == 1) < 0.42
+
+
+@pytest.mark.parametrize("seed", [66, 67, 68])
+def test_disturbance_is_one_line_that_the_motion_lacks(seed: int) -> None:
+    case = hide_effect(seed, "periodic_disturbance", noise=QUIET)
+    size, frequency = (
+        case.parameters[f"disturbance_{name}"] for name in ("amplitude", "frequency")
+    )
+    assert 0.5 <= frequency <= 45.0
+    phases = []
+    for run in case.runs:
+        turn = 2.0 * np.pi * frequency * run.time
+        basis = np.column_stack((np.sin(turn), np.cos(turn)))
+        found = np.linalg.lstsq(basis, extra(case, run), rcond=None)[0]
+        assert np.hypot(*found) == pytest.approx(size, rel=1e-6)
+        np.testing.assert_allclose(basis @ found, extra(case, run), atol=1e-6 * size)
+        phases.append(np.arctan2(found[1], found[0]))
+
+        # the motion's own force at that frequency is small beside the line
+        shape = np.hanning(run.time.size)
+        own = abs(np.sum(shape * np.exp(-1j * turn) * (run.truth.force - extra(case, run))))
+        assert 2.0 * own / np.sum(shape) < 0.3 * size
+    assert np.ptp(phases) > 1e-3
+
+
+def test_shaft_is_an_inertance_behind_a_spring() -> None:
+    case = hide_effect(70, "series_elasticity", noise=QUIET)
+    b, k, c = case.device.inertance, case.device.series_stiffness, case.device.series_damping
+    resonance = np.sqrt(k / b) / (2.0 * np.pi)
+    assert 0.03 <= c / (2.0 * np.sqrt(k * b)) <= 0.3
+    drives = draw_drives(np.random.default_rng(np.random.SeedSequence(70).spawn(4)[2]), b)
+    assert 1.49 <= resonance / highest_frequency(drives) <= 6.01
+    at_rest = [run for run in case.runs if run.kind in ("stepped_sines", "chirp", "strokes")]
+    for run in at_rest:
+        # b (c s + k) / (b s^2 + c s + k) of the acceleration
+        a = np.asarray(run.truth.acceleration)
+        _, force, _ = lsim(([b * c, b * k], [b, c, k]), a, run.time)
+        # lsim takes the input as straight between samples
+        np.testing.assert_allclose(force, run.force, atol=2e-3 * float(np.max(abs(run.force))))
+
+
+def test_gap_is_traversed() -> None:
+    case = hide_effect(71, "backlash", noise=QUIET)
+    gap, b = case.parameters["backlash"], case.device.inertance
+    stroke = min(float(np.ptp(run.truth.displacement)) for run in case.runs)
+    assert 0.00499 <= gap / stroke <= 0.1001
+    for run in case.runs:
+        names = case.device.state_names
+        place = run.truth.states[:, names.index("gap_position")]
+        assert np.ptp(place) == pytest.approx(2.0 * gap, rel=1e-6)
+        free = abs(place) < gap * (1.0 - 1e-6)
+        np.testing.assert_allclose(run.force[free], 0.0, atol=1e-6 * np.max(abs(run.force)))
+
+        # what passes in 40 ms is the flywheel's momentum; an impact is nearly as sharp as samples
+        passed = np.cumsum(0.5 * (run.force[1:] + run.force[:-1])) / run.sample_rate
+        speed = run.truth.states[:, names.index("flywheel_velocity")]
+        steps = round(0.04 * run.sample_rate)
+        gained, given = b * np.diff(speed[1::steps]), np.diff(passed[::steps])
+        assert rms(given - gained) < 0.3 * rms(gained)
+
+
+def test_several_effects_are_sized_as_if_alone() -> None:
+    alone = hide_effect(80, "viscous_friction", noise=QUIET)
+    case = hide_effect(
+        80, "viscous_friction", also=("asymmetric_friction", "force_drift"), noise=QUIET
+    )
+    assert case.effects == ("viscous_friction", "asymmetric_friction", "force_drift")
+    assert case.parameters["viscous"] == alone.parameters["viscous"]
+    assert case.names["asymmetric_friction"] == ("coulomb_force", "friction_asymmetry")
+    for run in case.runs:
+        v = run.truth.velocity
+        sliding = abs(v) > 20.0 * case.device.transition_velocity
+        p = case.parameters
+        level = p["coulomb_force"] * (1.0 + p["friction_asymmetry"] * np.sign(v))
+        expected = p["viscous"] * v + level * np.sign(v) + p["force_drift"] * run.time
+        np.testing.assert_allclose(extra(case, run)[sliding], expected[sliding], rtol=1e-6)
+
+    # with a friction law, its level is what differs between the directions
+    case = hide_effect(81, "asymmetric_friction", also=("stribeck_friction",), noise=QUIET)
+    assert case.names["asymmetric_friction"] == ("friction_asymmetry",)
+    assert case.device.friction == "stribeck"
+    assert case.device.friction_asymmetry == case.parameters["friction_asymmetry"]
+
+    # saturation is that of the whole force
+    case = hide_effect(82, "sensor_saturation", also=("parallel_stiffness",), noise=QUIET)
+    lower, upper = case.channel.force_minimum, case.channel.force_maximum
+    assert 0.019 <= np.mean((forces(case) <= lower) | (forces(case) >= upper)) <= 0.155
+
+
+@pytest.mark.parametrize(
+    ("effects", "words"),
+    [
+        (("coulomb_friction", "hysteretic_friction"), "two friction laws"),
+        (("friction_drift", "coulomb_friction"), "its own Coulomb friction"),
+        (("backlash", "series_elasticity"), "series element"),
+        (("viscous_friction", "viscous_friction"), "twice"),
+        (("none", "viscous_friction"), "alone"),
+    ],
+)
+def test_impossible_combinations_are_refused(effects: tuple[str, ...], words: str) -> None:
+    assert not compatible(effects)
+    with pytest.raises(ValueError, match=words):
+        hide_effect(1, effects[0], also=effects[1:])
+    assert compatible(("gas_spring", "backlash", "hysteretic_friction"))
+    with pytest.raises(ValueError, match="gremlins"):
+        compatible(("gremlins",))
+    with pytest.raises(ValueError, match="bouc_wen"):
+        hide_effect(1, "hysteretic_friction", law="bouc_wen", also=("asymmetric_friction",))
+
+
+@pytest.mark.parametrize("kind", UNKNOWN)
+def test_unknown_effect_is_what_it_says(kind: str) -> None:
+    case = hide_unknown(91, kind, QUIET)
+    assert (case.effect, case.kind, case.effects) == ("unknown", kind, ())
+    assert 0.049 <= case.share <= 0.301
+    size = case.parameters.get("size", 1.0)
+    longest = max(run.time[-1] for run in case.runs)
+    for run in case.runs:
+        x, v, bare = run.truth.displacement, run.truth.velocity, run.truth.force - extra(case, run)
+        e = extra(case, run)
+        moving = abs(v) > 20.0 * case.device.transition_velocity
+        if kind == "cogging":
+            turn = 2.0 * np.pi * x / case.parameters["length"] + case.parameters["phase"]
+            np.testing.assert_allclose(e, size * np.sin(turn), atol=1e-9 * size)
+        elif kind == "coupling":
+            np.testing.assert_allclose(
+                abs(e), size * abs(x) * v * v, atol=1e-9 * float(np.max(abs(e)))
+            )
+        elif kind == "viscoelastic":
+            # it gives back less than it was given, at every time
+            assert np.min(np.cumsum(e * v)) > -1e-3 * np.max(np.cumsum(e * v))
+        elif kind in ("logarithmic_friction", "periodic_friction", "ageing_friction"):
+            assert np.min((e * v)[moving]) >= -1e-9
+        elif kind == "fading_inertance":
+            # of a force of one, a part that grows with time
+            np.testing.assert_allclose(e, -size * bare * run.time / longest, atol=1e-9)
+        elif kind == "square_wave":
+            np.testing.assert_allclose(abs(e), size, rtol=1e-6)
+        elif kind == "squeal":
+            first = int(np.flatnonzero(np.diff(np.sign(v)) != 0.0)[0])
+            np.testing.assert_allclose(e[:first], 0.0, atol=1e-9)
+        else:
+            width = case.parameters["width"]
+            kept = abs(run.force) > 0.0
+            assert np.min(abs(run.force[kept])) >= width
+            np.testing.assert_allclose(run.force[kept], bare[kept])
+
+
+def test_ageing_friction_breaks_away_higher_after_rest() -> None:
+    case = next(
+        case for case in (hide_unknown(s, "ageing_friction", QUIET) for s in range(20))
+        if any(run.kind == "strokes" for run in case.runs)
+    )  # fmt: skip
+    run = next(run for run in case.runs if run.kind == "strokes")
+    v, e = abs(run.truth.velocity), abs(extra(case, run))
+    moving = v > 20.0 * case.device.transition_velocity
+    starts = np.flatnonzero(np.diff(moving.astype(int)) == 1) + 1
+    fast = moving & (v > 0.8 * np.max(v))
+    assert np.max(e[starts[1:]]) > 1.5 * np.median(e[fast])
+
+
+def test_unknown_kinds_follow_from_the_seed() -> None:
+    one, other = hide_unknown(5), hide_unknown(5)
+    assert (one.kind, one.parameters) == (other.kind, other.parameters)
+    np.testing.assert_array_equal(forces(one), forces(other))
+    assert len({hide_unknown(seed, noise=QUIET).kind for seed in range(12)}) > 3
+    with pytest.raises(ValueError, match="gremlins"):
+        hide_unknown(1, "gremlins")
 
 
 def test_wang_su_record(tmp_path: Path) -> None:

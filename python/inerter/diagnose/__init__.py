@@ -10,6 +10,7 @@ from inerter.core import Device
 from inerter.device_file import read_delay, read_device
 from inerter.diagnose.bench import diagnose_bench
 from inerter.diagnose.result import Diagnosis, Finding
+from inerter.diagnose.system import SystemInput, diagnose_model, is_for_a_model
 from inerter.diagnose.table import diagnose_table
 from inerter.mjcf import device_of_model
 from inerter.records import BenchTable, Record, RecordError, read_records
@@ -23,21 +24,27 @@ def diagnose(
     model: Path | None = None,
     holdout: Sequence[str] = (),
     progress: Callable[[str], None] = lambda text: None,
+    inputs: Sequence[str] = (),
+    sensors: Sequence[str] = (),
 ) -> Diagnosis:
     """Diagnose records from files.
 
     Parameters
     ----------
     records : sequence of str or Path
-        Files, folders or globs: bench records or bench tables, not both.
+        Files, folders or globs: bench records, bench tables or vehicle records, of one kind; with
+        `inputs` or `sensors` any columns over time.
     device : Path or Device, optional
         The user's own device as baseline.
     model : Path, optional
-        A MuJoCo model whose `inerter.device` is the baseline; not together with `device`.
+        A MuJoCo model; not together with `device`. Bench records and tables take its one
+        `inerter.device` as baseline, other records drive the whole model.
     holdout : sequence of str
         Names of runs to hold out.
     progress : callable
         Told what is being done.
+    inputs, sensors : sequence of str
+        COLUMN=ACTUATOR and COLUMN=SENSOR, where the names in `model` are others than the columns'.
 
     Raises
     ------
@@ -46,6 +53,11 @@ def diagnose(
     """
     if device is not None and model is not None:
         raise ValueError("--device and --model are both given; the baseline can be only one")
+    mapping = SystemInput(tuple(inputs), tuple(sensors))
+    if model is None and mapping:
+        raise ValueError("--input and --sensor name parts of a model; give one with --model")
+    if model is not None and is_for_a_model(records, mapping):
+        return diagnose_model(records, model, mapping, holdout, progress)
     if isinstance(device, Path):
         baseline, delay = read_device(device), read_delay(device)
     else:
@@ -71,6 +83,6 @@ def diagnose(
     if tables and bench:
         raise RecordError(f"records of different kinds: {kinds}; give one kind at a time")
     raise RecordError(
-        f"vehicle records are read but not diagnosed yet: {kinds}; give bench records "
-        "(time, displacement, force) or tables"
+        f"vehicle records are judged against a model of the vehicle: {kinds}; give its MJCF with "
+        "--model, or bench records (time, displacement, force)"
     )

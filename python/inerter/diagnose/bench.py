@@ -11,9 +11,11 @@ from threadpoolctl import threadpool_limits
 
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
-from inerter.diagnose.acceptance import visible, visible_delay
-from inerter.diagnose.effects import EFFECTS, effects_of, simpler_laws, submodel
+from inerter.diagnose.chain import Link, chain_of
+from inerter.diagnose.composition import effects_of, simpler_laws, submodel
+from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
+from inerter.diagnose.judge import Judge
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -24,9 +26,9 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
-from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.unexplained import unexplained
-from inerter.identify.bench import Run, scales, thin, whole
+from inerter.identify.bench import Run, on_clocks, scales, thin, whole
+from inerter.identify.channel import UNITS, channel_values
 from inerter.identify.coordinates import Scales
 from inerter.identify.fit import (
     Fit,
@@ -34,17 +36,16 @@ from inerter.identify.fit import (
     Problem,
     force_along,
     parameter_errors,
+    settled,
     stated_values,
 )
 from inerter.identify.preparation import Preparation, prepare, refuse_unusable
-from inerter.identify.split import Split, blocks, split
+from inerter.identify.split import Split, split
 from inerter.records import Record
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-# how surely an effect must help on the held-out data to be reported (standard errors)
-CONFIRMING_ADVANTAGE = 2.0
 # width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
 TRANSITION = 0.005
 # samples without which there is nothing to learn from or to judge on
@@ -140,8 +141,8 @@ class _Bench:
         refuse_unusable(self.records)
         progress("smoothing: choosing the cut-off")
         self.preparation: Preparation = prepare(self.records)
-        self.runs: list[Run] = [thin(motion) for motion in self.preparation.motions]
-        self.whole: list[Run] = [whole(motion) for motion in self.preparation.motions]
+        self.runs: list[Run] = on_clocks([thin(motion) for motion in self.preparation.motions])
+        self.whole: list[Run] = on_clocks([whole(motion) for motion in self.preparation.motions])
         self.split: Split = split(self.runs, holdout)
         held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
         self.full = split(self.whole, held)
@@ -152,6 +153,7 @@ class _Bench:
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
+        self.judge = Judge(self.band, self.raw, self.preparation, self.baseline)
         self.search = Search(self.runs, self.split, self.baseline, progress)
 
     def run(self) -> Diagnosis:
@@ -159,13 +161,14 @@ class _Bench:
         before = self.search.problem.fit(self.baseline)
         final = self._plainest_law(self.search.run())
         final, standings = self._settle(final)
-        chain = self._chain(final.model)
-        while (weak := self._unconfirmed(chain)) is not None:
-            self.progress(f"{weak} is not confirmed on held-out data: dropped")
-            rest = [name for name, _ in effects_of(final.model, self.baseline) if name != weak]
+        self.progress("measuring the gain of each effect")
+        chain = chain_of(self.search, self.judge, final.model)
+        while weak := [link.effect for link in chain if not link.stands]:
+            self.progress(f"{weak[-1]} is not confirmed on held-out data: dropped")
+            rest = [name for name, _ in effects_of(final.model, self.baseline) if name != weak[-1]]
             fit = self.search.problem.fit(submodel(final.model, rest, self.baseline))
             final = self.search.score("", None, fit)
-            chain = self._chain(final.model)
+            chain = chain_of(self.search, self.judge, final.model)
         findings = self._findings(final.fit, chain, standings)
         return self._diagnosis(before, final.fit, findings)
 
@@ -175,10 +178,8 @@ class _Bench:
             return final
         for model in simpler_laws(final.model):
             fit = self.search.problem.fit(model)
-            apart = self.band.residual(fit.model), self.band.residual(final.model)
-            squares = [(a - b)[m] ** 2 for a, b, m in zip(*apart, self.band.masks, strict=True)]
-            difference = float(np.sqrt(np.mean(np.concatenate(squares))))
-            if not self._is_visible(difference, 0.0, final.model):
+            apart = self.judge.difference(fit.model, final.model)
+            if not self.judge.visible(apart, 0.0, final.model):
                 return self.search.score("", None, fit)
         return final
 
@@ -197,108 +198,54 @@ class _Bench:
             final = swap
         return final, standings
 
-    def _chain(self, model: Model) -> list[tuple[str, str | None, Fit, Fit]]:
-        """The effects one after another, the most useful first: name, law, fit before and after."""
-        self.progress("measuring the gain of each effect")
-        left = effects_of(model, self.baseline)
-        fit = self.search.problem.fit(self.baseline)
-        masks = self.search.problem.masks
-        taken: list[str] = []
-        chain = []
-        while left:
-            trials = []
-            for effect, law in left:
-                names = [*taken, effect]
-                trial = self.search.problem.fit(submodel(model, names, self.baseline))
-                trials.append((trial.rmse(masks), effect, law, trial))
-            _, effect, law, after = min(trials, key=lambda trial: trial[0])
-            chain.append((effect, law, fit, after))
-            left = [pair for pair in left if pair[0] != effect]
-            taken.append(effect)
-            fit = after
-        return chain
-
-    def _unconfirmed(self, chain: list[tuple[str, str | None, Fit, Fit]]) -> str | None:
-        """The first effect of a chain that does not help on the held-out data, or not visibly."""
-        stretches = blocks(self.runs, self.band.masks)
-        for effect, _, before, after in reversed(chain):
-            squares = [
-                block_squares(self.band.residual(fit.model), stretches) for fit in (before, after)
-            ]
-            if (
-                squares[1].sum() >= squares[0].sum()
-                or advantage(squares[0], squares[1]) < CONFIRMING_ADVANTAGE
-                or not self._is_visible(
-                    self._raw_rmse(before.model), self._raw_rmse(after.model), after.model
-                )
-                or (effect == "sensor_delay" and not self._delay_is_visible(after.model))
-            ):
-                return effect
-        return None
-
-    def _is_visible(self, before: float, after: float, model: Model) -> bool:
-        force = float(np.sqrt(np.mean(self._held_out_force() ** 2)))
-        return visible(before, after, self._noise_floor(model), force)
-
-    def _delay_is_visible(self, model: Model) -> bool:
-        stated = self.baseline.values.get("delay", 0.0)
-        spacing = max(run.spacing for run in self.whole)
-        return visible_delay(model.delay - stated, spacing)
-
     def _findings(
         self,
         final: Fit,
-        chain: list[tuple[str, str | None, Fit, Fit]],
+        chain: list[Link],
         standings: dict[str, Standing],
     ) -> list[Finding]:
         values = self._parameters(final)
         findings = []
-        for effect, law, before, after in chain:
-            known = standings.get(effect)
-            named = {n: values[n] for n in EFFECTS[effect].parameters if n in values}
-            if effect == "sensor_delay":
-                named = {"delay": values["delay"]}
+        for link in chain:
+            known = standings.get(link.effect)
+            named = {n: values[n] for n in EFFECTS[link.effect].parameters if n in values}
             finding = Finding(
-                effect,
-                law,
+                link.effect,
+                link.law,
                 known.confidence if known else 0.5,
                 named,
-                self._raw_rmse(before.model),
-                self._raw_rmse(after.model),
+                link.rmse_before,
+                link.rmse_after,
                 "",
                 [r for r in known.rivals if r.confidence >= 0.005] if known else [],
+                link.seen_in_blocks,
             )
             findings.append(replace(finding, evidence=wording.evidence(finding)))
         return sorted(findings, key=lambda finding: -finding.gain)
 
     def _parameters(self, fit: Fit) -> dict[str, ParameterValue]:
-        units = {name: entry.unit for name, entry in parameters().items()} | {"delay": "s"}
+        units = {name: entry.unit for name, entry in parameters().items()} | dict(UNITS)
         return {
             name: ParameterValue(value, error, units[name])
             for name, (value, error) in parameter_errors(fit).items()
         }
 
-    def _raw_rmse(self, model: Model) -> float:
-        residual = self.raw.residual(model)
-        square = sum(
-            float(np.sum(r[m] ** 2)) for r, m in zip(residual, self.raw.masks, strict=True)
-        )
-        return float(np.sqrt(square / sum(int(m.sum()) for m in self.raw.masks)))
-
     def _accuracy(self, model: Model) -> Accuracy:
-        rmse, spread = self._raw_rmse(model), float(np.std(self._held_out_force()))
-        return Accuracy(model.device().given, rmse, rmse / (spread or 1.0), model.delay)
-
-    def _held_out_force(self) -> Array:
-        return np.concatenate(
-            [run.force[m] for run, m in zip(self.whole, self.raw.masks, strict=True)]
-        )
+        rmse, spread = self.judge.rmse(model), float(np.std(self.judge.force))
+        channels = channel_values(model.values)
+        return Accuracy(model.device().given, rmse, rmse / (spread or 1.0), channels)
 
     def _diagnosis(self, before: Fit, final: Fit, findings: list[Finding]) -> Diagnosis:
         baseline, extended = self._accuracy(before.model), self._accuracy(final.model)
-        floor = self._noise_floor(final.model)
+        floor = self.judge.noise_floor(final.model)
         remains = unexplained(
-            self.runs, self.split, self.band.residual(final.model), floor, extended.rmse
+            self.runs,
+            self.split,
+            self.band.residual(final.model),
+            floor,
+            extended.rmse,
+            self.whole,
+            self.raw.residual(final.model),
         )
         self.progress("simulating the extended device in MuJoCo")
         engines = simulate_engines(final.model, self.whole, self.raw.masks)
@@ -328,15 +275,6 @@ class _Bench:
         )
         return replace(diagnosis, verdict=wording.verdict(diagnosis))
 
-    def _noise_floor(self, model: Model) -> float:
-        """Noise of the force, and of the acceleration times the inertance, rms [N]."""
-        force = self.preparation.noise_floor
-        if self.preparation.channels:
-            # the noise of a fused acceleration is not known
-            return force
-        variances = [motion.acceleration_noise**2 for motion in self.preparation.motions]
-        return float(np.hypot(force, model.values["inertance"] * np.sqrt(np.mean(variances))))
-
     def _method(self) -> dict:
         p = self.preparation
         return {
@@ -350,6 +288,10 @@ class _Bench:
             "held_out_samples": sum(int(mask.sum()) for mask in self.raw.masks),
         }
 
+    def _predicted(self, model: Model, i: int) -> Array:
+        run = self.whole[i]
+        return run.force - settled(model, run, run.force - force_along(model, run), run.inner)
+
     def _curves(self, before: Model, after: Model) -> list[RunCurves]:
         curves = []
         for i, run in enumerate(self.whole):
@@ -362,8 +304,8 @@ class _Bench:
                     run.velocity,
                     run.acceleration,
                     run.force,
-                    force_along(before, run),
-                    force_along(after, run),
+                    self._predicted(before, i),
+                    self._predicted(after, i),
                     self.full.holdout[i],
                     run.inner,
                 )

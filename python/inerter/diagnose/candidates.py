@@ -9,14 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS, width
+import numpy as np
+
+from inerter.diagnose.composition import width
+from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS
+from inerter.identify.channel import LIMITS
 from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Model
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A model to try for an effect, with the starting points of its fit."""
+    """A model to try for an effect, with the starting points of its fit.
+
+    `law` tells the forms of one effect apart: friction laws, a stop above or below.
+    """
 
     effect: str
     law: str | None
@@ -146,6 +153,92 @@ def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate
     return build
 
 
+def _series(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if _has_series(model):
+        return
+    slow = _frequency(sizes)
+    fast = max(2 * sizes.cutoff, 4 * slow) if np.isfinite(sizes.cutoff) else 20 * slow
+    starts = tuple(
+        model.adding(series_frequency=float(f), series_loss=0.1)
+        for f in np.geomspace(1.5 * slow, fast, 4)
+    )
+    yield Candidate(effect, None, starts)
+
+
+def _backlash(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if "backlash" in model.values:
+        return
+    x, slow = sizes.displacement, _frequency(sizes)
+    contacts: list[dict[str, float]] = [{}]
+    if not _has_series(model):
+        contacts = [{"series_frequency": ratio * slow, "series_loss": 0.3} for ratio in (5, 20)]
+    starts = tuple(
+        model.adding(None, backlash=ratio * x, **contact)
+        for ratio in (0.01, 0.05, 0.2)
+        for contact in contacts
+    )
+    yield Candidate(effect, None, starts)
+
+
+def _has_series(model: Model) -> bool:
+    names = ("series_frequency", "series_stiffness", "series_damping")
+    return any(name in model.values for name in names)
+
+
+def _frequency(sizes: Scales) -> float:
+    """Typical frequency of the motion [Hz]."""
+    return float(np.sqrt(sizes.acceleration / sizes.displacement)) / (2 * np.pi)
+
+
+def _end_stop(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if "stop_stiffness" in model.values or not np.isfinite(sizes.travel).all():
+        return
+    low, high = sizes.travel
+    stiffness, share = 5 * sizes.force / sizes.displacement, 0.5 * (high - low)
+    forms = {"upper": (False, True), "lower": (True, False), "both": (True, True)}
+    for form, (below, above) in forms.items():
+        starts = []
+        for depth in (0.03, 0.12, 0.3):
+            stops = {"stop_lower": low + depth * share} if below else {}
+            stops |= {"stop_upper": high - depth * share} if above else {}
+            starts.append(model.adding(None, **stops, stop_stiffness=stiffness))
+        yield Candidate(effect, form, tuple(starts))
+
+
+def _gas(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if (
+        "gas_push" in model.values
+        or "gas_pressure" in model.values
+        or not np.isfinite(sizes.travel).all()
+    ):
+        return
+    deepest = max(-sizes.travel[0], 0.1 * sizes.displacement)
+    starts = tuple(
+        model.adding(
+            gas_push=0.3 * sizes.force * ratio, gas_reach=deepest * ratio, gas_exponent=1.3
+        )
+        for ratio in (1.2, 2.0, 5.0)
+    )
+    yield Candidate(effect, None, starts)
+
+
+def _saturation(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if any(name in model.values for name in LIMITS) or not np.isfinite(sizes.force_range).all():
+        return
+    low, high = sizes.force_range
+    inside = 0.02 * (high - low)
+    limits = {"force_maximum": high - inside, "force_minimum": low + inside}
+    yield Candidate(effect, "both", (model.adding(None, **limits),))
+    for name, value in limits.items():
+        yield Candidate(effect, name, (model.adding(None, **{name: value}),))
+
+
+def _variable_inertance(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    yield from _free("inertance_gradient", "inertance_curvature")(effect, model, sizes)
+    if "inertance_speed_gradient" not in model.free:
+        yield Candidate(effect, "speed", (model.adding(inertance_speed_gradient=0.0),))
+
+
 def _stiffness(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
     # along one sine a spring is an inertance with the other sign: there is nothing to choose
     if not (sizes.one_tone and "inertance" in model.free):
@@ -171,5 +264,13 @@ _BUILDERS: dict[str, Callable[[str, Model, Scales], Iterator[Candidate]]] = {
     "force_offset": _free("force_offset"),
     "sensor_delay": _free("delay"),
     "quadratic_damping": _free("quadratic_damping"),
-    "variable_inertance": _free("inertance_gradient", "inertance_curvature"),
+    "variable_inertance": _variable_inertance,
+    "hardening_stiffness": _free("stiffness_cubic"),
+    "friction_drift": _modulated("friction_drift"),
+    "force_drift": _free("force_drift"),
+    "series_elasticity": _series,
+    "backlash": _backlash,
+    "end_stop": _end_stop,
+    "gas_spring": _gas,
+    "sensor_saturation": _saturation,
 }

@@ -1,16 +1,8 @@
-"""The effects that a diagnosis can name, and how they are read off a model and taken out of it.
-
-`effects_of` looks at a model alone, so that a name does not depend on the way the search took.
-"""
+"""The effects that a diagnosis can name: what each adds, what causes it, what it is taken for."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-
-import numpy as np
-
-from inerter.identify.fit import Fit, Model
 
 # laws whose levels can differ with direction and position
 LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre")
@@ -27,7 +19,12 @@ LAW_COORDINATES = (
     "bw_exponent",
     "bw_ratio",
 )
-LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
+LEVEL_COORDINATES = (
+    "friction_asymmetry",
+    "friction_gradient",
+    "friction_curvature",
+    "friction_drift",
+)
 
 
 @dataclass(frozen=True)
@@ -40,6 +37,8 @@ class Effect:
         Coordinates that come and go with it (for hysteretic and Stribeck friction: see `law`).
     parameters : tuple of str
         Device parameters that a finding reports.
+    plain : str
+        The effect in running text.
     meaning, cause : str
         What it adds to F = b a, and what makes it in a real device.
     taken_for : str
@@ -49,6 +48,7 @@ class Effect:
     name: str
     coordinates: tuple[str, ...]
     parameters: tuple[str, ...]
+    plain: str
     meaning: str
     cause: str
     taken_for: str
@@ -61,6 +61,7 @@ EFFECTS = {
             "inertance_error",
             ("inertance",),
             ("inertance",),
+            "an inertance other than stated",
             "b differs from what is stated",
             "flywheel inertia, lead or gear ratio other than in the data sheet",
             "a wrong force or displacement calibration: check both against a known mass",
@@ -69,6 +70,7 @@ EFFECTS = {
             "viscous_friction",
             ("viscous",),
             ("viscous",),
+            "viscous friction",
             "c v",
             "lubricant shear in bearings, screw and seals",
             "sensor delay: repeat at twice the frequency, a delay grows with its cube",
@@ -77,6 +79,7 @@ EFFECTS = {
             "coulomb_friction",
             ("coulomb_force",),
             ("coulomb_force",),
+            "Coulomb friction",
             "f_c sign(v)",
             "dry sliding in seals, guides and preloaded screws",
             "hysteretic friction: dwell at mid-stroke and watch whether the force stays",
@@ -85,6 +88,7 @@ EFFECTS = {
             "stribeck_friction",
             ("coulomb_force", "static_excess", "stribeck_velocity"),
             ("coulomb_force", "static_force", "stribeck_velocity"),
+            "Stribeck friction",
             "[f_c + (f_s - f_c) exp(-(v/v_s)^2)] sign(v)",
             "lubricated contacts that lift off their asperities as the speed grows",
             "Coulomb with viscous friction: run slow strokes below the Stribeck velocity",
@@ -104,6 +108,7 @@ EFFECTS = {
                 "bw_exponent",
                 "bw_ratio",
             ),
+            "friction with memory",
             "friction with memory: it builds up over a pre-sliding distance and stays at rest",
             "elastic asperities, seals and preloaded balls that bend before they slide",
             "parallel stiffness or backlash: repeat with strokes shorter than the pre-sliding "
@@ -113,6 +118,7 @@ EFFECTS = {
             "asymmetric_friction",
             ("friction_asymmetry",),
             ("coulomb_force", "friction_asymmetry"),
+            "friction that differs between the two directions",
             "friction level differs between the two directions",
             "one-sided preload, a lip seal, a helical gear's thrust",
             "a constant force: repeat with the device turned round",
@@ -121,6 +127,7 @@ EFFECTS = {
             "position_dependent_friction",
             ("friction_gradient", "friction_curvature"),
             ("coulomb_force", "friction_gradient", "friction_curvature"),
+            "friction that changes along the stroke",
             "friction level changes along the stroke",
             "a bent screw, tight guides, wear at mid-stroke",
             "parallel stiffness: it does not change sign with the direction of motion",
@@ -129,6 +136,7 @@ EFFECTS = {
             "load_dependent_friction",
             ("load_friction",),
             ("load_friction",),
+            "friction that grows with the transmitted force",
             "mu |b a| sign(v)",
             "the flywheel's force pressed through screw threads or gear teeth",
             "Coulomb friction: repeat with another flywheel",
@@ -137,6 +145,7 @@ EFFECTS = {
             "parallel_stiffness",
             ("stiffness",),
             ("stiffness",),
+            "a parallel stiffness",
             "k x",
             "a centring spring, a rubber mount, trapped air",
             "a wrong inertance at one frequency: use at least two frequencies",
@@ -146,6 +155,7 @@ EFFECTS = {
             ("force_offset",),
             ("force_offset",),
             "a constant force",
+            "a constant force",
             "weight of the flywheel, preload, a load cell that was not zeroed",
             "asymmetric friction: a dwell shows the constant force alone",
         ),
@@ -153,6 +163,7 @@ EFFECTS = {
             "sensor_delay",
             ("delay",),
             ("delay",),
+            "a delay between the force and the displacement channel",
             "the force channel is late by a constant time",
             "filters or clocks that differ between the channels",
             "series elasticity and viscous friction: they change with amplitude or with "
@@ -160,9 +171,15 @@ EFFECTS = {
         ),
         Effect(
             "variable_inertance",
-            ("inertance_gradient", "inertance_curvature"),
-            ("inertance", "inertance_gradient", "inertance_curvature"),
-            "b depends on displacement: b(x) a + b'(x) v^2 / 2",
+            ("inertance_gradient", "inertance_curvature", "inertance_speed_gradient"),
+            (
+                "inertance",
+                "inertance_gradient",
+                "inertance_curvature",
+                "inertance_speed_gradient",
+            ),
+            "an inertance that is not constant",
+            "b depends on displacement, b(x) a + b'(x) v^2 / 2, or on speed",
             "a ratio that varies along the stroke: rack and pinion, eccentric gear, moving fluid",
             "parallel stiffness: repeat at twice the frequency, the inertance force grows fourfold",
         ),
@@ -170,144 +187,91 @@ EFFECTS = {
             "quadratic_damping",
             ("quadratic_damping",),
             ("quadratic_damping",),
+            "quadratic damping",
             "c2 v |v|",
             "turbulent flow, windage of the flywheel",
             "viscous friction: repeat at twice the amplitude",
         ),
+        Effect(
+            "friction_drift",
+            ("friction_drift",),
+            ("coulomb_force", "friction_drift"),
+            "a friction level that changes with time",
+            "friction level times 1 + friction_drift t",
+            "lubricant that warms up, seals that run in, wear",
+            "load-dependent friction, where the motion grows in time: repeat the first run last",
+        ),
+        Effect(
+            "backlash",
+            ("backlash", "series_frequency", "series_loss"),
+            ("backlash", "series_stiffness", "series_damping"),
+            "free play before the inertance is engaged",
+            "free play of half-width eps in series with the inertance",
+            "worn screw or gear flanks, loose pins",
+            "hysteretic friction: repeat with strokes within the suspected play",
+        ),
+        Effect(
+            "series_elasticity",
+            ("series_frequency", "series_loss"),
+            ("series_stiffness", "series_damping"),
+            "elasticity in series with the inertance",
+            "spring k_s and damper c_s between the terminal and the inertance",
+            "shaft twist, bearing and mount flexibility, fluid compressibility",
+            "inertance or delay: repeat at higher frequency, where the inertance resonates on it",
+        ),
+        Effect(
+            "hardening_stiffness",
+            ("stiffness_cubic",),
+            ("stiffness_cubic",),
+            "a stiffness that grows with the stroke",
+            "k3 x^3",
+            "rubber, guides that bind, a spring that stacks",
+            "an end stop: repeat with half the stroke, k3 x^3 falls to an eighth",
+        ),
+        Effect(
+            "gas_spring",
+            ("gas_push", "gas_reach", "gas_exponent"),
+            ("gas_pressure", "gas_area", "gas_volume", "gas_exponent"),
+            "a gas spring",
+            "p0 A (1 - (1 + A x / V0)^-gamma)",
+            "trapped air, an accumulator",
+            "a parallel stiffness: repeat with more compression, a gas stiffens on one side only",
+        ),
+        Effect(
+            "end_stop",
+            ("stop_upper", "stop_lower", "stop_stiffness", "stop_damping"),
+            ("stop_upper", "stop_lower", "stop_stiffness", "stop_damping"),
+            "an end stop",
+            "k_e (x - x_stop) beyond the stop",
+            "a bump stop, a nut that reaches its end",
+            "hardening stiffness: repeat with strokes that end just before the stop",
+        ),
+        Effect(
+            "force_drift",
+            ("force_drift",),
+            ("force_drift",),
+            "a force offset that grows in time",
+            "an offset that grows steadily",
+            "a load cell that warms up, a charge amplifier that leaks",
+            "friction drift: that one changes sign with the velocity",
+        ),
+        Effect(
+            "sensor_saturation",
+            ("force_maximum", "force_minimum"),
+            ("force_maximum", "force_minimum"),
+            "a force channel that clips",
+            "force beyond a limit is cut off",
+            "an amplifier or converter at the end of its range",
+            "less inertance in large motion: repeat with half the amplitude",
+        ),
+        Effect(
+            "periodic_disturbance",
+            ("disturbance_amplitude", "disturbance_frequency"),
+            ("disturbance_amplitude", "disturbance_frequency"),
+            "a tone that the motion does not contain",
+            "a sine of constant frequency",
+            "mains hum, a pump, a machine next door",
+            "a resonance of the rig: record with the device at rest",
+        ),
     )
 }
-
-
-# coordinates whose being zero means that the effect is absent, where not all of them do
-_AMPLITUDES = {
-    "stribeck_friction": ("static_excess",),
-    "hysteretic_friction": ("coulomb_force", "bw_level"),
-    "inertance_error": (),
-}
-
-
-def is_distinct(effect: str, fit: Fit, required: float) -> bool:
-    """Whether a fitted effect differs from none by some standard errors of its coordinates."""
-    names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
-    errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
-    known = [name for name in names if name in errors]
-    return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
-
-
-def width(model: Model) -> dict[str, float]:
-    """The width of sign(v), which is fitted along: it depends on the velocity's noise."""
-    return {"transition_velocity": model.values["transition_velocity"]}
-
-
-_LAW_EFFECT = {
-    "coulomb": "coulomb_friction",
-    "stribeck": "stribeck_friction",
-    "dahl": "hysteretic_friction",
-    "lugre": "hysteretic_friction",
-    "bouc_wen": "hysteretic_friction",
-}
-_MODULATIONS = ("asymmetric_friction", "position_dependent_friction")
-_SIMPLE = (
-    "viscous_friction",
-    "load_dependent_friction",
-    "parallel_stiffness",
-    "force_offset",
-    "sensor_delay",
-    "quadratic_damping",
-    "variable_inertance",
-)
-
-
-def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
-    """Effects (and friction law) that a model has beyond the baseline.
-
-    A Coulomb level that varies with direction or position is one effect, not two.
-    """
-    added = [name for name in model.free if name not in baseline.free]
-    found: list[tuple[str, str | None]] = []
-    modulations = [
-        name for name in _MODULATIONS if any(c in added for c in EFFECTS[name].coordinates)
-    ]
-    law_touched = model.friction != baseline.friction or any(c in added for c in LAW_COORDINATES)
-    if law_touched and model.friction in _LAW_EFFECT:
-        effect = _LAW_EFFECT[model.friction]
-        if not (effect == "coulomb_friction" and modulations):
-            found.append((effect, model.friction if effect == "hysteretic_friction" else None))
-    found += [(name, None) for name in modulations]
-    found += [(n, None) for n in _SIMPLE if any(c in added for c in EFFECTS[n].coordinates)]
-    if "inertance" in added:
-        found.append(("inertance_error", None))
-    return found
-
-
-def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
-    """Simpler models: without an effect, and for friction laws also with each simpler law."""
-    names = [name for name, _ in effects_of(model, baseline)]
-    without = submodel(model, [name for name in names if name != effect], baseline)
-    if effect in ("hysteretic_friction", "stribeck_friction"):
-        return [*simpler_laws(model), without]
-    if effect in _MODULATIONS:
-        # the variation of the level alone
-        return [model.without(EFFECTS[effect].coordinates), without]
-    return [without]
-
-
-def stripped(model: Model, effect: str, baseline: Model) -> Model:
-    """The model without what is particular to an effect; a level that varies leaves the level."""
-    if effect in _MODULATIONS:
-        return model.without(EFFECTS[effect].coordinates)
-    names = [name for name, _ in effects_of(model, baseline) if name != effect]
-    return submodel(model, names, baseline)
-
-
-def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
-    """The model reduced to the baseline and some of its effects."""
-    present = dict(effects_of(model, baseline))
-    dropped = [name for name in present if name not in effects]
-    laws = [name for name in present if name in _LAW_EFFECT.values()]
-    names: set[str] = set()
-    for name in dropped:
-        names.update(EFFECTS[name].coordinates if name not in laws else LAW_COORDINATES)
-    friction = model.friction
-    kept_modulations = [name for name in _MODULATIONS if name in effects and name in present]
-    if (laws and laws[0] in dropped) or (
-        not laws and not kept_modulations and not _stated_friction(baseline)
-    ):
-        # without its law, a level that varies needs Coulomb friction to act on
-        level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
-        names.update(LAW_COORDINATES)
-        if kept_modulations and baseline.friction == "none":
-            bare = _restored(model.without(tuple(names), "none"), names, baseline)
-            return bare.adding("coulomb", coulomb_force=level, **width(bare))
-        friction = baseline.friction
-        if friction == "none":
-            names.update(LEVEL_COORDINATES)
-    return _restored(model.without(tuple(names), friction), names, baseline)
-
-
-def _stated_friction(baseline: Model) -> bool:
-    return baseline.friction != "none"
-
-
-def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
-    """Put back what the baseline states of the names that were taken out."""
-    stated = {name: baseline.values[name] for name in names if name in baseline.values}
-    free = tuple(name for name in baseline.free if name in names and name not in bare.free)
-    return Model(bare.friction, {**bare.values, **stated}, bare.free + free)
-
-
-def simpler_laws(model: Model) -> list[Model]:
-    """The model under each friction law with fewer parameters."""
-    level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
-    presliding = model.values.get("presliding")
-    bare = model.without(LAW_COORDINATES, "none")
-    simpler = []
-    if model.friction not in ("none", "coulomb"):
-        simpler.append(bare.adding("coulomb", coulomb_force=level, **width(bare)))
-    if model.friction in ("lugre", "bouc_wen") and presliding:
-        simpler.append(bare.adding("dahl", coulomb_force=level, presliding=presliding))
-    if model.friction == "lugre":
-        names = ("coulomb_force", "static_excess", "stribeck_velocity")
-        values = {name: model.values[name] for name in names} | width(bare)
-        simpler.append(bare.adding("stribeck", **values))
-    return simpler

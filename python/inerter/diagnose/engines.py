@@ -12,11 +12,12 @@ from inerter import rig
 from inerter.core import Device
 from inerter.exudyn.engine import installed
 from inerter.identify.bench import Run, from_first, held
-from inerter.identify.fit import Model, delayed, first_state
+from inerter.identify.channel import through_channel
+from inerter.identify.fit import Model, first_state, settled, with_friction_drift
 from inerter.reference import Motion, ReferenceDevice, response
 
 Array = NDArray[np.float64]
-Along = Callable[[Device, Run, Any], Array]
+Along = Callable[[Device, Run, Any], dict[str, Array]]
 
 
 def simulate_engines(
@@ -41,37 +42,47 @@ def _error(
     along: Along, model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
 ) -> float:
     """Rms error [N]; ValueError if a force is not finite."""
-    device = model.device()
+    device, values = model.device(), model.values
     square, count = 0.0, 0
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
-        force = held(along(device, from_first(run), first_state(device, run)), run.force.size)
+        found = along(device, from_first(run), first_state(device, run))
+        forces = {name: held(force, run.force.size) for name, force in found.items()}
+        force = with_friction_drift(values, forces, run.elapsed)
         if not np.all(np.isfinite(force)):
             raise ValueError("the force is not finite")
-        residual = run.force - delayed(force, model.delay, run.spacing)
+        shown = through_channel(values, force, run.elapsed, run.spacing)
+        residual = settled(model, run, run.force - shown, mask & run.inner)
         square += float(np.sum(residual[mask] ** 2))
         count += int(mask.sum())
     return float(np.sqrt(square / count))
 
 
-def _mujoco(device: Device, run: Run, state: Any) -> Array:
+def _mujoco(device: Device, run: Run, state: Any) -> dict[str, Array]:
     motion = (run.displacement, run.velocity, run.acceleration)
-    return rig.simulate_along(device, run.spacing, *motion, state)["total"]
+    return _forces(rig.simulate_along(device, run.spacing, *motion, state))
 
 
-def _exudyn(device: Device, run: Run, state: Any) -> Array:
+def _forces(found: dict[str, Array]) -> dict[str, Array]:
+    return {name: found[name] for name in ("total", "friction")}
+
+
+def _exudyn(device: Device, run: Run, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
     motion = (run.displacement, run.velocity, run.acceleration)
-    return simulate_along(device, run.spacing, *motion, state)["total"]
+    return _forces(simulate_along(device, run.spacing, *motion, state))
 
 
-def _reference(device: Device, run: Run, state: Any) -> Array:
+def _reference(device: Device, run: Run, state: Any) -> dict[str, Array]:
     times = run.spacing * np.arange(run.displacement.size)
     given: dict[str, Any] = device.given
-    found = response(ReferenceDevice(**given), _motion(run), times, initial_state=state, rtol=1e-8)
-    return found.force
+    reference, motion = ReferenceDevice(**given), _motion(run)
+    found = response(reference, motion, times, initial_state=state, rtol=1e-8)
+    states = reference.state_argument(found.states) if reference.nstate else 0.0
+    friction = reference.friction_force(found.displacement, found.velocity, states)
+    return {"total": found.force, "friction": np.asarray(friction)}
 
 
 def _motion(run: Run) -> Motion:

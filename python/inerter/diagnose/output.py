@@ -8,6 +8,7 @@ from pathlib import Path
 from inerter.core import Device
 from inerter.device_file import device_text
 from inerter.diagnose.result import Diagnosis
+from inerter.diagnose.system.outcome import SystemDiagnosis
 from inerter.folder import write_files
 from inerter.report.page import render_report
 from inerter.rig import device_mjcf
@@ -21,6 +22,9 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
     OSError
         The folder cannot be written.
     """
+    if isinstance(diagnosis, SystemDiagnosis):
+        _write_system(diagnosis, folder)
+        return
     device = Device(**diagnosis.extended.device)
     names = ", ".join(record.name for record in diagnosis.records)
     comments = {
@@ -42,5 +46,26 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
             "device.toml": toml,
             "model.xml": model,
             "report.html": render_report(diagnosis, toml, model),
+        },
+    )
+
+
+def _write_system(diagnosis: SystemDiagnosis, folder: Path) -> None:
+    """The user's whole model extended, and its devices; the first one is device.toml."""
+    names = ", ".join(record.name for record in diagnosis.records)
+    tomls = {
+        name: device_text(device, {}, 0.0, f"{name}: identified by inerter diagnose from {names}")
+        for name, device in diagnosis.devices.items()
+    }
+    several = {f"device_{name}.toml": text for name, text in tomls.items()}
+    toml = next(iter(tomls.values()))
+    write_files(
+        folder,
+        {
+            "diagnosis.json": json.dumps(diagnosis.json(), indent=2, allow_nan=False) + "\n",
+            "device.toml": toml,
+            **(several if len(several) > 1 else {}),
+            "model.xml": diagnosis.model_xml,
+            "report.html": render_report(diagnosis, toml, diagnosis.model_xml),
         },
     )

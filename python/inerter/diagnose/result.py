@@ -34,7 +34,8 @@ class Rival:
 class Finding:
     """An effect that the simulation lacks.
 
-    rmse_before, rmse_after: rms force error on held-out data [N] before and after adding it;
+    rmse_before, rmse_after: rms force error on held-out data [N] before and after adding it (on
+    blocks left out of the fit where the held-out data do not reach the effect: seen_in_blocks);
     confidence: share of resamples of the data in which it does better than without it and better
     than every rival.
     """
@@ -47,6 +48,7 @@ class Finding:
     rmse_after: float
     evidence: str
     rivals: list[Rival]
+    seen_in_blocks: bool = False
 
     @property
     def gain(self) -> float:
@@ -73,19 +75,27 @@ class Finding:
 
 @dataclass(frozen=True)
 class Accuracy:
-    """A device and its force error on held-out data [N]; nrmse: per standard deviation of force."""
+    """A device and its force error on held-out data [N]; nrmse: per standard deviation of force.
+
+    channels: what is fitted beside the device, such as a delay (see `identify.channel`).
+    """
 
     device: dict[str, float | str]
     rmse: float
     nrmse: float
-    delay: float = 0.0
+    channels: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def delay(self) -> float:
+        """Time by which the force channel is late [s]."""
+        return self.channels.get("delay", 0.0)
 
     def json(self) -> dict[str, Any]:
         """As in the contract."""
         device: dict[str, float | str] = dict(self.device)
         result: dict[str, Any] = {"device": device, "rmse": self.rmse, "nrmse": self.nrmse}
-        if self.delay:
-            result["channels"] = {"delay": self.delay}
+        if self.channels:
+            result["channels"] = dict(self.channels)
         return result
 
 
@@ -102,19 +112,45 @@ class RecordSummary:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """What remains after the extension."""
+    """What remains after the extension.
+
+    Attributes
+    ----------
+    significant : bool
+        Something remains that is no noise, and of a size that matters.
+    fraction : float
+        Share of the held-out residual's power that is not noise.
+    depends_on : list of str
+        What it goes with, the most important first; see `unexplained.ORDER`.
+    summary : str
+        The same in words.
+    structure : float
+        Rms of what was found to be no noise [N].
+    tests : list of dict
+        Every test: {"goes_with", "share" and "share_held_out" (of the residual's power, both out of
+        sample; the first over all data), "rms" [N], "p"}.
+    false_alarm_rate : float
+        Share of diagnoses in which noise alone passes for more, all tests together.
+    proposal : dict, optional
+        A formula: {"text", "terms": [{"term", "coefficient", "stderr", "unit"}], "share", "note"}.
+    """
 
     significant: bool
     fraction: float
     depends_on: list[str]
     summary: str
+    structure: float = 0.0
+    tests: list[dict[str, Any]] = field(default_factory=list)
+    false_alarm_rate: float = 0.0
+    proposal: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
 class RunCurves:
     """Measured and simulated force of one run, for the report; arrays (n,), NaN-free.
 
-    inner: False near the ends where the motion is uncertain and nothing is judged.
+    inner: False near the ends where the motion is uncertain and nothing is judged. quantity, unit:
+    what `force`, `baseline` and `extended` are where a channel of another kind is shown.
     """
 
     name: str
@@ -128,6 +164,8 @@ class RunCurves:
     extended: Array
     holdout: NDArray[np.bool_]
     inner: NDArray[np.bool_]
+    quantity: str = "force"
+    unit: str = "N"
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.effects import effects_of, is_distinct, stripped
+from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import REQUIRED_DISTINCTION, RICH_LAWS, Scored, Search, parallel
 from inerter.diagnose.statistics import advantage, win_shares
@@ -27,6 +27,15 @@ PRECEDENCE = (
     "stribeck_friction",
     "position_dependent_friction",
     "variable_inertance",
+    "hardening_stiffness",
+    "force_drift",
+    "friction_drift",
+    "sensor_saturation",
+    "periodic_disturbance",
+    "end_stop",
+    "gas_spring",
+    "series_elasticity",
+    "backlash",
 )
 EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005

@@ -10,22 +10,30 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.diagnose.candidates import Candidate, candidates
-from inerter.diagnose.effects import (
+from inerter.diagnose.composition import (
     effects_of,
     is_distinct,
     simpler_laws,
     without_effect,
 )
-from inerter.diagnose.statistics import Array, advantage, block_squares, win_shares
+from inerter.diagnose.statistics import (
+    Array,
+    advantage,
+    block_squares,
+    where_apart,
+    win_shares,
+)
+from inerter.diagnose.tone import strongest_line
 from inerter.identify.bench import Run, head, head_size
 from inerter.identify.fit import Fit, Model, Problem
-from inerter.identify.split import Split, blocks
+from inerter.identify.split import Mask, Split, blocks, spread_folds
 
 # what a richer model must win by: standard errors over paired blocks, and share of the rms error.
 # 4 standard errors: about one false alarm in 30,000 candidates on noise alone. A gain many times
@@ -45,12 +53,17 @@ KEEPING_ADVANTAGE = 2.0
 MOST_EFFECTS = 8
 # candidates that are worth cross-validating in one round
 SHORTLIST = 5
+# share of the cost below which a step of a fit that is only compared changes nothing
+ROUGH = 1e-5
+# effects that may show in few stretches, or in one run alone
+LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
 # share of every run on which the starting points of a fit are compared
 STARTING_SHARE = 0.3
 # laws that are tried only where memory is to be seen
 RICH_LAWS = ("lugre", "bouc_wen")
 
 Progress = Callable[[str], None]
+Folds = list[tuple[Problem, list[Mask]]]
 S = TypeVar("S")
 T = TypeVar("T")
 
@@ -61,13 +74,27 @@ def parallel(function: Callable[[S], T], items: Iterable[S]) -> list[T]:
         return list(pool.map(function, items))
 
 
+def advantage_of(
+    simple: Sequence[Array],
+    rich: Sequence[Array],
+    masks: Sequence[Mask],
+    stretches: Sequence[tuple[int, NDArray]],
+    effect: str,
+) -> float:
+    """`statistics.advantage` of residuals, over the stretches where the effect may show."""
+    if effect in LOCAL:
+        stretches = where_apart(simple, rich, masks)
+    return advantage(block_squares(simple, stretches), block_squares(rich, stretches))
+
+
 @dataclass(frozen=True)
 class Scored:
-    """A fitted candidate and its squared errors on left-out folds, per block."""
+    """A fitted candidate, its errors on left-out folds [N], and their squares per block."""
 
     effect: str
     law: str | None
     fit: Fit
+    residual: list[Array]
     squares: Array
 
     @property
@@ -97,7 +124,7 @@ class Search:
 
     def __post_init__(self) -> None:
         self.problem = Problem(self.runs, self.split.fit)
-        self.blocks = blocks(self.runs, self.problem.masks)
+        self.blocks = blocks(self.problem.masks)
         self._part = Problem(
             [head(run, STARTING_SHARE) for run in self.runs],
             [
@@ -106,13 +133,21 @@ class Search:
             ],
             self.problem.scales,
         )
-        self._folds = [
-            Problem(
-                self.runs,
-                [f & ~left for f, left in zip(self.split.fit, fold, strict=True)],
-                self.problem.scales,
+        self._folds = self._problems(self.split.folds)
+        self._spread = self._problems(spread_folds(self.split.fit))
+
+    def _problems(self, folds: Sequence[list[Mask]]) -> Folds:
+        """The fit data without each fold, and the fold."""
+        return [
+            (
+                Problem(
+                    self.runs,
+                    [f & ~left for f, left in zip(self.split.fit, fold, strict=True)],
+                    self.problem.scales,
+                ),
+                fold,
             )
-            for fold in self.split.folds
+            for fold in folds
         ]
 
     def run(self) -> Scored:
@@ -126,26 +161,39 @@ class Search:
             current = self._exchange(step.chosen)
         return self._prune(current)
 
-    def score(self, effect: str, law: str | None, fit: Fit) -> Scored:
+    def score(self, effect: str, law: str | None, fit: Fit, folds: Folds | None = None) -> Scored:
         """Squared errors of a fitted model on folds left out of its refits."""
         if not fit.model.free:
-            return Scored(effect, law, fit, block_squares(fit.residual, self.blocks))
+            return self._scored(effect, law, fit, fit.residual)
         left_out = [np.zeros(run.force.size) for run in self.runs]
-        for problem, fold in zip(self._folds, self.split.folds, strict=True):
-            residual = problem.fit(fit.model, evaluations=12).residual
+        for problem, fold in folds or self._folds:
+            residual = problem.fit(fit.model, evaluations=12, tolerance=ROUGH).residual
             for target, values, mask in zip(left_out, residual, fold, strict=True):
                 target[mask] = values[mask]
-        return Scored(effect, law, fit, block_squares(left_out, self.blocks))
+        return self._scored(effect, law, fit, left_out)
+
+    def _scored(self, effect: str, law: str | None, fit: Fit, residual: list[Array]) -> Scored:
+        return Scored(effect, law, fit, residual, block_squares(residual, self.blocks))
+
+    def advantage(self, simple: Scored, rich: Scored, effect: str) -> float:
+        """How surely a model with an effect has smaller errors on left-out folds than without."""
+        return advantage_of(simple.residual, rich.residual, self.problem.masks, self.blocks, effect)
+
+    def score_on_blocks(self, fit: Fit) -> Scored:
+        """Errors of a fitted model on blocks of every run, left out of its refits."""
+        return self.score("", None, fit, self._spread)
 
     def fit(self, candidate: Candidate) -> Fit:
         """Best fit over a candidate's starting points, which are compared on part of the data."""
         starts = candidate.starts
         if len(starts) > 1:
-            masks = self._part.masks
-            trials = [self._part.fit(start, evaluations=10) for start in starts]
-            trials.sort(key=lambda fit: fit.rmse(masks))
+            # states take time to follow; what has none is compared wherever it may show
+            fast = all(not start.device().nstate for start in starts)
+            part, evaluations = (self.problem, 6) if fast else (self._part, 10)
+            trials = [part.fit(start, evaluations, tolerance=1e-3) for start in starts]
+            trials.sort(key=lambda fit: fit.rmse(part.masks))
             starts = tuple(trial.model for trial in trials[:2])
-        fits = [self.problem.fit(start) for start in starts]
+        fits = [self.problem.fit(start, tolerance=ROUGH) for start in starts]
         return min(fits, key=lambda fit: fit.rmse(self.problem.masks))
 
     def fit_all(self, trials: Sequence[Candidate], current: Fit) -> list[tuple[Candidate, Fit]]:
@@ -170,7 +218,7 @@ class Search:
         """The effect to add next, or None."""
         masks = self.problem.masks
         self.progress(f"effect {len(self.steps) + 1}: trying every candidate")
-        trials = list(candidates(current.model, self.problem.scales))
+        trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
         fitted = self.fit_all(trials, current.fit)
         if not fitted:
             return None
@@ -187,7 +235,16 @@ class Search:
         ]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.steps) + 1}: checking {names} on data left out")
-        scored = parallel(lambda pair: self.score(pair[0].effect, pair[0].law, pair[1]), shortlist)
+
+        # what shows in one run alone cannot be foretold from the others
+        if self._folds is not self._spread and any(c.effect in LOCAL for c, _ in shortlist):
+            folds = self._spread
+            current = self.score(current.effect, current.law, current.fit, folds)
+        else:
+            folds = self._folds
+        scored = parallel(
+            lambda pair: self.score(pair[0].effect, pair[0].law, pair[1], folds), shortlist
+        )
         good = [
             s
             for s in scored
@@ -198,7 +255,25 @@ class Search:
         best = min(good, key=lambda s: s.squares.sum())
         equal = [s for s in good if s is best or self._as_good(s, best)]
         chosen = min(equal, key=lambda s: (s.model.complexity, s.squares.sum()))
-        return self._step(current, chosen, scored)
+        step = self._step(current, chosen, scored)
+        if chosen.effect in LOCAL:
+            self._folds = folds
+        elif folds is not self._folds:
+            chosen = self.score(chosen.effect, chosen.law, chosen.fit)
+        return replace(step, chosen=replace(chosen, fit=self.problem.fit(chosen.model)))
+
+    def _tones(self, current: Fit) -> list[Candidate]:
+        """The tone that a residual shows, if any."""
+        if "disturbance_amplitude" in current.model.values:
+            return []
+        line = strongest_line(self.runs, current.residual, self.problem.masks)
+        if line is None:
+            return []
+        frequency, amplitude = line
+        start = current.model.adding(
+            disturbance_amplitude=amplitude, disturbance_frequency=frequency
+        )
+        return [Candidate("periodic_disturbance", None, (start,))]
 
     def _step(self, current: Scored, chosen: Scored, scored: list[Scored]) -> Step:
         # a rival is another effect; laws of one effect compete within it
@@ -215,7 +290,7 @@ class Search:
         gain = 1 - np.sqrt(rich.squares.sum() / simple.squares.sum())
         share = np.clip((gain - REQUIRED_GAIN) / (LARGE_GAIN - REQUIRED_GAIN), 0, 1)
         required = REQUIRED_ADVANTAGE + share * (LARGE_ADVANTAGE - REQUIRED_ADVANTAGE)
-        return bool(gain > REQUIRED_GAIN and advantage(simple.squares, rich.squares) > required)
+        return bool(gain > REQUIRED_GAIN and self.advantage(simple, rich, rich.effect) > required)
 
     def _as_good(self, simple: Scored, best: Scored) -> bool:
         """Whether a candidate loses so little against the best that fewer parameters decide."""
@@ -263,7 +338,7 @@ class Search:
             for scored in parallel(
                 lambda pair: self.score(pair[0], None, self.problem.fit(pair[1])), models
             ):
-                lost = advantage(scored.squares, current.squares)
+                lost = self.advantage(scored, current, scored.effect)
                 ratio = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
                 if lost < KEEPING_ADVANTAGE or ratio < REQUIRED_GAIN / 2:
                     simpler.append((ratio, scored))

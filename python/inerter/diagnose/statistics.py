@@ -7,12 +7,31 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.identify.split import blocks
+
 Array = NDArray[np.float64]
+
+# residuals further apart than this share of their rms distance are so in the sense of `where_apart`
+APART = 0.5
 
 
 def block_squares(residual: Sequence[Array], blocks: Sequence[tuple[int, NDArray]]) -> Array:
     """Sum of squared residuals over each block, shape (number of blocks,)."""
     return np.array([float(np.sum(residual[i][index] ** 2)) for i, index in blocks])
+
+
+def where_apart(
+    one: Sequence[Array], other: Sequence[Array], masks: Sequence[NDArray[np.bool_]]
+) -> list[tuple[int, NDArray[np.intp]]]:
+    """Stretches of the masked samples at which the residuals of two models lie apart.
+
+    An effect that shows in few places, such as an end stop, has to be judged there: over blocks of
+    everything most would say nothing, and their spread would count as doubt.
+    """
+    apart = [a - b for a, b in zip(one, other, strict=True)]
+    square = sum(float(np.sum(d[m] ** 2)) for d, m in zip(apart, masks, strict=True))
+    limit = APART * np.sqrt(square / max(sum(int(m.sum()) for m in masks), 1))
+    return blocks([m & (np.abs(d) > limit) for d, m in zip(apart, masks, strict=True)])
 
 
 def advantage(simple: Array, rich: Array) -> float:

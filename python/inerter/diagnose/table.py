@@ -17,7 +17,8 @@ from scipy.optimize import least_squares
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.effects import EFFECTS, effects_of
+from inerter.diagnose.composition import effects_of
+from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,

@@ -26,24 +26,27 @@ _NAMES = {
     "inertance": "b",
     "inertance_gradient": "gradient of b along the stroke",
     "inertance_curvature": "curvature of b along the stroke",
+    "inertance_speed_gradient": "gradient of b along the speed",
+    "stiffness_cubic": "k3",
+    "series_stiffness": "series stiffness k_s",
+    "series_damping": "series damping c_s",
+    "backlash": "half of the free play eps",
+    "stop_upper": "upper stop",
+    "stop_lower": "lower stop",
+    "stop_stiffness": "stop stiffness k_e",
+    "stop_damping": "stop damping",
+    "gas_pressure": "pressure p0",
+    "gas_area": "piston area A",
+    "gas_volume": "volume V0",
+    "gas_exponent": "exponent gamma",
+    "force_drift": "drift",
+    "friction_drift": "drift of the friction level",
+    "force_maximum": "upper limit",
+    "force_minimum": "lower limit",
+    "disturbance_amplitude": "amplitude",
+    "disturbance_frequency": "frequency",
     "bw_exponent": "n",
     "bw_ratio": "elastic share A",
-}
-# words for effects in running text
-PLAIN = {
-    "inertance_error": "an inertance other than stated",
-    "viscous_friction": "viscous friction",
-    "coulomb_friction": "Coulomb friction",
-    "stribeck_friction": "Stribeck friction",
-    "hysteretic_friction": "friction with memory",
-    "asymmetric_friction": "friction that differs between the two directions",
-    "position_dependent_friction": "friction that changes along the stroke",
-    "load_dependent_friction": "friction that grows with the transmitted force",
-    "parallel_stiffness": "a parallel stiffness",
-    "force_offset": "a constant force",
-    "sensor_delay": "a delay between the force and the displacement channel",
-    "quadratic_damping": "quadratic damping",
-    "variable_inertance": "an inertance that changes along the stroke",
 }
 _LAWS = {"dahl": "Dahl", "lugre": "LuGre", "bouc_wen": "Bouc-Wen"}
 
@@ -57,12 +60,12 @@ def quantity(value: ParameterValue, digits: int = 3) -> str:
 def effect_in_words(finding: Finding) -> str:
     """Such as "friction with memory (Dahl)"."""
     law = f" ({_LAWS[finding.law]})" if finding.law in _LAWS else ""
-    return PLAIN[finding.effect] + law
+    return EFFECTS[finding.effect].plain + law
 
 
 def _rival_in_words(rival: Rival) -> str:
     law = f" ({_LAWS[rival.law]})" if rival.law in _LAWS else ""
-    return PLAIN[rival.effect] + law
+    return EFFECTS[rival.effect].plain + law
 
 
 def evidence(finding: Finding) -> str:
@@ -71,8 +74,13 @@ def evidence(finding: Finding) -> str:
         f"{_NAMES.get(name, name)} = {quantity(value)}"
         for name, value in finding.parameters.items()
     )
+    where = (
+        "blocks left out of the fit (what is held out does not reach it)"
+        if finding.seen_in_blocks
+        else "held-out data"
+    )
     text = (
-        f"{values}: the rms force error on held-out data falls from {finding.rmse_before:.3g} N to "
+        f"{values}: the rms force error on {where} falls from {finding.rmse_before:.3g} N to "
         f"{finding.rmse_after:.3g} N ({100 * finding.gain:.0f} %)"
     )
     likely = [rival for rival in finding.rivals if rival.confidence >= 0.05]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -44,6 +45,8 @@ class Run:
         Mean measured force over 10 ms [N] at the sample `first`, which tells the state there.
     first : int
         The first sample at which the motion is known; the device is followed from there.
+    clock : float
+        Time from which slow changes count [s].
     """
 
     name: str
@@ -59,6 +62,7 @@ class Run:
     measured: tuple[Array, Array, Array] | None = None
     thinned: int = 1
     first: int = 0
+    clock: float = 0.0
 
     def friction(self, device: Device, state: float | Array) -> Array:
         """Friction force of a device through the low-pass of the measured force [N], shape (n,).
@@ -67,15 +71,39 @@ class Run:
         measured samples, so that a jump falls between the same two samples as in the record;
         elsewhere it would be misplaced, and other effects would be found to make up for that.
         """
+        return self.in_band(self.at_measured_rate(device, state)["friction"])
+
+    def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
+        """Forces of a device at the measured rate [N], shape (m,) each."""
         if self.measured is None:
             raise ValueError(f"{self.name}: a run at the measured rate has no band")
-        x, v, a = (channel[self.first * self.thinned :] for channel in self.measured)
-        spacing = self.spacing / self.thinned
-        friction = held(device.along(spacing, x, v, a, state)["friction"], self.measured[0].size)
+        begin, size = self.first * self.thinned, self.measured[0].size
+        motion = [channel[begin:] for channel in self.measured]
+        return forces_along(device, self.spacing / self.thinned, motion, state, size)
+
+    def in_band(self, values: Array) -> Array:
+        """Values at the measured rate through the low-pass of the measured force, thinned."""
         if "_response" not in self.__dict__:
-            frequency = rfftfreq(2 * friction.size - 2, spacing)
+            frequency = rfftfreq(2 * values.size - 2, self.spacing / self.thinned)
             object.__setattr__(self, "_response", response(frequency, self.cutoff))
-        return filtered(friction, self.__dict__["_response"])[:: self.thinned]
+        return filtered(values, self.__dict__["_response"])[:: self.thinned]
+
+    def gain(self, frequency: float) -> float:
+        """What the low-pass leaves of a tone."""
+        if np.isinf(self.cutoff):
+            return 1.0
+        return float(response(np.array([frequency]), self.cutoff)[0])
+
+    @property
+    def elapsed(self) -> Array:
+        """Time since the clock began [s], shape (n,)."""
+        return self.time - self.clock
+
+    @property
+    def fine_elapsed(self) -> Array:
+        """The same at the measured rate, shape (m,)."""
+        size = self.force.size if self.measured is None else self.measured[0].size
+        return self.start - self.clock + self.spacing / self.thinned * np.arange(size, dtype=float)
 
     @property
     def time(self) -> Array:
@@ -107,7 +135,17 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
         (motion.displacement, velocity, motion.acceleration),
         step,
         first,
+        motion.start,
     )
+
+
+def forces_along(
+    device: Device, spacing: float, motion: Sequence[Array], state: float | Array, size: int
+) -> dict[str, Array]:
+    """Total and friction force of a device along a motion that may begin late [N], (size,)."""
+    x, v, a = motion
+    found = device.along(spacing, x, v, a, state)
+    return {name: held(found[name], size) for name in ("total", "friction")}
 
 
 def held(values: Array, count: int) -> Array:
@@ -148,6 +186,7 @@ def whole(motion: Motion) -> Run:
         _force_at(motion, first),
         np.inf,
         first=first,
+        clock=motion.start,
     )
 
 
@@ -186,6 +225,13 @@ def scales(runs: Sequence[Run]) -> Scales:
         for name in ("displacement", "acceleration")
     )
     correlation = float(np.corrcoef(x, a)[0, 1]) if np.ptp(x) > 0 and np.ptp(a) > 0 else 0.0
+    travel, forces = (
+        (float(min(np.min(c) for c in channels)), float(max(np.max(c) for c in channels)))
+        for channels in (
+            [getattr(run, name)[run.inner] for run in runs if run.inner.any()]
+            for name in ("displacement", "force")
+        )
+    )
     return Scales(
         size("force"),
         size("displacement"),
@@ -193,4 +239,15 @@ def scales(runs: Sequence[Run]) -> Scales:
         size("acceleration"),
         min(run.cutoff for run in runs),
         correlation**2 > ONE_TONE,
+        travel,
+        max(float(run.elapsed[-1]) for run in runs),
+        forces,
     )
+
+
+def on_clocks(runs: Sequence[Run]) -> list[Run]:
+    """Runs that share one clock where their times do not overlap, else each with its own."""
+    order = sorted(runs, key=lambda run: run.start)
+    apart = all(a.time[-1] <= b.start for a, b in itertools.pairwise(order))
+    origin = order[0].start
+    return [replace(run, clock=origin if apart else run.start) for run in runs]

@@ -9,7 +9,10 @@ is the combination that the data see:
     bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
     series_frequency  sqrt(series_stiffness / inertance) / 2 pi, of the inertance on its shaft  [Hz]
     series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
-    delay           time by which the force channel is late           [s], not a device parameter
+    gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
+    gas_reach       gas_volume / gas_area, the height of the gas                                [m]
+
+What the force channel does (see `channel`) has coordinates of its own, which are no parameters.
 """
 
 from __future__ import annotations
@@ -20,12 +23,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.identify.channel import UNITS
+
 
 @dataclass(frozen=True)
 class Scales:
     """Typical sizes of a data set's channels: rms about the mean, SI units; cut-off [Hz].
 
     one_tone: the motion is so nearly one sine that displacement and acceleration are proportional.
+    travel, force_range: least and largest displacement [m] and measured force [N]; elapsed: longest
+    elapsed time [s].
     """
 
     force: float
@@ -34,6 +41,9 @@ class Scales:
     acceleration: float
     cutoff: float = np.inf
     one_tone: bool = False
+    travel: tuple[float, float] = (-np.inf, np.inf)
+    elapsed: float = 1.0
+    force_range: tuple[float, float] = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True)
@@ -73,7 +83,12 @@ LINEAR = (
     "stiffness_cubic",
     "force_offset",
     "quadratic_damping",
+    "force_drift",
 )
+
+
+GAS_AREA = 1e-3
+"""Piston area [m^2] that a gas is reported under where none is stated: a force has p0 A, V0 / A."""
 
 
 @functools.lru_cache(maxsize=512)
@@ -87,6 +102,12 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
 
     # frequency of the motion, and the highest one that is told from noise
     slow = float(np.sqrt(a / x)) / (2 * np.pi)
+
+    low, high = scales.travel
+    middle = 0.5 * (low + high) if np.isfinite(scales.travel).all() else 0.0
+
+    # a gas is not pressed to a twentieth of its height
+    reach = 1.05 * max(-low, 0.1 * x) if np.isfinite(low) else 0.1 * x
     fast = scales.cutoff if np.isfinite(scales.cutoff) else 100 * slow
     table = {
         "inertance": Coordinate(force / a, 0, infinity),
@@ -122,15 +143,30 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "flywheel_viscous": Coordinate(force / v, 0, infinity),
         "inertance_speed_gradient": Coordinate(0.1 / v, -3 / v, 3 / v),
         "backlash": Coordinate(x, 1e-5 * x, 2 * x, logarithmic=True),
+        "stop_lower": Coordinate(x, low, middle - 1e-3 * x),
+        "stop_upper": Coordinate(x, middle + 1e-3 * x, high),
+        "stop_stiffness": Coordinate(force / x, 0.01 * force / x, 1e6 * force / x, True),
+        "stop_damping": Coordinate(1 / v, 0, infinity),
+        "gas_push": Coordinate(force, 1e-4 * force, 1e4 * force, logarithmic=True),
+        "gas_reach": Coordinate(x, reach, 1e3 * x, logarithmic=True),
+        "gas_exponent": Coordinate(1.0, 1.0, 1.7),
         "delay": Coordinate(1e-3, -0.05, 0.05),
+        "force_drift": Coordinate(force / scales.elapsed, -infinity, infinity),
+        "friction_drift": Coordinate(0.5 / scales.elapsed, -0.95 / scales.elapsed, infinity),
+        "force_maximum": Coordinate(force, -infinity, infinity),
+        "force_minimum": Coordinate(force, -infinity, infinity),
+        "disturbance_amplitude": Coordinate(0.1 * force, 0, infinity),
+        "disturbance_frequency": Coordinate(1 / scales.elapsed, 0, infinity),
     }
     return table[name]
 
 
 def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
     """Parameters of the device that coordinates stand for (without delay)."""
-    values = dict(coordinates)
-    values.pop("delay", None)
+    values = {name: value for name, value in coordinates.items() if name not in UNITS}
+    if (push := values.pop("gas_push", None)) is not None:
+        area = values.setdefault("gas_area", values.get("piston_area", GAS_AREA))
+        values |= {"gas_pressure": push / area, "gas_volume": values.pop("gas_reach") * area}
     presliding = values.pop("presliding", None)
     if (frequency := values.pop("series_frequency", None)) is not None:
         rate, inertance = 2 * np.pi * frequency, values["inertance"]

@@ -236,7 +236,7 @@ class _Data:
             target[: mask.size] = mask
         problem = Problem(self.raw, wide)
         residual = problem.residual(model)
-        parts = blocks(self.raw, problem.masks)
+        parts = blocks(problem.masks)
         squares = np.array([[np.sum(residual[i][at] ** 2), at.size] for i, at in parts])
         if not len(squares):
             return math.nan, np.zeros((0, 2))

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from inerter.core import Device, DeviceError, parameters
-from inerter.identify.bench import Run, held, scales
+from inerter.identify.bench import Run, forces_along, held, scales
+from inerter.identify.channel import UNITS, clips, delayed, through_channel, without_tone
 from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_values
 from inerter.identify.residual import robust_weight, sandwich, without_transient
 
@@ -130,27 +131,6 @@ def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
     return tuple(name for name in free if name not in NUISANCES)
 
 
-def delayed(force: Array, delay: float, spacing: float) -> Array:
-    """A force `delay` seconds later, by four-point Lagrange interpolation; ends held."""
-    if delay == 0:
-        return force
-    n = force.size
-    shift = delay / spacing
-    whole = int(np.floor(shift))
-    s = 1 - (shift - whole)  # position after sample i - whole - 1
-    index = np.arange(n) - whole - 1
-    weights = (
-        -s * (s - 1) * (s - 2) / 6,
-        (s + 1) * (s - 1) * (s - 2) / 2,
-        -(s + 1) * s * (s - 2) / 2,
-        (s + 1) * s * (s - 1) / 6,
-    )
-    return sum(
-        weight * force[np.clip(index + offset, 0, n - 1)]
-        for weight, offset in zip(weights, (-1, 0, 1, 2), strict=True)
-    )  # type: ignore[return-value]
-
-
 def first_state(device: Device, run: Run) -> float | Array:
     """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
@@ -166,18 +146,52 @@ def first_state(device: Device, run: Run) -> float | Array:
 
 def force_along(model: Model, run: Run) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,)."""
-    device = model.device()
+    device, values = model.device(), model.values
     state = first_state(device, run)
+    if clips(values) and run.measured is not None:
+        # what a limit cuts off comes before the low-pass of the measured force
+        found = run.at_measured_rate(device, state)
+        fine = run.fine_elapsed
+        force = with_friction_drift(values, found, fine)
+        return run.in_band(through_channel(values, force, fine, run.spacing / run.thinned))
     x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
     if np.isinf(run.cutoff) or (device.friction == "none" and not device.load_friction):
-        total = held(device.along(run.spacing, x, v, a, state)["total"], run.force.size)
+        found = forces_along(device, run.spacing, (x, v, a), state, run.force.size)
+        total = with_friction_drift(values, found, run.elapsed)
     else:
         # friction is not linear in the motion: it has to pass the low-pass of the measured force
         smooth_device = model.without_friction()
         rest = np.atleast_1d(state)[-smooth_device.nstate :] if smooth_device.nstate else 0.0
         smooth = smooth_device.along(run.spacing, x, v, a, rest)["total"]
-        total = held(smooth, run.force.size) + run.friction(device, state)
-    return delayed(total, model.delay, run.spacing)
+        friction = run.friction(device, state)
+        level = 1 + values.get("friction_drift", 0.0) * run.elapsed
+        total = held(smooth, run.force.size) + level * friction
+    return through_channel(values, total, run.elapsed, run.spacing)
+
+
+def with_friction_drift(
+    values: Mapping[str, float], forces: Mapping[str, Array], elapsed: Array
+) -> Array:
+    """Total force of a device whose friction level changes with time [N], shape (n,)."""
+    drift = values.get("friction_drift", 0.0)
+    return forces["total"] + drift * elapsed * forces["friction"] if drift else forces["total"]
+
+
+def settled(model: Model, run: Run, residual: Array, mask: NDArray[np.bool_]) -> Array:
+    """A residual without what only the record itself can tell, read off its masked samples.
+
+    That is how the flywheel turned as the record began, and the phase of a tone. Of a run left out
+    of a fit (nothing masked) everything is read off the run.
+    """
+    mask = mask if mask.any() else run.inner
+    device, values = model.device(), model.values
+    if device.series_stiffness and not device.backlash:
+        residual = without_transient(device, residual, run.spacing, mask)
+    if amplitude := values.get("disturbance_amplitude", 0.0):
+        frequency = values["disturbance_frequency"]
+        seen = amplitude * run.gain(frequency)
+        residual = without_tone(residual, run.elapsed, mask, seen, frequency)
+    return residual
 
 
 @dataclass(frozen=True)
@@ -227,12 +241,10 @@ class Problem:
 
     def residual(self, model: Model) -> list[Array]:
         """Measured minus predicted force of every run [N]."""
-        residual = [run.force - force_along(model, run) for run in self.runs]
-        device = model.device()
-        if not device.series_stiffness or device.backlash:
-            return residual
-        parts = zip(residual, self.runs, self.masks, strict=True)
-        return [without_transient(device, r, run.spacing, mask) for r, run, mask in parts]
+        return [
+            settled(model, run, run.force - force_along(model, run), mask)
+            for run, mask in zip(self.runs, self.masks, strict=True)
+        ]
 
     def _masked(self, arrays: Sequence[Array]) -> Array:
         return np.concatenate([a[m] for a, m in zip(arrays, self.masks, strict=True)])
@@ -245,6 +257,7 @@ class Problem:
             name in LINEAR
             # a state begins where the first force puts it, and so hangs on every term
             and not model.device().nstate
+            and not clips(model.values)
             and not (name == "inertance" and any(other in model.values for other in ENTANGLED))
         ):
             columns = []
@@ -258,6 +271,7 @@ class Problem:
                     "stiffness_cubic": stretch**3,
                     "force_offset": np.ones_like(v),
                     "quadratic_damping": v * np.abs(v),
+                    "force_drift": run.elapsed,
                 }[name]
                 columns.append(-delayed(column, model.delay, run.spacing) * how.size)
             return np.concatenate(columns)
@@ -302,10 +316,13 @@ class Problem:
         }
         return replace(model, values={**model.values, **values})
 
-    def fit(self, model: Model, evaluations: int = 40, loss: str = "linear") -> Fit:
+    def fit(
+        self, model: Model, evaluations: int = 40, loss: str = "linear", tolerance: float = 1e-9
+    ) -> Fit:
         """Bounded least squares over the model's free coordinates, from its present values.
 
-        A robust `loss` (see `scipy.optimize.least_squares`) lets samples far off count less.
+        A robust `loss` (see `scipy.optimize.least_squares`) lets samples far off count less. The
+        search ends where a step lowers the cost by less than `tolerance` of it.
         """
         how = [coordinate(name, self.scales) for name in model.free]
         start = self.variables(model)
@@ -346,7 +363,7 @@ class Problem:
             loss=loss,
             f_scale=self._typical(at(inside)) / size if loss != "linear" else 1.0,
             xtol=1e-7,
-            ftol=1e-9,
+            ftol=tolerance,
             gtol=1e-10,
             max_nfev=evaluations,
         )
@@ -379,10 +396,7 @@ def parameter_errors(fit: Fit) -> dict[str, tuple[float, float]]:
     names = fit.model.free
 
     def parameters(coordinates: Mapping[str, float]) -> dict[str, float]:
-        values = device_values(coordinates)
-        if "delay" in coordinates:
-            values["delay"] = coordinates["delay"]
-        return values
+        return device_values(coordinates) | {n: coordinates[n] for n in UNITS if n in coordinates}
 
     here = parameters(fit.model.values)
     errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0))

@@ -89,6 +89,11 @@ def _folds(runs: Sequence[Run], fit: list[Mask]) -> list[list[Mask]]:
             [mask if i in group else np.zeros_like(mask) for i, mask in enumerate(fit)]
             for group in groups
         ]
+    return spread_folds(fit)
+
+
+def spread_folds(fit: Sequence[Mask]) -> list[list[Mask]]:
+    """Masks of what each of four folds leaves out: blocks spread over every run."""
     folds = []
     for fold in range(4):
         masks = []
@@ -102,7 +107,7 @@ def _folds(runs: Sequence[Run], fit: list[Mask]) -> list[list[Mask]]:
     return folds
 
 
-def blocks(runs: Sequence[Run], masks: Sequence[Mask], count: int = 48) -> list[tuple[int, Mask]]:
+def blocks(masks: Sequence[Mask], count: int = 48) -> list[tuple[int, NDArray[np.intp]]]:
     """Stretches of consecutive masked samples, about `count` of them: (run, index array).
 
     Residuals are correlated over milliseconds; sums over such stretches are nearly independent,

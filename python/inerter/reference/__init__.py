@@ -16,8 +16,9 @@ published numbers of the models, plain data, come from `inerter/model_parameters
     full_car.py      heave, pitch and roll on four struts
     tuned_inerter_damper.py   a shear frame with inerters between floors
     fluid_inerter.py the fluid inerter on its shaker
-    bench.py         test records with one hidden effect
-    bench_motions.py, bench_devices.py   what it draws from
+    bench.py         test records with hidden effects
+    bench_motions.py, bench_effects.py, bench_devices.py, bench_channel.py   what it draws from
+    bench_unknown.py test records with an effect that no name describes
     wang_su.py       the demonstration record
 """
 
@@ -33,7 +34,10 @@ from inerter.model_parameters import (
     TEST_RIG,
 )
 
-from .bench import EFFECTS, HYSTERETIC_LAWS, HiddenCase, HiddenRun, NoiseLevels, hide_effect
+from .bench import HiddenCase, HiddenRun, NoiseLevels, hide_effect
+from .bench_channel import Channel
+from .bench_effects import BENCH_EFFECTS, EFFECTS, HYSTERETIC_LAWS, compatible
+from .bench_unknown import UNKNOWN, hide_unknown
 from .device import ReferenceDevice
 from .fluid_inerter import (
     FluidInerterResult,
@@ -65,6 +69,7 @@ from .vehicle import Corner, corner_of
 from .wang_su import WANG_SU_DEVICE, WangSuBench, wang_su_bench, wang_su_motion
 
 __all__ = [
+    "BENCH_EFFECTS",
     "EFFECTS",
     "FLUID_INERTER",
     "FRAME",
@@ -78,7 +83,9 @@ __all__ = [
     "QUARTER_CAR",
     "SHAKER",
     "TEST_RIG",
+    "UNKNOWN",
     "WANG_SU_DEVICE",
+    "Channel",
     "Corner",
     "FloorDevice",
     "FluidInerterResult",
@@ -102,6 +109,7 @@ __all__ = [
     "Strut",
     "WangSuBench",
     "chirp",
+    "compatible",
     "complete_device",
     "corner_of",
     "dry_device",
@@ -110,6 +118,7 @@ __all__ = [
     "frame_state_matrix",
     "friction_level",
     "hide_effect",
+    "hide_unknown",
     "receptance",
     "response",
     "scaled",

@@ -1,43 +1,35 @@
-"""Test records with one hidden effect, made by the reference ODE.
+"""Test records with hidden effects, made by the reference ODE.
 
-A random device (an ideal inerter plus one effect) is driven along three or four motions; force
-and displacement get white noise. Whoever diagnoses the records can be held against the truth.
+A random device (an ideal inerter plus one effect, or several) is driven along three or four
+motions; force and displacement get white noise. Whoever diagnoses the records can be held against
+the truth.
 
-The motions are drawn in `bench_motions.py`, the device and its effect's size in
-`bench_devices.py`; a delayed force channel is drawn here, 1 to 6 ms.
-Not modelled: coloured noise, quantisation, drift, rigs that shake in resonance.
+    bench_motions.py   the motions
+    bench_effects.py   the effects and which go together
+    bench_devices.py   what an effect adds to the device, and its size
+    bench_channel.py   what happens to the force on its way into the record
+    bench_unknown.py   records with an effect that no name describes
+Not modelled: coloured noise, quantisation, rigs that shake in resonance.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
-from .bench_devices import draw_device, rms, rounded
+from .bench_channel import Channel, Situation, answers
+from .bench_devices import draw_effect, draw_limits, joined, own_names, rms, rounded
+from .bench_effects import EFFECTS, HYSTERETIC_LAWS, NEEDS_LEVEL, check_effect, clash
 from .bench_motions import draw_drives
 from .device import ReferenceDevice
-from .motion import Response, response
+from .motion import Response
 from .record import write_record
-
-EFFECTS = (
-    "none",
-    "viscous_friction",
-    "coulomb_friction",
-    "stribeck_friction",
-    "hysteretic_friction",
-    "asymmetric_friction",
-    "position_dependent_friction",
-    "load_dependent_friction",
-    "parallel_stiffness",
-    "force_offset",
-    "sensor_delay",
-    "quadratic_damping",
-)
-
-HYSTERETIC_LAWS = ("dahl", "lugre", "bouc_wen")
 
 
 @dataclass(frozen=True)
@@ -76,9 +68,23 @@ class HiddenRun:
 class HiddenCase:
     """Runs of one device and what was hidden in them.
 
-    `parameters` holds the true non-zero values under their public names (SI); `delay` [s] is
-    positive where the force channel lags the displacement; `share` is rms(F - b a) / rms(F);
-    `noise` holds the standard deviations used, in N and m.
+    Attributes
+    ----------
+    effect, also, law
+        What was hidden; the law belongs to hysteretic_friction.
+    parameters
+        The true non-zero values under their public names (SI); `names` says which effect they
+        belong to.
+    device, delay, channel
+        The device; the delay [s] is positive where the force channel lags the displacement.
+    share
+        rms(F - b a) / rms(F), without noise.
+    noise
+        The standard deviations used, "force" in N and "displacement" in m.
+    stated
+        For inertance_error the device that a user would state, with a wrong inertance; else None.
+    kind
+        For an effect without a name which it is, see `bench_unknown.py`; else None.
     """
 
     seed: int
@@ -90,6 +96,16 @@ class HiddenCase:
     noise: dict[str, float]
     runs: tuple[HiddenRun, ...]
     delay: float = 0.0
+    also: tuple[str, ...] = ()
+    names: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    channel: Channel = field(default_factory=Channel)
+    stated: dict[str, float] | None = None
+    kind: str | None = None
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """All effects; none for "none" and for one without a name."""
+        return () if self.effect in ("none", "unknown") else (self.effect, *self.also)
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write each run as `<folder>/<run name>.csv`; the files do not tell the effect."""
@@ -110,76 +126,154 @@ def hide_effect(
     *,
     law: str | None = None,
     noise: NoiseLevels | None = None,
+    also: Sequence[str] = (),
 ) -> HiddenCase:
-    """Draw a device with one hidden effect and its records.
+    """Draw a device with one hidden effect, or several, and its records.
 
     Parameters
     ----------
     seed
         Everything follows from it; print it where a test fails.
     effect
-        One of `EFFECTS`; drawn if not given.
+        "none" or one of `BENCH_EFFECTS`; one of `EFFECTS` is drawn if not given.
     law
         For hysteretic_friction one of `HYSTERETIC_LAWS`; drawn if not given.
     noise
         Noise levels; 0.2 N and 1 micrometre if not given. `NoiseLevels(0.0, 0.01)` is 1 % of the
         force rms instead of 0.2 N.
+    also
+        Further effects, each sized as if it were alone; saturation clips what there is.
+
+    Runs with friction_drift share one clock: each starts some seconds after another. All others
+    start at zero.
 
     Raises
     ------
     ValueError
-        Unknown effect or law, or a law given for an effect without one.
+        Unknown effect or law, effects that do not go together, or a law given for an effect
+        without one.
     """
-    choose, draw, move, shake = (
-        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(4)
+    choose, draw, move, shake, more = (
+        np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(5)
     )
     name = effect if effect is not None else str(choose.choice(EFFECTS))
-    if name not in EFFECTS:
-        raise ValueError(f"effect: '{name}' is not one of {', '.join(EFFECTS)}")
-    if name == "hysteretic_friction":
-        law = law if law is not None else str(choose.choice(HYSTERETIC_LAWS))
-        if law not in HYSTERETIC_LAWS:
-            raise ValueError(f"law: '{law}' is not one of {', '.join(HYSTERETIC_LAWS)}")
-    elif law is not None:
-        raise ValueError(f"law: '{law}' given, but only hysteretic_friction has a law")
+    effects = (name, *also)
+    check_effect(name)
+    reason = clash(effects)
+    if reason is not None:
+        raise ValueError(f"effects: {', '.join(effects)} do not go together: {reason}")
+    law = _law(choose, effects, law)
 
     ideal = ReferenceDevice(inertance=rounded(np.exp(draw.uniform(np.log(20.0), np.log(400.0)))))
-    drives = draw_drives(move, ideal.inertance)
-    delay = rounded(draw.uniform(1e-3, 6e-3)) if name == "sensor_delay" else 0.0
+    runs = draw_situations(move, more, ideal.inertance, "friction_drift" in effects)
 
-    # size the effect, then drive the device along every motion
-    device, names = draw_device(draw, name, law, ideal, drives)
-    truths = [response(device, drive.motion, drive.time - delay) for drive in drives]
-    forces = np.concatenate([truth.force for truth in truths])
-    bare = np.concatenate([ideal.inertance * drive.acceleration for drive in drives])
-    parameters = {key: float(getattr(device, key)) for key in names if getattr(device, key) != 0.0}
-    if delay:
-        parameters["delay"] = delay
+    # size each effect as if alone, the first by the numbers it would have alone
+    generators = [draw, *more.spawn(len(also))]
+    drawn = [
+        draw_limits(generator, _bare(ideal, runs))
+        if each == "sensor_saturation"
+        else draw_effect(generator, each, law, ideal, runs)
+        for each, generator in zip(effects, generators, strict=True)
+    ]
+    whole = joined(effects, drawn, ideal)
+    device = replace(ideal, **whole.device)
+    channel = Channel(**whole.channel)
 
-    # what the sensors saw
+    # drive the device along every motion; a sensor's range follows from the whole force
+    truths = answers(device, channel, runs)
+    if "sensor_saturation" in effects:
+        which = effects.index("sensor_saturation")
+        forces = np.concatenate([truth.force for truth in truths])
+        drawn[which] = draw_limits(more, forces)
+        channel = Channel(**{k: v for k, v in whole.channel.items() if k not in _LIMITS})
+        channel = replace(channel, **drawn[which].channel)
+    names = {
+        each: own_names(each, effects, part) for each, part in zip(effects, drawn, strict=True)
+    }
+    return record_case(
+        runs, truths, channel, shake, noise,
+        seed=seed, effect=name, law=law, device=device, also=tuple(also), stated=whole.stated,
+        names={} if name == "none" else names,
+        parameters=_values(device, channel, names),
+        ideal=ideal,
+    )  # fmt: skip
+
+
+def draw_situations(
+    move: Generator, more: Generator, inertance: float, one_clock: bool
+) -> list[Situation]:
+    """The motions of a case, each with its start on the clock and a phase."""
+    runs: list[Situation] = []
+    start = 0.0
+    for drive in draw_drives(move, inertance):
+        runs.append(Situation(drive, start, float(more.uniform(0.0, 2.0 * np.pi))))
+        if one_clock:
+            start = round(start + float(drive.time[-1]) + more.uniform(1.0, 10.0), 1)
+    return runs
+
+
+def record_case(
+    runs: list[Situation],
+    truths: list[Response],
+    channel: Channel,
+    shake: Generator,
+    noise: NoiseLevels | None,
+    ideal: ReferenceDevice,
+    **known: Any,
+) -> HiddenCase:
+    """What the sensors saw of a device's answers; `known` are the case's other fields."""
+    clean = [replace(truth, force=channel.clip(truth.force)) for truth in truths]
+    forces = np.concatenate([truth.force for truth in clean])
     levels = noise if noise is not None else NoiseLevels()
     sigma = float(np.hypot(levels.force, levels.force_share * rms(forces)))
-    runs = tuple(
-        HiddenRun(
-            name=f"run_{i + 1}",
-            kind=drive.kind,
-            sample_rate=drive.rate,
-            time=drive.time,
-            displacement=drive.displacement
-            + levels.displacement * shake.standard_normal(drive.time.size),
-            force=truth.force + sigma * shake.standard_normal(drive.time.size),
-            truth=truth,
+    seen = []
+    for number, (run, truth, final) in enumerate(zip(runs, truths, clean, strict=True)):
+        drive, size = run.drive, run.drive.time.size
+        displacement = drive.displacement + levels.displacement * shake.standard_normal(size)
+        force = channel.clip(truth.force + sigma * shake.standard_normal(size))
+        clock = drive.time + run.start
+        name = f"run_{number + 1}"
+        seen.append(
+            HiddenRun(name, drive.kind, drive.rate, clock, displacement, force, truth=final)
         )
-        for i, (drive, truth) in enumerate(zip(drives, truths, strict=True))
-    )
     return HiddenCase(
-        seed=seed,
-        effect=name,
-        law=law,
-        parameters=parameters,
-        device=device,
-        share=rms(forces - bare) / rms(forces),
+        share=rms(forces - _bare(ideal, runs)) / rms(forces),
         noise={"force": sigma, "displacement": levels.displacement},
-        runs=runs,
-        delay=delay,
+        runs=tuple(seen),
+        delay=channel.delay,
+        channel=channel,
+        **known,
     )
+
+
+_LIMITS = ("force_minimum", "force_maximum")
+
+
+def _law(choose: Generator, effects: tuple[str, ...], law: str | None) -> str | None:
+    if "hysteretic_friction" not in effects:
+        if law is not None:
+            raise ValueError(f"law: '{law}' given, but only hysteretic_friction has a law")
+        return None
+    # Bouc-Wen's loop has no level that could differ with direction or position
+    levels = [name for name in effects if name in NEEDS_LEVEL]
+    laws = HYSTERETIC_LAWS[:2] if levels else HYSTERETIC_LAWS
+    law = law if law is not None else str(choose.choice(laws))
+    if law not in laws:
+        reason = f" with {levels[0]}" if levels else ""
+        raise ValueError(f"law: '{law}' is not one of {', '.join(laws)}{reason}")
+    return law
+
+
+def _bare(ideal: ReferenceDevice, runs: list[Situation]) -> NDArray[np.float64]:
+    return np.concatenate([ideal.inertance * run.drive.acceleration for run in runs])
+
+
+def _values(
+    device: ReferenceDevice, channel: Channel, names: dict[str, tuple[str, ...]]
+) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for key in dict.fromkeys(name for group in names.values() for name in group):
+        value = float(getattr(device if hasattr(device, key) else channel, key))
+        if value != 0.0:
+            found[key] = value
+    return found

@@ -106,3 +106,31 @@ def draw_drives(draw: Generator, inertance: float) -> list[Drive]:
         factor = float(np.clip(wanted, 1.5e-3 / travel, 60e-3 / travel))
         drives.append(Drive(str(kind), scaled(motion, factor), rate, time))
     return drives
+
+
+def highest_frequency(drives: list[Drive]) -> float:
+    """The frequency [Hz] below which each run has 95 % of its acceleration's power."""
+    highest = 0.0
+    for drive in drives:
+        power, frequency = _spectrum(drive)
+        summed = np.cumsum(power) / np.sum(power)
+        highest = max(highest, float(frequency[np.searchsorted(summed, 0.95)]))
+    return highest
+
+
+def is_free_of(drives: list[Drive], frequency: float) -> bool:
+    """Whether within half a hertz no run has more than 1e-4 of its acceleration's power."""
+    for drive in drives:
+        power, at = _spectrum(drive)
+        near = abs(at - frequency) < 0.5
+        if np.sum(power[near]) > 1e-4 * np.sum(power):
+            return False
+    return True
+
+
+def _spectrum(drive: Drive) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Power and frequency [Hz] of the acceleration; a window keeps a line's feet small."""
+    shape = np.hanning(drive.time.size)
+    power = abs(np.fft.rfft(drive.acceleration * shape)) ** 2
+    frequency = np.fft.rfftfreq(drive.time.size, 1.0 / drive.rate)
+    return np.asarray(power, np.float64), np.asarray(frequency, np.float64)

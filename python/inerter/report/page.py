@@ -11,6 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
+from inerter.diagnose.remainder.words import WORDS
 from inerter.diagnose.result import (
     Diagnosis,
     Finding,
@@ -26,7 +27,10 @@ from inerter.report.palette import DARK, LIGHT
 from inerter.report.plotting import to_script
 from inerter.report.run_plots import LOOP_CYCLES, run_plots
 from inerter.report.runs import part_held_out, pictured, rmse, role
+from inerter.report.subject import subject
 
+# share of what remains below which a quantity it goes with is not shown
+LEAST_SHOWN = 0.05
 # entries of `method` that have a place of their own on the page
 _PLACED = ("cutoffs_tried", "force_error_at_cutoffs")
 _METHOD_WORDS = {
@@ -62,6 +66,7 @@ def write_report(diagnosis: Diagnosis, path: Path, device_toml: str, model_xml: 
 
 def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str:
     """The report as HTML text; see `write_report`."""
+    about = subject(diagnosis)
     runs = pictured(diagnosis.curves)
     table = _table(diagnosis)
     single = table_plots(table) if table else {}
@@ -71,6 +76,8 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
     plots = {"runs": [run_plots(run, len(runs)) for run in runs], "single": single}
     return _template().render(
         d=diagnosis,
+        subject=about,
+        split_figure=lambda value, digits=3: about.figure(value, digits).rsplit(" ", 1),
         headline=headline(diagnosis),
         findings=[_finding(finding, diagnosis.baseline.rmse) for finding in diagnosis.findings],
         runs=[_run_label(run) for run in runs],
@@ -86,6 +93,8 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         ),
         records=[_record(record, diagnosis) for record in diagnosis.records],
         warned=any(record.warnings for record in diagnosis.records),
+        remains=_remains(diagnosis),
+        proposed=_proposed(diagnosis),
         engines=_engines(diagnosis),
         method=_method(diagnosis.method),
         device_toml=device_toml,
@@ -104,6 +113,8 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
 
 def headline(diagnosis: Diagnosis) -> str:
     """The outcome in one sentence."""
+    if not diagnosis.findings and diagnosis.unexplained.significant:
+        return "The simulation lacks something that no known effect explains"
     if not diagnosis.findings:
         return "No lack of the simulation is to be seen in these data"
     names = [text.finding_name(finding) for finding in diagnosis.findings]
@@ -181,6 +192,7 @@ def _run_label(run: RunCurves) -> dict[str, Any]:
         "part": part_held_out(run),
         "before": rmse(run, run.baseline),
         "after": rmse(run, run.extended),
+        "unit": run.unit,
     }
 
 
@@ -190,7 +202,8 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     after: dict[str, Any] = {"delay": diagnosis.extended.delay, **diagnosis.extended.device}
     rows = []
     for name in dict.fromkeys([*diagnosis.parameters, *after, *before]):
-        old, new, found = before.get(name), after.get(name), diagnosis.parameters.get(name)
+        new, found = after.get(name), diagnosis.parameters.get(name)
+        old = before.get(name, getattr(found, "stated", None))
         if name == "friction" or (name == "delay" and not (old or new or found)):
             continue
         suffix = text.unit(found.unit if found else text.parameter_unit(name))
@@ -220,6 +233,38 @@ def _record(record: RecordSummary, diagnosis: Diagnosis) -> dict[str, Any]:
             row |= {"before": rmse(run, run.baseline), "after": rmse(run, run.extended)}
     row["role"] = role(record, diagnosis)
     return row
+
+
+def _remains(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What the remaining error goes with, where that is more than noise; the strongest first."""
+    if not diagnosis.unexplained.significant:
+        return []
+    known = {**WORDS, "frequency": "a line of its spectrum"}
+    return [
+        {
+            "name": known.get(test["goes_with"], test["goes_with"]),
+            "share": test["share"],
+            "width": round(100 * min(test["share"], 1.0), 1),
+        }
+        for test in sorted(diagnosis.unexplained.tests, key=lambda test: -test["share"])
+        if test["share"] >= LEAST_SHOWN
+        and test["p"] < diagnosis.unexplained.false_alarm_rate
+        # how loud a residual is changes with much that is large
+        and (test["goes_with"] != "bursts" or "bursts" in diagnosis.unexplained.depends_on)
+    ]
+
+
+def _proposed(diagnosis: Diagnosis) -> list[dict[str, str]]:
+    proposal = diagnosis.unexplained.proposal or {"terms": []}
+    return [
+        {
+            "term": term["term"],
+            "value": text.with_error(
+                ParameterValue(term["coefficient"], term["stderr"], term["unit"])
+            ),
+        }
+        for term in proposal["terms"]
+    ]
 
 
 def _engines(diagnosis: Diagnosis) -> list[tuple[str, float | None]]:

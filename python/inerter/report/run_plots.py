@@ -40,7 +40,7 @@ def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
 
 def _over_time(run: RunCurves, limit: int) -> go.Figure:
     """Force above, residual below, one time axis."""
-    plot = two_over_time("force [N]", "error [N]")
+    plot = two_over_time(f"{run.quantity} [{run.unit}]", f"error [{run.unit}]")
     lines: list[tuple[str, np.ndarray, str, float, str]] = [
         ("measured", run.force, "measured", 3.0, "y"),
         (BEFORE, run.baseline, "before", 1.4, "y"),
@@ -86,7 +86,7 @@ def _loops(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
         ("loop-displacement", "displacement [m]", run.displacement),
         ("loop-velocity", "velocity [m/s]", run.velocity),
     ):
-        plot = figure(title, "force [N]")
+        plot = figure(title, f"{run.quantity} [{run.unit}]")
         _room(plot, np.concatenate([x[keep] for keep in keeps]))
         for name, force, width in (
             ("measured", run.force, 3.0),
@@ -118,7 +118,7 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
         ("error-velocity", "velocity [m/s]", run.velocity),
         ("error-acceleration", "acceleration [m/s²]", run.acceleration),
     ):
-        plot = figure(title, "error [N]")
+        plot = figure(title, f"error [{run.unit}]")
         for name, color, force in (
             (BEFORE, "before", run.baseline),
             (AFTER, "after", run.extended),
@@ -133,7 +133,7 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
 
 
 def _spectrum(run: RunCurves, mask: Mask) -> go.Figure:
-    plot = figure("frequency [Hz]", "density [N/√Hz]")
+    plot = figure("frequency [Hz]", f"density [{run.unit}/√Hz]")
     log: dict[str, Any] = {"type": "log", "dtick": 1, "tickformat": "~g"}
     plot.update_layout(xaxis=log, yaxis=log)
     part = thinning.longest_stretch(mask)
@@ -142,7 +142,7 @@ def _spectrum(run: RunCurves, mask: Mask) -> go.Figure:
         return plot
     rate = 1 / float(np.median(np.diff(run.time[part])))
     for name, color, values, width in (
-        ("measured force", "measured", run.force, 3.0),
+        (f"measured {run.quantity}", "measured", run.force, 3.0),
         ("error before", "before", run.force - run.baseline, 1.5),
         ("error after", "after", run.force - run.extended, 1.5),
     ):

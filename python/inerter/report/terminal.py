@@ -10,6 +10,7 @@ from rich.text import Text
 from inerter.diagnose.result import Diagnosis
 from inerter.report import text
 from inerter.report.runs import role
+from inerter.report.subject import subject
 
 
 def print_summary(diagnosis: Diagnosis, console: Console) -> None:
@@ -20,11 +21,12 @@ def print_summary(diagnosis: Diagnosis, console: Console) -> None:
 def summary(diagnosis: Diagnosis) -> RenderableType:
     """Verdict, findings, and records with their warnings, to print with rich."""
     before, after = diagnosis.baseline.rmse, diagnosis.extended.rmse
+    about = subject(diagnosis)
     numbers = Text.assemble(
-        "rms force error on held-out data  ",
-        (f"{text.number(before)} N", "bold yellow"),
+        f"{about.error} on held-out data  ",
+        (about.figure(before), "bold yellow"),
         " → ",
-        (f"{text.number(after)} N", "bold cyan"),
+        (about.figure(after), "bold cyan"),
         f"   ({text.percent(1 - after / before if before > 0 else 0.0)} less)",
     )
     parts: list[RenderableType] = [
@@ -44,7 +46,9 @@ def _findings(diagnosis: Diagnosis) -> Table:
     table = _table("What the simulation lacks")
     table.add_column("effect", ratio=3)
     table.add_column("parameters", ratio=4)
-    table.add_column("error [N]", justify="right", no_wrap=True)
+    about = subject(diagnosis)
+    unit = "%" if about.share else "N"
+    table.add_column(f"error [{unit}]", justify="right", no_wrap=True)
     table.add_column("gain", justify="right", no_wrap=True)
     table.add_column("confidence", justify="right", no_wrap=True)
     for finding in diagnosis.findings:
@@ -59,7 +63,10 @@ def _findings(diagnosis: Diagnosis) -> Table:
         table.add_row(
             effect,
             _plain(values),
-            f"{text.number(finding.rmse_before)} → {text.number(finding.rmse_after)}",
+            " → ".join(
+                about.figure(value).rsplit(" ", 1)[0]
+                for value in (finding.rmse_before, finding.rmse_after)
+            ),
             text.percent(finding.gain),
             text.confidence(finding.confidence),
         )

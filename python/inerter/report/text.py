@@ -8,7 +8,8 @@ import re
 from inerter.core import parameters
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.result import Finding, ParameterValue
-from inerter.diagnose.wording import PLAIN, effect_in_words
+from inerter.diagnose.system.named import KNOWN
+from inerter.diagnose.wording import effect_in_words
 
 _SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ")
 UNKNOWN = "–"
@@ -86,12 +87,12 @@ def tidy(sentence: str) -> str:
 
 def effect_name(effect: str) -> str:
     """An effect in words; the contract's name with spaces where there are none yet."""
-    return PLAIN.get(effect, effect.replace("_", " "))
+    return KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
 
 
 def finding_name(finding: Finding) -> str:
     """An effect in words, with its law."""
-    if finding.effect in PLAIN:
+    if finding.effect in EFFECTS:
         return effect_in_words(finding)
     law = f" ({finding.law})" if finding.law else ""
     return effect_name(finding.effect) + law
@@ -99,7 +100,7 @@ def finding_name(finding: Finding) -> str:
 
 def effect_notes(effect: str) -> dict[str, str]:
     """What an effect adds, its physical cause, what it is taken for and how to tell."""
-    known = EFFECTS.get(effect)
+    known = KNOWN.get(effect)
     if known is None:
         return {}
     rival, _, experiment = known.taken_for.partition(": ")

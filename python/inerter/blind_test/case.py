@@ -1,0 +1,199 @@
+"""One case of a blind test: effects are hidden, the records diagnosed, the outcome compared."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from inerter.blind_test.plan import Task
+from inerter.core import Device
+from inerter.diagnose import Diagnosis, diagnose_bench
+from inerter.records import Record
+from inerter.reference import HiddenCase, hide_effect, hide_unknown
+
+# Bouc-Wen's parameters are redundant: other values draw the same loop
+UNCOUNTED_LAWS = ("bouc_wen",)
+# of a gas spring the data see the force p0 A and the reach V0 / A
+GAS = ("gas_pressure", "gas_area", "gas_volume")
+
+
+@dataclass(frozen=True)
+class Named:
+    """A finding: its effect, law and confidence."""
+
+    effect: str
+    law: str | None
+    confidence: float
+
+
+@dataclass(frozen=True)
+class ParameterError:
+    """A hidden parameter of an effect: true value, what was found, its standard error."""
+
+    effect: str
+    name: str
+    true: float
+    found: float | None
+    stderr: float | None
+
+    @property
+    def relative(self) -> float:
+        """|found - true| / |true|; infinite for one that was not reported."""
+        return np.inf if self.found is None else abs(self.found - self.true) / abs(self.true)
+
+    @property
+    def near(self) -> bool:
+        """Within 5 %, or within 3 standard errors."""
+        if self.found is None:
+            return False
+        spread = self.stderr if self.stderr is not None and np.isfinite(self.stderr) else 0.0
+        return abs(self.found - self.true) <= max(0.05 * abs(self.true), 3.0 * spread)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What was hidden and what was said; `error` where the diagnosis did not come to an end.
+
+    law: of hysteretic friction, also where it was drawn; gain: share of the rms error against the
+    noise-free force that is taken away on held-out data; seconds: of the diagnosis alone, on the
+    wall and of the processor, which says more where others use the machine.
+    """
+
+    task: Task
+    law: str | None = None
+    named: tuple[Named, ...] = ()
+    parameters: tuple[ParameterError, ...] = ()
+    unexplained: bool = False
+    gain: float | None = None
+    verdict: str = ""
+    seconds: float = 0.0
+    processor_seconds: float = 0.0
+    share: float | None = None
+    error: str | None = None
+    truth: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Effects that were named, the first first."""
+        return tuple(named.effect for named in self.named)
+
+    @property
+    def first(self) -> str:
+        """The effect named first, "none", or "failed" where the diagnosis did not end."""
+        if self.error is not None:
+            return "failed"
+        return self.effects[0] if self.named else "none"
+
+
+def hide(task: Task) -> HiddenCase:
+    """The records of a case."""
+    if task.group == "unknown":
+        return hide_unknown(task.seed, task.kind, task.levels)
+    first, *also = task.effects or ("none",)
+    return hide_effect(task.seed, first, law=task.law, noise=task.levels, also=also)
+
+
+def solve(task: Task) -> Outcome:
+    """Hide, diagnose, compare; whatever goes wrong is told in the outcome."""
+    case = None
+    start = time.perf_counter(), time.process_time()
+    try:
+        case = hide(task)
+        records = [
+            Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
+            for run in case.runs
+        ]
+        device = None if case.stated is None else Device(**case.stated)
+        start = time.perf_counter(), time.process_time()
+        with np.errstate(all="ignore"), catch_warnings():
+            simplefilter("ignore", RuntimeWarning)
+            diagnosis = diagnose_bench(records, device)
+        outcome = compare(task, case, diagnosis)
+    except Exception as error:
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+        outcome = Outcome(task, task.law, error=text)
+        if case is not None:
+            outcome = replace(outcome, law=case.law, share=case.share, truth=case.parameters)
+    wall, busy = time.perf_counter() - start[0], time.process_time() - start[1]
+    return replace(outcome, seconds=wall, processor_seconds=busy)
+
+
+def compare(task: Task, case: HiddenCase, diagnosis: Diagnosis) -> Outcome:
+    """A diagnosis against the truth."""
+    return Outcome(
+        task,
+        case.law,
+        tuple(Named(f.effect, f.law, f.confidence) for f in diagnosis.findings),
+        tuple(parameter_errors(case, diagnosis)),
+        diagnosis.unexplained.significant,
+        gain_on_truth(case, diagnosis),
+        diagnosis.verdict,
+        share=case.share,
+        truth=case.parameters,
+    )
+
+
+def parameter_errors(case: HiddenCase, diagnosis: Diagnosis) -> list[ParameterError]:
+    """The hidden parameters of the effects that were found, in the law that was hidden.
+
+    A combination stands for parameters that the data cannot tell apart: `gas_force` p0 A [N] and
+    `gas_reach` V0 / A [m]. Bouc-Wen's parameters are left out.
+    """
+    found: list[ParameterError] = []
+    for effect in case.effects:
+        finding = next((f for f in diagnosis.findings if f.effect == effect), None)
+        if finding is None:
+            continue
+        if effect == "hysteretic_friction" and (
+            finding.law != case.law or case.law in UNCOUNTED_LAWS
+        ):
+            continue
+        reported = {name: (v.value, v.stderr) for name, v in diagnosis.parameters.items()}
+        reported |= {name: (v.value, v.stderr) for name, v in finding.parameters.items()}
+        hidden = {n: case.parameters[n] for n in case.names[effect] if n in case.parameters}
+        if effect == "gas_spring":
+            hidden = _gas(hidden)
+            stated = {n: v for n, v in diagnosis.extended.device.items() if isinstance(v, float)}
+            reported |= _gas_reported(stated, reported)
+        for name, true in hidden.items():
+            value, stderr = reported.get(name, (None, None))
+            found.append(ParameterError(effect, name, true, value, stderr))
+    return found
+
+
+def _gas(values: dict[str, float]) -> dict[str, float]:
+    rest = {name: value for name, value in values.items() if name not in GAS}
+    pressure, area, volume = (values[name] for name in GAS)
+    return {**rest, "gas_force": pressure * area, "gas_reach": volume / area}
+
+
+def _gas_reported(
+    device: dict[str, float], errors: dict[str, tuple[float, float]]
+) -> dict[str, tuple[float, float]]:
+    """Both combinations of the device found, errors as if its parameters' were independent."""
+    if not all(device.get(name) for name in GAS):
+        return {}
+    combined = _gas({name: device[name] for name in GAS})
+    relative = {n: errors[n][1] / abs(device[n]) if n in errors else 0.0 for n in GAS}
+    area = relative["gas_area"]
+    spread = {
+        "gas_force": np.hypot(relative["gas_pressure"], area),
+        "gas_reach": np.hypot(relative["gas_volume"], area),
+    }
+    return {n: (v, float(abs(v) * spread[n])) for n, v in combined.items()}
+
+
+def gain_on_truth(case: HiddenCase, diagnosis: Diagnosis) -> float | None:
+    """1 - after / before: rms errors against the noise-free force, held-out samples."""
+    before = after = 0.0
+    runs = {run.name: run for run in case.runs}
+    for curve in diagnosis.curves:
+        run = runs[curve.name]
+        judged = curve.inner & curve.holdout
+        truth = np.interp(curve.time, run.time, run.truth.force)[judged]
+        before += float(np.sum((curve.baseline[judged] - truth) ** 2))
+        after += float(np.sum((curve.extended[judged] - truth) ** 2))
+    return 1.0 - float(np.sqrt(after / before)) if before > 0.0 else None

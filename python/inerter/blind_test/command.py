@@ -1,0 +1,97 @@
+"""`inerter blind-test`: how often the diagnosis finds what was hidden."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import time
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from inerter.console import notes, out, progress_bar, refuse, refusing
+
+_AS_COUNT = "default: as --count, none with --effects"
+
+
+def blind_test_command(
+    effects: Annotated[
+        str | None,
+        typer.Option(help="Effects to hide, with commas; default: every effect of a bench record."),
+    ] = None,
+    count: Annotated[int, typer.Option(min=0, help="Cases of each effect.")] = 40,
+    noise: Annotated[
+        float, typer.Option(help="White noise per force rms; 1 micrometre goes with 0.01.")
+    ] = 0.01,
+    clean: Annotated[
+        int | None, typer.Option(min=0, help=f"Cases with nothing hidden; {_AS_COUNT}.")
+    ] = None,
+    pairs: Annotated[
+        int | None, typer.Option(min=0, help=f"Cases with two effects; {_AS_COUNT}.")
+    ] = None,
+    triples: Annotated[
+        int | None, typer.Option(min=0, help=f"Cases with three effects; {_AS_COUNT}.")
+    ] = None,
+    unknown: Annotated[
+        int | None, typer.Option(min=0, help=f"Cases with an unnamed effect; {_AS_COUNT}.")
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Seed; default: $INERTER_SEED, else a new one. It is printed."),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
+    ] = None,
+    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
+        "out/blind_test"
+    ),
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print blind_test.json alone on stdout.")
+    ] = False,
+) -> None:
+    """Hide effects in records made by other equations, diagnose them, count what was found.
+
+    Writes blind_test.json, confusion.png and calibration.png.
+    """
+    from inerter.blind_test.output import write_blind_test
+    from inerter.blind_test.plan import Plan
+    from inerter.blind_test.run import run_tasks
+    from inerter.blind_test.score import score
+    from inerter.blind_test.table import print_blind_test
+    from inerter.folder import json_text, refuse_folder
+    from inerter.reference import BENCH_EFFECTS
+
+    usual = count if effects is None else 0
+    numbers = {"clean": clean, "pairs": pairs, "triples": triples, "unknown": unknown}
+    names = BENCH_EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
+    with refusing(out_dir):
+        refuse_folder(out_dir)
+        plan = Plan(
+            effects=names, count=count, noise=noise, seed=_seed(seed),
+            **{name: usual if given is None else given for name, given in numbers.items()},
+        )  # fmt: skip
+        tasks = plan.tasks()
+        notes.print(f"blind test: {len(tasks)} cases, --seed {plan.seed}", highlight=False)
+        start = time.perf_counter()
+        with progress_bar("hiding and diagnosing", as_json) as progress:
+            outcomes = run_tasks(tasks, workers, progress)
+        result = score(plan, outcomes, time.perf_counter() - start)
+        files = write_blind_test(result, out_dir)
+    if as_json:
+        print(json_text(result), end="")
+    else:
+        print_blind_test(result, out)
+        out.print(f"Written to {out_dir}: {', '.join(files)}")
+
+
+def _seed(given: int | None) -> int:
+    """The seed asked for, of the environment, or a new one."""
+    if given is not None:
+        return given
+    text = os.environ.get("INERTER_SEED") or ""
+    if not text or text == "random":
+        return secrets.randbelow(2**31)
+    if not text.isdecimal():
+        refuse(f"INERTER_SEED is {text!r}; give a whole number or 'random'")
+    return int(text)

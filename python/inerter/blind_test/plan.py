@@ -1,0 +1,133 @@
+"""Which cases a blind test has; each follows from its own seed alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from zlib import crc32
+
+import numpy as np
+
+from inerter.reference import BENCH_EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
+
+GROUPS = ("single", "clean", "pairs", "triples", "unknown")
+
+
+@dataclass(frozen=True)
+class Task:
+    """One case: `effects` that are hidden, empty for "clean"; for "unknown" its `kind`."""
+
+    group: str
+    seed: int
+    noise: float
+    effects: tuple[str, ...] = ()
+    law: str | None = None
+    kind: str | None = None
+
+    @property
+    def levels(self) -> NoiseLevels:
+        """Noise: a share of the force rms; a micrometre of displacement for 1 %."""
+        return NoiseLevels(0.0, self.noise, 1e-4 * self.noise)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A blind test: how many cases of what.
+
+    Attributes
+    ----------
+    effects
+        The effects that are hidden singly, and of which pairs and triples are made.
+    count
+        Cases of each effect.
+    clean, pairs, triples, unknown
+        Cases with nothing hidden, with two and with three effects, with one that has no name.
+    noise
+        White noise of the force per its rms; the displacement's is 1 micrometre for 0.01.
+    seed
+        Everything follows from it.
+
+    Raises
+    ------
+    ValueError
+        An unknown effect, a number out of range, or no pair that goes together.
+    """
+
+    effects: tuple[str, ...] = BENCH_EFFECTS
+    count: int = 40
+    clean: int = 0
+    pairs: int = 0
+    triples: int = 0
+    unknown: int = 0
+    noise: float = 0.01
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """See Raises."""
+        for name in self.effects:
+            if name not in BENCH_EFFECTS:
+                known = ", ".join(BENCH_EFFECTS)
+                raise ValueError(f"--effects: '{name}' is not one of {known}")
+        if len(set(self.effects)) < len(self.effects):
+            raise ValueError("--effects: one is given twice; give each once")
+        for name in ("count", "clean", "pairs", "triples", "unknown", "seed"):
+            if getattr(self, name) < 0:
+                raise ValueError(f"--{name}: {getattr(self, name)} is below 0")
+        if not 0.0 <= self.noise <= 1.0:
+            raise ValueError(f"--noise: {self.noise:g} is a share of the force rms, from 0 to 1")
+        for name, size in (("pairs", 2), ("triples", 3)):
+            if getattr(self, name) and not _sets(self.effects, size):
+                raise ValueError(
+                    f"--{name}: of {', '.join(self.effects)} no {size} go together; give more "
+                    "--effects"
+                )
+        if not self.tasks():
+            raise ValueError("--count: no case is asked for; give a number above 0")
+
+    def tasks(self) -> list[Task]:
+        """All cases; the number of one kind does not change the seeds of another."""
+        found: list[Task] = []
+        for effect in self.effects:
+            for i in range(self.count):
+                # the laws take turns
+                hysteretic = effect == "hysteretic_friction"
+                law = HYSTERETIC_LAWS[i % len(HYSTERETIC_LAWS)] if hysteretic else None
+                found.append(self._task("single", effect, i, effects=(effect,), law=law))
+        found += [self._task("clean", "clean", i) for i in range(self.clean)]
+        for group, number, size in (("pairs", self.pairs, 2), ("triples", self.triples, 3)):
+            found += [
+                self._task(group, group, i, effects=effects)
+                for i, effects in enumerate(self._drawn(group, size, number))
+            ]
+        for i in range(self.unknown):
+            kind = UNKNOWN[i % len(UNKNOWN)]
+            found.append(self._task("unknown", kind, i, kind=kind))
+        return found
+
+    def _task(
+        self,
+        group: str,
+        label: str,
+        number: int,
+        effects: tuple[str, ...] = (),
+        law: str | None = None,
+        kind: str | None = None,
+    ) -> Task:
+        sequence = np.random.SeedSequence([self.seed, crc32(label.encode()), number])
+        seed = int(sequence.generate_state(1)[0])
+        return Task(group, seed, self.noise, effects, law, kind)
+
+    def _drawn(self, group: str, size: int, number: int) -> list[tuple[str, ...]]:
+        """Sets of effects that go together, none twice before each had its turn."""
+        if not number:
+            return []
+        sets = _sets(self.effects, size)
+        draw = np.random.default_rng([self.seed, crc32(group.encode())])
+        found: list[tuple[str, ...]] = []
+        while len(found) < number:
+            found += [sets[i] for i in draw.permutation(len(sets))]
+        return found[:number]
+
+
+def _sets(effects: tuple[str, ...], size: int) -> list[tuple[str, ...]]:
+    return [chosen for chosen in combinations(effects, size) if compatible(chosen)]

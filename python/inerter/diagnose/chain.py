@@ -1,0 +1,85 @@
+"""The effects of a model one after another, and whether each stands on data no fit has seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from inerter.diagnose.composition import effects_of, submodel
+from inerter.diagnose.judge import Judge
+from inerter.diagnose.search import LOCAL, Search
+from inerter.identify.fit import Fit, Model
+
+# how surely an effect must help on data left out to be reported (standard errors)
+CONFIRMING_ADVANTAGE = 2.0
+
+
+@dataclass(frozen=True)
+class Link:
+    """One effect of a chain: fits before and after it is added.
+
+    Attributes
+    ----------
+    rmse_before, rmse_after : float
+        Error [N] on held-out data, or where these do not reach the effect, on blocks left out.
+    seen_in_blocks : bool
+        Whether the latter is the case.
+    stands : bool
+        Whether the effect helps there, surely and visibly.
+    """
+
+    effect: str
+    law: str | None
+    before: Fit
+    after: Fit
+    rmse_before: float
+    rmse_after: float
+    seen_in_blocks: bool
+    stands: bool
+
+
+def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
+    """The effects of a model, each time the one that helps most on the fit data."""
+    left = effects_of(model, search.baseline)
+    fit = search.problem.fit(search.baseline)
+    masks = search.problem.masks
+    taken: list[str] = []
+    chain = []
+    while left:
+        trials = []
+        for effect, law in left:
+            trial = search.problem.fit(submodel(model, [*taken, effect], search.baseline))
+            trials.append((trial.rmse(masks), effect, law, trial))
+        _, effect, law, after = min(trials, key=lambda trial: trial[0])
+        chain.append(_link(search, judge, effect, law, fit, after))
+        left = [pair for pair in left if pair[0] != effect]
+        taken.append(effect)
+        fit = after
+    return chain
+
+
+def _link(
+    search: Search, judge: Judge, effect: str, law: str | None, before: Fit, after: Fit
+) -> Link:
+    errors = judge.rmse(before.model), judge.rmse(after.model)
+    silent = effect in LOCAL and not judge.visible(
+        float(np.hypot(errors[1], judge.difference(before.model, after.model))),
+        errors[1],
+        after.model,
+    )
+    if silent:
+        # nothing held out goes there: blocks of the other runs, left out in turn, have to tell
+        simple, rich = (search.score_on_blocks(fit) for fit in (before, after))
+        count = sum(int(mask.sum()) for mask in search.problem.masks)
+        errors = tuple(float(np.sqrt(s.squares.sum() / count)) for s in (simple, rich))
+        won = search.advantage(simple, rich, effect)
+    else:
+        won = judge.advantage(before.model, after.model, effect)
+    stands = (
+        errors[1] < errors[0]
+        and won >= CONFIRMING_ADVANTAGE
+        and judge.visible(errors[0], errors[1], after.model)
+        and not (effect == "sensor_delay" and not judge.delay_visible(after.model))
+    )
+    return Link(effect, law, before, after, errors[0], errors[1], silent, stands)

@@ -1,0 +1,166 @@
+"""How effects are read off a model and taken out of it.
+
+`effects_of` looks at a model alone, so that a name does not depend on the way the search took.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from inerter.diagnose.effects import EFFECTS, LAW_COORDINATES, LEVEL_COORDINATES
+from inerter.identify.fit import Fit, Model
+
+# coordinates whose being zero means that the effect is absent, where not all of them do
+_AMPLITUDES = {
+    "stribeck_friction": ("static_excess",),
+    "hysteretic_friction": ("coulomb_force", "bw_level"),
+    "inertance_error": (),
+    "series_elasticity": (),
+    "backlash": (),
+    "gas_spring": ("gas_push",),
+    "end_stop": (),
+    "sensor_saturation": (),
+    "periodic_disturbance": ("disturbance_amplitude",),
+}
+
+
+def is_distinct(effect: str, fit: Fit, required: float) -> bool:
+    """Whether a fitted effect differs from none by some standard errors of its coordinates."""
+    names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
+    errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
+    known = [name for name in names if name in errors]
+    return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def width(model: Model) -> dict[str, float]:
+    """The width of sign(v), which is fitted along: it depends on the velocity's noise."""
+    return {"transition_velocity": model.values["transition_velocity"]}
+
+
+_LAW_EFFECT = {
+    "coulomb": "coulomb_friction",
+    "stribeck": "stribeck_friction",
+    "dahl": "hysteretic_friction",
+    "lugre": "hysteretic_friction",
+    "bouc_wen": "hysteretic_friction",
+}
+_MODULATIONS = ("asymmetric_friction", "position_dependent_friction", "friction_drift")
+_SIMPLE = (
+    "hardening_stiffness",
+    "gas_spring",
+    "end_stop",
+    "force_drift",
+    "sensor_saturation",
+    "periodic_disturbance",
+    "viscous_friction",
+    "load_dependent_friction",
+    "parallel_stiffness",
+    "force_offset",
+    "sensor_delay",
+    "quadratic_damping",
+    "variable_inertance",
+)
+
+
+def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
+    """Effects (and friction law) that a model has beyond the baseline.
+
+    A Coulomb level that varies with direction or position is one effect, not two.
+    """
+    added = [name for name in model.free if name not in baseline.free]
+    found: list[tuple[str, str | None]] = []
+    modulations = [
+        name for name in _MODULATIONS if any(c in added for c in EFFECTS[name].coordinates)
+    ]
+    law_touched = model.friction != baseline.friction or any(c in added for c in LAW_COORDINATES)
+    if law_touched and model.friction in _LAW_EFFECT:
+        effect = _LAW_EFFECT[model.friction]
+        if not (effect == "coulomb_friction" and modulations):
+            found.append((effect, model.friction if effect == "hysteretic_friction" else None))
+    found += [(name, None) for name in modulations]
+    found += [(n, None) for n in _SIMPLE if any(c in added for c in EFFECTS[n].coordinates)]
+    if "backlash" in added:
+        found.append(("backlash", None))
+    elif "series_frequency" in added:
+        found.append(("series_elasticity", None))
+    if "inertance" in added:
+        found.append(("inertance_error", None))
+    return found
+
+
+def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
+    """Simpler models: without an effect, and for friction laws also with each simpler law."""
+    names = [name for name, _ in effects_of(model, baseline)]
+    without = submodel(model, [name for name in names if name != effect], baseline)
+    if effect in ("hysteretic_friction", "stribeck_friction"):
+        return [*simpler_laws(model), without]
+    if effect == "backlash" and "series_frequency" in model.free:
+        # its elasticity alone
+        return [model.without(("backlash",)), without]
+    if effect in _MODULATIONS:
+        # the variation of the level alone
+        return [model.without(EFFECTS[effect].coordinates), without]
+    return [without]
+
+
+def stripped(model: Model, effect: str, baseline: Model) -> Model:
+    """The model without what is particular to an effect; a level that varies leaves the level."""
+    if effect in _MODULATIONS:
+        return model.without(EFFECTS[effect].coordinates)
+    names = [name for name, _ in effects_of(model, baseline) if name != effect]
+    return submodel(model, names, baseline)
+
+
+def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
+    """The model reduced to the baseline and some of its effects."""
+    present = dict(effects_of(model, baseline))
+    dropped = [name for name in present if name not in effects]
+    laws = [name for name in present if name in _LAW_EFFECT.values()]
+    names: set[str] = set()
+    for name in dropped:
+        names.update(EFFECTS[name].coordinates if name not in laws else LAW_COORDINATES)
+    friction = model.friction
+    kept_modulations = [name for name in _MODULATIONS if name in effects and name in present]
+    if (laws and laws[0] in dropped) or (
+        not laws and not kept_modulations and not _stated_friction(baseline)
+    ):
+        # without its law, a level that varies needs Coulomb friction to act on
+        level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
+        names.update(LAW_COORDINATES)
+        if kept_modulations and baseline.friction == "none":
+            bare = _restored(model.without(tuple(names), "none"), names, baseline)
+            return bare.adding("coulomb", coulomb_force=level, **width(bare))
+        friction = baseline.friction
+        if friction == "none":
+            names.update(LEVEL_COORDINATES)
+    return _restored(model.without(tuple(names), friction), names, baseline)
+
+
+def _stated_friction(baseline: Model) -> bool:
+    return baseline.friction != "none"
+
+
+def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
+    """Put back what the baseline states of the names that were taken out."""
+    stated = {name: baseline.values[name] for name in names if name in baseline.values}
+    free = tuple(name for name in baseline.free if name in names and name not in bare.free)
+    return Model(bare.friction, {**bare.values, **stated}, bare.free + free)
+
+
+def simpler_laws(model: Model) -> list[Model]:
+    """The model under each friction law with fewer parameters."""
+    level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
+    presliding = model.values.get("presliding")
+    bare = model.without(LAW_COORDINATES, "none")
+    simpler = []
+    if model.friction not in ("none", "coulomb"):
+        simpler.append(bare.adding("coulomb", coulomb_force=level, **width(bare)))
+    if model.friction in ("lugre", "bouc_wen") and presliding:
+        simpler.append(bare.adding("dahl", coulomb_force=level, presliding=presliding))
+    if model.friction == "lugre":
+        names = ("coulomb_force", "static_excess", "stribeck_velocity")
+        values = {name: model.values[name] for name in names} | width(bare)
+        simpler.append(bare.adding("stribeck", **values))
+    return simpler

@@ -1,0 +1,83 @@
+"""What models are judged by: force errors on held-out data, and what is large enough to count."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.diagnose.acceptance import visible, visible_delay
+from inerter.diagnose.search import advantage_of
+from inerter.identify.fit import Model, Problem
+from inerter.identify.preparation import Preparation
+from inerter.identify.split import blocks
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Judge:
+    """The held-out data.
+
+    Attributes
+    ----------
+    band, raw : Problem
+        Held-out samples in the fits' band, and at the measured rate with the force as measured.
+    preparation : Preparation
+        Tells the noise.
+    baseline : Model
+        What the user states.
+    """
+
+    band: Problem
+    raw: Problem
+    preparation: Preparation
+    baseline: Model
+
+    @cached_property
+    def force(self) -> Array:
+        """Measured force of the held-out samples [N]."""
+        pairs = zip(self.raw.runs, self.raw.masks, strict=True)
+        return np.concatenate([run.force[mask] for run, mask in pairs])
+
+    def rmse(self, model: Model) -> float:
+        """Rms force error at the measured rate [N]."""
+        return _rms(self.raw.residual(model), self.raw.masks)
+
+    def difference(self, one: Model, other: Model) -> float:
+        """Rms difference of the forces that two models predict in the band [N]."""
+        pairs = zip(self.band.residual(one), self.band.residual(other), strict=True)
+        return _rms([a - b for a, b in pairs], self.band.masks)
+
+    def advantage(self, simple: Model, rich: Model, effect: str) -> float:
+        """How surely the model with an effect is the better one, in standard errors."""
+        masks = self.band.masks
+        residual = [self.band.residual(model) for model in (simple, rich)]
+        return advantage_of(*residual, masks, blocks(masks), effect)
+
+    def visible(self, before: float, after: float, model: Model) -> bool:
+        """Whether an error that fell from `before` to `after` [N] is more than no one can tell."""
+        force = float(np.sqrt(np.mean(self.force**2)))
+        return visible(before, after, self.noise_floor(model), force)
+
+    def delay_visible(self, model: Model) -> bool:
+        """Whether a model's delay differs from the stated one by more than samples tell."""
+        stated = self.baseline.values.get("delay", 0.0)
+        return visible_delay(model.delay - stated, max(run.spacing for run in self.raw.runs))
+
+    def noise_floor(self, model: Model) -> float:
+        """Noise of the force, and of the acceleration times the inertance, rms [N]."""
+        force = self.preparation.noise_floor
+        if self.preparation.channels:
+            # the noise of a fused acceleration is not known
+            return force
+        variances = [motion.acceleration_noise**2 for motion in self.preparation.motions]
+        return float(np.hypot(force, model.values["inertance"] * np.sqrt(np.mean(variances))))
+
+
+def _rms(residual: Sequence[Array], masks: Sequence[NDArray[np.bool_]]) -> float:
+    square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, masks, strict=True))
+    return float(np.sqrt(square / sum(int(m.sum()) for m in masks)))

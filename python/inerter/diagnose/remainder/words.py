@@ -1,0 +1,74 @@
+"""What was found, in words that an engineer uses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+WORDS = {
+    "displacement": "the position along the stroke",
+    "velocity": "the velocity",
+    "acceleration": "the acceleration",
+    "force": "the size of the force itself",
+    "displacement and direction": "the position, differently for each direction of motion",
+    "displacement (periodic)": "the position, repeating along the stroke",
+    "displacement (periodic) and direction": "the position, as friction that repeats along the "
+    "stroke",
+    "time": "time: something changes during the record",
+    "amplitude": "how large the motion is at the time",
+    "events": "the time since the last reversal or rest",
+    "history": "what went before, more than what is now",
+    "state": "position, velocity and acceleration together",
+    "frequency": "a frequency of its own",
+    "harmonics": "multiples of the motion's frequency",
+    "bursts": "certain moments, in bursts",
+}
+
+
+def summary(
+    depends: Sequence[str],
+    details: dict[str, str],
+    shares: dict[str, float],
+    raw: float,
+    floor: float,
+    structure: float,
+    excess: bool,
+    proposal: str | None,
+) -> str:
+    """One paragraph.
+
+    Parameters
+    ----------
+    depends, details, shares
+        Names of what was found; what is known more closely; share of the residual's power each.
+    raw, floor
+        Rms of what remains and of the noise [N].
+    structure
+        Rms of what was found to be no noise [N].
+    excess
+        Far more remains than noise, but it goes with nothing that was tested.
+    proposal
+        A formula.
+    """
+    start = f"What remains ({raw:.3g} N rms; noise of the force channel {floor:.3g} N)"
+    if excess:
+        return (
+            f"{start} is far more than noise, but goes with nothing that was tested: position, "
+            "velocity, acceleration, force, time, frequency, amplitude, history, reversals."
+        )
+    if not depends:
+        return (
+            f"{start} shows no dependence on position, velocity, acceleration, time, frequency or "
+            "what went before that is of any size."
+        )
+    parts = []
+    for name in depends:
+        detail = f", {details[name]}" if name in details else ""
+        part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
+        parts.append(WORDS[name] + detail + part)
+    text = (
+        f"{start} is not noise: {structure:.3g} N rms can be predicted from the other data. It "
+        f"goes with {'; and with '.join(parts)}. No effect that is known here explains it."
+    )
+    if proposal:
+        text += f" A formula that fits, proposed by regression and no cause: {proposal}."
+    return text

@@ -1,0 +1,486 @@
+"""Diagnosis of a user's model in the loop: the recorded road drives it, its sensors are judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from inerter.diagnose.acceptance import visible
+from inerter.diagnose.result import Finding, RecordSummary, Rival, RunCurves
+from inerter.diagnose.statistics import advantage, win_shares
+from inerter.diagnose.system import wording
+from inerter.diagnose.system.build import UserModel, model_of_text
+from inerter.diagnose.system.drive import Drive, make_drive
+from inerter.diagnose.system.effects import Effects, Scale
+from inerter.diagnose.system.mapping import Channels, Output
+from inerter.diagnose.system.model import Added, SystemModel
+from inerter.diagnose.system.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
+from inerter.diagnose.system.problem import Channel, Problem
+from inerter.diagnose.system.remainder import remainder
+from inerter.diagnose.system.search import (
+    SCREENED,
+    Scored,
+    Step,
+    SystemSearch,
+    block_squares,
+    stacked_blocks,
+)
+from inerter.diagnose.system.simulate import Simulator
+from inerter.diagnose.system.split import split_drives
+from inerter.diagnose.system.values import parameter_values
+from inerter.records.record import RecordWarning, TimeRecord
+from inerter.records.units import QUANTITIES
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+CONFIRMING_ADVANTAGE = 2.0
+# a finding that was surer than this when it was made is not compared again
+SURE = 0.9
+# a channel that runs against its simulation as surely as this has another sign
+_OPPOSITE = -0.5
+_UNITS = {
+    int(mujoco.mjtSensor.mjSENS_FRAMELINACC): "m/s^2",
+    int(mujoco.mjtSensor.mjSENS_ACCELEROMETER): "m/s^2",
+    int(mujoco.mjtSensor.mjSENS_FRAMEANGACC): "rad/s^2",
+    int(mujoco.mjtSensor.mjSENS_TENDONPOS): "m",
+    int(mujoco.mjtSensor.mjSENS_ACTUATORPOS): "m",
+    int(mujoco.mjtSensor.mjSENS_TENDONVEL): "m/s",
+    int(mujoco.mjtSensor.mjSENS_FRAMEPOS): "m",
+    int(mujoco.mjtSensor.mjSENS_ACTUATORFRC): "N",
+}
+_METHOD = "not run: the simulation of the whole model is MuJoCo's"
+
+
+def diagnose_system(
+    records: Sequence[TimeRecord],
+    user: UserModel,
+    channels: Channels,
+    holdout: Sequence[str] = (),
+    progress: Progress = lambda text: None,
+    threads: int = 0,
+) -> SystemDiagnosis:
+    """What a user's model lacks, on road it has not seen.
+
+    Parameters
+    ----------
+    records : sequence of TimeRecord
+        The runs.
+    user : UserModel
+        The model.
+    channels : Channels
+        Which column drives which actuator and is compared with which sensor.
+    holdout : sequence of str
+        Names of runs to hold out.
+    progress : callable
+        Told what is being done.
+    threads : int
+        0 for every processor.
+
+    Raises
+    ------
+    ValueError
+        Runs that cannot be split or simulated.
+    """
+    before = mujoco.get_mju_user_warning()
+    # trials go beyond what a step resolves; the engine would print that and write a log
+    mujoco.set_mju_user_warning(lambda text: None)
+    try:
+        with threadpool_limits(limits=1, user_api="blas"):
+            return _System(records, user, channels, holdout, progress, threads).run()
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+class _System:
+    """One diagnosis, step by step."""
+
+    def __init__(
+        self,
+        records: Sequence[TimeRecord],
+        user: UserModel,
+        channels: Channels,
+        holdout: Sequence[str],
+        progress: Progress,
+        threads: int,
+    ) -> None:
+        self.records, self.user, self.channels = list(records), user, channels
+        self.progress = progress
+        user.with_roads([user.model.actuator(name).id for name in channels.inputs.values()])
+        self.simulator = Simulator(user, channels, threads)
+        step = float(user.model.opt.timestep)
+        drives = [make_drive(record, channels, step) for record in records]
+        progress("simulating the model along the recorded inputs")
+        self.warnings: dict[str, list[RecordWarning]] = {r.name: list(r.warnings) for r in records}
+        self.notes: list[str] = []
+        self.drives = self._right_signs(drives)
+        self.whole = Problem(self.simulator, self.drives, self._channels())
+        fit, held, self.description = split_drives(self.drives, holdout)
+        self.fit, self.held = self.whole.restricted(fit), self.whole.restricted(held)
+        self.held_masks = held
+        if min(self.fit.count, self.held.count) < 50:
+            raise ValueError(
+                f"{self.description}: too few samples after settling; record longer runs"
+            )
+        self.step_errors: dict[SystemModel, float] = {}
+
+    def run(self) -> SystemDiagnosis:
+        """The whole procedure."""
+        effects = Effects(self.user, self._scales(), self._loads())
+        search = SystemSearch(self.fit, effects, self._step_error, self.progress)
+        final = search.run()
+        start = search.refit([(SystemModel(), {})])[0]
+        chain = self._chain(search, start, final)
+        while (weak := self._unconfirmed(chain)) is not None:
+            name = final.model.effects[weak].effect
+            self.progress(f"{name} is not confirmed on held-out road: dropped")
+            final = search.refit([search.without(final, weak)])[0]
+            chain = self._chain(search, start, final)
+        return self._diagnosis(search, start, final, chain)
+
+    # --- records -----------------------------------------------------------------------------
+
+    def _right_signs(self, drives: list[Drive]) -> list[Drive]:
+        """Runs with a tyre's force counted as the model does; other opposite channels are noted."""
+        simulated = [self.simulator.outputs([SystemModel()], drive)[0] for drive in drives]
+        if not all(np.isfinite(each).all() for each in simulated):
+            raise ValueError(
+                f"{self.user.path}: the simulation of the recorded inputs fails (it diverges); "
+                "check the inputs' units and the model's timestep"
+            )
+        signs = np.ones(len(self.channels.outputs))
+        for i, output in enumerate(self.channels.outputs):
+            measured = np.concatenate([d.measured[:, i] - d.measured[:, i].mean() for d in drives])
+            model = np.concatenate([s[:, i] - s[:, i].mean() for s in simulated])
+            size = np.linalg.norm(measured) * np.linalg.norm(model)
+            if not size or measured @ model / size > _OPPOSITE:
+                continue
+            if output.load:
+                signs[i] = -1.0
+                self.notes.append(f"{output.column} counted with the other sign")
+                continue
+            for record in self.records:
+                self.warnings[record.name].append(
+                    RecordWarning(
+                        "sign_flip",
+                        f"{output.column!r} runs against the simulation: another sign convention?",
+                    )
+                )
+        return [replace(drive, measured=drive.measured * signs) for drive in drives]
+
+    def _channels(self) -> list[Channel]:
+        found = []
+        for i, output in enumerate(self.channels.outputs):
+            columns = [drive.measured[:, i] for drive in self.drives]
+            power = np.mean(np.concatenate([(c - c.mean()) ** 2 for c in columns]))
+            noise = np.mean(np.concatenate([np.diff(c, 3) ** 2 / 20 for c in columns]))
+            # what differs from one sample to the next in a jerky channel is not all noise
+            spread = float(np.sqrt(max(power - noise, 0.25 * power)))
+            if not spread > 0:
+                raise ValueError(
+                    f"column {output.column!r} never changes; leave it out or record it again"
+                )
+            found.append(Channel(output.column, self._unit(output), spread))
+        return found
+
+    def _unit(self, output: Output) -> str:
+        if output.column in QUANTITIES:
+            return QUANTITIES[output.column].unit
+        model = self.user.model
+        sensor = model.sensor(output.sensor).id
+        kind = int(model.sensor_type[sensor])
+        position, rate = mujoco.mjtSensor.mjSENS_JOINTPOS, mujoco.mjtSensor.mjSENS_JOINTVEL
+        if kind in (int(position), int(rate)):
+            slide = model.jnt_type[model.sensor_objid[sensor]] == mujoco.mjtJoint.mjJNT_SLIDE
+            length = "m" if slide else "rad"
+            return length if kind == int(position) else f"{length}/s"
+        if kind == int(mujoco.mjtSensor.mjSENS_PLUGIN):
+            return "N" if output.component < 3 else ""
+        return _UNITS.get(kind, "")
+
+    def _scales(self) -> dict[str, Scale]:
+        drive = self.drives[0]
+        motion = self.simulator.device_motion(SystemModel(), drive)
+        step = drive.step
+        explicit = self.user.model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
+        found = {}
+        for name, (x, v) in motion.items():
+            a = np.gradient(v, step)
+            device = self.user.device(name).device
+            force = np.std(device.inertance * a + device.viscous * v)
+            force = force or np.std(device.stiffness * x)
+            if not force:
+                # a device that does nothing yet: the force that would move the lightest body
+                force = np.std(a) * float(np.min(self.user.model.body_mass[1:], initial=1.0))
+            x_size, v_size, a_size = (
+                float(np.sqrt(np.mean(c**2))) or 1e-9 for c in (x - x.mean(), v, a)
+            )
+            found[name] = Scale(
+                force=float(force) or 1.0,
+                x=x_size,
+                v=v_size,
+                a=a_size,
+                largest=float(x.max()),
+                smallest=float(x.min()),
+                step=step,
+                explicit=bool(explicit),
+            )
+        return found
+
+    def _loads(self) -> dict[str, float]:
+        """Mass on each tyre [kg], the vehicle's shared equally."""
+        tyres = self.user.parts.tyres
+        total = float(self.user.model.body_mass.sum())
+        return {tyre.element: total / len(tyres) for tyre in tyres}
+
+    def _step_error(self, model: SystemModel) -> float:
+        """How much of a model's error is its step's: against half the step, per spread."""
+        if model not in self.step_errors:
+            records = {record.name: record for record in self.records}
+            half = self.user.with_timestep(self.drives[0].step / 2)
+            simulator = Simulator(half, self.channels, self.simulator.threads)
+            part = self.held.part(SCREENED)
+            square = count = 0.0
+            for drive, mask in zip(part.drives, part.masks, strict=True):
+                finer = make_drive(records[drive.name], self.channels, drive.step / 2)
+                finer = finer.part(float(drive.time[-1] + drive.spacing / 2))
+                coarse = self.simulator.outputs([model], drive)[0]
+                fine = simulator.outputs([model], finer)[0]
+                difference = (coarse - fine)[mask]
+                square += float(np.nansum((difference / self.whole.spreads) ** 2))
+                count += difference.size
+            self.step_errors[model] = float(np.sqrt(square / count))
+        return self.step_errors[model]
+
+    # --- effects -----------------------------------------------------------------------------
+
+    def _chain(self, search: SystemSearch, start: Scored, final: Scored) -> list[Scored]:
+        """The user's model, then one effect more at a time, up to the final model."""
+        known = {step.chosen.model.effects: step.chosen for step in search.steps}
+        known |= {final.model.effects: final, (): start}
+        chain = [final]
+        while chain[0].model.effects:
+            wanted = chain[0].model.effects[:-1]
+            before = known.get(wanted)
+            if before is None:
+                self.progress("measuring the gain of each effect")
+                before = search.refit([search.without(chain[0], len(wanted))])[0]
+            chain.insert(0, before)
+        return chain
+
+    def _unconfirmed(self, chain: list[Scored]) -> int | None:
+        """The last effect of a chain that does not help on held-out road, or not visibly."""
+        residuals = self.held.stacked([scored.model for scored in chain])
+        blocks = stacked_blocks(self.held)
+        squares = [block_squares(residual, blocks) for residual in residuals]
+        errors = [self.held.error(residual) for residual in residuals]
+        floor = self.held.noise(residuals[-1])
+        for i in range(len(chain) - 1, 0, -1):
+            before, after = squares[i - 1], squares[i]
+            step = self._step_error(chain[i - 1].model)
+            numerical = errors[i - 1] ** 2 - errors[i] ** 2 < (2 * step) ** 2
+            if (
+                after.sum() >= before.sum()
+                or advantage(before, after) < CONFIRMING_ADVANTAGE
+                or not visible(errors[i - 1], errors[i], floor, 1.0)
+                or numerical
+            ):
+                return i - 1
+        return None
+
+    def _findings(
+        self, search: SystemSearch, chain: list[Scored], errors: list[float]
+    ) -> list[tuple[Finding, str]]:
+        """Findings, the most useful first, and where each of them is."""
+        final = chain[-1]
+        values = parameter_values(self.user, final)
+        several = len(self.user.devices) > 1
+        found = []
+        for i, added in enumerate(final.model.effects):
+            step = next((s for s in search.steps if s.chosen.model.effects[-1:] == (added,)), None)
+            confidence, rivals = _standing(step, added)
+            if step is not None and i + 1 < len(final.model.effects) and confidence < SURE:
+                # beside the effects found since, a rival may not be one any more
+                self.progress(f"comparing {added.effect} with what else could explain the data")
+                without, others = search.standing(final, i, step)
+                squares = [final.squares, without.squares, *(s.squares for s in others)]
+                confidence, rivals = _standing(
+                    Step(without, final, others, win_shares(squares)), added
+                )
+            finding = Finding(
+                added.effect,
+                added.law,
+                confidence,
+                values[i],
+                errors[i],
+                errors[i + 1],
+                "",
+                rivals,
+            )
+            kind, _, name = added.element.partition(":")
+            place = (name or kind) if several and kind != "body" else ""
+            finding = replace(finding, evidence=wording.evidence(finding, place))
+            found.append((finding, place))
+        return sorted(found, key=lambda pair: -pair[0].gain)
+
+    # --- the result --------------------------------------------------------------------------
+
+    def _diagnosis(
+        self, search: SystemSearch, start: Scored, final: Scored, chain: list[Scored]
+    ) -> SystemDiagnosis:
+        residuals = self.held.stacked([scored.model for scored in chain])
+        errors = [self.held.error(residual) for residual in residuals]
+        named = self._findings(search, chain, errors)
+        findings, places = [f for f, _ in named], [place for _, place in named]
+        before = self._accuracy(SystemModel(), residuals[0], residuals[0])
+        after = self._accuracy(final.model, residuals[-1], residuals[0])
+        floor = self.held.noise(residuals[-1])
+        curves = self._curves(final.model)
+        remains = remainder(residuals[-1], self.held, floor, self._step_error(final.model))
+        self.progress("simulating the extended model once more, as it is written")
+        xml = self.user.xml(final.model)
+        parameters = {}
+        for finding in findings:
+            parameters |= finding.parameters
+        return SystemDiagnosis(
+            self._summaries(),
+            before,
+            findings,
+            after,
+            floor,
+            remains,
+            {"mujoco": self._written_error(xml), "exudyn": None, "reference": None},
+            wording.verdict(
+                before, after, findings, places, remains.summary, self.user.parts.unknown
+            ),
+            parameters,
+            self._method(),
+            curves,
+            model_xml=xml,
+            devices={d.name: self.user.device_of(d.name, final.model) for d in self.user.devices},
+        )
+
+    def _accuracy(self, model: SystemModel, residual: Array, first: Array) -> SystemAccuracy:
+        devices = {d.name: self.user.device_of(d.name, model).given for d in self.user.devices}
+        given: dict[str, float | str] = {}
+        for name, values in devices.items():
+            prefix = f"{name}." if len(devices) > 1 else ""
+            given |= {f"{prefix}{key}": value for key, value in values.items()}
+        now, then = self._by_channel(residual), self._by_channel(first)
+        channels = {
+            channel.name: ChannelError(now[i], channel.unit, then[i])
+            for i, channel in enumerate(self.whole.channels)
+        }
+        error = self.held.error(residual)
+        return SystemAccuracy(given, error, error, channels=channels)
+
+    def _by_channel(self, residual: Array) -> list[float]:
+        """Rms error of every channel in its unit."""
+        table = residual.reshape(-1, len(self.whole.channels))
+        rms = np.sqrt(np.sum(table**2, axis=0) / self.held.count) * self.whole.spreads
+        return [float(value) for value in rms]
+
+    def _summaries(self) -> list[RecordSummary]:
+        held = {drive.name for drive in self.held.drives}
+        if len(self.records) == 1:
+            held = set()
+        return [
+            RecordSummary(
+                record.name,
+                record.samples,
+                record.sample_rate,
+                "holdout" if record.name in held else "fit",
+                [vars(w) for w in self.warnings[record.name]],
+            )
+            for record in self.records
+        ]
+
+    def _written_error(self, xml: str) -> float | None:
+        """Held-out error of the model as written, read back from its text."""
+        written = model_of_text(xml, self.user.path)
+        written.with_roads(self.user.roads)
+        simulator = Simulator(written, self.channels, self.simulator.threads)
+        problem = replace(self.held, simulator=simulator)
+        error = problem.error(problem.stacked([SystemModel()])[0])
+        return error if np.isfinite(error) else None
+
+    def _method(self) -> dict:
+        settled = [float(d.time[int(np.argmax(m))]) for d, m in zip(
+            self.whole.drives, self.whole.masks, strict=True)]  # fmt: skip
+        return {
+            "model": self.user.path.name,
+            "inputs": [f"{c} -> {a}" for c, a in self.channels.inputs.items()],
+            "outputs": [f"{o.column} -> {o.sensor}" for o in self.channels.outputs],
+            "error": "root mean square over the channels, each per its noise-free spread",
+            "split": self.description,
+            "held_out_samples": self.held.count,
+            "settling_time": max(settled),
+            "error_of_the_timestep": max(self.step_errors.values()),
+            "simulations": self.simulator.count,
+            "exudyn": _METHOD,
+            "reference": _METHOD,
+            **({"not_tried": self.user.parts.unknown} if self.user.parts.unknown else {}),
+            **({"signs": self.notes} if self.notes else {}),
+        }
+
+    def _curves(self, final: SystemModel) -> list[RunCurves]:
+        """Every channel of every run, beside the motion of the first device."""
+        models = [SystemModel(), final]
+        residuals = self.whole.residuals(models)
+        device = self.user.devices[0].name
+        curves = []
+        for i, drive in enumerate(self.whole.drives):
+            x, v = self.simulator.device_motion(final, drive)[device]
+            a = np.gradient(v, drive.step)
+            motion = drive.at_samples(np.column_stack([x, v, a]))
+            simulated = self.simulator.outputs(models, drive)
+            mask = self.whole.masks[i]
+            for k, channel in enumerate(self.whole.channels):
+                lines = []
+                for m in range(2):
+                    fitted = drive.measured[:, k] - residuals[m][i][:, k] * channel.spread
+                    zero = np.mean((fitted - simulated[m][:, k])[mask])
+                    lines.append(np.where(mask, fitted, simulated[m][:, k] + zero))
+                curves.append(
+                    RunCurves(
+                        f"{drive.name}: {channel.name.replace('_', ' ')}",
+                        "holdout" if self.held_masks[i].any() else "fit",
+                        drive.start + drive.time,
+                        motion[:, 0],
+                        motion[:, 1],
+                        motion[:, 2],
+                        drive.measured[:, k],
+                        lines[0],
+                        lines[1],
+                        self.held_masks[i],
+                        mask,
+                        quantity=channel.name.replace("_", " "),
+                        unit=channel.unit,
+                    )
+                )
+        return curves
+
+
+def _standing(step: Step | None, added: Added) -> tuple[float, list[Rival]]:
+    """Confidence and rivals of an effect, from the step in which it was added."""
+    if step is None:
+        return 0.5, []
+    confidence = float(step.shares[0])
+    rivals = []
+    for other, share in zip(step.others, step.shares[2:], strict=True):
+        assert other.candidate is not None
+        effect = other.candidate.added
+        # another law or start of the same effect is no doubt about the effect
+        if effect.effect == added.effect and effect.element == added.element:
+            confidence += float(share)
+        elif share >= 0.005:
+            rivals.append(Rival(effect.effect, float(share), effect.law))
+    twin = wording.EQUIVALENT.get(added.effect)
+    if twin:
+        rivals.append(Rival(twin, min(confidence, 1.0)))
+    return min(confidence, 1.0), sorted(rivals, key=lambda rival: -rival.confidence)

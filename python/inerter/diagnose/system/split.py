@@ -1,0 +1,53 @@
+"""What a diagnosis of a user's model learns from and what it is judged on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.diagnose.system.drive import Drive
+from inerter.identify.split import BLOCKS, HELD_OUT_BLOCKS
+
+Mask = NDArray[np.bool_]
+
+
+def split_drives(
+    drives: Sequence[Drive], holdout: Sequence[str]
+) -> tuple[list[Mask], list[Mask], str]:
+    """Masks of what is fitted and what is held out, and the split in words.
+
+    Of several runs, whole ones are held out: the named ones, else the one whose size is nearest to
+    the others'. Of a single run, blocks: the whole road is simulated, some blocks do not count.
+
+    Raises
+    ------
+    ValueError
+        A name that no run has, or no run left to learn from.
+    """
+    names = [drive.name for drive in drives]
+    for name in holdout:
+        if name not in names:
+            raise ValueError(f"--holdout {name}: no such run; the runs are {', '.join(names)}")
+    if holdout and len(set(holdout)) == len(names):
+        raise ValueError("--holdout names every run; leave at least one to learn from")
+    whole = [np.ones(drive.time.size, bool) for drive in drives]
+    if len(drives) > 1:
+        held = {names.index(name) for name in holdout} or {_most_typical(drives)}
+        fit = [~m if i in held else m for i, m in enumerate(whole)]
+        out = [m if i in held else ~m for i, m in enumerate(whole)]
+        return fit, out, "held out: " + ", ".join(names[i] for i in sorted(held))
+    size = drives[0].time.size
+    edges = np.linspace(0, size, BLOCKS + 1).astype(int)
+    mask = np.zeros(size, bool)
+    for block in HELD_OUT_BLOCKS:
+        mask[edges[block] : edges[block + 1]] = True
+    blocks = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
+    return [~mask], [mask], f"held out: blocks {blocks} of {BLOCKS} of {names[0]}"
+
+
+def _most_typical(drives: Sequence[Drive]) -> int:
+    """The run whose channels' sizes are nearest to the median."""
+    sizes = np.log([np.std(drive.measured, axis=0) + 1e-300 for drive in drives])
+    return int(np.argmin(np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)))

@@ -1,0 +1,92 @@
+"""The sentences of a diagnosis of a user's model."""
+
+from __future__ import annotations
+
+from inerter.diagnose.result import Finding, ParameterValue
+from inerter.diagnose.system.named import KNOWN
+from inerter.diagnose.system.outcome import StatedValue, SystemAccuracy
+from inerter.diagnose.wording import quantity
+
+# the same force between the same bodies: no record of the vehicle can tell these apart
+EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
+
+
+def in_words(effect: str, law: str | None = None) -> str:
+    """An effect in running text."""
+    text = KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+    return f"{text} ({law})" if law else text
+
+
+def evidence(finding: Finding, place: str) -> str:
+    """One sentence: values, stated ones beside them, and what the effect does to the error."""
+    values = ", ".join(_value(name, value) for name, value in finding.parameters.items())
+    where = f" in {place}" if place else ""
+    text = (
+        f"{values}{where}: the error on held-out data falls from "
+        f"{100 * finding.rmse_before:.3g} % of the channels' spread to "
+        f"{100 * finding.rmse_after:.3g} %"
+    )
+    twin = EQUIVALENT.get(finding.effect)
+    if twin:
+        text += (
+            f"; {in_words(twin)} would be the same force between the same bodies, which these "
+            "records cannot tell apart: test the device alone"
+        )
+    if finding.effect == "force_offset":
+        text += "; a sensor whose zero is displaced may look the same: check it at rest"
+    if finding.effect == "tyre_damping":
+        text += "; in model.xml its actuator is driven by the rate of the road [m/s]"
+    likely = [r for r in finding.rivals if r.confidence >= 0.05 and r.effect != twin]
+    if likely:
+        others = " or ".join(in_words(r.effect, r.law) for r in likely[:2])
+        text += f"; {others} would explain these data nearly as well"
+    return text + "."
+
+
+def _value(name: str, value: ParameterValue) -> str:
+    text = f"{name.replace('_', ' ')} = {quantity(value)}"
+    stated = value.stated if isinstance(value, StatedValue) else None
+    if stated:
+        off = 100 * (value.value / stated - 1)
+        text += f" (stated {stated:.4g}, {off:+.2g} %)"
+    return text
+
+
+def verdict(
+    before: SystemAccuracy,
+    after: SystemAccuracy,
+    findings: list[Finding],
+    places: list[str],
+    remains: str,
+    unknown: list[str],
+) -> str:
+    """One paragraph in plain words; places: of each finding, empty where there is no doubt."""
+    error = (
+        f"{100 * before.rmse:.3g} % of the channels' spread on held-out data ({_channels(before)})"
+    )
+    if not findings:
+        start = "The simulation is right as far as these records can tell"
+        if before.rmse > 0.1:
+            start = "No effect that was tried explains what the simulation misses"
+        text = f"{start}: its error is {error}. {remains}"
+    else:
+        names = [
+            in_words(f.effect, f.law) + (f" in {place}" if place else "")
+            for f, place in zip(findings, places, strict=True)
+        ]
+        others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
+        text = (
+            f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "
+            f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
+            f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains}"
+        )
+    if unknown:
+        text += " Not tried: " + "; ".join(unknown) + "."
+    return text
+
+
+def _channels(accuracy: SystemAccuracy) -> str:
+    return ", ".join(
+        f"{name.replace('_', ' ')} {error.rmse:.3g} {error.unit}".rstrip()
+        for name, error in accuracy.channels.items()
+    )

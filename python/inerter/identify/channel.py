@@ -1,0 +1,97 @@
+"""What stands between a device's force and the record: a late, drifting, limited force channel.
+
+    delay                    the channel is late by this time                              [s]
+    force_drift              force per elapsed time                                        [N/s]
+    force_maximum, _minimum  where the channel clips                                       [N]
+    disturbance_amplitude, disturbance_frequency   a tone from outside                     [N], [Hz]
+    friction_drift           friction level times 1 + friction_drift (elapsed time)        [1/s]
+
+The last one is the device's own, but changes with time as no device of a simulator does. Elapsed
+time counts from the beginning of a run, or of the first run where all share one clock. The phase of
+a tone is nobody's to predict and is read off each run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+UNITS: Mapping[str, str] = {
+    "delay": "s",
+    "force_drift": "N/s",
+    "force_maximum": "N",
+    "force_minimum": "N",
+    "disturbance_amplitude": "N",
+    "disturbance_frequency": "Hz",
+    "friction_drift": "1/s",
+}
+"""Units of what is fitted beside the device's parameters."""
+
+LIMITS = ("force_maximum", "force_minimum")
+
+
+def channel_values(values: Mapping[str, float]) -> dict[str, float]:
+    """Those of some coordinates that belong to the channel, where they do anything."""
+    return {name: values[name] for name in UNITS if values.get(name)}
+
+
+def clips(values: Mapping[str, float]) -> bool:
+    """Whether the channel has a limit."""
+    return any(name in values for name in LIMITS)
+
+
+def through_channel(
+    values: Mapping[str, float], force: Array, elapsed: Array, spacing: float
+) -> Array:
+    """A device's force as the channel shows it, shape (n,).
+
+    Parameters
+    ----------
+    values
+        Coordinates; those of the channel are read.
+    force, elapsed
+        Force [N] and elapsed time [s], shape (n,).
+    spacing
+        Of the samples [s].
+    """
+    if drift := values.get("force_drift", 0.0):
+        force = force + drift * elapsed
+    force = delayed(force, values.get("delay", 0.0), spacing)
+    if clips(values):
+        low, high = (values.get(name) for name in reversed(LIMITS))
+        force = np.clip(force, low, high)
+    return force
+
+
+def delayed(force: Array, delay: float, spacing: float) -> Array:
+    """A force `delay` seconds later, by four-point Lagrange interpolation; ends held."""
+    if delay == 0:
+        return force
+    n = force.size
+    shift = delay / spacing
+    whole = int(np.floor(shift))
+    s = 1 - (shift - whole)  # position after sample i - whole - 1
+    index = np.arange(n) - whole - 1
+    weights = (
+        -s * (s - 1) * (s - 2) / 6,
+        (s + 1) * (s - 1) * (s - 2) / 2,
+        -(s + 1) * s * (s - 2) / 2,
+        (s + 1) * s * (s - 1) / 6,
+    )
+    return sum(
+        weight * force[np.clip(index + offset, 0, n - 1)]
+        for weight, offset in zip(weights, (-1, 0, 1, 2), strict=True)
+    )  # type: ignore[return-value]
+
+
+def without_tone(
+    residual: Array, elapsed: Array, mask: NDArray[np.bool_], amplitude: float, frequency: float
+) -> Array:
+    """A residual without a tone, whose phase is the one that fits the masked samples best."""
+    angle = 2 * np.pi * frequency * elapsed
+    turn = np.exp(-1j * angle[mask]) @ residual[mask]
+    return residual - amplitude * np.cos(angle + np.angle(turn))

@@ -1,0 +1,88 @@
+"""The effects that a test record can hide, and which of them go together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+EFFECTS = (
+    "none",
+    "viscous_friction",
+    "coulomb_friction",
+    "stribeck_friction",
+    "hysteretic_friction",
+    "asymmetric_friction",
+    "position_dependent_friction",
+    "load_dependent_friction",
+    "parallel_stiffness",
+    "force_offset",
+    "sensor_delay",
+    "quadratic_damping",
+)
+"""What is drawn from where no effect is given: forces that act at once, and a delay."""
+
+BENCH_EFFECTS = (
+    *EFFECTS[1:],
+    "inertance_error",
+    "friction_drift",
+    "backlash",
+    "series_elasticity",
+    "hardening_stiffness",
+    "gas_spring",
+    "end_stop",
+    "variable_inertance",
+    "force_drift",
+    "sensor_saturation",
+    "periodic_disturbance",
+)
+"""Every effect of a bench record, without "none"."""
+
+HYSTERETIC_LAWS = ("dahl", "lugre", "bouc_wen")
+
+# a device has one friction law; these say what it is
+FRICTION_LAWS = ("coulomb_friction", "stribeck_friction", "hysteretic_friction")
+
+# these change a law's level, and bring a Coulomb level along where there is no law
+LEVEL_CHANGES = ("asymmetric_friction", "position_dependent_friction", "friction_drift")
+
+# of them, what Bouc-Wen's loop has no level for
+NEEDS_LEVEL = LEVEL_CHANGES[:2]
+
+# an inertance has one series element, and a gap comes with its own
+_SERIES = ("backlash", "series_elasticity")
+
+
+def compatible(effects: Sequence[str]) -> bool:
+    """Whether one device can have all of these effects, each of them nameable.
+
+    Raises
+    ------
+    ValueError
+        A name is not one of `BENCH_EFFECTS` or "none".
+    """
+    return clash(effects) is None
+
+
+def clash(effects: Sequence[str]) -> str | None:
+    """Why effects do not go together, in words; None where they do."""
+    for name in effects:
+        check_effect(name)
+    if len(set(effects)) < len(effects):
+        return "an effect is given twice"
+    if "none" in effects and len(effects) > 1:
+        return "'none' stands alone"
+    laws = [name for name in effects if name in FRICTION_LAWS]
+    if len(laws) > 1:
+        return f"{' and '.join(laws)} are two friction laws; a device has one"
+    levels = [name for name in effects if name in LEVEL_CHANGES]
+    if levels and "coulomb_friction" in laws:
+        return f"{levels[0]} brings its own Coulomb friction; leave coulomb_friction out"
+    if all(name in effects for name in _SERIES):
+        return "backlash has its own series element; leave series_elasticity out"
+    return None
+
+
+def check_effect(name: str) -> None:
+    """Raise ValueError for a name that is no effect."""
+    if name != "none" and name not in BENCH_EFFECTS:
+        known = ", ".join(("none", *BENCH_EFFECTS))
+        raise ValueError(f"effect: '{name}' is not one of {known}")

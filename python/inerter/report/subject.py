@@ -1,0 +1,60 @@
+"""What a page is about in words: the force of a device on a bench, or the channels of a model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from inerter.diagnose.result import Diagnosis
+from inerter.diagnose.system.outcome import SystemDiagnosis
+from inerter.report import text
+
+
+@dataclass(frozen=True)
+class Subject:
+    """The words of a page that differ between devices and models.
+
+    kind: of page; error, noise: what the figures are; quantity: what is drawn; engines: about the
+    table of engines; glossary: meaning of the error; share: figures are shares of a spread.
+    """
+
+    kind: str
+    error: str
+    noise: str
+    quantity: str
+    engines: str
+    glossary: str
+    share: bool
+
+    def figure(self, value: float | None, digits: int = 3) -> str:
+        """An error with its unit."""
+        if value is None or not self.share:
+            return f"{text.number(value, digits)} N"
+        return f"{text.number(100 * value, digits)} %"
+
+
+_BENCH = Subject(
+    "simulation against bench data",
+    "rms force error",
+    "noise of the force channel, the least any model can reach",
+    "Force",
+    "The same device, following the measured motion anew in each engine. Figures that agree mean "
+    "that the finding does not hang on one implementation.",
+    "Root of the mean square of measured minus simulated force over the held-out samples, the "
+    "simulation following the measured motion. For runs that were fitted, over their own samples.",
+    False,
+)
+_MODEL = Subject(
+    "a model against records of the whole system",
+    "rms error of the channels, per their spread,",
+    "noise of the channels, the least any model can reach",
+    "Channel",
+    "The extended model as written below, simulated once more. The other engines do not run MJCF.",
+    "Root of the mean square of measured minus simulated channels over the held-out samples, each "
+    "channel per its noise-free spread; the model is driven by the recorded inputs.",
+    True,
+)
+
+
+def subject(diagnosis: Diagnosis) -> Subject:
+    """The words for a diagnosis."""
+    return _MODEL if isinstance(diagnosis, SystemDiagnosis) else _BENCH

@@ -1,0 +1,120 @@
+"""Which cases there are, and that none is lost on the way."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import pytest
+from inerter.blind_test import case as blind_case
+from inerter.blind_test.case import compare, hide, solve
+from inerter.blind_test.plan import Plan, Task
+from inerter.blind_test.run import run_tasks
+from inerter.core import Device
+from inerter.diagnose.result import Accuracy, Diagnosis, Finding, ParameterValue, Unexplained
+from inerter.reference import UNKNOWN, compatible
+from made_up import solve_or_die
+
+
+def test_plan_counts_and_seeds() -> None:
+    plan = Plan(count=2, clean=3, pairs=30, triples=20, unknown=12, seed=5)
+    tasks = plan.tasks()
+    assert Counter(task.group for task in tasks) == {
+        "single": 44, "clean": 3, "pairs": 30, "triples": 20, "unknown": 12,
+    }  # fmt: skip
+    assert all(compatible(task.effects) for task in tasks if task.effects)
+    assert all(len(task.effects) == 3 for task in tasks if task.group == "triples")
+    assert len({task.effects for task in tasks if task.group == "pairs"}) == 30
+    assert {task.kind for task in tasks if task.group == "unknown"} == set(UNKNOWN)
+    laws = [task.law for task in tasks if task.effects == ("hysteretic_friction",)]
+    assert laws == ["dahl", "lugre"]
+    assert len({task.seed for task in tasks}) == len(tasks)
+
+    # a case does not depend on what else is asked for
+    alone = Plan(effects=("backlash",), count=2, seed=5).tasks()
+    assert alone == [task for task in tasks if task.effects == ("backlash",)]
+    assert alone != Plan(effects=("backlash",), count=2, seed=6).tasks()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"effects": ("gremlins",)}, "gremlins"),
+        ({"effects": ("backlash", "backlash")}, "twice"),
+        ({"noise": 2.0}, "--noise: 2"),
+        ({"count": -1}, "--count"),
+        ({"count": 0}, "no case"),
+        ({"effects": ("coulomb_friction", "stribeck_friction"), "pairs": 1}, "--pairs"),
+    ],
+)
+def test_impossible_plans_are_refused(wrong: dict, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        Plan(**wrong)
+
+
+def test_noise_levels() -> None:
+    levels = Task("clean", 1, 0.05).levels
+    assert (levels.force, levels.force_share) == (0.0, 0.05)
+    assert levels.displacement == pytest.approx(5e-6)
+
+
+def test_a_process_that_dies_is_a_failure_of_its_case_alone() -> None:
+    tasks = [Task("clean", seed, 0.01) for seed in (1, 2, 3)]
+    shares: list[float] = []
+    first, died, last = run_tasks(tasks, 2, shares.append, solve_or_die)
+    assert (first.verdict, last.verdict) == ("1", "3")
+    assert died.first == "failed"
+    assert died.error == "the process ended without a result (exit status 9)"
+    assert all(0.0 <= share <= 1.0 for share in shares)
+
+
+def test_a_diagnosis_that_raises_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(records: object, device: Device | None) -> None:
+        assert device is not None
+        raise RuntimeError("two\nlines")
+
+    monkeypatch.setattr(blind_case, "diagnose_bench", fail)
+    found = solve(Task("single", 3, 0.01, ("inertance_error",)))
+    assert found.error == "RuntimeError: two lines"
+    assert found.first == "failed"
+    assert "inertance" in found.truth
+
+
+def _diagnosis(effect: str, law: str | None, values: dict[str, tuple[float, float]]) -> Diagnosis:
+    named = {name: ParameterValue(value, error, "") for name, (value, error) in values.items()}
+    finding = Finding(effect, law, 0.9, named, 2.0, 1.0, "", [])
+    device: dict[str, float | str] = {name: value for name, (value, _) in values.items()}
+    return Diagnosis(
+        [], Accuracy({}, 2.0, 1.0), [finding], Accuracy(device, 1.0, 0.5), 0.1,
+        Unexplained(False, 0.0, [], ""), {}, "words",
+    )  # fmt: skip
+
+
+def test_parameters_are_compared_by_name() -> None:
+    task = Task("single", 4, 0.0, ("hysteretic_friction",), "dahl")
+    case = hide(task)
+    level = case.parameters["coulomb_force"]
+    right = {"coulomb_force": (1.1 * level, level), "bristle_stiffness": (1.0, 0.1)}
+    found = compare(task, case, _diagnosis("hysteretic_friction", "dahl", right))
+    errors = {error.name: error for error in found.parameters}
+    assert errors["coulomb_force"].relative == pytest.approx(0.1)
+    assert errors["coulomb_force"].near
+    assert not errors["bristle_stiffness"].near
+
+    # another law's parameters mean something else
+    other = compare(task, case, _diagnosis("hysteretic_friction", "lugre", right))
+    assert other.parameters == ()
+    assert other.first == "hysteretic_friction"
+
+
+def test_gas_is_compared_by_what_the_data_see() -> None:
+    task = Task("single", 5, 0.0, ("gas_spring",))
+    case = hide(task)
+    p = case.parameters
+    # twice the area, half the pressure, twice the volume: the same spring
+    same = {
+        "gas_pressure": (p["gas_pressure"] / 2, 0.0), "gas_area": (p["gas_area"] * 2, 0.0),
+        "gas_volume": (p["gas_volume"] * 2, 0.0), "gas_exponent": (p["gas_exponent"], 0.0),
+    }  # fmt: skip
+    errors = compare(task, case, _diagnosis("gas_spring", None, same)).parameters
+    assert {error.name for error in errors} == {"gas_force", "gas_reach", "gas_exponent"}
+    assert all(error.relative < 1e-12 for error in errors)

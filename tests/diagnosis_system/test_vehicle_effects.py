@@ -1,0 +1,126 @@
+"""Effects of the vehicle, hidden in records that SciPy makes, are named with their values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hidden_vehicles import Car, diagnose, records
+from inerter.diagnose.system.outcome import StatedValue
+from inerter.records import VehicleRecord
+
+# effect: the car it is hidden in, the road, parameter -> (true value, allowed relative error)
+HIDDEN = {
+    "tyre_damping": (Car(tyre_damping=150.0), 0.08, {"tyre_damping": (150.0, 0.02)}),
+    "tyre_liftoff": (Car(static_load=1200.0), 0.2, {"tyre_static_load": (1200.0, 0.01)}),
+    "damper_asymmetry": (
+        Car(rebound_damping=4500.0, bump_damping=2800.0),
+        0.08,
+        {"rebound_damping": (4500.0, 0.01), "bump_damping": (2800.0, 0.01)},
+    ),
+    "spring_hardening": (Car(stiffness_cubic=4e8), 0.08, {"stiffness_cubic": (4e8, 0.02)}),
+    "body_mass_error": (Car(sprung_mass=200.0), 0.08, {"body_mass": (200.0, 0.005)}),
+}
+
+
+@pytest.mark.parametrize("effect", HIDDEN)
+def test_effect_of_the_vehicle_is_named(effect: str) -> None:
+    car, amplitude, parameters = HIDDEN[effect]
+    found = diagnose(records(car, amplitude=amplitude))
+    assert [finding.effect for finding in found.findings] == [effect]
+    first = found.findings[0]
+    for name, (true, share) in parameters.items():
+        assert first.parameters[name].value == pytest.approx(true, rel=share)
+    assert first.confidence > 0.9
+    # on road that it was not fitted to, down to the noise: 1 % of the two accelerometers
+    assert found.extended.rmse < 1.1 * found.noise_floor < 0.011
+    assert found.extended.rmse < 0.5 * found.baseline.rmse
+    assert not found.unexplained.significant
+    # the model as written does the same
+    assert found.engines["mujoco"] == pytest.approx(found.extended.rmse, rel=0.01)
+    if effect == "spring_hardening":
+        # between the same two bodies: the records cannot know whose stiffness it is
+        assert "hardening_stiffness" in {rival.effect for rival in first.rivals}
+
+
+def test_stated_value_stands_beside_the_one_found() -> None:
+    found = diagnose(records(Car(damping=3300.0), runs=2))
+    value = found.findings[0].parameters["viscous"]
+    assert found.findings[0].effect == "viscous_friction"
+    assert value.value == pytest.approx(3300.0, rel=0.01)
+    assert isinstance(value, StatedValue)
+    assert value.stated == found.json()["parameters"]["viscous"]["stated"] == 3705.4
+    assert "stated 3705" in found.findings[0].evidence
+
+
+def test_channels_are_told_in_their_units() -> None:
+    found = diagnose(records(Car(), runs=2))
+    json = found.json()
+    channels = json["extended"]["channels"]
+    assert {name: each["unit"] for name, each in channels.items()} == {
+        "body_acceleration": "m/s^2",
+        "wheel_acceleration": "m/s^2",
+        "suspension_travel": "m",
+        "tyre_force": "N",
+    }
+    # the share is the root of the mean over channels of error per spread
+    runs = [run for run in found.curves if run.role == "holdout"]
+    shares = [channels[run.quantity.replace(" ", "_")]["rmse"] / np.std(run.force) for run in runs]
+    assert json["extended"]["rmse"] == pytest.approx(np.sqrt(np.mean(np.square(shares))), rel=0.1)
+    assert json["engines"]["reference"] == {"rmse": None}
+
+
+def test_nothing_is_found_where_nothing_is_hidden() -> None:
+    for seed in (21, 31):
+        found = diagnose(records(Car(), seed=seed))
+        assert found.findings == []
+        assert not found.unexplained.significant
+        assert found.extended.rmse == found.baseline.rmse < 1.1 * found.noise_floor
+
+
+def test_single_run_is_judged_on_blocks_of_it() -> None:
+    found = diagnose(records(Car(unsprung_mass=28.0), runs=1, duration=8.0))
+    assert [finding.effect for finding in found.findings] == ["wheel_mass_error"]
+    assert found.findings[0].parameters["wheel_mass"].value == pytest.approx(28.0, rel=0.01)
+    assert "blocks" in found.method["split"]
+    assert found.findings[0].rmse_after < 0.5 * found.findings[0].rmse_before
+
+
+def test_two_effects_are_both_found() -> None:
+    found = diagnose(records(Car(tyre_damping=150.0, sprung_mass=195.0)))
+    assert {finding.effect for finding in found.findings} == {"tyre_damping", "body_mass_error"}
+    assert found.parameters["tyre_damping"].value == pytest.approx(150.0, rel=0.02)
+    assert found.parameters["body_mass"].value == pytest.approx(195.0, rel=0.005)
+
+
+def test_start_in_motion_is_no_effect() -> None:
+    # cut out of a longer drive: what the car did before is not in the record
+    cut = []
+    for run in records(Car(), runs=2, duration=6.0):
+        part = run.time >= 2.0
+        channels: dict[str, Any] = {n: c[part] for n, c in run.channels().items()}
+        cut.append(VehicleRecord(name=run.name, time=run.time[part], **channels))
+    assert diagnose(cut).findings == []
+
+
+def test_offset_of_an_accelerometer_is_no_effect() -> None:
+    shifted = []
+    for run in records(Car(), runs=2):
+        channels: dict[str, Any] = run.channels()
+        channels["body_acceleration"] = channels["body_acceleration"] + 9.81
+        shifted.append(VehicleRecord(name=run.name, time=run.time, **channels))
+    found = diagnose(shifted)
+    assert found.findings == []
+    assert found.baseline.rmse < 1.1 * found.noise_floor
+
+
+def test_other_sign_of_the_tyre_force_is_no_effect() -> None:
+    turned = []
+    for run in records(Car(), runs=2):
+        channels: dict[str, Any] = run.channels()
+        channels["tyre_force"] = -channels["tyre_force"]
+        turned.append(VehicleRecord(name=run.name, time=run.time, **channels))
+    found = diagnose(turned)
+    assert found.findings == []
+    assert found.method["signs"] == ["tyre_force counted with the other sign"]
