@@ -9,6 +9,7 @@
 // beta >= |gamma| and 0 <= A <= 1.
 // Source: Bouc 1967, Wen 1976; eq. (12)-(13) of the hysteretic inerter paper. The parameters are
 // redundant: scaling z changes alpha, beta, gamma, k0 and leaves F alone.
+// Free play before the yielding share: friction_play.c.
 // Not modelled: pinching, degradation.
 
 #include <float.h>
@@ -78,6 +79,31 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   return inside && s * z > bound ? s * bound : z;
 }
 
+// Time until z = 0, d|z|/dt = -|v| (alpha + (beta - gamma) |z|^n): closed for n = 1, else by the
+// five-point rule of Gauss over |z|. Infinite where z does not come back.
+static double straight(const InerterDevice* p, double x, double v, double z) {
+  (void)x;
+  const double points[] = {0.5384693101056831, 0.9061798459386640};
+  const double weights[] = {0.4786286704993665, 0.2369268850561891};
+  double n = p->bw_exponent, rise = p->bw_beta - p->bw_gamma, size = fabs(z);
+  double ratio = rise * pow(size, n) / p->bw_alpha;
+  if (!(ratio > -1)) {
+    return INFINITY;
+  }
+  double path = size / p->bw_alpha;
+  if (n == 1) {
+    path *= fabs(ratio) < 1e-8 ? 1 - 0.5 * ratio : log1p(ratio) / ratio;
+  } else {
+    double sum = 0.5688888888888889 / (1 + ratio * pow(0.5, n));
+    for (int i = 0; i < 4; i++) {
+      double place = 0.5 + (i < 2 ? -0.5 : 0.5) * points[i % 2];
+      sum += weights[i % 2] / (1 + ratio * pow(place, n));
+    }
+    path *= 0.5 * sum;
+  }
+  return path / fabs(v);
+}
+
 static double force(const InerterDevice* p, double x, double v, double z) {
   (void)v;
   return p->bw_stiffness * (p->bw_ratio * x + (1 - p->bw_ratio) * z);
@@ -92,4 +118,4 @@ static double stiffness(const InerterDevice* p) {
   return fmax(0, 1 - p->bw_ratio) * p->bw_stiffness * p->bw_alpha;
 }
 
-const FrictionLaw inerter_bouc_wen = {rate, step, force, energy, stiffness};
+const FrictionLaw inerter_bouc_wen = {rate, step, straight, force, energy, stiffness};

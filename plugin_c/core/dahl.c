@@ -7,6 +7,7 @@
 // of friction.h), m dahl_exponent. Stored energy sigma0 z^2 / 2. |F| <= f_c once inside.
 // Passive for every m.
 // Source: Dahl 1968; eq. (4)-(6) of the hysteretic inerter paper.
+// Free play before it: friction_play.c.
 // Not modelled: breakaway above f_c, Stribeck effect (see lugre.c).
 
 #include "friction.h"
@@ -43,6 +44,16 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   return z - change * u * sign(v) * level / p->bristle_stiffness;
 }
 
+// u' as above, from u > 1 until u = 1
+static double straight(const InerterDevice* p, double x, double v, double z) {
+  double level = friction_level(p, x, v) * p->coulomb_force;
+  double path = log1p(p->bristle_stiffness * fabs(z) / level), m = p->dahl_exponent;
+  if (m != 1) {
+    path = expm1((1 - m) * path) / (1 - m);
+  }
+  return path * level / (p->bristle_stiffness * fabs(v));
+}
+
 static double force(const InerterDevice* p, double x, double v, double z) {
   (void)x;
   (void)v;
@@ -58,4 +69,4 @@ static double stiffness(const InerterDevice* p) {
   return p->bristle_stiffness;
 }
 
-const FrictionLaw inerter_dahl = {rate, step, force, energy, stiffness};
+const FrictionLaw inerter_dahl = {rate, step, straight, force, energy, stiffness};

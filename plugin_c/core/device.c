@@ -14,7 +14,7 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
                         double* rate) {
   double stretch = stretch_of(device, x);
   if (has_bristle(device)) {
-    rate[0] = law_of(device)->rate(device, stretch, v, z[0]);
+    rate[0] = bristle_rate(device, stretch, v, z[0]);
   }
   if (has(device, PART_SERIES)) {
     int first = series_index(device);
@@ -25,7 +25,7 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
 void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
   double stretch = stretch_of(device, x);
   if (has_bristle(device)) {
-    z[0] = law_of(device)->step(device, stretch, v, z[0], h);
+    z[0] = bristle_step(device, stretch, v, z[0], h);
   }
   if (has(device, PART_SERIES)) {
     series_step(device, stretch, v, 0, 0, z + series_index(device), h);
@@ -51,11 +51,28 @@ static double bristle_of_force(const InerterDevice* device, double x, double v, 
   return isfinite(limit) ? copysign(fmin(fabs(z), limit), z) : z;
 }
 
+// the same behind free play: at the side of the friction force that is wanted, 0 in the middle
+static double play_of_force(const InerterDevice* device, double x, double v, double a,
+                            double force) {
+  if (device->friction_backlash == 0) {
+    return bristle_of_force(device, x, v, a, force);
+  }
+  InerterDevice rigid = *device;
+  rigid.friction_backlash = 0;
+  double z = bristle_of_force(&rigid, x, v, a, force);
+  double wanted = force - inerter_force(device, x, v, a, (double[]){0}).total;
+  if (device->friction == INERTER_FRICTION_lugre && z * wanted <= 0) {
+    // its damper bears all of it where the contact begins
+    return copysign(device->friction_backlash, wanted) * (wanted != 0);
+  }
+  return z + sign(z) * device->friction_backlash;
+}
+
 void inerter_state_of_force(const InerterDevice* device, double x, double v, double a, double force,
                             double* z) {
   if (!has(device, PART_SERIES)) {
     if (device->nstate) {
-      z[0] = bristle_of_force(device, x, v, a, force);
+      z[0] = play_of_force(device, x, v, a, force);
     }
     return;
   }
@@ -80,7 +97,11 @@ double inerter_friction_force(const InerterDevice* device, double x, double v, c
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
-  return law_of(device)->force(device, stretch_of(device, x), v, device->nstate ? z[0] : 0);
+  double stretch = stretch_of(device, x);
+  if (has_bristle(device)) {
+    return bristle_force(device, stretch, v, z[0]);
+  }
+  return law_of(device)->force(device, stretch, v, 0);
 }
 
 double inerter_load_factor(const InerterDevice* device, double v) {
@@ -146,7 +167,7 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   double energy = (0.5 * device->stiffness + 0.25 * device->stiffness_cubic * square) * square;
   double y = stretch, w = v;
   if (has_bristle(device)) {
-    energy += law_of(device)->energy(device, stretch, z[0]);
+    energy += law_of(device)->energy(device, stretch, bristle_deflection(device, z[0]));
   }
   if (has(device, PART_SERIES)) {
     const double* series = z + series_index(device);
@@ -171,7 +192,8 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term
   if (has_bristle(device)) {
     const FrictionLaw* law = law_of(device);
-    power -= 2 * law->energy(device, 0, 1) * z[0] * law->rate(device, stretch, v, z[0]);
+    double bristle = bristle_deflection(device, z[0]);
+    power -= 2 * law->energy(device, 0, 1) * bristle * law->rate(device, stretch, v, bristle);
     power -= 2 * law->energy(device, 1, 0) * stretch * v;
   }
   if (has(device, PART_SERIES)) {

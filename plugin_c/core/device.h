@@ -141,7 +141,7 @@ INERTER_API void inerter_state_step(const InerterDevice* device, double x, doubl
 // States at which the device has a given total force at x, v, a. A friction state within what its
 // law can hold; 0 where the force does not depend on it. With a series element this one carries the
 // force, the flywheel moves along and friction is at 0. It tells the state that a measured run
-// begins with.
+// begins with. Behind free play a friction of 0 has many states: the middle of the play.
 INERTER_API void inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
                                         double force, double* z);
 

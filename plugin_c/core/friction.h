@@ -9,11 +9,13 @@
 #include "device.h"
 
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
+// straight: time until a state that v straightens is 0; asked for where z v < 0 only.
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
 // Laws without states leave all but force NULL.
 typedef struct FrictionLaw_ {
   double (*rate)(const InerterDevice* p, double x, double v, double z);
   double (*step)(const InerterDevice* p, double x, double v, double z, double h);
+  double (*straight)(const InerterDevice* p, double x, double v, double z);
   double (*force)(const InerterDevice* p, double x, double v, double z);
   double (*energy)(const InerterDevice* p, double x, double z);
   double (*stiffness)(const InerterDevice* p);
@@ -28,6 +30,15 @@ extern const FrictionLaw inerter_brown_mcphee;
 
 // by InerterFriction; nothing to call for "none"
 extern const FrictionLaw* const inerter_friction_law[];
+
+// friction_play.c: a law with a bristle behind its free play, s its state. play_force_over_step:
+// over a step of h seconds to the state `end`, with the spring's implicit share.
+double play_deflection(const InerterDevice* p, double s);
+double play_rate(const InerterDevice* p, double x, double v, double s);
+double play_step(const InerterDevice* p, double x, double v, double s, double h);
+double play_force(const InerterDevice* p, double x, double v, double s);
+double play_force_over_step(const InerterDevice* p, double x, double v, double s, double end,
+                            double share, double h);
 
 // direction of sliding, smooth over the transition velocity
 static inline double friction_direction(const InerterDevice* p, double v) {

@@ -36,6 +36,21 @@ static inline int has_bristle(const InerterDevice* p) {
          p->friction == INERTER_FRICTION_bouc_wen;
 }
 
+// a law with a bristle, with or without free play before it: deflection of the bristle, rate, step
+// and force at its state s
+static inline double bristle_deflection(const InerterDevice* p, double s) {
+  return p->friction_backlash == 0 ? s : play_deflection(p, s);
+}
+static inline double bristle_rate(const InerterDevice* p, double x, double v, double s) {
+  return p->friction_backlash == 0 ? law_of(p)->rate(p, x, v, s) : play_rate(p, x, v, s);
+}
+static inline double bristle_step(const InerterDevice* p, double x, double v, double s, double h) {
+  return p->friction_backlash == 0 ? law_of(p)->step(p, x, v, s, h) : play_step(p, x, v, s, h);
+}
+static inline double bristle_force(const InerterDevice* p, double x, double v, double s) {
+  return p->friction_backlash == 0 ? law_of(p)->force(p, x, v, s) : play_force(p, x, v, s);
+}
+
 // place of the series element's first state, after that of friction
 static inline int series_index(const InerterDevice* p) {
   return has_bristle(p);

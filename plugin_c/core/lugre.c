@@ -9,6 +9,7 @@
 // Source: Canudas de Wit, Olsson, Astrom, Lischinsky 1995. The hysteretic inerter paper prints
 // |v| z / g without sigma0: its g is this g divided by sigma0.
 // Passive where sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed.
+// Free play before it: friction_play.c.
 // Not modelled: a sigma1 that falls with speed, hysteresis with non-local memory.
 
 #include "friction.h"
@@ -32,6 +33,12 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   return z - expm1(-p->bristle_stiffness * fabs(v) * h / g) * (end - z);
 }
 
+// the same decay, from z against v until 0
+static double straight(const InerterDevice* p, double x, double v, double z) {
+  double rate = p->bristle_stiffness / yield_level(p, x, v);
+  return log1p(rate * fabs(z)) / (rate * fabs(v));
+}
+
 static double force(const InerterDevice* p, double x, double v, double z) {
   return p->bristle_stiffness * z + p->bristle_damping * rate(p, x, v, z);
 }
@@ -45,4 +52,4 @@ static double stiffness(const InerterDevice* p) {
   return p->bristle_stiffness;
 }
 
-const FrictionLaw inerter_lugre = {rate, step, force, energy, stiffness};
+const FrictionLaw inerter_lugre = {rate, step, straight, force, energy, stiffness};

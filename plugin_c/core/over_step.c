@@ -2,7 +2,8 @@
 //
 //   dampers, friction without memory, direction of the load friction: at v1
 //   springs and constant force: at x;  end stops: at x + h v1, v1
-//   bristle: z1 = step(x, v1, z, h), force at v1 and z + share (z1 - z)
+//   bristle: z1 = step(x, v1, z, h), force at v1 and z + share (z1 - z); behind free play its
+//   damper at the mean rate (friction_play.c)
 //   rigid inertance: B a + R + G at (x, v), the dampers of G with their slope times (v1 - v)
 //   series element: series_step.c
 //   share(k, m) = max(0, 1 - 1 / (h^2 k m)), m = mobility [1/kg] of the masses at the spring's ends
@@ -29,8 +30,11 @@ static double friction_over_step(const InerterDevice* device, double x, double v
   if (!has_bristle(device)) {
     return law->force(device, x, v1, 0);
   }
-  *z1 = law->step(device, x, v1, z[0], h);
+  *z1 = bristle_step(device, x, v1, z[0], h);
   double share = least_share(law->stiffness(device), mobility, h);
+  if (device->friction_backlash > 0) {
+    return play_force_over_step(device, x, v1, z[0], *z1, share, h);
+  }
   return law->force(device, x, v1, z[0] + share * (*z1 - z[0]));
 }
 

@@ -77,11 +77,13 @@
     "coulomb stribeck dahl lugre brown_mcphee", "relative rise of the level per x")                \
   X(friction_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED,                                   \
     "coulomb stribeck dahl lugre brown_mcphee", "relative rise of the level per x^2")              \
-  /* bristles: Dahl and LuGre */                                                                   \
+  /* bristles: Dahl and LuGre; free play also Bouc-Wen */                                          \
   X(bristle_stiffness, "N/m", 1e5, 0, INFINITY, OPEN, "dahl lugre",                                \
     "pre-sliding stiffness, sigma0")                                                               \
   X(bristle_damping, "N*s/m", 0, 0, INFINITY, CLOSED, "lugre", "LuGre micro-damping, sigma1")      \
   X(dahl_exponent, "1", 1, 0, 10, CLOSED, "dahl", "shape of the Dahl loop")                        \
+  X(friction_backlash, "m", 0, 0, INFINITY, CLOSED, "dahl lugre bouc_wen",                         \
+    "half of the free play before the friction, eps")                                              \
   /* Bouc-Wen */                                                                                   \
   X(bw_alpha, "1", 1, 0, INFINITY, OPEN, "bouc_wen", "z' per v while elastic, alpha")              \
   X(bw_beta, "m^-n", 0.5, -INFINITY, INFINITY, CLOSED, "bouc_wen", "hysteresis shape, beta")       \

@@ -23,6 +23,13 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
   // slope of the rate over the state, a little beyond the state
   double there[INERTER_MAXSTATE], beyond[INERTER_MAXSTATE];
   double step = 1e-6 * fabs(state[0]) + 1e-15;
+  if (device->friction_backlash > 0) {
+    // away from the play, in which nothing relaxes
+    if (fabs(state[0]) <= device->friction_backlash) {
+      return;
+    }
+    step = copysign(step, state[0]);
+  }
   mju_copy(there, state, inerter_nstate(device));
   there[0] += step;
   inerter_state_rate(device, x, v, there, beyond);

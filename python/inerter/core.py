@@ -288,7 +288,8 @@ class Device:
         """State at which the device has a given total force, within what its law can hold.
 
         A number for a device with at most one state, else an array (nstate,): with a series element
-        this one carries the force, the flywheel moves along and friction is at 0.
+        this one carries the force, the flywheel moves along and friction is at 0. Behind free play
+        (`friction_backlash`) a friction force of 0 has many states: the middle is given.
         """
         states = np.zeros(self.nstate)
         _library().inerter_state_of_force(ctypes.byref(self._c), x, v, a, force, states.ctypes.data)

@@ -60,6 +60,21 @@ DEVICES: dict[str, tuple[dict[str, Any], float]] = {
     "play": (LOOSE, 5e-3),
     "smooth play": ({**LOOSE, "smoothPlay": True}, 1e-4),
     "play, no damper": ({**LOOSE, "series_damping": 0.0}, 1e-4),
+    "free play, dahl": (
+        {"friction": "dahl", "coulomb_force": 2.0, "bristle_stiffness": 500.0,
+         "friction_backlash": 5e-3},
+        5e-5,
+    ),
+    "free play, lugre": (
+        {**LUGRE, "coulomb_force": 2.0, "static_force": 3.0, "bristle_stiffness": 500.0,
+         "bristle_damping": 5.0, "friction_backlash": 5e-3},
+        2e-3,
+    ),
+    "free play, bouc_wen": (
+        {"friction": "bouc_wen", "bw_alpha": 0.8, "bw_beta": 30.0, "bw_gamma": 20.0,
+         "bw_stiffness": 100.0, "bw_ratio": 0.3, "rest_length": 0.6, "friction_backlash": 5e-3},
+        1e-5,
+    ),
     "stops": ({"stop_stiffness": 2e3, "stop_damping": 0.5, "stop_upper": 0.62,
                "stop_lower": 0.58}, 1e-4),
     "gas": ({"gas_pressure": 1e5, "gas_area": 2e-4, "gas_volume": 2e-4, "rest_length": 0.6}, 1e-8),

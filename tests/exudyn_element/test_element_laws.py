@@ -10,6 +10,7 @@ import pytest
 from inerter.core import Device
 from laws.core_draws import (  # pyright: ignore[reportMissingImports]
     LAWS,
+    MEMORY,
     draw_complete,
     draw_friction,
     draw_levels,
@@ -52,6 +53,12 @@ def devices(friction: str) -> list[tuple[Device, Array, Array]]:
             ]
         )
         states = draw_states(rng, POINTS, chosen)
+        if friction in MEMORY and len(found) % 2:
+            # in the gap, at its edges, engaged
+            half = chosen["friction_backlash"] = float(10 ** rng.uniform(-6, -2))
+            inside, side = rng.uniform(-1, 1, POINTS), np.sign(states[:, 0])
+            places = [half * inside, half * side, states[:, 0] + half * side]
+            states[:, 0] = np.choose(rng.integers(0, 3, POINTS), places)
         device = Device(**chosen)
         if device.backlash:
             # what is a little outside belongs to solvers' steps, see below

@@ -62,6 +62,22 @@ def test_play_with_a_damper_takes_shorter_steps(modified: bool) -> None:
     assert iterations(play, 1e-3, adaptive=True, modified=modified) < 9.0
 
 
+# a stiff bristle behind its play, struck at 0.3 m/s
+BEHIND_PLAY = {**BRISTLE, "bristle_damping": 3e3, "friction_backlash": 5e-4}
+
+
+@pytest.mark.parametrize("modified", [False, True])
+def test_a_bristle_behind_free_play_takes_shorter_steps(modified: bool) -> None:
+    """Its damper sets in with a jump, as teeth do."""
+    assert iterations(BEHIND_PLAY, 1e-3, adaptive=True, modified=modified) < 9.0
+
+
+def test_a_bristle_behind_smooth_play_needs_no_shorter_steps() -> None:
+    device = BEHIND_PLAY | {"smoothPlay": True}
+    for step in (1e-3, 2e-4):
+        assert iterations(device, step, adaptive=False, modified=False) < 4.0
+
+
 # the Jacobian that Exudyn finds, against central differences of the forces
 
 DEVICES: dict[str, dict[str, Any]] = {

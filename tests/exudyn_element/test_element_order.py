@@ -27,9 +27,16 @@ DEVICES: dict[str, dict[str, Any]] = {
     "friction": {"inertance": 4.0, **SMOOTH},
     "series": {"inertance": 4.0, "series_stiffness": 800.0, "series_damping": 6.0, **SMOOTH},
     "lugre": {"inertance": 4.0, **LUGRE, "bristle_stiffness": 500.0},
+    "free play": {
+        "inertance": 4.0,
+        "friction": "dahl",
+        "coulomb_force": 8.0,
+        "bristle_stiffness": 500.0,
+        "friction_backlash": 5e-3,
+    },
 }
 # |v| in the rate of a bristle is a corner, which solvers of high order feel
-CORNERS = ("lugre",)
+CORNERS = ("lugre", "free play")
 Ends = tuple[tuple[int | None, int], ...]
 ONE: Ends = ((0, 1),)
 MANY: Ends = ((0, 1), (1, 2), (2, 0), (None, 1))
@@ -99,7 +106,9 @@ def test_second_order_under_generalized_alpha(name: str) -> None:
         error(name, ONE, "GeneralizedAlpha", settings(END, step)) for step in (1e-3, 5e-4)
     )
     assert fine < 2e-4
-    assert 3.6 < coarse / fine < 4.4
+    # where in its step a bristle meets the edge of its play is left to chance
+    low, high = (3.0, 5.0) if name == "free play" else (3.6, 4.4)
+    assert low < coarse / fine < high
 
 
 @pytest.mark.parametrize("name", DEVICES)
@@ -109,9 +118,8 @@ def test_to_its_tolerance_under_dopri5(name: str) -> None:
         chosen.timeIntegration.automaticStepSize = True
         chosen.timeIntegration.relativeTolerance = tolerance
         chosen.timeIntegration.absoluteTolerance = tolerance
-        assert (
-            error(name, ONE, "DOPRI5", chosen) < (1500.0 if name in CORNERS else 100.0) * tolerance
-        )
+        corners = {"lugre": 1500.0, "free play": 5000.0}
+        assert error(name, ONE, "DOPRI5", chosen) < corners.get(name, 100.0) * tolerance
 
 
 @pytest.mark.parametrize("name", [name for name in DEVICES if name not in CORNERS])

@@ -19,7 +19,7 @@ from inerter.reference.bench_motions import Drive, draw_drives
 
 LAWS = (
     "ideal", "viscous", "coulomb", "dahl", "lugre", "bouc_wen", "brown_mcphee", "viscous+series",
-    "fluid",
+    "fluid", "dahl+play",
 )  # fmt: skip
 
 
@@ -78,6 +78,9 @@ def drawn(law: str, seed: int, share: float = 0.01, displacement: float = 1e-6) 
         }
     if "fluid" in parts:
         values["flywheel_viscous"] = between(0.03, 0.3) * force / v
+
+    if "play" in parts:
+        values["friction_backlash"] = between(0.02, 0.3) * x
 
     device = ReferenceDevice(**values)
     forces = [_force(device, drive) for drive in drives]

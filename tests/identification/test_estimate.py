@@ -8,7 +8,7 @@ from inerter import Device
 from inerter.core import DeviceError
 from inerter.identify.bench import Run
 from inerter.identify.estimate import identify
-from inerter.identify.fit import Model, Problem, parameter_errors
+from inerter.identify.fit import Model, Problem, first_state, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import law_named
 from inerter.identify.multistart import search
@@ -162,6 +162,43 @@ def test_lugre_far_from_sliding_is_a_spring() -> None:
     assert "inertance" not in lost
 
 
+@pytest.mark.parametrize("place", [-0.8, 0.3])
+def test_where_in_its_play_a_run_begins_is_found_with_the_play(place: float) -> None:
+    half = 3e-3
+    device = Device(inertance=50, viscous=100, friction="dahl", coulomb_force=40,
+                    bristle_stiffness=4e4, friction_backlash=half)  # fmt: skip
+    x, v, a = motion()
+    noise = np.random.default_rng(2).standard_normal(N)
+    force = device.along(H, x, v, a, place * half)["total"] + 0.3 * noise
+    everything = np.ones(N, bool)
+    first = float(50 * a[0] + 100 * v[0])
+    data = Problem([Run("r", 0.0, H, x, v, a, force, everything, first, np.inf)], [everything])
+    fit = search(data, law_named("dahl+play"), {}).best
+    assert fit.rmse(data.masks) < 1.02 * 0.3
+    assert fit.model.values["friction_place"] == pytest.approx(place, abs=0.02)
+    value, error = parameter_errors(fit)["friction_backlash"]
+    assert abs(value - half) < 4 * error
+    assert error < 0.01 * half
+    # it is no parameter of the device
+    assert "friction_place" not in parameter_errors(fit)
+    # pinned to the middle, the play cannot be had as exactly
+    names = tuple(name for name in fit.model.free if name != "friction_place")
+    pinned = Model("dahl", {**fit.model.values, "friction_place": 0.0}, names)
+    assert data.fit(pinned).rmse(data.masks) > 1.3 * 0.3
+
+
+def test_a_first_force_beyond_doubt_tells_the_side_of_the_play() -> None:
+    device = Device(
+        friction="dahl", coulomb_force=40, bristle_stiffness=4e4, friction_backlash=3e-3
+    )
+    none, few = np.zeros(3), np.ones(3, bool)
+    for force, place, state in (
+        (20.0, -1.0, 3.5e-3), (-20.0, 1.0, -3.5e-3), (0.0, 0.4, 1.2e-3), (0.0, -1.0, -3e-3),
+    ):  # fmt: skip
+        run = Run("r", 0.0, H, none, none, none, none, few, force, np.inf)
+        assert first_state(device, run, place) == pytest.approx(state, abs=1e-12)
+
+
 def test_outliers_count_less_with_a_robust_loss() -> None:
     truth = Device(inertance=50, viscous=100, friction="dahl", coulomb_force=20,
                    bristle_stiffness=1e4)  # fmt: skip
@@ -193,6 +230,8 @@ def test_what_is_known_is_held() -> None:
         ({"laws": ["dhal"]}, "did you mean dahl"),
         ({"laws": ["dahl+lugre"]}, "two friction laws"),
         ({"laws": ["viscous+asymmetry"]}, "has none"),
+        ({"laws": ["coulomb+play"]}, "no bristle: add dahl, lugre or bouc_wen"),
+        ({"laws": ["play+series"]}, "no bristle"),
         ({"fixed": {"inertanse": 3.0}}, "inertance"),
         ({"loss": "huge"}, "linear, soft_l1"),
         ({"intervals": "some"}, "profile, normal"),

@@ -39,6 +39,22 @@ def test_friction_damper_on_a_run_left_out(measured_data: Path) -> None:
     assert result.high < 3031
 
 
+def test_friction_damper_has_free_play_before_its_friction(measured_data: Path) -> None:
+    """Its force stays at zero over some 3.6 mm at every reversal."""
+    records = read_records(measured_data / "friction_damper", "bench")
+    result = identify(records, ["lugre", "lugre+play"], intervals="normal")
+    loose, tight = result.results
+    assert loose.law == "lugre+play"
+    assert loose.rmse < 900
+    assert loose.high < tight.low
+    half = loose.parameters["friction_backlash"]
+    assert half.value == pytest.approx(1.8e-3, abs=0.1e-3)
+    assert half.stderr < 0.1e-3
+    # a bristle that need not stand in for the play is stiffer
+    stiffness = (each.parameters["bristle_stiffness"].value for each in (loose, tight))
+    assert next(stiffness) > 1.5 * next(stiffness)
+
+
 def test_bouc_wen_oscillator_down_to_its_noise(measured_data: Path) -> None:
     """Simulated on a stretch it has not seen; what the true parameters leave is the noise."""
     (record,) = read_records(measured_data / "boucwen" / "train_multisine.csv", "bench")

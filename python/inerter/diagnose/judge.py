@@ -55,8 +55,8 @@ class Judge:
     def advantage(self, simple: Model, rich: Model, effect: str) -> float:
         """How surely the model with an effect is the better one, in standard errors."""
         masks = self.band.masks
-        residual = [self.band.residual(model) for model in (simple, rich)]
-        return advantage_of(*residual, masks, blocks(masks), effect)
+        before, after = (self.band.residual(model) for model in (simple, rich))
+        return advantage_of(before, after, masks, blocks(masks), effect)
 
     def visible(self, before: float, after: float, model: Model) -> bool:
         """Whether an error that fell from `before` to `after` [N] is more than no one can tell."""

@@ -226,7 +226,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     smoothPlay
         Whether the teeth of a damped backlash begin to press a little before they meet, without a
         jump of the force: for implicit solvers, whose steps may else have no solution. The play
-        then seems smaller by some c_s v / (10 k_s).
+        then seems smaller by some c_s v / (10 k_s). LuGre's damper behind `friction_backlash` then
+        bears at most ten times what the bristle's spring does.
     show, drawSize, color
         Whether and how a device between points is drawn.
     **parameters

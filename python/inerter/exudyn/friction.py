@@ -8,13 +8,18 @@ laws in `plugin_c/core`; here they are written anew, so that agreement means som
 
 `rate` is None for a law without state. The form lets an expression for the rate be evaluated once
 for both. Sign: tension positive.
+
+Free play before a bristle: its state s is place in the play and deflection z in one, z = s less s
+limited to +-eps (`friction_backlash`). Within the play s' = v and the bristle's force is 0; beyond
+it a damper never pulls. At the edge the force of LuGre's damper jumps; `smooth_play` makes a corner
+of the jump: the damper bears at most `EAGER` times what the bristle's spring does.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from inerter.exudyn.functions import Functions, Value
+from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
 
@@ -28,6 +33,39 @@ class Friction(NamedTuple):
 
 LEAST_LEVEL = 1e-3
 """The level along the stroke does not fall below this share."""
+
+
+EAGER = 10.0
+"""With smooth play a damper bears at most this many times the spring's force."""
+
+
+def bristle(f: Functions, p: Parameters, s: Value) -> Value:
+    """Deflection of the bristle [m]."""
+    eps = p.friction_backlash
+    return s - f.least(eps, f.greatest(-eps, s)) if eps else s
+
+
+def _engaged(f: Functions, p: Parameters, v: Value, s: Value) -> Value:
+    """1 where the bristle moves with the terminals, 0 in the play."""
+    eps, place = p.friction_backlash, f.abs(s)
+    at_edge = f.choose(place < eps, 0.0, 1.0)
+    return f.choose(s * v > 0.0, at_edge, f.choose(place > eps, 1.0, 0.0))
+
+
+def _behind_play(f: Functions, p: Parameters, v: Value, s: Value, law: Friction) -> Friction:
+    """A law that was worked out at the bristle's deflection, behind its free play."""
+    if not p.friction_backlash:
+        return law
+    engaged = _engaged(f, p, v, s)
+    rate = engaged * law.rate + (1.0 - engaged) * v
+    if not law.damping:
+        return Friction(law.bound, 0.0, rate)
+    spring, damper = law.bound, engaged * law.damping * law.rate
+    side = f.sign(s)
+    pressing, most = side * spring, side * damper
+    if p.smooth_play:
+        most = f.least(most, EAGER * pressing)
+    return Friction(side * f.greatest(0.0, pressing + most), 0.0, rate)
 
 
 def level(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
@@ -73,28 +111,33 @@ def stribeck(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Frict
 def dahl(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = v sgn(u) |u|^n, u = 1 - sigma0 z sgn(v) / (f_c level); F = sigma0 z."""
     limit = p.coulomb_force * level(f, p, x, v) / p.bristle_stiffness
+    s, z = z, bristle(f, p, z)
     if p.dahl_exponent == 1.0:
         rate = v - f.abs(v) * z / limit
     else:
         share = 1.0 - z * f.sign(v) / limit
         rate = v * f.sign(share) * f.power(f.abs(share), p.dahl_exponent)
-    return Friction(p.bristle_stiffness * z, 0.0, rate)
+    return _behind_play(f, p, v, s, Friction(p.bristle_stiffness * z, 0.0, rate))
 
 
 def lugre(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = v - sigma0 |v| z / g(v); F = sigma0 z + sigma1 z'."""
     sliding = stribeck_curve(f, p, v) * level(f, p, x, v)
+    s, z = z, bristle(f, p, z)
     rate = v - p.bristle_stiffness * f.abs(v) * z / sliding
-    return Friction(p.bristle_stiffness * z, p.bristle_damping, rate)
+    law = Friction(p.bristle_stiffness * z, p.bristle_damping, rate)
+    return _behind_play(f, p, v, s, law)
 
 
 def bouc_wen(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = alpha v - (beta |v| z + gamma v |z|) |z|^(n-1); F = A k0 x + (1 - A) k0 z."""
+    s, z = z, bristle(f, p, z)
     narrowing = p.bw_beta * f.abs(v) * z + p.bw_gamma * v * f.abs(z)
     if p.bw_exponent != 1.0:
         narrowing = narrowing * f.power(f.abs(z), p.bw_exponent - 1.0)
     elastic, yielding = p.bw_ratio * p.bw_stiffness, (1.0 - p.bw_ratio) * p.bw_stiffness
-    return Friction(elastic * x + yielding * z, 0.0, p.bw_alpha * v - narrowing)
+    law = Friction(elastic * x + yielding * z, 0.0, p.bw_alpha * v - narrowing)
+    return _behind_play(f, p, v, s, law)
 
 
 def brown_mcphee(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
@@ -111,6 +154,7 @@ LAWS = {law.__name__: law for law in (none, coulomb, stribeck, dahl, lugre, bouc
 
 def stored_energy(p: Parameters, x: float, z: float) -> float:
     """Energy in the bristle or the elastic branch [J]."""
+    z = bristle(NUMBERS, p, z)
     if p.friction in ("dahl", "lugre"):
         return 0.5 * p.bristle_stiffness * z * z
     if p.friction == "bouc_wen":
@@ -120,7 +164,8 @@ def stored_energy(p: Parameters, x: float, z: float) -> float:
 
 
 def stored_power(f: Functions, p: Parameters, x: Value, v: Value, z: Value, rate: Value) -> Value:
-    """Rate of the stored energy [W]."""
+    """Rate of the stored energy [W]; `rate` that of an engaged bristle."""
+    z = bristle(f, p, z)
     if p.friction in ("dahl", "lugre"):
         return p.bristle_stiffness * z * rate
     if p.friction == "bouc_wen":

@@ -21,7 +21,7 @@ def identify_command(
             help="Laws, with commas; parts joined by + as in lugre+series+offset. Laws: ideal, "
             "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, bouc_wen_any, "
             "fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, load, "
-            "asymmetry, position, variable, delay."
+            "asymmetry, position, variable, delay, play."
         ),
     ] = "ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen",
     fix: Annotated[

@@ -11,6 +11,8 @@ is the combination that the data see:
     series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
     gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
+    friction_place  where in the free play before the friction a run begins, where its first force
+                    does not tell: -1 ... 1 of half the play   [-], not a device parameter
 
 What the force channel does (see `channel`) has coordinates of its own, which are no parameters.
 """
@@ -90,6 +92,9 @@ LINEAR = (
 GAS_AREA = 1e-3
 """Piston area [m^2] that a gas is reported under where none is stated: a force has p0 A, V0 / A."""
 
+NOT_OF_DEVICE = (*UNITS, "friction_place")
+"""Coordinates of the record: of its force channel, of where its runs begin."""
+
 
 @functools.lru_cache(maxsize=512)
 def coordinate(name: str, scales: Scales) -> Coordinate:
@@ -150,6 +155,8 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "gas_push": Coordinate(force, 1e-4 * force, 1e4 * force, logarithmic=True),
         "gas_reach": Coordinate(x, reach, 1e3 * x, logarithmic=True),
         "gas_exponent": Coordinate(1.0, 1.0, 1.7),
+        "friction_backlash": Coordinate(x, 1e-5 * x, 2 * x, logarithmic=True),
+        "friction_place": Coordinate(1.0, -1.0, 1.0),
         "delay": Coordinate(1e-3, -0.05, 0.05),
         "force_drift": Coordinate(force / scales.elapsed, -infinity, infinity),
         "friction_drift": Coordinate(0.5 / scales.elapsed, -0.95 / scales.elapsed, infinity),
@@ -162,8 +169,8 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
 
 
 def device_values(coordinates: Mapping[str, float]) -> dict[str, float]:
-    """Parameters of the device that coordinates stand for (without delay)."""
-    values = {name: value for name, value in coordinates.items() if name not in UNITS}
+    """Parameters of the device that coordinates stand for (without what is none of the device)."""
+    values = {name: value for name, value in coordinates.items() if name not in NOT_OF_DEVICE}
     if (push := values.pop("gas_push", None)) is not None:
         area = values.setdefault("gas_area", values.get("piston_area", GAS_AREA))
         values |= {"gas_pressure": push / area, "gas_volume": values.pop("gas_reach") * area}

@@ -20,8 +20,10 @@ from inerter.identify.residual import robust_weight, sandwich, without_transient
 Array = NDArray[np.float64]
 Masks = Sequence[NDArray[np.bool_]]
 
-# free coordinates that make up for how a law is smoothed, and name no effect
-NUISANCES = ("transition_velocity",)
+# free coordinates that make up for how a law is smoothed or how a run begins, and name no effect
+NUISANCES = ("transition_velocity", "friction_place")
+# share of what the bristle holds from which on the first force tells the side of its free play
+_TELLING = 0.1
 # with one of these the force is no longer the inertance times the acceleration
 ENTANGLED = (
     "load_friction",
@@ -125,29 +127,52 @@ def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
 
 
 def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
-    # only laws without memory read the width of sign(v)
-    if friction in ("coulomb", "stribeck"):
-        return free
-    return tuple(name for name in free if name not in NUISANCES)
+    # only laws without memory read the width of sign(v), only those with one begin in a play
+    unread = "friction_place" if friction in ("coulomb", "stribeck") else "transition_velocity"
+    return tuple(name for name in free if name != unread)
 
 
-def first_state(device: Device, run: Run) -> float | Array:
+def first_state(device: Device, run: Run, place: float = 0.0) -> float | Array:
     """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
-    A number for a device with at most one state, else an array (nstate,).
+    A force near 0 does not tell where in a free play before the friction a run begins: that is
+    `place`, -1 ... 1 of half the play. A number for a device with at most one state, else an array
+    (nstate,).
     """
     if device.nstate == 0:
         return 0.0
     i = run.first
-    return device.state_of_force(
+    state = device.state_of_force(
         run.displacement[i], run.velocity[i], run.acceleration[i], run.first_force
     )
+    if not device.friction_backlash:
+        return state
+    bent, side = _bent(device, float(np.atleast_1d(state)[0]))
+    told = min(1.0, abs(bent) / (_TELLING * _held(device)))
+    found = bent + device.friction_backlash * (told * side + (1.0 - told) * place)
+    return np.array([found, *np.atleast_1d(state)[1:]]) if device.nstate > 1 else found
+
+
+def _bent(device: Device, state: float) -> tuple[float, float]:
+    """Deflection of the bristle [m] behind its free play, and its side, -1, 0 or 1."""
+    half = device.friction_backlash
+    return state - float(np.clip(state, -half, half)), float(np.sign(state))
+
+
+def _held(device: Device) -> float:
+    """Deflection of the bristle [m] at which it slides; for Bouc-Wen without one, a play."""
+    if device.friction != "bouc_wen":
+        return device.coulomb_force / device.bristle_stiffness
+    narrowing = device.bw_beta + device.bw_gamma
+    if narrowing <= 0:
+        return device.friction_backlash
+    return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
 
 
 def force_along(model: Model, run: Run) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,)."""
     device, values = model.device(), model.values
-    state = first_state(device, run)
+    state = first_state(device, run, values.get("friction_place", 0.0))
     if clips(values) and run.measured is not None:
         # what a limit cuts off comes before the low-pass of the measured force
         found = run.at_measured_rate(device, state)

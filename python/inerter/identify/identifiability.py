@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import DeviceError, parameters
+from inerter.identify.coordinates import NOT_OF_DEVICE
 from inerter.identify.fit import Model, Problem, force_along
 
 Array = NDArray[np.float64]
@@ -129,8 +130,7 @@ def _column(problem: Problem, model: Model, name: str) -> Array:
 
 def _forces(problem: Problem, model: Model, given: dict[str, float | str]) -> Array:
     values = {name: v for name, v in given.items() if not isinstance(v, str)}
-    if "delay" in model.values:
-        values["delay"] = model.values["delay"]
+    values |= {name: model.values[name] for name in NOT_OF_DEVICE if name in model.values}
     changed = Model(model.friction, values, (), model.texts)
     forces = [force_along(changed, run) for run in problem.runs]
     return np.concatenate([f[m] for f, m in zip(forces, problem.masks, strict=True)])

@@ -34,7 +34,8 @@ class Part:
     linear
         Coordinates that enter the force in proportion.
     starts
-        Other coordinates: lowest and highest start, in units of `unit_of`.
+        Other coordinates: lowest and highest start, in units of `unit_of`, between which starts are
+        spread by their logarithm, or evenly where the lowest is negative.
     needs
         Parts that come with it.
     """
@@ -81,6 +82,11 @@ PARTS: Mapping[str, Part] = MappingProxyType(
                 "backlash", "free play in series with the inertance", None, (),
                 {"backlash": (1e-3, 0.3)}, needs=("series",),
             ),
+            # where in its play a run begins is as unknown as the play
+            Part(
+                "play", "free play before the friction", None, (),
+                {"friction_backlash": (1e-3, 0.3), "friction_place": (-0.75, 0.75)},
+            ),
             Part(
                 "fluid", "fluid inerter: Brown-McPhee friction, compressible fluid, lossy channel",
                 "brown_mcphee", ("viscous",),
@@ -116,6 +122,9 @@ PARTS: Mapping[str, Part] = MappingProxyType(
 
 LAWS = ("ideal", "viscous", "coulomb", "stribeck", "brown_mcphee", "dahl", "lugre", "bouc_wen")
 """What is tried unless something is asked for."""
+
+BRISTLES = ("dahl", "lugre", "bouc_wen")
+"""Friction laws with a state."""
 
 
 @dataclass(frozen=True)
@@ -165,6 +174,12 @@ def law_named(text: str) -> Law:
             f"law {text!r} varies a friction level, but has none: add coulomb, stribeck, dahl or "
             "lugre"
         )
+    if "friction_backlash" in starts and friction not in BRISTLES:
+        raise DeviceError(
+            f"law {text!r} has free play before a bristle, but no bristle: add "
+            f"{', '.join(BRISTLES[:-1])} or {BRISTLES[-1]} (backlash is the free play in series "
+            "with the inertance)"
+        )
     return Law("+".join(names), friction, tuple(linear), MappingProxyType(starts))
 
 
@@ -180,5 +195,6 @@ def unit_of(name: str, sizes: Scales) -> float:
         "flywheel_viscous": sizes.force / sizes.velocity,
         "series_frequency": slow,
         "backlash": sizes.displacement,
+        "friction_backlash": sizes.displacement,
         "bw_beta": 1 / sizes.displacement,
     }.get(name, 1.0)

@@ -101,8 +101,12 @@ def _starts(
     for point in points:
         values = {name: low * unit_of(name, sizes) for name, (low, _) in free.items()}
         for name, share in zip(spread, point, strict=True):
-            low, high = np.log(np.array(free[name]) * unit_of(name, sizes))
-            values[name] = float(np.exp(low + share * (high - low)))
+            low, high = np.array(free[name]) * unit_of(name, sizes)
+            if low < 0:
+                values[name] = float(low + share * (high - low))
+            else:
+                low, high = np.log((low, high))
+                values[name] = float(np.exp(low + share * (high - low)))
         models.append(_with_linear(problem, law, values, fixed))
     return models
 

@@ -23,7 +23,7 @@ from scipy.optimize import least_squares
 from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
 from inerter.identify.bench import scales, thin
-from inerter.identify.coordinates import Scales, coordinate, device_values
+from inerter.identify.coordinates import NOT_OF_DEVICE, Scales, coordinate, device_values
 from inerter.identify.fit import Model
 from inerter.identify.preparation import prepare
 from inerter.identify.residual import sandwich
@@ -275,7 +275,7 @@ def _compiled(device: Device, keys: tuple[str, ...], step: float) -> mujoco.MjMo
 
 def start_from(model: Model) -> Model:
     """A bench fit as a start: without delay and constant force, which a motion does not show."""
-    dropped = ("delay", "force_offset")
+    dropped = (*NOT_OF_DEVICE, "force_offset")
     values = {name: value for name, value in model.values.items() if name not in dropped}
     return Model(
         model.friction, values, tuple(n for n in model.free if n not in dropped), model.texts

@@ -4,14 +4,15 @@
 
 The motion is analytic, so only the device's states are integrated. A friction law has a corner
 where the velocity changes sign; each stretch between two corners is therefore integrated on its
-own, and within it the right-hand side is smooth. Contacts of a backlash are located as events.
+own, and within it the right-hand side is smooth. Contacts of a backlash, and the edges of a free
+play before the friction, are located as events.
 Not modelled: the test rig; the motion is followed exactly whatever the force.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -221,10 +222,15 @@ def _integrate(
     displacement, velocity = motion.displacement, motion.velocity
     absolute = rtol * state_scales(device)
 
-    def rate(t: float, z: NDArray[np.float64], contacts: Contacts = ()) -> NDArray[np.float64]:
+    def rate(
+        t: float,
+        z: NDArray[np.float64],
+        contacts: Contacts = (),
+        of: ReferenceDevice = device,
+    ) -> NDArray[np.float64]:
         x = float(displacement(t)) if needs_displacement else 0.0
         contact = contacts[0] if contacts else None
-        found = device.state_rate(x, float(velocity(t)), device.state_argument(z), contact=contact)
+        found = of.state_rate(x, float(velocity(t)), of.state_argument(z), contact=contact)
         return np.atleast_1d(found)
 
     clutches: tuple[Clutch, ...] = ()
@@ -254,6 +260,11 @@ def _integrate(
                 rtol=max(rtol, 1e-12),
                 atol=absolute,
                 max_step=scan_step,
+            )
+        elif device.friction_backlash > 0.0:
+            direction = float(np.sign(velocity(0.5 * (left + right))))
+            path = _through_play(
+                device, rate, velocity, direction, z, stops, method, rtol, absolute, scan_step
             )
         else:
             path = _stretch(rate, z, stops, method, rtol, absolute, scan_step)
@@ -301,3 +312,63 @@ def _stretch(
     if not solution.success:
         raise RuntimeError(f"{method} stopped {where}: {solution.message}")
     return solution.y.T
+
+
+def _through_play(
+    device: ReferenceDevice,
+    rate: Callable[..., NDArray[np.float64]],
+    velocity: Signal,
+    direction: float,
+    z: NDArray[np.float64],
+    stops: NDArray[np.float64],
+    method: str,
+    rtol: float,
+    atol: NDArray[np.float64],
+    max_step: float,
+) -> NDArray[np.float64]:
+    """As `_stretch`, the velocity of one sign, behind a free play before the friction.
+
+    Engaged on a side, the bristle is that of the device without play; the place where it is
+    straight, and the far edge of the play, are events.
+    """
+    half, rigid = device.friction_backlash, replace(device, friction_backlash=0.0)
+    path, state, done = np.empty((stops.size, z.size)), z.copy(), 1
+    path[0], now = z, float(stops[0])
+    outwards = direction * state[0] >= half
+    side = float(np.sign(state[0])) if abs(state[0]) > half or outwards else 0.0
+
+    def rates(t: float, y: NDArray[np.float64]) -> NDArray[np.float64]:
+        if side:
+            return rate(t, np.concatenate(([y[0] - side * half], y[1:])), of=rigid)
+        found = rate(t, np.concatenate(([0.0], y[1:])))
+        found[0] = float(velocity(t))
+        return found
+
+    def remaining(t: float, y: NDArray[np.float64]) -> float:
+        return side * y[0] - half if side else half - direction * y[0]
+
+    remaining.terminal, remaining.direction = True, -1.0  # pyright: ignore[reportFunctionMemberAccess]
+    # straight, across, bent again
+    for _ in range(3):
+        solution = solve_ivp(
+            rates,
+            (now, float(stops[-1])),
+            state,
+            method=method,  # pyright: ignore[reportArgumentType]
+            t_eval=stops[done:],
+            events=[remaining],
+            rtol=max(rtol, 1e-12),
+            atol=atol,
+            max_step=max_step,
+        )
+        if not solution.success:
+            raise RuntimeError(f"{method} stopped after {now:.9g} s: {solution.message}")
+        if len(solution.t):
+            path[done : done + len(solution.t)] = solution.y.T
+            done += len(solution.t)
+        if done == stops.size:
+            break
+        now, state = float(solution.t_events[0][-1]), np.array(solution.y_events[0][-1])
+        state[0] = side * half if side else direction * half
+        side = 0.0 if side else direction
+    return path

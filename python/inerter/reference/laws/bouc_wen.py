@@ -11,6 +11,8 @@ Range: n >= 1, alpha > 0. For beta + gamma > 0, z saturates at (alpha / (beta + 
 Stored: A k0 x^2 / 2 + (1 - A) k0 z^2 / (2 alpha).
 Dissipated: (1 - A) k0 z (v - z' / alpha), never negative for 0 <= A <= 1, k0 >= 0 and
 beta >= |gamma|; the published set with A = 341.81 is outside this and is not passive.
+With `friction_backlash` z stands behind its free play (`free_play.py`), the elastic branch
+does not.
 Source: Bouc 1967 and Wen 1976, as in "Modelling and identification of the hysteretic dynamics
 of inerters", eqs. (12)-(13), where the last term's exponent n is lost in print.
 Not modelled: degradation, pinching, rate dependence; the friction level of `level.py`.
@@ -19,6 +21,7 @@ Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be 
 
 from __future__ import annotations
 
+from . import free_play
 from .parameters import FrictionParameters, Quantity
 
 STATES = 1
@@ -28,11 +31,13 @@ def rate(
     parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
 ) -> Quantity:
     """Rate of the hysteretic displacement z' [m/s]; arguments broadcast together."""
-    size = abs(state)
+    bent = free_play.bristle(parameters, state)
+    size = abs(bent)
     power = size ** (parameters.bw_exponent - 1.0)
-    hardening = parameters.bw_beta * abs(velocity) * state * power
+    hardening = parameters.bw_beta * abs(velocity) * bent * power
     shaping = parameters.bw_gamma * velocity * size * power
-    return parameters.bw_alpha * velocity - hardening - shaping
+    engaged = parameters.bw_alpha * velocity - hardening - shaping
+    return free_play.state_rate(parameters, velocity, state, engaged)
 
 
 def force(
@@ -40,7 +45,7 @@ def force(
 ) -> Quantity:
     """Hysteretic force A k0 x + (1 - A) k0 z [N], tension positive."""
     elastic = parameters.bw_ratio * displacement
-    yielding = (1.0 - parameters.bw_ratio) * state
+    yielding = (1.0 - parameters.bw_ratio) * free_play.bristle(parameters, state)
     return parameters.bw_stiffness * (elastic + yielding) + 0.0 * velocity
 
 
@@ -49,7 +54,8 @@ def stored_energy(
 ) -> Quantity:
     """Stored energy A k0 x^2 / 2 + (1 - A) k0 z^2 / (2 alpha) [J]."""
     elastic = parameters.bw_ratio * displacement * displacement
-    yielding = (1.0 - parameters.bw_ratio) * state * state / parameters.bw_alpha
+    bent = free_play.bristle(parameters, state)
+    yielding = (1.0 - parameters.bw_ratio) * bent * bent / parameters.bw_alpha
     return 0.5 * parameters.bw_stiffness * (elastic + yielding) + 0.0 * velocity
 
 
@@ -57,6 +63,7 @@ def dissipated_power(
     parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
 ) -> Quantity:
     """Dissipated power (1 - A) k0 z (v - z' / alpha) [W]."""
-    bound = (1.0 - parameters.bw_ratio) * parameters.bw_stiffness * state
+    bent = free_play.bristle(parameters, state)
+    bound = (1.0 - parameters.bw_ratio) * parameters.bw_stiffness * bent
     slip = velocity - rate(parameters, displacement, velocity, state) / parameters.bw_alpha
     return bound * slip

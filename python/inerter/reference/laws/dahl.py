@@ -8,6 +8,7 @@ n `dahl_exponent` [-], level see `level.py`.
 Sign: tension positive; z grows with x.
 Range: f_c level > 0. For constant level and n = 1: |z| <= f_c / sigma0 for ever, once inside.
 Stored: sigma0 z^2 / 2. Dissipated: sigma0 z (v - z'), never negative for n = 1.
+With `friction_backlash` z is the bristle behind its free play, see `free_play.py`.
 Source: Dahl, "A solid friction model", Aerospace Corp. TOR-0158(3107-18), 1968, with n = 1 as
 in "Modelling and identification of the hysteretic dynamics of inerters", eqs. (4)-(6).
 Not modelled: Stribeck fall, break-away, bristle damping (`bristle_damping` is not read here);
@@ -18,6 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from . import free_play
 from .level import friction_level
 from .parameters import FrictionParameters, Quantity
 
@@ -29,24 +31,28 @@ def rate(
 ) -> Quantity:
     """Rate of the bristle deflection z' [m/s]; arguments [m, m/s, m] broadcast together."""
     level = parameters.coulomb_force * friction_level(parameters, displacement, velocity)
-    gap = 1.0 - parameters.bristle_stiffness * state * np.sign(velocity) / level
+    bristle = free_play.bristle(parameters, state)
+    gap = 1.0 - parameters.bristle_stiffness * bristle * np.sign(velocity) / level
     if parameters.dahl_exponent == 1.0:
-        return velocity * gap
-    return velocity * np.sign(gap) * abs(gap) ** parameters.dahl_exponent
+        engaged = velocity * gap
+    else:
+        engaged = velocity * np.sign(gap) * abs(gap) ** parameters.dahl_exponent
+    return free_play.state_rate(parameters, velocity, state, engaged)
 
 
 def force(
     parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
 ) -> Quantity:
     """Friction force sigma0 z [N], tension positive; shape of z and v broadcast together."""
-    return parameters.bristle_stiffness * state + 0.0 * velocity
+    return parameters.bristle_stiffness * free_play.bristle(parameters, state) + 0.0 * velocity
 
 
 def stored_energy(
     parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
 ) -> Quantity:
     """Energy in the bristle sigma0 z^2 / 2 [J]."""
-    return 0.5 * parameters.bristle_stiffness * state * state + 0.0 * velocity
+    bristle = free_play.bristle(parameters, state)
+    return 0.5 * parameters.bristle_stiffness * bristle * bristle + 0.0 * velocity
 
 
 def dissipated_power(
@@ -54,4 +60,4 @@ def dissipated_power(
 ) -> Quantity:
     """Dissipated power sigma0 z (v - z') [W]."""
     slip = velocity - rate(parameters, displacement, velocity, state)
-    return parameters.bristle_stiffness * state * slip
+    return parameters.bristle_stiffness * free_play.bristle(parameters, state) * slip

@@ -76,6 +76,10 @@ class FrictionParameters:
     bw_stiffness: float = parameter(0.0, "N/m", "stiffness k0")
     bw_ratio: float = parameter(0.0, "-", "share A of the elastic branch")
 
+    friction_backlash: float = parameter(
+        0.0, "m", "half of the free play before a bristle", at_least=0.0
+    )
+
     friction_asymmetry: float = parameter(0.0, "-", "level: difference between the directions")
     friction_gradient: float = parameter(0.0, "1/m", "level: slope along the stroke")
     friction_curvature: float = parameter(0.0, "1/m^2", "level: curvature along the stroke")
