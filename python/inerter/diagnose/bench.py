@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
-from inerter.diagnose.chain import Link, chain_of
+from inerter.diagnose.chain import Link, chain_of, tone_link
 from inerter.diagnose.composition import effects_of, simpler_laws, submodel
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
@@ -26,6 +26,7 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
+from inerter.diagnose.tone import with_tone_above
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
 from inerter.identify.channel import UNITS, channel_values
@@ -46,6 +47,8 @@ from inerter.records import Record
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
+# share of the cut-off from which on tones are looked for at the measured rate
+TONES_FROM = 0.7
 # width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
 TRANSITION = 0.005
 # samples without which there is nothing to learn from or to judge on
@@ -169,8 +172,22 @@ class _Bench:
             fit = self.search.problem.fit(submodel(final.model, rest, self.baseline))
             final = self.search.score("", None, fit)
             chain = chain_of(self.search, self.judge, final.model)
-        findings = self._findings(final.fit, chain, standings)
-        return self._diagnosis(before, final.fit, findings)
+        fit = self._tone_above_band(final.fit, chain, standings)
+        findings = self._findings(fit, chain, standings)
+        return self._diagnosis(before, fit, findings)
+
+    def _tone_above_band(self, fit: Fit, chain: list[Link], standings: dict[str, Standing]) -> Fit:
+        """The fit with a tone that the low-pass of the fits hides, added to chain and standings."""
+        learnt = Problem(self.whole, self.full.fit, self.band.scales)
+        after = with_tone_above(learnt, fit, TONES_FROM * self.preparation.cutoff)
+        if after is None:
+            return fit
+        link, confidence = tone_link(self.judge, fit, after)
+        if not link.stands:
+            return fit
+        chain.append(link)
+        standings[link.effect] = Standing(confidence, [], None)
+        return after
 
     def _plainest_law(self, final: Scored) -> Scored:
         """The simplest friction law from which the one found does not differ visibly."""

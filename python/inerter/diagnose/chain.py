@@ -9,6 +9,7 @@ import numpy as np
 from inerter.diagnose.composition import effects_of, submodel
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.search import LOCAL, Search
+from inerter.diagnose.statistics import advantage, win_shares
 from inerter.identify.fit import Fit, Model
 
 # how surely an effect must help on data left out to be reported (standard errors)
@@ -83,3 +84,14 @@ def _link(
         and not (effect == "sensor_delay" and not judge.delay_visible(after.model))
     )
     return Link(effect, law, before, after, errors[0], errors[1], silent, stands)
+
+
+def tone_link(judge: Judge, before: Fit, after: Fit) -> tuple[Link, float]:
+    """A tone beyond the fits' band, judged at the measured rate; and how sure it is."""
+    squares = [judge.raw_squares(fit.model) for fit in (before, after)]
+    errors = [judge.rmse(fit.model) for fit in (before, after)]
+    stands = advantage(squares[0], squares[1]) >= CONFIRMING_ADVANTAGE and judge.visible(
+        errors[0], errors[1], after.model
+    )
+    link = Link("periodic_disturbance", None, before, after, errors[0], errors[1], False, stands)
+    return link, float(win_shares(squares[::-1])[0])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.diagnose.acceptance import visible, visible_delay
 from inerter.diagnose.search import advantage_of
+from inerter.diagnose.statistics import block_squares
 from inerter.identify.fit import Model, Problem
 from inerter.identify.preparation import Preparation
 from inerter.identify.split import blocks
@@ -57,6 +58,10 @@ class Judge:
         masks = self.band.masks
         before, after = (self.band.residual(model) for model in (simple, rich))
         return advantage_of(before, after, masks, blocks(masks), effect)
+
+    def raw_squares(self, model: Model) -> Array:
+        """Squared errors at the measured rate over blocks, shape (blocks,)."""
+        return block_squares(self.raw.residual(model), blocks(self.raw.masks))
 
     def visible(self, before: float, after: float, model: Model) -> bool:
         """Whether an error that fell from `before` to `after` [N] is more than no one can tell."""

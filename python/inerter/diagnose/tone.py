@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 from scipy.ndimage import median_filter
 
 from inerter.identify.bench import Run
+from inerter.identify.fit import Fit, Problem
 
 Array = NDArray[np.float64]
 
@@ -16,8 +19,10 @@ LOWEST = 0.2
 """Lowest frequency [Hz] that counts as a tone, and not as a drift."""
 # power of a bin per local median, mean over the runs: chance exceeds it once in e^15 bins and runs
 _REQUIRED = 15.0
-# share of the motion's power in a few bins from which on the motion has the line itself
-_OWN_LINE = 0.1
+# share of power in a few bins from which on the motion has the line itself; friction along it has
+# one wherever it stands out from what is beside it
+_OWN_LINE = {"velocity": 0.1, "acceleration": 0.1, "friction": 1e-4}
+_STANDS_OUT = 15.0
 _NEIGHBOURS = 2
 _PADDING = 2
 
@@ -51,23 +56,35 @@ def strongest_line(
     if frequency.size < 8:
         return None
     clear, amplitude = np.zeros(frequency.size), np.zeros(frequency.size)
-    own = np.zeros(frequency.size, bool)
+    free = np.zeros(frequency.size)
     for i in used:
         run, mask = runs[i], masks[i]
         window = np.hanning(mask.size) * mask
         power = _power(np.where(mask, residual[i], 0.0) * window, run.spacing, frequency, longest)
-        floor = median_filter(power, min(81, frequency.size)) / np.log(2) + 1e-300
-        clear += power / floor / len(used)
-        amplitude += 2 * np.sqrt(power) / window.sum() / len(used)
-        for motion in (run.velocity, np.sign(run.velocity), run.acceleration):
-            line = _power(motion * window, run.spacing, frequency, longest)
+        floor = _typical(power) / np.log(2) + 1e-300
+        own = np.zeros(frequency.size, bool)
+        motion = {"velocity": run.velocity, "acceleration": run.acceleration,
+                  "friction": np.sign(run.velocity)}  # fmt: skip
+        for name, values in motion.items():
+            line = _power(values * window, run.spacing, frequency, longest)
             near = np.convolve(line, np.ones(2 * _NEIGHBOURS * _PADDING + 1), "same")
-            own |= near > _OWN_LINE * np.sum(line)
-    clear[own] = 0.0
+            has = near > _OWN_LINE[name] * np.sum(line)
+            if name == "friction":
+                has &= near > _STANDS_OUT * _typical(near)
+            own |= has
+        clear += np.where(own, 0.0, power / floor)
+        amplitude += np.where(own, 0.0, 2 * np.sqrt(power) / window.sum())
+        free += ~own
+    clear = np.where(2 * free >= len(used), clear / np.maximum(free, 1), 0.0)
     best = int(np.argmax(clear))
     if clear[best] < _REQUIRED:
         return None
-    return float(frequency[best]), float(amplitude[best])
+    return float(frequency[best]), float(amplitude[best] / free[best])
+
+
+def _typical(power: Array) -> Array:
+    """Local median."""
+    return median_filter(power, min(81, power.size))
 
 
 def _power(values: Array, spacing: float, frequency: Array, longest: float) -> Array:
@@ -75,3 +92,29 @@ def _power(values: Array, spacing: float, frequency: Array, longest: float) -> A
     count = round(_PADDING * longest / spacing)
     power = np.abs(np.fft.rfft(values, count)) ** 2
     return np.interp(frequency, np.fft.rfftfreq(count, spacing), power)
+
+
+def with_tone_above(raw: Problem, fit: Fit, lowest: float) -> Fit | None:
+    """A fit with a tone at frequencies that the fits' band does not hold, or None.
+
+    Parameters
+    ----------
+    raw
+        The fit data at the measured rate with the force as measured.
+    fit
+        What is found in the band; it stays as it is.
+    lowest
+        From where on to look [Hz].
+    """
+    model = fit.model
+    if "disturbance_amplitude" in model.values:
+        return None
+    line = strongest_line(raw.runs, raw.residual(model), raw.masks, lowest)
+    if line is None:
+        return None
+    frequency, amplitude = line
+    start = model.adding(disturbance_amplitude=amplitude, disturbance_frequency=frequency)
+    tone = raw.fit(replace(start, free=("disturbance_amplitude", "disturbance_frequency")))
+    both = replace(start, values=tone.model.values)
+    covariance = np.asarray(block_diag(fit.covariance, tone.covariance))
+    return Fit(both, fit.residual, covariance, fit.evaluations + tone.evaluations)

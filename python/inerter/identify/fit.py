@@ -173,8 +173,8 @@ def force_along(model: Model, run: Run) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,)."""
     device, values = model.device(), model.values
     state = first_state(device, run, values.get("friction_place", 0.0))
-    if clips(values) and run.measured is not None:
-        # what a limit cuts off comes before the low-pass of the measured force
+    if run.measured is not None and (clips(values) or device.backlash or device.stop_stiffness):
+        # what a limit cuts off and what an impact adds pass the low-pass of the measured force
         found = run.at_measured_rate(device, state)
         fine = run.fine_elapsed
         force = with_friction_drift(values, found, fine)

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from inerter.diagnose.acceptance import visible
-from inerter.diagnose.result import Finding, RecordSummary, Rival, RunCurves
+from inerter.diagnose.result import Finding, RecordSummary, Rival
 from inerter.diagnose.statistics import advantage, win_shares
 from inerter.diagnose.system import wording
 from inerter.diagnose.system.build import UserModel, model_of_text
+from inerter.diagnose.system.curves import channel_curves
 from inerter.diagnose.system.drive import Drive, make_drive
 from inerter.diagnose.system.effects import Effects, Scale
-from inerter.diagnose.system.mapping import Channels, Output
+from inerter.diagnose.system.mapping import Channels
 from inerter.diagnose.system.model import Added, SystemModel
 from inerter.diagnose.system.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
 from inerter.diagnose.system.problem import Channel, Problem
@@ -30,11 +31,11 @@ from inerter.diagnose.system.search import (
     block_squares,
     stacked_blocks,
 )
+from inerter.diagnose.system.sensor_units import unit_of
 from inerter.diagnose.system.simulate import Simulator
 from inerter.diagnose.system.split import split_drives
 from inerter.diagnose.system.values import parameter_values
 from inerter.records.record import RecordWarning, TimeRecord
-from inerter.records.units import QUANTITIES
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -44,16 +45,6 @@ CONFIRMING_ADVANTAGE = 2.0
 SURE = 0.9
 # a channel that runs against its simulation as surely as this has another sign
 _OPPOSITE = -0.5
-_UNITS = {
-    int(mujoco.mjtSensor.mjSENS_FRAMELINACC): "m/s^2",
-    int(mujoco.mjtSensor.mjSENS_ACCELEROMETER): "m/s^2",
-    int(mujoco.mjtSensor.mjSENS_FRAMEANGACC): "rad/s^2",
-    int(mujoco.mjtSensor.mjSENS_TENDONPOS): "m",
-    int(mujoco.mjtSensor.mjSENS_ACTUATORPOS): "m",
-    int(mujoco.mjtSensor.mjSENS_TENDONVEL): "m/s",
-    int(mujoco.mjtSensor.mjSENS_FRAMEPOS): "m",
-    int(mujoco.mjtSensor.mjSENS_ACTUATORFRC): "N",
-}
 _METHOD = "not run: the simulation of the whole model is MuJoCo's"
 
 
@@ -185,23 +176,8 @@ class _System:
                 raise ValueError(
                     f"column {output.column!r} never changes; leave it out or record it again"
                 )
-            found.append(Channel(output.column, self._unit(output), spread))
+            found.append(Channel(output.column, unit_of(self.user.model, output), spread))
         return found
-
-    def _unit(self, output: Output) -> str:
-        if output.column in QUANTITIES:
-            return QUANTITIES[output.column].unit
-        model = self.user.model
-        sensor = model.sensor(output.sensor).id
-        kind = int(model.sensor_type[sensor])
-        position, rate = mujoco.mjtSensor.mjSENS_JOINTPOS, mujoco.mjtSensor.mjSENS_JOINTVEL
-        if kind in (int(position), int(rate)):
-            slide = model.jnt_type[model.sensor_objid[sensor]] == mujoco.mjtJoint.mjJNT_SLIDE
-            length = "m" if slide else "rad"
-            return length if kind == int(position) else f"{length}/s"
-        if kind == int(mujoco.mjtSensor.mjSENS_PLUGIN):
-            return "N" if output.component < 3 else ""
-        return _UNITS.get(kind, "")
 
     def _scales(self) -> dict[str, Scale]:
         drive = self.drives[0]
@@ -340,7 +316,9 @@ class _System:
         before = self._accuracy(SystemModel(), residuals[0], residuals[0])
         after = self._accuracy(final.model, residuals[-1], residuals[0])
         floor = self.held.noise(residuals[-1])
-        curves = self._curves(final.model)
+        curves = channel_curves(
+            self.simulator, self.whole, self.held_masks, self.user.devices[0].name, final.model
+        )
         remains = remainder(residuals[-1], self.held, floor, self._step_error(final.model))
         self.progress("simulating the extended model once more, as it is written")
         xml = self.user.xml(final.model)
@@ -427,43 +405,6 @@ class _System:
             **({"not_tried": self.user.parts.unknown} if self.user.parts.unknown else {}),
             **({"signs": self.notes} if self.notes else {}),
         }
-
-    def _curves(self, final: SystemModel) -> list[RunCurves]:
-        """Every channel of every run, beside the motion of the first device."""
-        models = [SystemModel(), final]
-        residuals = self.whole.residuals(models)
-        device = self.user.devices[0].name
-        curves = []
-        for i, drive in enumerate(self.whole.drives):
-            x, v = self.simulator.device_motion(final, drive)[device]
-            a = np.gradient(v, drive.step)
-            motion = drive.at_samples(np.column_stack([x, v, a]))
-            simulated = self.simulator.outputs(models, drive)
-            mask = self.whole.masks[i]
-            for k, channel in enumerate(self.whole.channels):
-                lines = []
-                for m in range(2):
-                    fitted = drive.measured[:, k] - residuals[m][i][:, k] * channel.spread
-                    zero = np.mean((fitted - simulated[m][:, k])[mask])
-                    lines.append(np.where(mask, fitted, simulated[m][:, k] + zero))
-                curves.append(
-                    RunCurves(
-                        f"{drive.name}: {channel.name.replace('_', ' ')}",
-                        "holdout" if self.held_masks[i].any() else "fit",
-                        drive.start + drive.time,
-                        motion[:, 0],
-                        motion[:, 1],
-                        motion[:, 2],
-                        drive.measured[:, k],
-                        lines[0],
-                        lines[1],
-                        self.held_masks[i],
-                        mask,
-                        quantity=channel.name.replace("_", " "),
-                        unit=channel.unit,
-                    )
-                )
-        return curves
 
 
 def _standing(step: Step | None, added: Added) -> tuple[float, list[Rival]]:

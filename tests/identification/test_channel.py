@@ -1,0 +1,93 @@
+"""What the force channel does to a force, against what it says it does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inerter.identify.bench import Run, on_clocks, thin
+from inerter.identify.channel import through_channel, without_tone
+from inerter.identify.fit import Model, Problem, force_along
+from inerter.identify.preparation import prepare
+from inerter.records import Record
+
+TIME = np.arange(0, 8, 1e-3)
+INERTANCE = 50.0
+
+
+def record(name: str = "run", start: float = 0.0, **channel: float) -> Record:
+    """A device with Coulomb friction along two sines, its force through a channel."""
+    wave = [(8e-3, 1.3), (2e-3, 3.7)]
+    x, v, a = (
+        sum(size * (2 * np.pi * f) ** k * turn(2 * np.pi * f * TIME) for size, f in wave)
+        for k, turn in ((0, np.sin), (1, np.cos), (2, lambda angle: -np.sin(angle)))
+    )
+    elapsed = TIME + start
+    level = 6.0 * (1 + channel.get("friction_drift", 0.0) * elapsed)
+    force = INERTANCE * a + level * np.tanh(v / 1e-4)
+    if amplitude := channel.get("disturbance_amplitude"):
+        force = force + amplitude * np.sin(2 * np.pi * channel["disturbance_frequency"] * TIME + 1)
+    force = through_channel(channel, force, elapsed, 1e-3)
+    return Record(name=name, time=TIME + start, displacement=np.asarray(x), force=force)
+
+
+def runs(*records: Record) -> list[Run]:
+    return on_clocks([thin(motion) for motion in prepare(records).motions])
+
+
+def test_a_drift_is_nothing_at_the_beginning_and_its_rate_later() -> None:
+    force = through_channel({"force_drift": 0.5}, np.zeros(5), np.arange(5.0), 1.0)
+    assert force == pytest.approx(0.5 * np.arange(5))
+
+
+def test_a_limit_cuts_what_is_beyond_it_and_nothing_else() -> None:
+    force = np.linspace(-3, 3, 7)
+    values = {"force_maximum": 2.0, "force_minimum": -1.0}
+    assert through_channel(values, force, force, 1.0) == pytest.approx([-1, -1, -1, 0, 1, 2, 2])
+
+
+def test_a_tone_is_taken_out_whatever_its_phase() -> None:
+    time = np.arange(0, 3, 1e-3)
+    mask = time > 1
+    for phase in (0.0, 1.0, 4.0):
+        tone = 2.5 * np.cos(2 * np.pi * 7 * time + phase)
+        assert without_tone(tone, time, mask, 2.5, 7.0) == pytest.approx(0 * time, abs=2e-2)
+
+
+def test_runs_share_a_clock_unless_their_times_overlap() -> None:
+    after = runs(record("one"), record("two", start=10.0))
+    assert [run.clock for run in after] == [0.0, 0.0]
+    beside = runs(record("one"), record("two", start=3.0))
+    assert [run.clock for run in beside] == [0.0, 3.0]
+    assert beside[1].elapsed[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        {"friction_drift": 0.08},
+        {"force_drift": -1.7},
+        {"delay": 3e-3},
+        {"force_maximum": 24.0, "force_minimum": -27.0},
+        {"disturbance_amplitude": 3.0, "disturbance_frequency": 5.3},
+    ],
+    ids=lambda hidden: next(iter(hidden)),
+)
+def test_a_fit_finds_what_the_channel_did(hidden: dict[str, float]) -> None:
+    data = runs(record(**hidden))
+    problem = Problem(data, [np.ones(run.force.size, bool) for run in data])
+    known = {"inertance": INERTANCE, "coulomb_force": 6.0, "transition_velocity": 1e-4}
+    start = {name: 0.0 if "drift" in name or name == "delay" else 0.9 * value
+             for name, value in hidden.items()}  # fmt: skip
+    if "disturbance_frequency" in start:
+        start["disturbance_frequency"] = 5.25
+    model = Model("coulomb", {**known, **start}, ("inertance", "coulomb_force", *start))
+    found = problem.fit(model).model
+    for name, value in hidden.items():
+        assert found.values[name] == pytest.approx(value, rel=0.02), name
+    assert found.values["inertance"] == pytest.approx(INERTANCE, rel=2e-3)
+    without = replace(model, values=known)
+    inner = problem.masks[0]
+    before = np.std((data[0].force - force_along(without, data[0]))[inner])
+    assert np.std(problem.residual(found)[0][inner]) < 0.25 * before
