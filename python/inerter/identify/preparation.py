@@ -19,8 +19,10 @@ TOLERANCE = 0.005
 # ratio of neighbouring cut-offs tried, and the highest one [Hz]
 STEP = 1.3
 HIGHEST = 200.0
-# samples that every run must keep away from its ends
+# samples that every run must keep away from its ends: so many, and this share of what the highest
+# cut-off leaves
 SMALLEST = 50
+KEPT = 0.5
 
 
 @dataclass(frozen=True)
@@ -66,12 +68,7 @@ def prepare(records: Sequence[Record]) -> Preparation:
     )
     if measured:
         choices.append(measured)
-    errors = np.array(
-        [
-            [_force_error([smooth(r, cutoff, use) for r in records]) for cutoff in cutoffs]
-            for use in choices
-        ]
-    )
+    errors = np.array([_errors(records, cutoffs, use, _force_error) for use in choices])
     if not np.isfinite(errors).any():
         shortest = min(records, key=lambda record: record.duration)
         raise ValueError(
@@ -120,12 +117,7 @@ def prepare_again(
     motion. `error` gives the model's force error [N] along motions.
     """
     use = preparation.channels
-
-    def judged(cutoff: float) -> float:
-        motions = [smooth(r, cutoff, use) for r in records]
-        return np.inf if _too_short(motions) else error(motions)
-
-    errors = np.array([judged(float(cutoff)) for cutoff in preparation.cutoffs])
+    errors = _errors(records, preparation.cutoffs, use, error)
     if not np.isfinite(errors).any():
         return preparation
     best = float(np.nanmin(np.where(np.isfinite(errors), errors, np.nan)))
@@ -145,15 +137,38 @@ def _dominant_frequency(record: Record) -> float:
     return float(max(frequency[np.searchsorted(cumulative, 0.5 * cumulative[-1])], frequency[1]))
 
 
-def _too_short(motions: Sequence[Motion]) -> bool:
-    """A cut-off so low that the ends, where smoothing is unsure, are nearly the whole run."""
-    return min(int(motion.inner.sum()) for motion in motions) < SMALLEST
+def _errors(
+    records: Sequence[Record],
+    cutoffs: Array,
+    use: tuple[str, ...],
+    error: Callable[[Sequence[Motion]], float],
+) -> Array:
+    """Errors at some cut-offs, all on the same samples; infinite where too few would be left.
+
+    The lower a cut-off, the more is unsure at the ends. Judged on what it leaves itself, a low one
+    would look good for leaving out how the motion begins.
+    """
+
+    def smoothed(cutoff: float) -> list[Motion]:
+        return [smooth(record, float(cutoff), use) for record in records]
+
+    most = [int(motion.inner.sum()) for motion in smoothed(cutoffs[-1])]
+    common: list[NDArray[np.bool_]] = []
+    found = np.full(cutoffs.size, np.inf)
+    for i, cutoff in enumerate(cutoffs):
+        motions = smoothed(cutoff)
+        if not common:
+            left = [int(motion.inner.sum()) for motion in motions]
+            if any(n < max(SMALLEST, KEPT * m) for n, m in zip(left, most, strict=True)):
+                continue
+            common = [motion.inner for motion in motions]
+        same = [replace(m, inner=m.inner & c) for m, c in zip(motions, common, strict=True)]
+        found[i] = error(same)
+    return found
 
 
 def _force_error(motions: Sequence[Motion]) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory."""
-    if _too_short(motions):
-        return np.inf
     x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
     v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
     columns, forces = [], []
