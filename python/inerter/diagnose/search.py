@@ -57,8 +57,22 @@ SHORTLIST = 5
 ROUGH = 1e-5
 # effects that may show in few stretches, or in one run alone
 LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
+# share of the error that a candidate must have taken away after a few steps to be followed; and how
+# near the second best start must come to the best to be followed too
+HOPELESS = 0.002
+NEAR = 1.1
 # share of every run on which the starting points of a fit are compared
 STARTING_SHARE = 0.3
+# effects that a friction law cannot stand in for
+UNLIKE_FRICTION = (
+    *LOCAL,
+    "series_elasticity",
+    "backlash",
+    "periodic_disturbance",
+    "parallel_stiffness",
+    "variable_inertance",
+    "force_drift",
+)
 # laws that are tried only where memory is to be seen
 RICH_LAWS = ("lugre", "bouc_wen")
 
@@ -183,18 +197,25 @@ class Search:
         """Errors of a fitted model on blocks of every run, left out of its refits."""
         return self.score("", None, fit, self._spread)
 
-    def fit(self, candidate: Candidate) -> Fit:
-        """Best fit over a candidate's starting points, which are compared on part of the data."""
-        starts = candidate.starts
+    def fit(self, candidate: Candidate, limit: float = np.inf) -> Fit:
+        """Best fit over a candidate's starting points, which are compared on part of the data.
+
+        What is not below `limit` [N] after a few steps from each of them is not followed further.
+        """
+        starts, masks = candidate.starts, self.problem.masks
         if len(starts) > 1:
             # states take time to follow; what has none is compared wherever it may show
             fast = all(not start.device().nstate for start in starts)
             part, evaluations = (self.problem, 6) if fast else (self._part, 10)
             trials = [part.fit(start, evaluations, tolerance=1e-3) for start in starts]
             trials.sort(key=lambda fit: fit.rmse(part.masks))
-            starts = tuple(trial.model for trial in trials[:2])
+            best = trials[0].rmse(part.masks)
+            if fast and best > limit:
+                return trials[0]
+            near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
+            starts = tuple(trial.model for trial in near or trials[:1])
         fits = [self.problem.fit(start, tolerance=ROUGH) for start in starts]
-        return min(fits, key=lambda fit: fit.rmse(self.problem.masks))
+        return min(fits, key=lambda fit: fit.rmse(masks))
 
     def fit_all(self, trials: Sequence[Candidate], current: Fit) -> list[tuple[Candidate, Fit]]:
         """Fits of candidates, the best first.
@@ -203,9 +224,11 @@ class Search:
         better than friction without memory, or is in the model already.
         """
         masks = self.problem.masks
+        limit = (1 - HOPELESS) * current.rmse(masks)
         rich = [t for t in trials if t.law in RICH_LAWS]
         plain = [t for t in trials if t.law not in RICH_LAWS]
-        fitted = list(zip(plain, parallel(self.fit, plain), strict=True))
+        fits = parallel(lambda candidate: self.fit(candidate, limit), plain)
+        fitted = list(zip(plain, fits, strict=True))
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
         memory = error.get(("hysteretic_friction", "dahl"))
         memoryless = ("coulomb_friction", "stribeck_friction")
@@ -312,7 +335,8 @@ class Search:
         for model in simpler_laws(current.model):
             trials.append(Candidate("exchange", None, (model,)))
             for candidate in candidates(model, self.problem.scales):
-                if candidate.starts[0].friction == model.friction:
+                same = candidate.starts[0].friction == model.friction
+                if same and candidate.effect not in UNLIKE_FRICTION:
                     trials.append(candidate)
         spare = current.model.complexity
         trials = [trial for trial in trials if trial.starts[0].complexity < spare]

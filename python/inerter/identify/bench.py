@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.fft import rfftfreq
 from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.identify.coordinates import Scales
-from inerter.records.motion import Motion, filtered, lowpass, response
+from inerter.records.motion import Motion, band_response, filtered, lowpass, response
 
 Array = NDArray[np.float64]
 
@@ -84,8 +83,8 @@ class Run:
     def in_band(self, values: Array) -> Array:
         """Values at the measured rate through the low-pass of the measured force, thinned."""
         if "_response" not in self.__dict__:
-            frequency = rfftfreq(2 * values.size - 2, self.spacing / self.thinned)
-            object.__setattr__(self, "_response", response(frequency, self.cutoff))
+            found = band_response(values.size, self.spacing / self.thinned, self.cutoff)
+            object.__setattr__(self, "_response", found)
         return filtered(values, self.__dict__["_response"])[:: self.thinned]
 
     def gain(self, frequency: float) -> float:

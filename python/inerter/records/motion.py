@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.fft import irfft, rfft, rfftfreq
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 
 from inerter.records.record import Record
@@ -120,17 +121,27 @@ def _even(values: Array) -> Array:
 
 def lowpass(values: Array, spacing: float, cutoff: float) -> Array:
     """The smoother's low-pass applied to any channel, shape (n,) to (n,)."""
-    return filtered(values, response(rfftfreq(2 * values.size - 2, spacing), cutoff))
+    return filtered(values, band_response(values.size, spacing, cutoff))
+
+
+def band_response(size: int, spacing: float, cutoff: float) -> Array:
+    """The smoother's response for `filtered`, at a length that transforms are fast for."""
+    period = 2 * next_fast_len(size - 1, real=True)
+    return response(rfftfreq(period, spacing), cutoff)
 
 
 def filtered(values: Array, response: Array) -> Array:
-    """A channel through a real response at the frequencies of its odd continuation."""
+    """A channel through a real response at the frequencies of its odd continuation.
+
+    Between the channel and its mirror image the line through its ends goes on for as long as the
+    response's length asks.
+    """
     n = values.size
     first, last = values[0], values[-1]
     line = first + (last - first) / (n - 1) * np.arange(n)
-    wave = np.empty(2 * n - 2)
+    wave = np.zeros(2 * response.size - 2)
     np.subtract(values, line, out=wave[:n])
-    np.negative(wave[n - 2 : 0 : -1], out=wave[n:])
+    np.negative(wave[n - 2 : 0 : -1], out=wave[wave.size - n + 2 :])
     return line + irfft(rfft(wave) * response, wave.size)[:n]
 
 

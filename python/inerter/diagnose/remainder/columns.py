@@ -10,13 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.fft import rfftfreq
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from scipy.signal import lfilter
 
 from inerter.identify.bench import Run
-from inerter.records.motion import filtered, response
+from inerter.records.motion import band_response, filtered
 
 Array = NDArray[np.float64]
 
@@ -55,7 +54,7 @@ def sizes_of(runs: Sequence[Run]) -> Sizes:
 
 def through_band(run: Run, columns: Array) -> Array:
     """Columns (n, m) through the low-pass of the fitted force."""
-    gain = response(rfftfreq(2 * len(columns) - 2, run.spacing), run.cutoff)
+    gain = band_response(len(columns), run.spacing, run.cutoff)
     return np.column_stack([filtered(column, gain) for column in columns.T])
 
 
