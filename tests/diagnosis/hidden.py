@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+from inerter import Device
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.records import Record
 from inerter.reference import HiddenCase, hide_effect
@@ -17,4 +18,4 @@ def solve(seed: int, effect: str, law: str | None = None) -> tuple[HiddenCase, D
         Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
         for run in case.runs
     ]
-    return case, diagnose_bench(records)
+    return case, diagnose_bench(records, Device(**case.stated) if case.stated else None)

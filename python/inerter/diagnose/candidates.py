@@ -13,7 +13,6 @@ import numpy as np
 
 from inerter.diagnose.composition import width
 from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS
-from inerter.identify.channel import LIMITS
 from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Model
 
@@ -194,14 +193,18 @@ def _end_stop(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if "stop_stiffness" in model.values or not np.isfinite(sizes.travel).all():
         return
     low, high = sizes.travel
-    stiffness, share = 5 * sizes.force / sizes.displacement, 0.5 * (high - low)
+    contact = {
+        "stop_stiffness": 5 * sizes.force / sizes.displacement,
+        "stop_damping": 0.1 / sizes.velocity,
+    }
+    share = 0.5 * (high - low)
     forms = {"upper": (False, True), "lower": (True, False), "both": (True, True)}
     for form, (below, above) in forms.items():
         starts = []
         for depth in (0.03, 0.12, 0.3):
             stops = {"stop_lower": low + depth * share} if below else {}
             stops |= {"stop_upper": high - depth * share} if above else {}
-            starts.append(model.adding(None, **stops, stop_stiffness=stiffness))
+            starts.append(model.adding(None, **stops, **contact))
         yield Candidate(effect, form, tuple(starts))
 
 
@@ -223,13 +226,15 @@ def _gas(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 
 def _saturation(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    if any(name in model.values for name in LIMITS) or not np.isfinite(sizes.force_range).all():
+    if not np.isfinite(sizes.force_range).all():
         return
     low, high = sizes.force_range
     inside = 0.02 * (high - low)
     limits = {"force_maximum": high - inside, "force_minimum": low + inside}
-    yield Candidate(effect, "both", (model.adding(None, **limits),))
-    for name, value in limits.items():
+    missing = {name: value for name, value in limits.items() if name not in model.values}
+    if missing == limits:
+        yield Candidate(effect, "both", (model.adding(None, **limits),))
+    for name, value in missing.items():
         yield Candidate(effect, name, (model.adding(None, **{name: value}),))
 
 

@@ -61,6 +61,8 @@ LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
 # near the second best start must come to the best to be followed too
 HOPELESS = 0.002
 NEAR = 1.1
+# share of the rms error that these must take away where they show
+LOCAL_GAIN = 0.5
 # share of every run on which the starting points of a fit are compared
 STARTING_SHARE = 0.3
 # effects that a friction law cannot stand in for
@@ -95,10 +97,17 @@ def advantage_of(
     stretches: Sequence[tuple[int, NDArray]],
     effect: str,
 ) -> float:
-    """`statistics.advantage` of residuals, over the stretches where the effect may show."""
+    """`statistics.advantage` of residuals, over the stretches where the effect may show.
+
+    What shows in few places has to explain most of what is missed there: peaks, where such effects
+    lie, are where a slightly wrong model errs most.
+    """
     if effect in LOCAL:
         stretches = where_apart(simple, rich, masks)
-    return advantage(block_squares(simple, stretches), block_squares(rich, stretches))
+    before, after = block_squares(simple, stretches), block_squares(rich, stretches)
+    if effect in LOCAL and after.sum() > (1 - LOCAL_GAIN) ** 2 * before.sum():
+        return 0.0
+    return advantage(before, after)
 
 
 @dataclass(frozen=True)
@@ -320,7 +329,7 @@ class Search:
         loss = np.sqrt(simple.squares.sum() / best.squares.sum()) - 1
         return bool(
             simple.model.complexity < best.model.complexity
-            and advantage(simple.squares, best.squares)
+            and self.advantage(simple, best, best.effect)
             < (LARGE_TOLERATED_ADVANTAGE if loss < TOLERATED_LOSS else TOLERATED_ADVANTAGE)
         )
 

@@ -10,6 +10,10 @@ from inerter.core import Device
 Array = NDArray[np.float64]
 
 
+# squared rms residual per squared size that a transient is expected to have
+TIMID = 1e-2
+
+
 def robust_weight(residual: Array, typical: float, loss: str) -> Array:
     """What each sample counts in a fit: 1 with the linear loss, less far off with others."""
     z = (residual / typical) ** 2
@@ -48,7 +52,8 @@ def without_transient(
 
     Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
     oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0; the share of the
-    masked samples that has this form is taken out.
+    masked samples that has this form is taken out. Its size at the beginning is held near what the
+    residual is large, for where the beginning is masked, its faint rest tells nothing of it.
     """
     b = device.inertance
     damping = device.series_damping + device.flywheel_viscous
@@ -64,5 +69,6 @@ def without_transient(
         else:
             basis = np.column_stack([np.exp(root.real * time) for root in roots])
     basis /= np.max(np.abs(basis), axis=0) + 1e-300
-    share = np.linalg.lstsq(basis[at], residual[at], rcond=1e-9)[0]
+    seen = basis[at]
+    share = np.linalg.solve(seen.T @ seen + TIMID * np.eye(2), seen.T @ residual[at])
     return residual - basis @ share
