@@ -409,7 +409,8 @@ class Problem:
 
         # a coordinate without effect on the force is not known at all, whatever the sandwich says
         effect = np.sum(jacobian**2, axis=0)
-        least = np.mean(flat**2) / np.maximum(effect, 1e-12 * np.max(effect) + 1e-300)
+        smallest = 1e-12 * max(float(np.max(effect)), self.scales.force**2)
+        least = np.mean(flat**2) / np.maximum(effect, smallest)
         covariance[np.diag_indices_from(covariance)] = np.maximum(np.diag(covariance), least)
 
         factor = self.units(model)

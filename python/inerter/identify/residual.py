@@ -69,6 +69,9 @@ def without_transient(
         else:
             basis = np.column_stack([np.exp(root.real * time) for root in roots])
     basis /= np.max(np.abs(basis), axis=0) + 1e-300
-    seen = basis[at]
-    share = np.linalg.solve(seen.T @ seen + TIMID * np.eye(2), seen.T @ residual[at])
+    if not np.isfinite(basis).all():
+        return residual
+    count = basis.shape[1]
+    seen = np.vstack([basis[at], np.sqrt(TIMID) * np.eye(count)])
+    share = np.linalg.lstsq(seen, np.r_[residual[at], np.zeros(count)], rcond=None)[0]
     return residual - basis @ share

@@ -157,6 +157,9 @@ def _ridge(
     """Coefficients (m,) from the folds `learnt`, at the penalty that predicts best among them."""
     gram = np.sum([grams[j] for j in learnt], axis=0)
     right = np.sum([rights[j] for j in learnt], axis=0)
+    if not np.trace(gram) > 0:
+        # nothing to learn from
+        return np.zeros(len(gram))
     unit = np.trace(gram) / max(len(gram), 1) * np.eye(len(gram))
     best, chosen = np.inf, PENALTIES[-1]
     for penalty in PENALTIES:
