@@ -75,7 +75,7 @@ def test_runs_share_a_clock_unless_their_times_overlap() -> None:
     ids=lambda hidden: next(iter(hidden)),
 )
 def test_a_fit_finds_what_the_channel_did(hidden: dict[str, float]) -> None:
-    data = runs(record(**hidden))
+    data = runs(record("run", 0.0, **hidden))
     problem = Problem(data, [np.ones(run.force.size, bool) for run in data])
     known = {"inertance": INERTANCE, "coulomb_force": 6.0, "transition_velocity": 1e-4}
     start = {name: 0.0 if "drift" in name or name == "delay" else 0.9 * value

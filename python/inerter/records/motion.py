@@ -126,7 +126,7 @@ def lowpass(values: Array, spacing: float, cutoff: float) -> Array:
 
 def band_response(size: int, spacing: float, cutoff: float) -> Array:
     """The smoother's response for `filtered`, at a length that transforms are fast for."""
-    period = 2 * next_fast_len(size - 1, real=True)
+    period = 2 * int(next_fast_len(size - 1, real=True) or size - 1)
     return response(rfftfreq(period, spacing), cutoff)
 
 
