@@ -73,7 +73,8 @@ EFFECTS = {
             "viscous friction",
             "c v",
             "lubricant shear in bearings, screw and seals",
-            "sensor delay: repeat at twice the frequency, a delay grows with its cube",
+            "sensor delay: repeat the stroke at twice the frequency, c v doubles and "
+            "a delay's force grows eightfold",
         ),
         Effect(
             "coulomb_friction",
@@ -130,7 +131,8 @@ EFFECTS = {
             "friction that changes along the stroke",
             "friction level changes along the stroke",
             "a bent screw, tight guides, wear at mid-stroke",
-            "parallel stiffness: it does not change sign with the direction of motion",
+            "parallel stiffness: look at slow strokes both ways, a spring's force "
+            "does not change sign with the direction",
         ),
         Effect(
             "load_dependent_friction",

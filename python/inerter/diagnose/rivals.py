@@ -37,6 +37,8 @@ PRECEDENCE = (
     "series_elasticity",
     "backlash",
 )
+# effects of which it is told by which law
+WITH_LAWS = ("hysteretic_friction",)
 EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005
 # rivals that are worth cross-validating
@@ -86,15 +88,17 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         for s in scored
     ]
     shares = win_shares([final.squares, without.squares, *fair])
-    rivals = [
-        Rival(s.effect, float(share), s.law)
-        for s, share in sorted(zip(scored, shares[2:], strict=True), key=lambda p: -p[1])
-    ]
+    pairs = sorted(zip(scored, shares[2:], strict=True), key=lambda pair: -pair[1])
     better = next(
         (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect)), None
     )
-    # another law of the same effect is a doubt about the law, not about the effect
-    same = sum(rival.confidence for rival in rivals if rival.effect == effect)
+    # another law or form of the same effect is no doubt about the effect; a law is told
+    same = float(sum(share for s, share in pairs if s.effect == effect))
+    rivals = [
+        Rival(s.effect, float(share), s.law if s.effect in WITH_LAWS else None)
+        for s, share in pairs
+        if s.effect != effect or effect in WITH_LAWS
+    ]
     return Standing(min(float(shares[0]) + same, 1.0), rivals, better)
 
 

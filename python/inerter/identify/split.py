@@ -48,27 +48,43 @@ def split(runs: Sequence[Run], holdout: Sequence[str] = ()) -> Split:
         A name that no run has, or no run left to learn from.
     """
     names = [run.name for run in runs]
-    for name in holdout:
-        if name not in names:
-            raise ValueError(f"--holdout {name}: no such run; the runs are {', '.join(names)}")
-    if len(set(holdout)) == len(runs):
-        raise ValueError("--holdout names every run; leave at least one to learn from")
-    if holdout or len(runs) > 1:
-        held = {names.index(name) for name in holdout} or {_most_typical(runs)}
+    chosen = held_runs(names, holdout)
+    if chosen or len(runs) > 1:
+        held = chosen or {_most_typical(runs)}
         everything = [np.ones(run.force.size, bool) for run in runs]
         fit = [m if i not in held else ~m for i, m in enumerate(everything)]
         out = [m if i in held else ~m for i, m in enumerate(everything)]
         text = "held out: " + ", ".join(names[i] for i in sorted(held))
         return Split(fit, out, _folds(runs, fit), text)
 
-    # one record: blocks spread over it
-    edges = np.linspace(0, runs[0].force.size, BLOCKS + 1).astype(int)
-    out = np.zeros(runs[0].force.size, bool)
+    out, text = held_blocks(runs[0].force.size, names[0])
+    return Split([~out], [out], _folds(runs, [~out]), text)
+
+
+def held_runs(names: Sequence[str], holdout: Sequence[str]) -> set[int]:
+    """Numbers of the runs that a user names to be held out.
+
+    Raises
+    ------
+    ValueError
+        A name that no run has, or no run left to learn from.
+    """
+    for name in holdout:
+        if name not in names:
+            raise ValueError(f"--holdout {name}: no such run; the runs are {', '.join(names)}")
+    if len(set(holdout)) == len(names):
+        raise ValueError("--holdout names every run; leave at least one to learn from")
+    return {names.index(name) for name in holdout}
+
+
+def held_blocks(size: int, name: str) -> tuple[Mask, str]:
+    """Blocks spread over a single run (size,), and in words what they are."""
+    edges = np.linspace(0, size, BLOCKS + 1).astype(int)
+    out = np.zeros(size, bool)
     for block in HELD_OUT_BLOCKS:
         out[edges[block] : edges[block + 1]] = True
-    blocks = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
-    text = f"held out: blocks {blocks} of {BLOCKS} of {names[0]}"
-    return Split([~out], [out], _folds(runs, [~out]), text)
+    numbers = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
+    return out, f"held out: blocks {numbers} of {BLOCKS} of {name}"
 
 
 def _most_typical(runs: Sequence[Run]) -> int:

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inerter.diagnose.system.drive import Drive
-from inerter.identify.split import BLOCKS, HELD_OUT_BLOCKS
-
-Mask = NDArray[np.bool_]
+from inerter.identify.split import Mask, held_blocks, held_runs
 
 
 def split_drives(
@@ -27,24 +24,15 @@ def split_drives(
         A name that no run has, or no run left to learn from.
     """
     names = [drive.name for drive in drives]
-    for name in holdout:
-        if name not in names:
-            raise ValueError(f"--holdout {name}: no such run; the runs are {', '.join(names)}")
-    if holdout and len(set(holdout)) == len(names):
-        raise ValueError("--holdout names every run; leave at least one to learn from")
+    chosen = held_runs(names, holdout)
     whole = [np.ones(drive.time.size, bool) for drive in drives]
     if len(drives) > 1:
-        held = {names.index(name) for name in holdout} or {_most_typical(drives)}
+        held = chosen or {_most_typical(drives)}
         fit = [~m if i in held else m for i, m in enumerate(whole)]
         out = [m if i in held else ~m for i, m in enumerate(whole)]
         return fit, out, "held out: " + ", ".join(names[i] for i in sorted(held))
-    size = drives[0].time.size
-    edges = np.linspace(0, size, BLOCKS + 1).astype(int)
-    mask = np.zeros(size, bool)
-    for block in HELD_OUT_BLOCKS:
-        mask[edges[block] : edges[block + 1]] = True
-    blocks = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
-    return [~mask], [mask], f"held out: blocks {blocks} of {BLOCKS} of {names[0]}"
+    mask, text = held_blocks(drives[0].time.size, names[0])
+    return [~mask], [mask], text
 
 
 def _most_typical(drives: Sequence[Drive]) -> int:
