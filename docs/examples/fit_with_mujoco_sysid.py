@@ -18,7 +18,8 @@ import numpy as np
 from inerter import load_plugin
 from inerter.identify.bench import thin
 from inerter.identify.estimate import identify
-from inerter.identify.fit import Model, Problem
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
 from inerter.identify.preparation import prepare
 from inerter.records import Record
 from mujoco import rollout, sysid

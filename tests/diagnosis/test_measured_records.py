@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from inerter.diagnose import diagnose
 from inerter.identify.bench import thin
-from inerter.identify.fit import Model, Problem
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
 from inerter.identify.preparation import prepare
 from inerter.records import read_records
 

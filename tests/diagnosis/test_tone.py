@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from inerter.diagnose.tone import strongest_line
+from inerter.diagnose.tone import strongest_line, with_tone_above
 from inerter.identify.bench import Run, whole
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
 from inerter.identify.preparation import prepare
 from inerter.records import Record
 
@@ -48,3 +52,23 @@ def test_a_line_of_the_motion_or_of_friction_along_it_is_no_tone() -> None:
     for run in RUNS:
         for wave in (run.displacement / 5e-3, np.sign(run.velocity)):
             assert strongest_line([run], [wave + 0.5 * noise(4)[0]], EVERYTHING[:1]) is None
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 0.4])
+def test_a_tone_above_the_band_is_fitted_to_the_raw_force(amplitude: float) -> None:
+    tone = amplitude * np.sin(2 * np.pi * 61.3 * TIME)
+    shaken = [replace(run, force=run.force + tone) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    found = with_tone_above(problem, fit, lowest=30.0)
+    if not amplitude:
+        assert found is None
+        return
+    assert found is not None
+    assert found.model.values["disturbance_frequency"] == pytest.approx(61.3, abs=0.01)
+    assert found.model.values["disturbance_amplitude"] == pytest.approx(amplitude, rel=0.1)
+    # what was fitted in the band stays, with what is known of it
+    assert found.model.values["inertance"] == fit.model.values["inertance"]
+    assert found.covariance.shape == (3, 3)
+    assert found.covariance[0, 0] == fit.covariance[0, 0]
+    assert with_tone_above(problem, fit, lowest=100.0) is None

@@ -10,7 +10,8 @@ from inerter.diagnose.bench import baseline_model
 from inerter.diagnose.result import Unexplained
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, scales, thin, whole
-from inerter.identify.fit import Model, Problem, rms
+from inerter.identify.fit import Problem, rms
+from inerter.identify.model import Model
 from inerter.identify.preparation import prepare
 from inerter.identify.split import split
 from inerter.records import Record

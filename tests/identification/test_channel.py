@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from inerter.identify.bench import Run, on_clocks, thin
 from inerter.identify.channel import through_channel, without_tone
-from inerter.identify.fit import Model, Problem, force_along
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along
 from inerter.identify.preparation import prepare
 from inerter.records import Record
 

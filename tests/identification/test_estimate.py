@@ -8,10 +8,12 @@ from inerter import Device
 from inerter.core import DeviceError
 from inerter.identify.bench import Run
 from inerter.identify.estimate import identify
-from inerter.identify.fit import Model, Problem, first_state, parameter_errors
+from inerter.identify.fit import Problem, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import law_named
+from inerter.identify.model import Model
 from inerter.identify.multistart import search
+from inerter.identify.prediction import first_state
 from inerter.identify.profile import profile_interval
 from inerter.records import Record
 from random_devices import LAWS, drawn, found

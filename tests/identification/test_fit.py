@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from inerter import Device
 from inerter.identify.bench import Run
-from inerter.identify.fit import Model, Problem, delayed, parameter_errors
+from inerter.identify.fit import Problem, delayed, parameter_errors
+from inerter.identify.model import Model
 
 H, N = 2e-3, 6000
 TIME = H * np.arange(N)

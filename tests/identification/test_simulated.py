@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from inerter.identify.fit import Model
+from inerter.identify.model import Model
 from inerter.identify.simulated import Simulator, device_from, fit_simulated, start_from
 from inerter.records import Record
 from scipy.integrate import solve_ivp

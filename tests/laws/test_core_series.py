@@ -280,6 +280,29 @@ def test_along_is_second_order_with_a_series_element() -> None:
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 1.8), errors
 
 
+@pytest.mark.parametrize("damping", [0.0, 20.0, 200.0, 2e4])
+@pytest.mark.parametrize("play", [0.0, 2e-4])
+def test_along_a_cubic_a_linear_element_is_exact_in_contact(play: float, damping: float) -> None:
+    """Ten steps per natural period are as good as an adaptive solver, strongly damped or not."""
+    device = Device(
+        inertance=100.0, series_stiffness=1e5, series_damping=damping, flywheel_viscous=30.0,
+        backlash=play,
+    )  # fmt: skip
+    time = 0.02 * np.arange(30)
+    # towards one side ever faster: the play stays closed
+    x, v, a = 0.1 * time + 2 * time**2 + time**3, 0.1 + 4 * time + 3 * time**2, 4 + 6 * time
+    z = np.array([5e-3, 0.0, play])[: device.nstate]
+
+    def rates(t: float, state: Array) -> Array:
+        now = (0.1 * t + 2 * t**2 + t**3, 0.1 + 4 * t + 3 * t**2, 4 + 6 * t)
+        return device.evaluate(*now, state)["state_rate"][0]
+
+    true = solve_ivp(rates, (0.0, time[-1]), z, rtol=1e-11, atol=1e-13, method="Radau",
+                     t_eval=time)  # fmt: skip
+    found = device.along(time[1], x, v, a, z)["states"]
+    np.testing.assert_allclose(found[:, :2], true.y[:2].T, rtol=1e-7, atol=1e-9)
+
+
 def test_a_run_with_all_states_can_be_cut_in_two() -> None:
     device = Device(**GAP, friction="lugre", coulomb_force=5.0)
     t = np.linspace(0.0, 1.0, 1001)

@@ -31,15 +31,9 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
 from inerter.identify.channel import UNITS, channel_values
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import (
-    Fit,
-    Model,
-    Problem,
-    force_along,
-    parameter_errors,
-    settled,
-    stated_values,
-)
+from inerter.identify.fit import Fit, Problem, parameter_errors
+from inerter.identify.model import Model, stated_values
+from inerter.identify.prediction import force_along, settled
 from inerter.identify.preparation import Preparation, prepare, refuse_unusable
 from inerter.identify.split import Split, split
 from inerter.records import Record

@@ -14,7 +14,7 @@ import numpy as np
 from inerter.diagnose.composition import width
 from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import Model
+from inerter.identify.model import Model
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,12 @@ class Candidate:
     effect: str
     law: str | None
     starts: tuple[Model, ...]
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What tells it from every other candidate for the same model."""
+        start = self.starts[0]
+        return self.effect, self.law, start.friction, frozenset(start.free)
 
 
 def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:

@@ -10,7 +10,8 @@ from inerter.diagnose.composition import effects_of, submodel
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.search import LOCAL, Search
 from inerter.diagnose.statistics import advantage, win_shares
-from inerter.identify.fit import Fit, Model
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
 
 # how surely an effect must help on data left out to be reported (standard errors)
 CONFIRMING_ADVANTAGE = 2.0

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from inerter.diagnose.effects import EFFECTS, LAW_COORDINATES, LEVEL_COORDINATES
-from inerter.identify.fit import Fit, Model
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
 
 # coordinates whose being zero means that the effect is absent, where not all of them do
 _AMPLITUDES = {

@@ -13,7 +13,8 @@ from inerter.core import Device
 from inerter.exudyn.engine import installed
 from inerter.identify.bench import Run, from_first, held
 from inerter.identify.channel import through_channel
-from inerter.identify.fit import Model, first_state, settled, with_friction_drift
+from inerter.identify.model import Model
+from inerter.identify.prediction import first_state, settled, with_friction_drift
 from inerter.reference import Motion, ReferenceDevice, response
 
 Array = NDArray[np.float64]

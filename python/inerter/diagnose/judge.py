@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from inerter.diagnose.acceptance import visible, visible_delay
 from inerter.diagnose.search import advantage_of
 from inerter.diagnose.statistics import block_squares
-from inerter.identify.fit import Model, Problem
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
 from inerter.identify.preparation import Preparation
 from inerter.identify.split import blocks
 

@@ -28,11 +28,11 @@ from inerter.diagnose.statistics import (
     advantage,
     block_squares,
     where_apart,
-    win_shares,
 )
 from inerter.diagnose.tone import strongest_line
 from inerter.identify.bench import Run, head, head_size
-from inerter.identify.fit import Fit, Model, Problem
+from inerter.identify.fit import Fit, Problem
+from inerter.identify.model import Model
 from inerter.identify.split import Mask, Split, blocks, spread_folds
 
 # what a richer model must win by: standard errors over paired blocks, and share of the rms error.
@@ -57,10 +57,13 @@ SHORTLIST = 5
 ROUGH = 1e-5
 # effects that may show in few stretches, or in one run alone
 LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
-# share of the error that a candidate must have taken away after a few steps to be followed; and how
-# near the second best start must come to the best to be followed too
+# share of the error that a candidate must have taken away after a few evaluations to be followed;
+# and how near the second best start must come to the best to be followed too
 HOPELESS = 0.002
+FEW = 8
 NEAR = 1.1
+# errors this near belong to the same fit
+SAME = 1e-5
 # share of the rms error that these must take away where they show
 LOCAL_GAIN = 0.5
 # share of every run on which the starting points of a fit are compared
@@ -126,15 +129,6 @@ class Scored:
         return self.fit.model
 
 
-@dataclass(frozen=True)
-class Step:
-    """One effect added: the winner, and the share of resamples each rival would have won."""
-
-    chosen: Scored
-    rivals: list[tuple[str, str | None, float]]
-    confidence: float
-
-
 @dataclass
 class Search:
     """A search over the fit data of a split."""
@@ -143,7 +137,7 @@ class Search:
     split: Split
     baseline: Model
     progress: Progress = lambda text: None
-    steps: list[Step] = field(default_factory=list)
+    found: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.problem = Problem(self.runs, self.split.fit)
@@ -156,6 +150,7 @@ class Search:
             ],
             self.problem.scales,
         )
+        self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
 
@@ -176,12 +171,12 @@ class Search:
     def run(self) -> Scored:
         """Search from the baseline; the extended model, fitted to all fit data."""
         current = self.score("baseline", None, self.problem.fit(self.baseline))
-        while len(self.steps) < MOST_EFFECTS:
-            step = self._best_step(current)
-            if step is None:
+        while len(self.found) < MOST_EFFECTS:
+            chosen = self._best_step(current)
+            if chosen is None:
                 break
-            self.steps.append(step)
-            current = self._exchange(step.chosen)
+            self.found.append(chosen.effect)
+            current = self._exchange(chosen)
         return self._prune(current)
 
     def score(self, effect: str, law: str | None, fit: Fit, folds: Folds | None = None) -> Scored:
@@ -223,8 +218,12 @@ class Search:
                 return trials[0]
             near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
             starts = tuple(trial.model for trial in near or trials[:1])
-        fits = [self.problem.fit(start, tolerance=ROUGH) for start in starts]
-        return min(fits, key=lambda fit: fit.rmse(masks))
+        return min((self._follow(start, limit) for start in starts), key=lambda f: f.rmse(masks))
+
+    def _follow(self, start: Model, limit: float) -> Fit:
+        fit = self.problem.fit(start, FEW, tolerance=ROUGH)
+        hopeful = fit.evaluations >= FEW and fit.rmse(self.problem.masks) < limit
+        return self.problem.fit(fit.model, tolerance=ROUGH) if hopeful else fit
 
     def fit_all(self, trials: Sequence[Candidate], current: Fit) -> list[tuple[Candidate, Fit]]:
         """Fits of candidates, the best first.
@@ -234,39 +233,57 @@ class Search:
         """
         masks = self.problem.masks
         limit = (1 - HOPELESS) * current.rmse(masks)
+        known = self._fitted_before(current)
         rich = [t for t in trials if t.law in RICH_LAWS]
         plain = [t for t in trials if t.law not in RICH_LAWS]
-        fits = parallel(lambda candidate: self.fit(candidate, limit), plain)
-        fitted = list(zip(plain, fits, strict=True))
+
+        def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
+            new = [t for t in some if t.key not in known]
+            old = [(t, known[t.key]) for t in some if t.key in known]
+            return [*zip(new, parallel(lambda t: self.fit(t, limit), new), strict=True), *old]
+
+        fitted = fits(plain)
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
         memory = error.get(("hysteretic_friction", "dahl"))
         memoryless = ("coulomb_friction", "stribeck_friction")
         others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in memoryless)]
         if memory is None or memory < (1 - REQUIRED_GAIN) * min(others):
-            fitted += zip(rich, parallel(self.fit, rich), strict=True)
+            fitted += fits(rich)
+        self._rounds.append((current, fitted))
         return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
 
-    def _best_step(self, current: Scored) -> Step | None:
+    def _fitted_before(self, current: Fit) -> dict[object, Fit]:
+        """What was fitted on top of the same model before, by candidate."""
+        masks = self.problem.masks
+        for base, fitted in self._rounds:
+            same = (base.model.friction, set(base.model.free)) == (
+                current.model.friction,
+                set(current.model.free),
+            )
+            if same and abs(base.rmse(masks) - current.rmse(masks)) < SAME * current.rmse(masks):
+                return {candidate.key: fit for candidate, fit in fitted}
+        return {}
+
+    def _best_step(self, current: Scored) -> Scored | None:
         """The effect to add next, or None."""
         masks = self.problem.masks
-        self.progress(f"effect {len(self.steps) + 1}: trying every candidate")
+        self.progress(f"effect {len(self.found) + 1}: trying every candidate")
         trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
         fitted = self.fit_all(trials, current.fit)
         if not fitted:
             return None
         floor = fitted[0][1].rmse(masks)
-        before = current.fit.rmse(masks)
-        worth = before - REQUIRED_GAIN * before
-        shortlist = [pair for pair in fitted if pair[1].rmse(masks) < worth][:SHORTLIST]
+        worth = (1 - REQUIRED_GAIN) * current.fit.rmse(masks)
+        worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
+        if not worthy:
+            return None
 
         # simpler candidates that are nearly as good must have their chance
-        shortlist += [
-            pair
-            for pair in fitted
-            if pair not in shortlist and pair[1].rmse(masks) < floor * (1 + 5 * TOLERATED_LOSS)
-        ]
+        near = floor * (1 + 5 * TOLERATED_LOSS)
+        shortlist = worthy[:SHORTLIST]
+        shortlist += [pair for pair in worthy[SHORTLIST:] if pair[1].rmse(masks) < near]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
-        self.progress(f"effect {len(self.steps) + 1}: checking {names} on data left out")
+        self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 
         # what shows in one run alone cannot be foretold from the others
         if self._folds is not self._spread and any(c.effect in LOCAL for c, _ in shortlist):
@@ -287,12 +304,11 @@ class Search:
         best = min(good, key=lambda s: s.squares.sum())
         equal = [s for s in good if s is best or self._as_good(s, best)]
         chosen = min(equal, key=lambda s: (s.model.complexity, s.squares.sum()))
-        step = self._step(current, chosen, scored)
         if chosen.effect in LOCAL:
             self._folds = folds
         elif folds is not self._folds:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
-        return replace(step, chosen=replace(chosen, fit=self.problem.fit(chosen.model)))
+        return replace(chosen, fit=self.problem.fit(chosen.model))
 
     def _tones(self, current: Fit) -> list[Candidate]:
         """The tone that a residual shows, if any."""
@@ -306,17 +322,6 @@ class Search:
             disturbance_amplitude=amplitude, disturbance_frequency=frequency
         )
         return [Candidate("periodic_disturbance", None, (start,))]
-
-    def _step(self, current: Scored, chosen: Scored, scored: list[Scored]) -> Step:
-        # a rival is another effect; laws of one effect compete within it
-        others = [s for s in scored if s.effect != chosen.effect]
-        shares = win_shares([chosen.squares, current.squares, *(s.squares for s in others)])
-        rivals = [
-            (other.effect, other.law, float(share))
-            for other, share in zip(others, shares[2:], strict=True)
-        ]
-        rivals.sort(key=lambda rival: -rival[2])
-        return Step(chosen, rivals, float(shares[0]))
 
     def _better(self, simple: Scored, rich: Scored) -> bool:
         gain = 1 - np.sqrt(rich.squares.sum() / simple.squares.sum())

@@ -31,7 +31,8 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.statistics import win_shares
 from inerter.identify.coordinates import Scales, coordinate
-from inerter.identify.fit import NUISANCES, Fit, Model, parameter_errors, stated_values
+from inerter.identify.fit import Fit, parameter_errors
+from inerter.identify.model import NUISANCES, Model, stated_values
 from inerter.records import BenchTable
 from inerter.rig import simulate_along
 

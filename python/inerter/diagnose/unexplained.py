@@ -13,7 +13,6 @@ A formula may be proposed for it (`remainder/proposal.py`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +24,7 @@ from inerter.diagnose.remainder.learning import Prediction, gather
 from inerter.diagnose.remainder.proposal import propose
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import Unexplained
-from inerter.identify.bench import Run
+from inerter.identify.bench import Run, on_clocks
 from inerter.identify.split import Split
 
 Array = NDArray[np.float64]
@@ -154,15 +153,7 @@ def _remainder(runs: Sequence[Run], split: Split, residual: Sequence[Array]) -> 
     data = gather(
         residual, masks, split.holdout, [run.spacing for run in runs], [run.cutoff for run in runs]
     )
-    return Remainder(runs, residual, data, sizes_of(runs), _clocks(runs))
-
-
-def _clocks(runs: Sequence[Run]) -> list[Array]:
-    """Times per run [s], from the first record's start where they follow each other, else own."""
-    order = sorted(runs, key=lambda run: run.start)
-    following = all(b.start >= a.time[-1] for a, b in pairwise(order))
-    begin = order[0].start
-    return [run.time - (begin if following else run.start) for run in runs]
+    return Remainder(runs, residual, data, sizes_of(runs), [run.elapsed for run in on_clocks(runs)])
 
 
 def _depends(

@@ -63,17 +63,13 @@ class Run:
     first: int = 0
     clock: float = 0.0
 
-    def friction(self, device: Device, state: float | Array) -> Array:
-        """Friction force of a device through the low-pass of the measured force [N], shape (n,).
-
-        Friction jumps where the velocity changes sign. It is worked out at the instants of the
-        measured samples, so that a jump falls between the same two samples as in the record;
-        elsewhere it would be misplaced, and other effects would be found to make up for that.
-        """
-        return self.in_band(self.at_measured_rate(device, state)["friction"])
-
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
-        """Forces of a device at the measured rate [N], shape (m,) each."""
+        """Forces of a device at the measured rate [N], shape (m,) each.
+
+        Friction jumps where the velocity changes sign. At the instants of the measured samples a
+        jump falls between the same two samples as in the record; elsewhere it would be misplaced,
+        and other effects would be found to make up for that.
+        """
         if self.measured is None:
             raise ValueError(f"{self.name}: a run at the measured rate has no band")
         begin, size = self.first * self.thinned, self.measured[0].size

@@ -44,6 +44,11 @@ def clips(values: Mapping[str, float]) -> bool:
     return any(name in values for name in LIMITS)
 
 
+def without_limits(values: Mapping[str, float]) -> dict[str, float]:
+    """Coordinates of a channel that does not clip."""
+    return {name: value for name, value in values.items() if name not in LIMITS}
+
+
 def through_channel(
     values: Mapping[str, float], force: Array, elapsed: Array, spacing: float
 ) -> Array:

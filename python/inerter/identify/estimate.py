@@ -18,9 +18,10 @@ from threadpoolctl import threadpool_limits
 from inerter.core import Device, DeviceError, parameters
 from inerter.identify.bench import Run, thin, whole
 from inerter.identify.coordinates import coordinate, device_values
-from inerter.identify.fit import NUISANCES, Fit, Model, Problem, parameter_errors
+from inerter.identify.fit import Fit, Problem, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
+from inerter.identify.model import NUISANCES, Model
 from inerter.identify.multistart import Search, search
 from inerter.identify.noise import effect_of_noise
 from inerter.identify.preparation import (

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from inerter.identify.fit import force_along
+from inerter.identify.prediction import force_along
 from inerter.identify.result import Identification
 from inerter.report.palette import LIGHT
 

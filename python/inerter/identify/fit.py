@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from types import MappingProxyType
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from inerter.core import Device, DeviceError, parameters
-from inerter.identify.bench import Run, forces_along, held, scales
-from inerter.identify.channel import UNITS, clips, delayed, through_channel, without_tone
+from inerter.identify.bench import Run, scales
+from inerter.identify.channel import (
+    UNITS,
+    clips,
+    delayed,
+)
 from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_values
-from inerter.identify.residual import robust_weight, sandwich, without_transient
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along, settled
+from inerter.identify.residual import robust_weight, sandwich
 
 Array = NDArray[np.float64]
 Masks = Sequence[NDArray[np.bool_]]
 
-# free coordinates that make up for how a law is smoothed or how a run begins, and name no effect
-NUISANCES = ("transition_velocity", "friction_place")
-# share of what the bristle holds from which on the first force tells the side of its free play
-_TELLING = 0.1
 # with one of these the force is no longer the inertance times the acceleration
 ENTANGLED = (
     "load_friction",
@@ -38,185 +37,6 @@ ENTANGLED = (
 )
 # residuals beyond this many standard deviations count less in robust fits
 ROBUST = 1.345
-
-
-@dataclass(frozen=True)
-class Model:
-    """A device and a channel delay as coordinates, and which of them are free.
-
-    Attributes
-    ----------
-    friction : str
-        Friction law.
-    values : mapping
-        Coordinates by name (see `coordinates`), SI units.
-    free : tuple of str
-        Names that a fit may change.
-    texts : mapping
-        What a device states in words beside the friction law, such as gas_law.
-    """
-
-    friction: str
-    values: Mapping[str, float]
-    free: tuple[str, ...]
-    texts: Mapping[str, str] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
-
-    def device(self) -> Device:
-        """The device these coordinates stand for."""
-        return self._device
-
-    def without_friction(self) -> Device:
-        """The device's terms that are smooth in the motion."""
-        return self._smooth_device
-
-    # worked out once, for all runs
-    @cached_property
-    def _device(self) -> Device:
-        values = {name: float(value) for name, value in device_values(self.values).items()}
-        return Device(friction=self.friction, **values, **self.texts)
-
-    @cached_property
-    def _smooth_device(self) -> Device:
-        whole, known = self._device.given, parameters()
-        names = [n for n in whole if n in known and not known[n].laws and n != "load_friction"]
-        return Device(**{n: whole[n] for n in names}, **self.texts)
-
-    @property
-    def delay(self) -> float:
-        """Time by which the force channel is late [s]."""
-        return self.values.get("delay", 0.0)
-
-    @property
-    def complexity(self) -> int:
-        """Number of free coordinates that say something about the device."""
-        return sum(name not in NUISANCES for name in self.free)
-
-    def adding(self, friction: str | None = None, **values: float) -> Model:
-        """The model with further free coordinates, under another friction law if given."""
-        law = friction or self.friction
-        names = tuple(name for name in values if name not in self.free)
-        return Model(law, {**self.values, **values}, _useful(self.free + names, law), self.texts)
-
-    def without(self, names: Sequence[str], friction: str | None = None) -> Model:
-        """The model without some coordinates."""
-        law = friction or self.friction
-        free = tuple(name for name in self.free if name not in names)
-        values = {name: value for name, value in self.values.items() if name not in names}
-        return Model(law, values, _useful(free, law), self.texts)
-
-
-def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
-    """What a device states in numbers, and in words beside its friction law.
-
-    Raises
-    ------
-    DeviceError
-        The inertance comes from a channel: a fit has to be able to change it.
-    """
-    if device.inertance and "piston_area" in device.given and "inertance" not in device.given:
-        raise DeviceError(
-            f"inertance follows from piston_area {device.piston_area:g} m^2 and the channel; a "
-            f"diagnosis varies it: state inertance = {device.inertance:g} in their place"
-        )
-    given = {name: value for name, value in device.given.items() if name != "friction"}
-    words = {name: value for name, value in given.items() if isinstance(value, str)}
-    return {name: float(value) for name, value in given.items() if name not in words}, words
-
-
-def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
-    # only laws without memory read the width of sign(v), only those with one begin in a play
-    unread = "friction_place" if friction in ("coulomb", "stribeck") else "transition_velocity"
-    return tuple(name for name in free if name != unread)
-
-
-def first_state(device: Device, run: Run, place: float = 0.0) -> float | Array:
-    """State at a run's sample `first`, read off the force, within what the friction law can hold.
-
-    A force near 0 does not tell where in a free play before the friction a run begins: that is
-    `place`, -1 ... 1 of half the play. A number for a device with at most one state, else an array
-    (nstate,).
-    """
-    if device.nstate == 0:
-        return 0.0
-    i = run.first
-    state = device.state_of_force(
-        run.displacement[i], run.velocity[i], run.acceleration[i], run.first_force
-    )
-    if not device.friction_backlash:
-        return state
-    bent, side = _bent(device, float(np.atleast_1d(state)[0]))
-    told = min(1.0, abs(bent) / (_TELLING * _held(device)))
-    found = bent + device.friction_backlash * (told * side + (1.0 - told) * place)
-    return np.array([found, *np.atleast_1d(state)[1:]]) if device.nstate > 1 else found
-
-
-def _bent(device: Device, state: float) -> tuple[float, float]:
-    """Deflection of the bristle [m] behind its free play, and its side, -1, 0 or 1."""
-    half = device.friction_backlash
-    return state - float(np.clip(state, -half, half)), float(np.sign(state))
-
-
-def _held(device: Device) -> float:
-    """Deflection of the bristle [m] at which it slides; for Bouc-Wen without one, a play."""
-    if device.friction != "bouc_wen":
-        return device.coulomb_force / device.bristle_stiffness
-    narrowing = device.bw_beta + device.bw_gamma
-    if narrowing <= 0:
-        return device.friction_backlash
-    return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
-
-
-def force_along(model: Model, run: Run) -> Array:
-    """Force that the model predicts for a run's force channel, shape (n,)."""
-    device, values = model.device(), model.values
-    state = first_state(device, run, values.get("friction_place", 0.0))
-    if run.measured is not None and (clips(values) or device.backlash or device.stop_stiffness):
-        # what a limit cuts off and what an impact adds pass the low-pass of the measured force
-        found = run.at_measured_rate(device, state)
-        fine = run.fine_elapsed
-        force = with_friction_drift(values, found, fine)
-        return run.in_band(through_channel(values, force, fine, run.spacing / run.thinned))
-    x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
-    if np.isinf(run.cutoff) or (device.friction == "none" and not device.load_friction):
-        found = forces_along(device, run.spacing, (x, v, a), state, run.force.size)
-        total = with_friction_drift(values, found, run.elapsed)
-    else:
-        # friction is not linear in the motion: it has to pass the low-pass of the measured force
-        smooth_device = model.without_friction()
-        rest = np.atleast_1d(state)[-smooth_device.nstate :] if smooth_device.nstate else 0.0
-        smooth = smooth_device.along(run.spacing, x, v, a, rest)["total"]
-        friction = run.friction(device, state)
-        level = 1 + values.get("friction_drift", 0.0) * run.elapsed
-        total = held(smooth, run.force.size) + level * friction
-    return through_channel(values, total, run.elapsed, run.spacing)
-
-
-def with_friction_drift(
-    values: Mapping[str, float], forces: Mapping[str, Array], elapsed: Array
-) -> Array:
-    """Total force of a device whose friction level changes with time [N], shape (n,)."""
-    drift = values.get("friction_drift", 0.0)
-    return forces["total"] + drift * elapsed * forces["friction"] if drift else forces["total"]
-
-
-def settled(model: Model, run: Run, residual: Array, mask: NDArray[np.bool_]) -> Array:
-    """A residual without what only the record itself can tell, read off its masked samples.
-
-    That is how the flywheel turned as the record began, and the phase of a tone. Of a run left out
-    of a fit (nothing masked) everything is read off the run.
-    """
-    mask = mask if mask.any() else run.inner
-    device, values = model.device(), model.values
-    if device.series_stiffness and not device.backlash:
-        residual = without_transient(device, residual, run.spacing, mask)
-    if amplitude := values.get("disturbance_amplitude", 0.0):
-        frequency = values["disturbance_frequency"]
-        seen = amplitude * run.gain(frequency)
-        residual = without_tone(residual, run.elapsed, mask, seen, frequency)
-    return residual
 
 
 @dataclass(frozen=True)

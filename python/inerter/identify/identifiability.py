@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 
 from inerter.core import DeviceError, parameters
 from inerter.identify.coordinates import NOT_OF_DEVICE
-from inerter.identify.fit import Model, Problem, force_along
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along
 
 Array = NDArray[np.float64]
 

@@ -19,8 +19,10 @@ from scipy.stats import qmc
 
 from inerter.core import DeviceError
 from inerter.identify.coordinates import coordinate
-from inerter.identify.fit import NUISANCES, Fit, Model, Problem, force_along
+from inerter.identify.fit import Fit, Problem
 from inerter.identify.laws import LEVEL, Law, unit_of
+from inerter.identify.model import NUISANCES, Model
+from inerter.identify.prediction import force_along
 
 Array = NDArray[np.float64]
 

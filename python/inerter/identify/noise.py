@@ -19,7 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identify.bench import Run, thin, whole
-from inerter.identify.fit import Model, Problem, force_along
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along
 from inerter.identify.preparation import Preparation
 from inerter.records import Record
 from inerter.records.motion import smooth, white_noise

@@ -19,7 +19,8 @@ from scipy.stats import chi2
 
 from inerter.core import DeviceError
 from inerter.identify.coordinates import coordinate
-from inerter.identify.fit import Model, Problem
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
 
 Array = NDArray[np.float64]
 Quantity = Callable[[Model], float]

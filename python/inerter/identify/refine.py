@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inerter.identify.fit import NUISANCES, Fit, parameter_errors
+from inerter.identify.fit import Fit, parameter_errors
+from inerter.identify.model import NUISANCES
 from inerter.identify.result import Estimate, Identification, Motion
 from inerter.identify.simulated import Simulator, device_from, fit_simulated, start_from
 

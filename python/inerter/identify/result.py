@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.identify.bench import Run
-from inerter.identify.fit import Model
 from inerter.identify.identifiability import Combination
+from inerter.identify.model import Model
 from inerter.identify.preparation import Preparation
 from inerter.identify.split import Split
 from inerter.records import Record

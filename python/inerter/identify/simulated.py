@@ -24,7 +24,7 @@ from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
 from inerter.identify.bench import scales, thin
 from inerter.identify.coordinates import NOT_OF_DEVICE, Scales, coordinate, device_values
-from inerter.identify.fit import Model
+from inerter.identify.model import Model
 from inerter.identify.preparation import prepare
 from inerter.identify.residual import sandwich
 from inerter.mjspec import add_device

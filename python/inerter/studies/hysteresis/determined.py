@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.identify.fit import Model, Problem
+from inerter.identify.fit import Problem
 from inerter.identify.identifiability import Combination, identifiability
+from inerter.identify.model import Model
 from inerter.studies.hysteresis.loops import loop
 from inerter.studies.hysteresis.objective import Objective, force_of
 from inerter.studies.hysteresis.published import MODELS

@@ -1,0 +1,121 @@
+"""A device and its force channel as coordinates, some of them free for a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+
+from inerter.core import Device, DeviceError, parameters
+from inerter.identify.channel import clips
+from inerter.identify.coordinates import device_values
+
+# free coordinates that make up for how a law is smoothed or how a run begins, and name no effect
+NUISANCES = ("transition_velocity", "friction_place")
+# parameters beside those of the friction laws by which a force is not smooth in the motion
+JUMPS = (
+    "load_friction",
+    "backlash",
+    "stop_upper",
+    "stop_lower",
+    "stop_stiffness",
+    "stop_damping",
+)
+
+
+@dataclass(frozen=True)
+class Model:
+    """A device and a channel delay as coordinates, and which of them are free.
+
+    Attributes
+    ----------
+    friction : str
+        Friction law.
+    values : mapping
+        Coordinates by name (see `coordinates`), SI units.
+    free : tuple of str
+        Names that a fit may change.
+    texts : mapping
+        What a device states in words beside the friction law, such as gas_law.
+    """
+
+    friction: str
+    values: Mapping[str, float]
+    free: tuple[str, ...]
+    texts: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+
+    def device(self) -> Device:
+        """The device these coordinates stand for."""
+        return self._device
+
+    def smooth_part(self) -> Device:
+        """The device's terms that are smooth in the motion: no friction, no stops, no play."""
+        return self._smooth_device
+
+    # worked out once, for all runs
+    @cached_property
+    def _device(self) -> Device:
+        values = {name: float(value) for name, value in device_values(self.values).items()}
+        return Device(friction=self.friction, **values, **self.texts)
+
+    @cached_property
+    def _smooth_device(self) -> Device:
+        whole, known = self._device.given, parameters()
+        names = [n for n in whole if n in known and not known[n].laws and n not in JUMPS]
+        return Device(**{n: whole[n] for n in names}, **self.texts)
+
+    @cached_property
+    def has_jumps(self) -> bool:
+        """Whether something beside friction makes the force jump or bend sharply."""
+        return clips(self.values) or bool(self._device.backlash or self._device.stop_stiffness)
+
+    @property
+    def delay(self) -> float:
+        """Time by which the force channel is late [s]."""
+        return self.values.get("delay", 0.0)
+
+    @property
+    def complexity(self) -> int:
+        """Number of free coordinates that say something about the device."""
+        return sum(name not in NUISANCES for name in self.free)
+
+    def adding(self, friction: str | None = None, **values: float) -> Model:
+        """The model with further free coordinates, under another friction law if given."""
+        law = friction or self.friction
+        names = tuple(name for name in values if name not in self.free)
+        return Model(law, {**self.values, **values}, _useful(self.free + names, law), self.texts)
+
+    def without(self, names: Sequence[str], friction: str | None = None) -> Model:
+        """The model without some coordinates."""
+        law = friction or self.friction
+        free = tuple(name for name in self.free if name not in names)
+        values = {name: value for name, value in self.values.items() if name not in names}
+        return Model(law, values, _useful(free, law), self.texts)
+
+
+def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
+    """What a device states in numbers, and in words beside its friction law.
+
+    Raises
+    ------
+    DeviceError
+        The inertance comes from a channel: a fit has to be able to change it.
+    """
+    if device.inertance and "piston_area" in device.given and "inertance" not in device.given:
+        raise DeviceError(
+            f"inertance follows from piston_area {device.piston_area:g} m^2 and the channel; a "
+            f"diagnosis varies it: state inertance = {device.inertance:g} in their place"
+        )
+    given = {name: value for name, value in device.given.items() if name != "friction"}
+    words = {name: value for name, value in given.items() if isinstance(value, str)}
+    return {name: float(value) for name, value in given.items() if name not in words}, words
+
+
+def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
+    # only laws without memory read the width of sign(v), only those with one begin in a play
+    unread = "friction_place" if friction in ("coulomb", "stribeck") else "transition_velocity"
+    return tuple(name for name in free if name != unread)

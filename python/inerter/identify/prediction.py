@@ -1,0 +1,120 @@
+"""The force that a model predicts for a run's force channel."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+from inerter.identify.bench import Run, forces_along, held
+from inerter.identify.channel import through_channel, without_limits, without_tone
+from inerter.identify.model import Model
+from inerter.identify.residual import without_transient
+
+Array = NDArray[np.float64]
+
+# share of what the bristle holds from which on the first force tells the side of its free play
+_TELLING = 0.1
+
+
+def first_state(device: Device, run: Run, place: float = 0.0) -> float | Array:
+    """State at a run's sample `first`, read off the force, within what the friction law can hold.
+
+    A force near 0 does not tell where in a free play before the friction a run begins: that is
+    `place`, -1 ... 1 of half the play. A number for a device with at most one state, else an array
+    (nstate,).
+    """
+    if device.nstate == 0:
+        return 0.0
+    i = run.first
+    state = device.state_of_force(
+        run.displacement[i], run.velocity[i], run.acceleration[i], run.first_force
+    )
+    if not device.friction_backlash:
+        return state
+    bent, side = _bent(device, float(np.atleast_1d(state)[0]))
+    told = min(1.0, abs(bent) / (_TELLING * _held(device)))
+    found = bent + device.friction_backlash * (told * side + (1.0 - told) * place)
+    return np.array([found, *np.atleast_1d(state)[1:]]) if device.nstate > 1 else found
+
+
+def _bent(device: Device, state: float) -> tuple[float, float]:
+    """Deflection of the bristle [m] behind its free play, and its side, -1, 0 or 1."""
+    half = device.friction_backlash
+    return state - float(np.clip(state, -half, half)), float(np.sign(state))
+
+
+def _held(device: Device) -> float:
+    """Deflection of the bristle [m] at which it slides; for Bouc-Wen without one, a play."""
+    if device.friction != "bouc_wen":
+        return device.coulomb_force / device.bristle_stiffness
+    narrowing = device.bw_beta + device.bw_gamma
+    if narrowing <= 0:
+        return device.friction_backlash
+    return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
+
+
+def force_along(model: Model, run: Run) -> Array:
+    """Force that the model predicts for a run's force channel, shape (n,).
+
+    What is not smooth in the motion has to pass the low-pass of the measured force: only what it
+    adds to the smooth terms, so that these carry the same noise of the motion in every model.
+    """
+    device, values = model.device(), model.values
+    state = first_state(device, run, values.get("friction_place", 0.0))
+    x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
+    rough = model.has_jumps or device.friction != "none" or device.load_friction
+    if np.isinf(run.cutoff) or not rough:
+        found = forces_along(device, run.spacing, (x, v, a), state, run.force.size)
+        total = with_friction_drift(values, found, run.elapsed)
+        return through_channel(values, total, run.elapsed, run.spacing)
+
+    part = model.smooth_part()
+    rest = _states_of(part, device, state)
+    smooth = held(part.along(run.spacing, x, v, a, rest)["total"], run.force.size)
+    found = run.at_measured_rate(device, state)
+    if not model.has_jumps:
+        level = 1 + values.get("friction_drift", 0.0) * run.elapsed
+        total = smooth + level * run.in_band(found["friction"])
+        return through_channel(values, total, run.elapsed, run.spacing)
+    times, spacing = run.fine_elapsed, run.spacing / run.thinned
+    whole = through_channel(values, with_friction_drift(values, found, times), times, spacing)
+    plain = without_limits(values)
+    less = through_channel(plain, run.at_measured_rate(part, rest)["total"], times, spacing)
+    return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(whole - less)
+
+
+def _states_of(part: Device, device: Device, state: float | Array) -> float | Array:
+    """Those states of a device that a part of it has too."""
+    if not part.nstate:
+        return 0.0
+    known = part.state_names
+    kept = [name in known for name in device.state_names]
+    return np.atleast_1d(state)[kept]
+
+
+def with_friction_drift(
+    values: Mapping[str, float], forces: Mapping[str, Array], elapsed: Array
+) -> Array:
+    """Total force of a device whose friction level changes with time [N], shape (n,)."""
+    drift = values.get("friction_drift", 0.0)
+    return forces["total"] + drift * elapsed * forces["friction"] if drift else forces["total"]
+
+
+def settled(model: Model, run: Run, residual: Array, mask: NDArray[np.bool_]) -> Array:
+    """A residual without what only the record itself can tell, read off its masked samples.
+
+    That is how the flywheel turned as the record began, and the phase of a tone. Of a run left out
+    of a fit (nothing masked) everything is read off the run.
+    """
+    mask = mask if mask.any() else run.inner
+    device, values = model.device(), model.values
+    if device.series_stiffness and not device.backlash:
+        residual = without_transient(device, residual, run.spacing, mask)
+    if amplitude := values.get("disturbance_amplitude", 0.0):
+        frequency = values["disturbance_frequency"]
+        seen = amplitude * run.gain(frequency)
+        residual = without_tone(residual, run.elapsed, mask, seen, frequency)
+    return residual

@@ -1,0 +1,46 @@
+"""The catalogue of effects, its table in the docs, and where an effect is judged."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inerter.diagnose.effects import EFFECTS
+from inerter.diagnose.statistics import advantage, block_squares, where_apart
+from inerter.identify.split import blocks
+
+DOCS = Path(__file__).parents[2] / "docs" / "diagnosis.md"
+
+
+def rows() -> dict[str, list[str]]:
+    """Rows of the table of effects: name to cells."""
+    found = re.findall(r"^\| `(\w+)` \|(.*)\|$", DOCS.read_text(), re.MULTILINE)
+    return {name: [cell.strip() for cell in rest.split("|")] for name, rest in found}
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_docs_say_what_the_catalogue_says(name: str) -> None:
+    effect, row = EFFECTS[name], rows()[name]
+    assert effect.cause in row
+    assert effect.taken_for in row
+
+
+def test_an_effect_in_one_place_is_judged_there() -> None:
+    random = np.random.default_rng(3)
+    masks = [np.ones(5000, bool), np.ones(4000, bool)]
+    right = [random.standard_normal(mask.size) for mask in masks]
+    wrong = [values.copy() for values in right]
+    wrong[1][2000:2200] += 6.0
+    stretches = where_apart(wrong, right, masks)
+    places = np.concatenate([index for _, index in stretches])
+    assert {run for run, _ in stretches} == {1}
+    assert places.min() >= 2000
+    assert places.max() < 2200
+    everywhere = blocks(masks)
+
+    def gain(over: list) -> float:
+        return advantage(block_squares(wrong, over), block_squares(right, over))
+
+    assert gain(stretches) > 3 * gain(everywhere)

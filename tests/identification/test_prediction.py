@@ -1,0 +1,94 @@
+"""The force that a model predicts along a run: what is rough is added to what is smooth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.core import Device
+from inerter.identify.bench import Run, thin
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along, settled
+from inerter.identify.preparation import prepare
+from inerter.identify.residual import without_transient
+from inerter.records import Record
+
+TIME = np.arange(0, 8, 1e-3)
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    random = np.random.default_rng(5)
+    x = 5e-3 * np.sin(2 * np.pi * 1.3 * TIME) + 2e-3 * np.sin(2 * np.pi * 3.1 * TIME)
+    force = 60 * np.gradient(np.gradient(x, TIME), TIME)
+    noisy = x + 1e-7 * random.standard_normal(TIME.size)
+    return thin(
+        prepare([Record(name="run", time=TIME, displacement=noisy, force=force)]).motions[0]
+    )
+
+
+PLAIN = {"inertance": 60.0, "viscous": 30.0}
+DULL = {"coulomb_force": 4.0, "transition_velocity": 1e-3}
+
+
+@pytest.mark.parametrize("friction", ["none", "coulomb"])
+@pytest.mark.parametrize(
+    "idle",
+    [
+        {"force_maximum": 1e5},
+        {"force_minimum": -1e5, "force_maximum": 1e5},
+        {"stop_upper": 0.1, "stop_stiffness": 1e5, "stop_damping": 1.0},
+    ],
+)
+def test_what_is_never_reached_changes_nothing(
+    run: Run, friction: str, idle: dict[str, float]
+) -> None:
+    """A limit must not win by a smoother prediction of everything else."""
+    values = PLAIN | (DULL if friction == "coulomb" else {})
+    without = force_along(Model(friction, values, ()), run)
+    within = force_along(Model(friction, values | idle, ()), run)
+    np.testing.assert_allclose(within, without, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("friction", ["none", "coulomb"])
+def test_a_stop_adds_its_force_in_the_band(run: Run, friction: str) -> None:
+    values = PLAIN | (DULL if friction == "coulomb" else {})
+    stop = {"stop_upper": 4e-3, "stop_stiffness": 1e5, "stop_damping": 0.0}
+    added = force_along(Model(friction, values | stop, ()), run) - force_along(
+        Model(friction, values, ()), run
+    )
+    assert run.measured is not None
+    spring = 1e5 * np.maximum(run.measured[0] - 4e-3, 0.0)
+    expected = run.in_band(spring)[run.inner]
+    np.testing.assert_allclose(added[run.inner], expected, atol=1e-3 * np.max(spring))
+
+
+def test_a_limit_cuts_what_is_beyond_it(run: Run) -> None:
+    assert run.measured is not None
+    _, v, a = run.measured
+    whole = 60.0 * a + 30.0 * v
+    limit = 0.5 * float(np.max(whole))
+    found = force_along(Model("none", PLAIN | {"force_maximum": limit}, ()), run)
+    error = (found - run.in_band(np.minimum(whole, limit)))[run.inner]
+    assert np.sqrt(np.mean(error**2)) < 0.1 * limit
+
+
+def test_an_unseen_beginning_is_not_made_up() -> None:
+    """Of a transient that has died where samples count, its size at the beginning is unknown."""
+    device = Device(inertance=100.0, series_stiffness=4e5, series_damping=800.0)
+    random = np.random.default_rng(2)
+    residual = random.standard_normal(TIME.size)
+    mask = TIME > 3.0  # after exp(-12)
+    left = without_transient(device, residual, 1e-3, mask)
+    assert np.max(np.abs(left - residual)) < 1.0
+    # where it is seen it goes
+    decay = np.exp(-4.0 * TIME) * np.cos(np.sqrt(4e3 - 16.0) * TIME)
+    left = without_transient(device, residual + 50 * decay, 1e-3, TIME < 8.0)
+    assert np.std(left - residual) < 0.1
+
+
+def test_a_flywheel_that_turns_as_a_record_begins_is_settled(run: Run) -> None:
+    values = {"inertance": 60.0, "series_stiffness": 6e4, "series_damping": 60.0}
+    model = Model("none", values, ())
+    decay = np.exp(-0.5 * run.elapsed) * np.sin(np.sqrt(1e3 - 0.25) * run.elapsed)
+    left = settled(model, run, 20 * decay, np.ones(run.force.size, bool))
+    assert np.max(np.abs(left)) < 1.0

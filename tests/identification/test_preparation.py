@@ -1,0 +1,60 @@
+"""Choice of the cut-off: every one is judged on the same samples."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from inerter.identify.preparation import prepare, prepare_again
+from inerter.records import Record
+from inerter.records.motion import Motion
+
+RATE = 500.0
+
+
+def moving(seconds: float, noise: float = 1e-6, seed: int = 0) -> Record:
+    random = np.random.default_rng(seed)
+    time = np.arange(0, seconds, 1 / RATE)
+    x = 5e-3 * np.cos(2 * np.pi * 1.5 * time) + 1e-3 * np.cos(2 * np.pi * 4.1 * time)
+    a = np.gradient(np.gradient(x, time), time)
+    force = 40 * a + 0.1 * random.standard_normal(time.size)
+    noisy = x + noise * random.standard_normal(time.size)
+    return Record(name=f"run{seed}", time=time, displacement=noisy, force=force)
+
+
+def test_every_cutoff_is_judged_on_the_same_samples() -> None:
+    records = [moving(6.0, seed=0), moving(4.0, seed=1)]
+    seen: list[list[np.ndarray]] = []
+
+    def error(motions: Sequence[Motion]) -> float:
+        seen.append([motion.inner for motion in motions])
+        return 1.0
+
+    preparation = prepare(records)
+    prepare_again(records, preparation, error)
+    assert len(seen) > 5
+    for masks in seen[1:]:
+        for mask, first in zip(masks, seen[0], strict=True):
+            np.testing.assert_array_equal(mask, first)
+    # what the lowest one leaves of a record that begins in motion
+    assert 0 < seen[0][0].sum() < records[0].samples
+
+
+def test_more_noise_asks_for_a_lower_cutoff() -> None:
+    cutoffs = [prepare([moving(10.0, noise)]).cutoff for noise in (1e-7, 1e-6, 1e-5, 1e-4)]
+    assert cutoffs == sorted(cutoffs, reverse=True)
+    assert cutoffs[0] > 2 * cutoffs[-1]
+
+
+def test_a_cutoff_that_leaves_too_little_is_not_chosen() -> None:
+    """Of half a second a low cut-off leaves nothing, and is no candidate for leaving that out."""
+    preparation = prepare([moving(0.8)])
+    assert np.isinf(preparation.errors[0])
+    assert np.isfinite(preparation.errors[-1])
+    assert all(motion.inner.sum() > 50 for motion in preparation.motions)
+
+
+def test_a_record_too_short_for_any_cutoff_is_refused() -> None:
+    with pytest.raises(ValueError, match="too few to tell motion from noise"):
+        prepare([moving(0.05)])
