@@ -8,9 +8,9 @@ from inerter.core import Device
 from inerter.identify.bench import Run, thin
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
-from inerter.identify.preparation import prepare
 from inerter.identify.residual import without_transient
 from inerter.records import Record
+from inerter.records.motion import smooth
 
 TIME = np.arange(0, 8, 1e-3)
 
