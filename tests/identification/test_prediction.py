@@ -21,9 +21,8 @@ def run() -> Run:
     x = 5e-3 * np.sin(2 * np.pi * 1.3 * TIME) + 2e-3 * np.sin(2 * np.pi * 3.1 * TIME)
     force = 60 * np.gradient(np.gradient(x, TIME), TIME)
     noisy = x + 1e-7 * random.standard_normal(TIME.size)
-    return thin(
-        prepare([Record(name="run", time=TIME, displacement=noisy, force=force)]).motions[0]
-    )
+    record = Record(name="run", time=TIME, displacement=noisy, force=force)
+    return thin(smooth(record, 20.0))
 
 
 PLAIN = {"inertance": 60.0, "viscous": 30.0}
