@@ -6,20 +6,12 @@ import numpy as np
 import pytest
 from hidden import solve
 from inerter.exudyn.engine import installed
-from inerter.reference import EFFECTS, HiddenCase, ReferenceDevice
+from inerter.reference import EFFECTS, HYSTERETIC_LAWS, HiddenCase, ReferenceDevice
 
 CASES: list[tuple[str, str | None]] = [
-    (effect, None) for effect in EFFECTS if effect not in ("none", "hysteretic_friction")
+    (effect, None) for effect in EFFECTS if effect != "hysteretic_friction"
 ]
-# of the others, those that `inerter blind-test` finds reliably and that take seconds
-CASES += [
-    (effect, None)
-    for effect in (
-        "inertance_error", "friction_drift", "hardening_stiffness", "gas_spring", "end_stop",
-        "sensor_saturation", "periodic_disturbance",
-    )
-]  # fmt: skip
-CASES += [("hysteretic_friction", law) for law in ("dahl", "lugre", "bouc_wen")]
+CASES += [("hysteretic_friction", law) for law in HYSTERETIC_LAWS]
 
 # share of the true value within which a parameter has to be, where its standard error is smaller
 CLOSE = {

@@ -22,7 +22,10 @@ from inerter.reference.bench_motions import draw_drives, highest_frequency
 from scipy.signal import lsim
 
 QUIET = NoiseLevels(force=0.0, displacement=0.0)
-CASES = [(effect, None) for effect in EFFECTS if effect != "hysteretic_friction"]
+# forces that act at once along the motion, or late
+SIMPLE = [effect for effect in EFFECTS[: EFFECTS.index("inertance_error")]
+          if effect != "hysteretic_friction"]  # fmt: skip
+CASES: list[tuple[str, str | None]] = [(effect, None) for effect in ("none", *SIMPLE)]
 CASES += [("hysteretic_friction", law) for law in HYSTERETIC_LAWS]
 
 

@@ -60,11 +60,11 @@ def blind_test_command(
     from inerter.blind_test.score import score
     from inerter.blind_test.table import print_blind_test
     from inerter.folder import json_text, refuse_folder
-    from inerter.reference import BENCH_EFFECTS
+    from inerter.reference import EFFECTS
 
     usual = count if effects is None else 0
     numbers = {"clean": clean, "pairs": pairs, "triples": triples, "unknown": unknown}
-    names = BENCH_EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
+    names = EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
     with refusing(out_dir):
         refuse_folder(out_dir)
         plan = Plan(

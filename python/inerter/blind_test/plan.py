@@ -8,7 +8,7 @@ from zlib import crc32
 
 import numpy as np
 
-from inerter.reference import BENCH_EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
+from inerter.reference import EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
 
 GROUPS = ("single", "clean", "pairs", "triples", "unknown")
 
@@ -53,7 +53,7 @@ class Plan:
         An unknown effect, a number out of range, or no pair that goes together.
     """
 
-    effects: tuple[str, ...] = BENCH_EFFECTS
+    effects: tuple[str, ...] = EFFECTS
     count: int = 40
     clean: int = 0
     pairs: int = 0
@@ -65,8 +65,8 @@ class Plan:
     def __post_init__(self) -> None:
         """See Raises."""
         for name in self.effects:
-            if name not in BENCH_EFFECTS:
-                known = ", ".join(BENCH_EFFECTS)
+            if name not in EFFECTS:
+                known = ", ".join(EFFECTS)
                 raise ValueError(f"--effects: '{name}' is not one of {known}")
         if len(set(self.effects)) < len(self.effects):
             raise ValueError("--effects: one is given twice; give each once")

@@ -11,7 +11,7 @@ import numpy as np
 
 from inerter.blind_test.case import Outcome, ParameterError
 from inerter.blind_test.plan import Plan
-from inerter.reference import BENCH_EFFECTS, HYSTERETIC_LAWS
+from inerter.reference import EFFECTS, HYSTERETIC_LAWS
 
 SCHEMA = "inerter.blind_test/1"
 
@@ -73,12 +73,12 @@ def score(plan: Plan, outcomes: Sequence[Outcome], seconds: float = 0.0) -> dict
 
 def confusion(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Counts of hidden (rows) by first named (columns), "none" in both, "failed" as a column."""
-    rows = [name for name in BENCH_EFFECTS if any(name in one.task.effects for one in outcomes)]
+    rows = [name for name in EFFECTS if any(name in one.task.effects for one in outcomes)]
     if any(one.task.group == "clean" for one in outcomes):
         rows.append("none")
     first = Counter((_hidden(one), one.first) for one in outcomes)
-    others = sorted({name for _, name in first} - {*BENCH_EFFECTS, "none", "failed"})
-    columns = [n for n in BENCH_EFFECTS if n in rows or any(c == n for _, c in first)]
+    others = sorted({name for _, name in first} - {*EFFECTS, "none", "failed"})
+    columns = [n for n in EFFECTS if n in rows or any(c == n for _, c in first)]
     columns += [*others, "none"]
     if any(name == "failed" for _, name in first):
         columns.append("failed")

@@ -16,6 +16,7 @@ from inerter.diagnose.composition import effects_of, simpler_laws, submodel
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
+from inerter.diagnose.play import NARROW, NARROW_POWER, fit_play
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -26,17 +27,18 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
-from inerter.diagnose.tone import with_tone_above
+from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
 from inerter.identify.channel import UNITS, channel_values
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import Fit, Problem, parameter_errors
+from inerter.identify.fit import Fit, Problem, parameter_errors, rms
 from inerter.identify.model import Model, stated_values
 from inerter.identify.prediction import force_along, settled
-from inerter.identify.preparation import Preparation, prepare, refuse_unusable
+from inerter.identify.preparation import Preparation, prepare, prepare_again, refuse_unusable
 from inerter.identify.split import Split, split
 from inerter.records import Record
+from inerter.records.motion import Motion, white_noise
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -137,26 +139,52 @@ class _Bench:
                 raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
         refuse_unusable(self.records)
         progress("smoothing: choosing the cut-off")
-        self.preparation: Preparation = prepare(self.records)
-        self.runs: list[Run] = on_clocks([thin(motion) for motion in self.preparation.motions])
-        self.whole: list[Run] = on_clocks([whole(motion) for motion in self.preparation.motions])
-        self.split: Split = split(self.runs, holdout)
-        held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
-        self.full = split(self.whole, held)
-        self.band = Problem(self.runs, self.split.holdout, scales(self.runs))
-        self.raw = Problem(self.whole, self.full.holdout, self.band.scales)
+        self.holdout = holdout
+        self._take(prepare(self.records))
         _refuse_too_little(self.split, self.band, self.raw)
         self.baseline = baseline_model(device, self.band.scales)
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
-        self.judge = Judge(self.band, self.raw, self.preparation, self.baseline)
-        self.search = Search(self.runs, self.split, self.baseline, progress)
+        corner = self._corner()
+        weighed = [replace(run, corner=corner) for run in self.runs]
+        self.search = Search(weighed, self.split, self.baseline, progress)
+
+    def _take(self, preparation: Preparation) -> None:
+        """Runs and splits of smoothed records."""
+        self.preparation = preparation
+        self.runs: list[Run] = on_clocks([thin(motion) for motion in preparation.motions])
+        self.whole: list[Run] = on_clocks([whole(motion) for motion in preparation.motions])
+        self.split: Split = split(self.runs, self.holdout)
+        held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
+        self.full = split(self.whole, held)
+        self.band = Problem(self.runs, self.split.holdout, scales(self.runs))
+        self.raw = Problem(self.whole, self.full.holdout, self.band.scales)
+
+    @property
+    def judge(self) -> Judge:
+        """The held-out data."""
+        return Judge(self.band, self.raw, self.preparation, self.baseline)
+
+    def _corner(self) -> float:
+        """Where the noise of the displacement, as a force, outweighs that of the force [Hz]."""
+        if self.preparation.channels:
+            return np.inf  # the noise of a fused motion is not known
+        learnt = self.band.with_masks(self.split.fit)
+        inertance = learnt.fit(self.baseline).model.values["inertance"]
+        noise = inertance * np.sqrt(
+            np.mean([white_noise(record.displacement) ** 2 for record in self.records])
+        )
+        force = self.preparation.noise_floor
+        if not noise > 0:
+            return np.inf
+        corner = np.sqrt(force / noise) / (2 * np.pi)
+        return float(max(corner, self.preparation.cutoffs[0]))
 
     def run(self) -> Diagnosis:
         """The whole procedure."""
+        final = self._plainest_law(self._searched())
         before = self.search.problem.fit(self.baseline)
-        final = self._plainest_law(self.search.run())
         final, standings = self._settle(final)
         self.progress("measuring the gain of each effect")
         chain = chain_of(self.search, self.judge, final.model)
@@ -166,13 +194,42 @@ class _Bench:
             fit = self.search.problem.fit(submodel(final.model, rest, self.baseline))
             final = self.search.score("", None, fit)
             chain = chain_of(self.search, self.judge, final.model)
-        fit = self._tone_above_band(final.fit, chain, standings)
+        fit = self._with_tone(final.fit, chain, standings)
         findings = self._findings(fit, chain, standings)
         return self._diagnosis(before, fit, findings)
 
-    def _tone_above_band(self, fit: Fit, chain: list[Link], standings: dict[str, Standing]) -> Fit:
-        """The fit with a tone that the low-pass of the fits hides, added to chain and standings."""
-        learnt = Problem(self.whole, self.full.fit, self.band.scales)
+    def _searched(self) -> Scored:
+        """What the search ends with.
+
+        Where it comes upon free play it goes on from there with the force as measured, in the band
+        in which the model with the play, which no linear one is like, predicts that best.
+        """
+        final = self.search.run(until="backlash")
+        if "backlash" not in final.model.free:
+            return final
+        self.progress("free play: fitting it to the force as measured")
+        play = fit_play(self._learnt(), final.model).model
+
+        def error(motions: Sequence[Motion]) -> float:
+            learnt = Problem(on_clocks([whole(m) for m in motions]), self.full.fit)
+            return rms(learnt.errors(play), learnt.masks)
+
+        self._take(prepare_again(self.records, self.preparation, error))
+        play = fit_play(self._learnt(), play, NARROW, NARROW_POWER).model
+        self.search = Search(self.whole, self.full, self.baseline, self.progress)
+        return self.search.run(play)
+
+    def _learnt(self) -> Problem:
+        """The fit data at the measured rate with the force as measured."""
+        return Problem(self.whole, self.full.fit, self.band.scales)
+
+    def _with_tone(self, fit: Fit, chain: list[Link], standings: dict[str, Standing]) -> Fit:
+        """The fit with its tone as the raw force has it.
+
+        One that the low-pass of the fits hides is added to chain and standings.
+        """
+        learnt = self._learnt()
+        fit = with_tone_from_raw(learnt, fit)
         after = with_tone_above(learnt, fit, TONES_FROM * self.preparation.cutoff)
         if after is None:
             return fit

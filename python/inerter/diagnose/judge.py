@@ -56,8 +56,10 @@ class Judge:
 
     def advantage(self, simple: Model, rich: Model, effect: str) -> float:
         """How surely the model with an effect is the better one, in standard errors."""
-        masks = self.band.masks
-        before, after = (self.band.residual(model) for model in (simple, rich))
+        # what a play does is above the band
+        problem = self.raw if "backlash" in rich.free else self.band
+        masks = problem.masks
+        before, after = (problem.residual(model) for model in (simple, rich))
         return advantage_of(before, after, masks, blocks(masks), effect)
 
     def raw_squares(self, model: Model) -> Array:

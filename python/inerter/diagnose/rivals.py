@@ -8,8 +8,15 @@ import numpy as np
 
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
+from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
-from inerter.diagnose.search import REQUIRED_DISTINCTION, RICH_LAWS, Scored, Search, parallel
+from inerter.diagnose.search import (
+    REQUIRED_DISTINCTION,
+    RICH_LAWS,
+    TOLERATED_ADVANTAGE,
+    Scored,
+    Search,
+)
 from inerter.diagnose.statistics import advantage, win_shares
 
 # where the data cannot tell two effects apart, the earlier one here is named
@@ -82,12 +89,13 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     )
 
     # a rival with more parameters has to win by more than such a one can by chance
+    richer = [s.model.complexity > final.model.complexity for s in scored]
     handicap = 1 / (1 - HANDICAP) ** 2
-    fair = [
-        s.squares * (handicap if s.model.complexity > final.model.complexity else 1.0)
-        for s in scored
-    ]
-    shares = win_shares([final.squares, without.squares, *fair])
+    fair = [s.squares * (handicap if more else 1.0) for s, more in zip(scored, richer, strict=True)]
+    shares = win_shares(
+        [final.squares, without.squares, *fair],
+        [0.0, 0.0, *(TOLERATED_ADVANTAGE * more for more in richer)],
+    )
     pairs = sorted(zip(scored, shares[2:], strict=True), key=lambda pair: -pair[1])
     better = next(
         (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect)), None

@@ -7,11 +7,8 @@ fewest parameters is taken.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +20,7 @@ from inerter.diagnose.composition import (
     simpler_laws,
     without_effect,
 )
+from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import (
     Array,
     advantage,
@@ -83,14 +81,6 @@ RICH_LAWS = ("lugre", "bouc_wen")
 
 Progress = Callable[[str], None]
 Folds = list[tuple[Problem, list[Mask]]]
-S = TypeVar("S")
-T = TypeVar("T")
-
-
-def parallel(function: Callable[[S], T], items: Iterable[S]) -> list[T]:
-    """Results in order, worked out on all processors: the core and the transforms run unlocked."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(function, items))
 
 
 def advantage_of(
@@ -168,14 +158,19 @@ class Search:
             for fold in folds
         ]
 
-    def run(self) -> Scored:
-        """Search from the baseline; the extended model, fitted to all fit data."""
-        current = self.score("baseline", None, self.problem.fit(self.baseline))
+    def run(self, start: Model | None = None, until: str | None = None) -> Scored:
+        """Search from a model, by default the baseline; the extended one, fitted to all fit data.
+
+        Where the effect `until` is found the search ends with it, and nothing is pruned.
+        """
+        current = self.score("baseline", None, self.problem.fit(start or self.baseline))
         while len(self.found) < MOST_EFFECTS:
             chosen = self._best_step(current)
             if chosen is None:
                 break
             self.found.append(chosen.effect)
+            if chosen.effect == until:
+                return chosen
             current = self._exchange(chosen)
         return self._prune(current)
 
@@ -185,10 +180,12 @@ class Search:
             return self._scored(effect, law, fit, fit.residual)
         left_out = [np.zeros(run.force.size) for run in self.runs]
         for problem, fold in folds or self._folds:
-            residual = problem.fit(fit.model, evaluations=12, tolerance=ROUGH).residual
-            for target, values, mask in zip(left_out, residual, fold, strict=True):
+            refitted = problem.fit(fit.model, evaluations=12, tolerance=ROUGH)
+            for target, values, mask in zip(
+                left_out, problem.errors(refitted.model), fold, strict=True
+            ):
                 target[mask] = values[mask]
-        return self._scored(effect, law, fit, left_out)
+        return self._scored(effect, law, fit, self.problem.weighted(left_out))
 
     def _scored(self, effect: str, law: str | None, fit: Fit, residual: list[Array]) -> Scored:
         return Scored(effect, law, fit, residual, block_squares(residual, self.blocks))
@@ -314,7 +311,7 @@ class Search:
         """The tone that a residual shows, if any."""
         if "disturbance_amplitude" in current.model.values:
             return []
-        line = strongest_line(self.runs, current.residual, self.problem.masks)
+        line = strongest_line(self.runs, self.problem.errors(current.model), self.problem.masks)
         if line is None:
             return []
         frequency, amplitude = line

@@ -46,13 +46,20 @@ def advantage(simple: Array, rich: Array) -> float:
     return float(np.mean(difference) / spread) if spread > 0 else 0.0
 
 
-def win_shares(squares: Sequence[Array], seed: int = 0, draws: int = 2000) -> Array:
+def win_shares(
+    squares: Sequence[Array],
+    handicaps: Sequence[float] | None = None,
+    seed: int = 0,
+    draws: int = 2000,
+) -> Array:
     """Share of block-bootstrap resamples in which each model has the smallest error.
 
     Parameters
     ----------
     squares : sequence of ndarray (n,)
         Block sums of squared errors of each model, the same blocks.
+    handicaps : sequence of float, optional
+        Standard errors by which each model has to be better than the first one to win.
     seed, draws : int
         Of the resampling.
 
@@ -65,6 +72,9 @@ def win_shares(squares: Sequence[Array], seed: int = 0, draws: int = 2000) -> Ar
 
     # as in `advantage`: a busy stretch does not decide alone
     table = table / np.sqrt(table.mean(axis=0) + 1e-12 * table.sum())
+    spread = np.std(table - table[0], axis=1, ddof=1) / np.sqrt(table.shape[1])
+    if handicaps is not None:
+        table = table + (np.asarray(handicaps) * spread)[:, None]
     random = np.random.default_rng(seed)
     choice = random.integers(0, table.shape[1], (draws, table.shape[1]))
     sums = table[:, choice].sum(axis=2)

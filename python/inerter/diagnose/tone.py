@@ -25,6 +25,7 @@ _OWN_LINE = {"velocity": 0.1, "acceleration": 0.1, "friction": 1e-4}
 _STANDS_OUT = 15.0
 _NEIGHBOURS = 2
 _PADDING = 2
+_TONE = ("disturbance_amplitude", "disturbance_frequency")
 
 
 def strongest_line(
@@ -107,14 +108,31 @@ def with_tone_above(raw: Problem, fit: Fit, lowest: float) -> Fit | None:
         From where on to look [Hz].
     """
     model = fit.model
-    if "disturbance_amplitude" in model.values:
+    if _TONE[0] in model.values:
         return None
     line = strongest_line(raw.runs, raw.residual(model), raw.masks, lowest)
     if line is None:
         return None
     frequency, amplitude = line
     start = model.adding(disturbance_amplitude=amplitude, disturbance_frequency=frequency)
-    tone = raw.fit(replace(start, free=("disturbance_amplitude", "disturbance_frequency")))
+    tone = raw.fit(replace(start, free=_TONE))
     both = replace(start, values=tone.model.values)
     covariance = np.asarray(block_diag(fit.covariance, tone.covariance))
-    return Fit(both, fit.residual, covariance, fit.evaluations + tone.evaluations)
+    return replace(fit, model=both, covariance=covariance)
+
+
+def with_tone_from_raw(raw: Problem, fit: Fit) -> Fit:
+    """A fit whose tone, if any, is fitted anew to the force as measured.
+
+    Of a tone at the edge of the fits' band little is left there, hardly more than what the ends of
+    a record leave.
+    """
+    if not all(name in fit.model.free for name in _TONE):
+        return fit
+    tone = raw.fit(replace(fit.model, free=_TONE))
+    places = [fit.model.free.index(name) for name in _TONE]
+    covariance = fit.covariance.copy()
+    covariance[places, :] = covariance[:, places] = 0.0
+    covariance[np.ix_(places, places)] = tone.covariance
+    model = replace(fit.model, values=tone.model.values)
+    return replace(fit, model=model, covariance=covariance)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
 
 from inerter.core import Device
 from inerter.identify.coordinates import Scales
@@ -46,6 +47,9 @@ class Run:
         The first sample at which the motion is known; the device is followed from there.
     clock : float
         Time from which slow changes count [s].
+    corner : float
+        Frequency [Hz] above which the motion's noise outweighs the force's; residuals count less
+        there.
     """
 
     name: str
@@ -62,6 +66,7 @@ class Run:
     thinned: int = 1
     first: int = 0
     clock: float = 0.0
+    corner: float = np.inf
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
         """Forces of a device at the measured rate [N], shape (m,) each.
@@ -82,6 +87,25 @@ class Run:
             found = band_response(values.size, self.spacing / self.thinned, self.cutoff)
             object.__setattr__(self, "_response", found)
         return filtered(values, self.__dict__["_response"])[:: self.thinned]
+
+    def weighted(self, values: Array, mask: NDArray[np.bool_]) -> Array:
+        """Masked values as they count against noise, shape (n,); 0 elsewhere is taken for them.
+
+        White noise of the displacement becomes one of b a whose power grows with the fourth power
+        of the frequency: below the corner a residual counts in full, above ever less. Without that
+        a model would win by predicting less of this noise.
+        """
+        if np.isinf(self.corner):
+            return values
+        if "_weight" not in self.__dict__:
+            least = values.size + round(1 / (self.corner * self.spacing))
+            length = int(next_fast_len(least) or least)
+            frequency = np.fft.rfftfreq(length, self.spacing)
+            found = length, 1 / np.sqrt(1 + (frequency / self.corner) ** 4)
+            object.__setattr__(self, "_weight", found)
+        length, weight = self.__dict__["_weight"]
+        spectrum = np.fft.rfft(np.where(mask, values, 0.0), length)
+        return np.fft.irfft(spectrum * weight, length)[: values.size]
 
     def gain(self, frequency: float) -> float:
         """What the low-pass leaves of a tone."""

@@ -85,11 +85,20 @@ class Problem:
         return Problem(self.runs, masks, self.scales)
 
     def residual(self, model: Model) -> list[Array]:
+        """Errors as they count against noise, of every run [N]."""
+        return self.weighted(self.errors(model))
+
+    def errors(self, model: Model) -> list[Array]:
         """Measured minus predicted force of every run [N]."""
         return [
             settled(model, run, run.force - force_along(model, run), mask)
             for run, mask in zip(self.runs, self.masks, strict=True)
         ]
+
+    def weighted(self, arrays: Sequence[Array]) -> list[Array]:
+        """Arrays of every run as they count, see `Run.weighted`."""
+        everything = zip(self.runs, arrays, self.masks, strict=True)
+        return [run.weighted(values, mask) for run, values, mask in everything]
 
     def _masked(self, arrays: Sequence[Array]) -> Array:
         return np.concatenate([a[m] for a, m in zip(arrays, self.masks, strict=True)])
@@ -119,7 +128,7 @@ class Problem:
                     "force_drift": run.elapsed,
                 }[name]
                 columns.append(-delayed(column, model.delay, run.spacing) * how.size)
-            return np.concatenate(columns)
+            return np.concatenate(self.weighted(columns))
         step = 1e-4
         if variables[index] + step > how.bounds[1]:
             step = -step

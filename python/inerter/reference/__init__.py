@@ -36,7 +36,7 @@ from inerter.model_parameters import (
 
 from .bench import HiddenCase, HiddenRun, NoiseLevels, hide_effect
 from .bench_channel import Channel
-from .bench_effects import BENCH_EFFECTS, EFFECTS, HYSTERETIC_LAWS, compatible
+from .bench_effects import EFFECTS, HYSTERETIC_LAWS, compatible
 from .bench_unknown import UNKNOWN, hide_unknown
 from .device import ReferenceDevice
 from .fluid_inerter import (
@@ -69,7 +69,6 @@ from .vehicle import Corner, corner_of
 from .wang_su import WANG_SU_DEVICE, WangSuBench, wang_su_bench, wang_su_motion
 
 __all__ = [
-    "BENCH_EFFECTS",
     "EFFECTS",
     "FLUID_INERTER",
     "FRAME",

@@ -135,7 +135,7 @@ def hide_effect(
     seed
         Everything follows from it; print it where a test fails.
     effect
-        "none" or one of `BENCH_EFFECTS`; one of `EFFECTS` is drawn if not given.
+        "none" or one of `EFFECTS`; drawn from all of these if not given.
     law
         For hysteretic_friction one of `HYSTERETIC_LAWS`; drawn if not given.
     noise
@@ -156,7 +156,7 @@ def hide_effect(
     choose, draw, move, shake, more = (
         np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(5)
     )
-    name = effect if effect is not None else str(choose.choice(EFFECTS))
+    name = effect if effect is not None else str(choose.choice(("none", *EFFECTS)))
     effects = (name, *also)
     check_effect(name)
     reason = clash(effects)

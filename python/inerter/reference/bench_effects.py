@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 EFFECTS = (
-    "none",
     "viscous_friction",
     "coulomb_friction",
     "stribeck_friction",
@@ -17,11 +16,6 @@ EFFECTS = (
     "force_offset",
     "sensor_delay",
     "quadratic_damping",
-)
-"""What is drawn from where no effect is given: forces that act at once, and a delay."""
-
-BENCH_EFFECTS = (
-    *EFFECTS[1:],
     "inertance_error",
     "friction_drift",
     "backlash",
@@ -34,7 +28,7 @@ BENCH_EFFECTS = (
     "sensor_saturation",
     "periodic_disturbance",
 )
-"""Every effect of a bench record, without "none"."""
+"""Every effect that a bench record can hide."""
 
 HYSTERETIC_LAWS = ("dahl", "lugre", "bouc_wen")
 
@@ -57,7 +51,7 @@ def compatible(effects: Sequence[str]) -> bool:
     Raises
     ------
     ValueError
-        A name is not one of `BENCH_EFFECTS` or "none".
+        A name is not one of `EFFECTS` or "none".
     """
     return clash(effects) is None
 
@@ -83,6 +77,6 @@ def clash(effects: Sequence[str]) -> str | None:
 
 def check_effect(name: str) -> None:
     """Raise ValueError for a name that is no effect."""
-    if name != "none" and name not in BENCH_EFFECTS:
-        known = ", ".join(("none", *BENCH_EFFECTS))
+    if name != "none" and name not in EFFECTS:
+        known = ", ".join(("none", *EFFECTS))
         raise ValueError(f"effect: '{name}' is not one of {known}")
