@@ -21,6 +21,7 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.parallel import parallel
+from inerter.diagnose.promise import Promise
 from inerter.diagnose.statistics import (
     Array,
     advantage,
@@ -55,9 +56,11 @@ SHORTLIST = 5
 ROUGH = 1e-5
 # effects that may show in few stretches, or in one run alone
 LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
-# share of the error that a candidate must have taken away after a few evaluations to be followed;
-# and how near the second best start must come to the best to be followed too
+# share of the error that a candidate must have taken away after a few evaluations to be followed,
+# and must be foretold to take away to be tried; and how near the second best start must come to the
+# best to be followed too
 HOPELESS = 0.002
+LIKELY = 0.7 * REQUIRED_GAIN
 FEW = 8
 NEAR = 1.1
 # errors this near belong to the same fit
@@ -231,11 +234,12 @@ class Search:
         masks = self.problem.masks
         limit = (1 - HOPELESS) * current.rmse(masks)
         known = self._fitted_before(current)
+        promise = Promise(self.problem, current, (1 - LIKELY) * current.rmse(masks))
         rich = [t for t in trials if t.law in RICH_LAWS]
         plain = [t for t in trials if t.law not in RICH_LAWS]
 
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
-            new = [t for t in some if t.key not in known]
+            new = [t for t in some if t.key not in known and promise.holds(t)]
             old = [(t, known[t.key]) for t in some if t.key in known]
             return [*zip(new, parallel(lambda t: self.fit(t, limit), new), strict=True), *old]
 

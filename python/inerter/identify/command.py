@@ -16,14 +16,15 @@ def identify_command(
         typer.Argument(help="Records: files, folders or globs; several are fitted together."),
     ],
     law: Annotated[
-        str,
+        list[str],
         typer.Option(
-            help="Laws, with commas; parts joined by + as in lugre+series+offset. Laws: ideal, "
+            help="Laws, with commas or given again; parts joined by + as in "
+            "lugre+series+offset. Laws: ideal, "
             "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, bouc_wen_any, "
             "fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, load, "
             "asymmetry, position, variable, delay, play."
         ),
-    ] = "ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen",
+    ] = ["ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen"],  # noqa: B006
     fix: Annotated[
         list[str] | None, typer.Option(help="KEY=VALUE of a known parameter (SI); again for more.")
     ] = None,
@@ -86,8 +87,9 @@ def identify_command(
     out.print(f"Written to {out_dir}: {', '.join(files)}")
 
 
-def _names(text: str) -> tuple[str, ...]:
-    names = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+def _names(given: list[str]) -> tuple[str, ...]:
+    parts = (part.strip() for text in given for part in text.split(","))
+    names = tuple(dict.fromkeys(part for part in parts if part))
     if not names:
         raise ValueError("--law is empty; see --help")
     return names

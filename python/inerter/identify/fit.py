@@ -142,11 +142,15 @@ class Problem:
         how = [coordinate(name, self.scales) for name in model.free]
         return np.array([c.encode(model.values[n]) for c, n in zip(how, model.free, strict=True)])
 
-    def jacobian(self, model: Model) -> Array:
-        """Derivatives of the residual [N] by the search variables, shape (n, p)."""
+    def jacobian(self, model: Model, names: Sequence[str] | None = None) -> Array:
+        """Derivatives of the residual [N] by the search variables, shape (n, p).
+
+        `names` are the free coordinates asked for, by default all.
+        """
         here, base = self.variables(model), self.residual(model)
         selected = np.concatenate(self.masks)
-        columns = [self._column(name, model, here, base)[selected] for name in model.free]
+        wanted = model.free if names is None else names
+        columns = [self._column(name, model, here, base)[selected] for name in wanted]
         return np.column_stack(columns) if columns else np.zeros((int(selected.sum()), 0))
 
     def moved(self, model: Model, step: Array) -> Model:
