@@ -42,7 +42,9 @@ def run(*arguments: object) -> tuple[int, str, str]:
 
 def test_files_and_json_say_the_same(case: Drawn, folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    status, stdout, stderr = run(folder, "--law", "viscous", "--law", "dahl", "--out", out, "--json")
+    status, stdout, stderr = run(
+        folder, "--law", "viscous", "--law", "dahl", "--out", out, "--json"
+    )
     assert status == 0, stderr
     said = json.loads(stdout)
     assert said == json.loads((out / "identification.json").read_text())

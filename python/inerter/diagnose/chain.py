@@ -10,7 +10,7 @@ from inerter.diagnose.composition import effects_of, submodel
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.search import LOCAL, Search
 from inerter.diagnose.statistics import advantage, win_shares
-from inerter.identify.fit import Fit
+from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
 # how surely an effect must help on data left out to be reported (standard errors)
@@ -70,11 +70,11 @@ def _link(
         errors[1],
         after.model,
     )
+    masks = search.problem.masks
     if silent:
         # nothing held out goes there: blocks of the other runs, left out in turn, have to tell
         simple, rich = (search.score_on_blocks(fit) for fit in (before, after))
-        count = sum(int(mask.sum()) for mask in search.problem.masks)
-        errors = tuple(float(np.sqrt(s.squares.sum() / count)) for s in (simple, rich))
+        errors = rms(simple.errors, masks), rms(rich.errors, masks)
         won = search.advantage(simple, rich, effect)
     else:
         won = judge.advantage(before.model, after.model, effect)

@@ -108,11 +108,22 @@ def advantage_of(
 
 @dataclass(frozen=True)
 class Scored:
-    """A fitted candidate, its errors on left-out folds [N], and their squares per block."""
+    """A fitted candidate and its errors on left-out folds.
+
+    Attributes
+    ----------
+    errors : list of ndarray
+        Measured minus predicted force of every run [N].
+    residual : list of ndarray
+        The same as it counts against noise.
+    squares : ndarray
+        Squares of the residual, summed over blocks.
+    """
 
     effect: str
     law: str | None
     fit: Fit
+    errors: list[Array]
     residual: list[Array]
     squares: Array
 
@@ -180,7 +191,7 @@ class Search:
     def score(self, effect: str, law: str | None, fit: Fit, folds: Folds | None = None) -> Scored:
         """Squared errors of a fitted model on folds left out of its refits."""
         if not fit.model.free:
-            return self._scored(effect, law, fit, fit.residual)
+            return self._scored(effect, law, fit, self.problem.errors(fit.model))
         left_out = [np.zeros(run.force.size) for run in self.runs]
         for problem, fold in folds or self._folds:
             refitted = problem.fit(fit.model, evaluations=12, tolerance=ROUGH)
@@ -188,10 +199,11 @@ class Search:
                 left_out, problem.errors(refitted.model), fold, strict=True
             ):
                 target[mask] = values[mask]
-        return self._scored(effect, law, fit, self.problem.weighted(left_out))
+        return self._scored(effect, law, fit, left_out)
 
-    def _scored(self, effect: str, law: str | None, fit: Fit, residual: list[Array]) -> Scored:
-        return Scored(effect, law, fit, residual, block_squares(residual, self.blocks))
+    def _scored(self, effect: str, law: str | None, fit: Fit, errors: list[Array]) -> Scored:
+        residual = self.problem.weighted(errors)
+        return Scored(effect, law, fit, errors, residual, block_squares(residual, self.blocks))
 
     def advantage(self, simple: Scored, rich: Scored, effect: str) -> float:
         """How surely a model with an effect has smaller errors on left-out folds than without."""
