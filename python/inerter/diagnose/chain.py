@@ -42,7 +42,11 @@ class Link:
 
 
 def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
-    """The effects of a model, each time the one that helps most on the fit data."""
+    """The effects of a model, each time the one that helps most on the fit data.
+
+    One that does not help by then may be needed together with a later one: of it the link says what
+    it adds to all others.
+    """
     left = effects_of(model, search.baseline)
     fit = search.problem.fit(search.baseline)
     masks = search.problem.masks
@@ -58,7 +62,17 @@ def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
         left = [pair for pair in left if pair[0] != effect]
         taken.append(effect)
         fit = after
-    return chain
+    return [link if link.stands else _last(search, judge, link, taken, fit) for link in chain]
+
+
+def _last(search: Search, judge: Judge, link: Link, taken: list[str], whole: Fit) -> Link:
+    """A link as the last of its chain, if it stands there."""
+    rest = [effect for effect in taken if effect != link.effect]
+    if not rest:
+        return link
+    without = search.problem.fit(submodel(whole.model, rest, search.baseline))
+    last = _link(search, judge, link.effect, link.law, without, whole)
+    return last if last.stands else link
 
 
 def _link(
