@@ -16,7 +16,7 @@ from inerter.diagnose.composition import effects_of, simpler_laws, submodel
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
-from inerter.diagnose.play import NARROW, NARROW_POWER, fit_play
+from inerter.diagnose.play import fit_play
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -201,8 +201,8 @@ class _Bench:
     def _searched(self) -> Scored:
         """What the search ends with.
 
-        Where it comes upon free play it goes on from there with the force as measured, in the band
-        in which the model with the play, which no linear one is like, predicts that best.
+        Where it comes upon free play it goes on from there with the force as measured, in a wider
+        band if the model with the play, which no linear one is like, predicts that better.
         """
         final = self.search.run(until="backlash")
         if "backlash" not in final.model.free:
@@ -214,8 +214,10 @@ class _Bench:
             learnt = Problem(on_clocks([whole(m) for m in motions]), self.full.fit)
             return rms(learnt.errors(play), learnt.masks)
 
-        self._take(prepare_again(self.records, self.preparation, error))
-        play = fit_play(self._learnt(), play, NARROW, NARROW_POWER).model
+        preparation = prepare_again(self.records, self.preparation, error)
+        if preparation.cutoff > self.preparation.cutoff:
+            self._take(preparation)
+            play = fit_play(self._learnt(), play).model
         self.search = Search(self.whole, self.full, self.baseline, self.progress)
         return self.search.run(play)
 

@@ -19,10 +19,8 @@ from inerter.diagnose.parallel import parallel
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 
-Ranges = Mapping[str, tuple[float, float]]
-
 # factors between which the starting points lie: in the band contacts look soft and plays small
-WIDE: Ranges = MappingProxyType(
+RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
         "backlash": (0.8, 1.4),
         "series_frequency": (0.7, 2.5),
@@ -30,25 +28,20 @@ WIDE: Ranges = MappingProxyType(
         "inertance": (0.97, 1.12),
     }
 )
-NARROW: Ranges = MappingProxyType(
-    {
-        "backlash": (0.95, 1.05),
-        "series_frequency": (0.85, 1.2),
-        "series_loss": (0.8, 1.25),
-        "inertance": (0.98, 1.02),
-    }
-)
-# starting points are two to this power
-POWER = 8
-NARROW_POWER = 6
+# starting points of a round are two to this power
+_POWER = 8
+# rounds at most; of those that do not take this share of the error away, so many end it
+_ROUNDS = 8
+_GAIN = 0.02
+_PATIENCE = 2
 # points that are followed, and how far
 _FOLLOWED = 4
 _EVALUATIONS = 20
 _TOLERANCE = 1e-4
 
 
-def fit_play(problem: Problem, model: Model, ranges: Ranges = WIDE, power: int = POWER) -> Fit:
-    """The best of many fits about a model with free play.
+def fit_play(problem: Problem, model: Model) -> Fit:
+    """The best of many fits about a model with free play, and again about that, while it gains.
 
     Parameters
     ----------
@@ -56,14 +49,21 @@ def fit_play(problem: Problem, model: Model, ranges: Ranges = WIDE, power: int =
         Runs at the measured rate with the force as measured.
     model
         What the band told.
-    ranges
-        Factors of the coordinates between which the starting points lie.
-    power
-        Their number is two to this power.
     """
-    names = [name for name in ranges if name in model.free]
-    low, high = np.log([ranges[name] for name in names]).T
-    points = low + (high - low) * qmc.Sobol(len(names), rng=0).random_base2(power)
+    best, idle = _fit_about(problem, model, 0), 0
+    for seed in range(1, _ROUNDS):
+        fit = _fit_about(problem, best.model, seed)
+        idle = 0 if fit.rmse(problem.masks) < (1 - _GAIN) * best.rmse(problem.masks) else idle + 1
+        best = fit
+        if idle == _PATIENCE:
+            break
+    return best
+
+
+def _fit_about(problem: Problem, model: Model, seed: int) -> Fit:
+    names = [name for name in RANGES if name in model.free]
+    low, high = np.log([RANGES[name] for name in names]).T
+    points = low + (high - low) * qmc.Sobol(len(names), rng=seed).random_base2(_POWER)
     points[0] = 0.0  # the model itself
 
     def moved(point: np.ndarray) -> Model:
