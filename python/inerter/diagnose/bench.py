@@ -35,10 +35,16 @@ from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Fit, Problem, parameter_errors, rms
 from inerter.identify.model import Model, stated_values
 from inerter.identify.prediction import force_along, settled
-from inerter.identify.preparation import Preparation, prepare, prepare_again, refuse_unusable
+from inerter.identify.preparation import (
+    Preparation,
+    prepare,
+    prepare_again,
+    refuse_unusable,
+    weighed,
+)
 from inerter.identify.split import Split, split
 from inerter.records import Record
-from inerter.records.motion import Motion, white_noise
+from inerter.records.motion import Motion
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -146,9 +152,7 @@ class _Bench:
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
-        corner = self._corner()
-        weighed = [replace(run, corner=corner) for run in self.runs]
-        self.search = Search(weighed, self.split, self.baseline, progress)
+        self.search = self._weighed_search()
 
     def _take(self, preparation: Preparation) -> None:
         """Runs and splits of smoothed records."""
@@ -156,8 +160,8 @@ class _Bench:
         self.runs: list[Run] = on_clocks([thin(motion) for motion in preparation.motions])
         self.whole: list[Run] = on_clocks([whole(motion) for motion in preparation.motions])
         self.split: Split = split(self.runs, self.holdout)
-        held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
-        self.full = split(self.whole, held)
+        self.held = [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
+        self.full = split(self.whole, self.held)
         self.band = Problem(self.runs, self.split.holdout, scales(self.runs))
         self.raw = Problem(self.whole, self.full.holdout, self.band.scales)
 
@@ -166,20 +170,14 @@ class _Bench:
         """The held-out data."""
         return Judge(self.band, self.raw, self.preparation, self.baseline)
 
-    def _corner(self) -> float:
-        """Where the noise of the displacement, as a force, outweighs that of the force [Hz]."""
-        if self.preparation.channels:
-            return np.inf  # the noise of a fused motion is not known
-        learnt = self.band.with_masks(self.split.fit)
-        inertance = learnt.fit(self.baseline).model.values["inertance"]
-        noise = inertance * np.sqrt(
-            np.mean([white_noise(record.displacement) ** 2 for record in self.records])
-        )
-        force = self.preparation.noise_floor
-        if not noise > 0:
-            return np.inf
-        corner = np.sqrt(force / noise) / (2 * np.pi)
-        return float(max(corner, self.preparation.cutoffs[0]))
+    def _weighed_search(self) -> Search:
+        """A search in which errors count by the noise of the motion."""
+        preparation = weighed(self.records, self.preparation)
+        runs = [
+            replace(run, corner=preparation.corner)
+            for run in on_clocks([thin(motion) for motion in preparation.motions])
+        ]
+        return Search(runs, split(runs, self.held), self.baseline, self.progress)
 
     def run(self) -> Diagnosis:
         """The whole procedure."""

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import next_fast_len
 
 from inerter.core import Device
 from inerter.identify.coordinates import Scales
-from inerter.records.motion import Motion, band_response, filtered, lowpass, response
+from inerter.records.motion import Motion, band_response, filtered, lowpass, response, weight_above
 
 Array = NDArray[np.float64]
 
@@ -97,15 +96,7 @@ class Run:
         """
         if np.isinf(self.corner):
             return values
-        if "_weight" not in self.__dict__:
-            least = values.size + round(1 / (self.corner * self.spacing))
-            length = int(next_fast_len(least) or least)
-            frequency = np.fft.rfftfreq(length, self.spacing)
-            found = length, 1 / np.sqrt(1 + (frequency / self.corner) ** 4)
-            object.__setattr__(self, "_weight", found)
-        length, weight = self.__dict__["_weight"]
-        spectrum = np.fft.rfft(np.where(mask, values, 0.0), length)
-        return np.fft.irfft(spectrum * weight, length)[: values.size]
+        return weight_above(np.where(mask, values, 0.0), self.spacing, self.corner)
 
     def gain(self, frequency: float) -> float:
         """What the low-pass leaves of a tone."""

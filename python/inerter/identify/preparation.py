@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.records import Record
-from inerter.records.motion import Motion, smooth, white_noise
+from inerter.records.motion import Motion, smooth, weight_above, white_noise
 
 Array = NDArray[np.float64]
 
@@ -37,6 +37,8 @@ class Preparation:
         Measured channels used beside the displacement.
     noise_floor : float
         Rms of the force channel's white noise [N].
+    corner : float
+        Frequency [Hz] above which errors were taken to count less, see `weighed`.
     """
 
     motions: list[Motion]
@@ -45,6 +47,7 @@ class Preparation:
     errors: Array
     channels: tuple[str, ...]
     noise_floor: float
+    corner: float = np.inf
 
 
 def prepare(records: Sequence[Record]) -> Preparation:
@@ -87,6 +90,31 @@ def prepare(records: Sequence[Record]) -> Preparation:
         use,
         float(np.sqrt(np.mean([white_noise(record.force) ** 2 for record in records]))),
     )
+
+
+def weighed(records: Sequence[Record], preparation: Preparation) -> Preparation:
+    """The records smoothed at the cut-off that is best where errors count by the motion's noise.
+
+    White noise of the displacement is one of b a that grows with the square of the frequency.
+    Residuals that count less from the corner on, where it outweighs the force's own noise, bear a
+    higher cut-off, which blurs less of what is not linear in the motion. Where measured velocities
+    or accelerations are weighed in, their noise is not known and nothing changes.
+    """
+    if preparation.channels:
+        return preparation
+    a = np.concatenate([m.acceleration[m.inner] for m in preparation.motions])
+    force = np.concatenate([m.force[m.inner] for m in preparation.motions])
+    inertance = abs(float(a @ force)) / float(a @ a)
+    noise = inertance * np.sqrt(np.mean([white_noise(r.displacement) ** 2 for r in records]))
+    if not noise > 0:
+        return preparation
+    corner = np.sqrt(preparation.noise_floor / noise) / (2 * np.pi)
+    corner = float(max(corner, preparation.cutoffs[0]))
+
+    def error(motions: Sequence[Motion]) -> float:
+        return _force_error(motions, corner)
+
+    return replace(prepare_again(records, preparation, error), corner=corner)
 
 
 def refuse_unusable(records: Sequence[Record]) -> None:
@@ -167,8 +195,11 @@ def _errors(
     return found
 
 
-def _force_error(motions: Sequence[Motion]) -> float:
-    """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory."""
+def _force_error(motions: Sequence[Motion], corner: float = np.inf) -> float:
+    """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory.
+
+    Above a `corner` [Hz] errors count less, see `weight_above`.
+    """
     x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
     v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
     columns, forces = [], []
@@ -180,8 +211,9 @@ def _force_error(motions: Sequence[Motion]) -> float:
                 friction="dahl", coulomb_force=1.0, bristle_stiffness=float(1 / (share * x_rms))
             )
             rows.append(bristle.along(motion.spacing, x, v, a)["friction"])
-        columns.append(np.array(rows).T[motion.inner])
-        forces.append(motion.force[motion.inner])
+        table = weight_above(np.array([*rows, motion.force]), motion.spacing, corner)
+        columns.append(table[:-1].T[motion.inner])
+        forces.append(table[-1][motion.inner])
     matrix, force = np.vstack(columns), np.concatenate(forces)
     matrix = matrix / (np.std(matrix, axis=0) + np.abs(np.mean(matrix, axis=0)) + 1e-300)
     gram, right = matrix.T @ matrix, matrix.T @ force

@@ -145,6 +145,21 @@ def filtered(values: Array, response: Array) -> Array:
     return line + irfft(rfft(wave) * response, wave.size)[:n]
 
 
+def weight_above(values: Array, spacing: float, corner: float) -> Array:
+    """Channels (..., n) times (1 + (f / corner)^4)^(-1/2), without a shift; zero beyond the ends.
+
+    The inverse of a noise that is white below the corner [Hz] and grows with the square of the
+    frequency above.
+    """
+    if np.isinf(corner):
+        return values
+    size = values.shape[-1]
+    least = size + round(1 / (corner * spacing))
+    length = int(next_fast_len(least, real=True) or least)
+    weight = 1 / np.sqrt(1 + (rfftfreq(length, spacing) / corner) ** 4)
+    return irfft(rfft(values, length) * weight, length)[..., :size]
+
+
 def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) -> Motion:
     """Smoothed motion of a record.
 
