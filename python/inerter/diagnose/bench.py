@@ -53,6 +53,8 @@ Progress = Callable[[str], None]
 TONES_FROM = 0.7
 # width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
 TRANSITION = 0.005
+# bands in which the search goes on, each wider than the one before, at most
+MORE_BANDS = 2
 # samples without which there is nothing to learn from or to judge on
 FEWEST = 8
 
@@ -152,7 +154,8 @@ class _Bench:
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
-        self.search = self._weighed_search()
+        self.weighed = weighed(self.records, self.preparation)
+        self.search = self._weighed_search(self.weighed)
 
     def _take(self, preparation: Preparation) -> None:
         """Runs and splits of smoothed records."""
@@ -170,9 +173,8 @@ class _Bench:
         """The held-out data."""
         return Judge(self.band, self.raw, self.preparation, self.baseline)
 
-    def _weighed_search(self) -> Search:
+    def _weighed_search(self, preparation: Preparation) -> Search:
         """A search in which errors count by the noise of the motion."""
-        preparation = weighed(self.records, self.preparation)
         runs = [
             replace(run, corner=preparation.corner)
             for run in on_clocks([thin(motion) for motion in preparation.motions])
@@ -199,25 +201,45 @@ class _Bench:
     def _searched(self) -> Scored:
         """What the search ends with.
 
-        Where it comes upon free play it goes on from there with the force as measured, in a wider
-        band if the model with the play, which no linear one is like, predicts that better.
+        The cut-offs were chosen with a linear model. Where the model found predicts the force
+        better in a wider band, the search goes on there.
         """
         final = self.search.run(until="backlash")
-        if "backlash" not in final.model.free:
-            return final
+        for _ in range(MORE_BANDS):
+            if "backlash" in final.model.free:
+                return self._with_play(final.model)
+            wider = self._wider(self.weighed, final.model)
+            if wider is None:
+                break
+            self.weighed, self.search = wider, self._weighed_search(wider)
+            final = self.search.run(final.model)
+        if raw := self._wider(self.preparation, final.model):
+            self._take(raw)
+        return final
+
+    def _with_play(self, model: Model) -> Scored:
+        """The search from a model with free play on, with the force as measured."""
         self.progress("free play: fitting it to the force as measured")
-        play = fit_play(self._learnt(), final.model).model
-
-        def error(motions: Sequence[Motion]) -> float:
-            learnt = Problem(on_clocks([whole(m) for m in motions]), self.full.fit)
-            return rms(learnt.errors(play), learnt.masks)
-
-        preparation = prepare_again(self.records, self.preparation, error)
-        if preparation.cutoff > self.preparation.cutoff:
-            self._take(preparation)
+        play = fit_play(self._learnt(), model).model
+        if wider := self._wider(self.preparation, play):
+            self._take(wider)
             play = fit_play(self._learnt(), play).model
         self.search = Search(self.whole, self.full, self.baseline, self.progress)
         return self.search.run(play)
+
+    def _wider(self, preparation: Preparation, model: Model) -> Preparation | None:
+        """The records in the wider band in which a model predicts the fit data better, if any."""
+
+        def error(motions: Sequence[Motion]) -> float:
+            runs = [
+                replace(r, corner=preparation.corner)
+                for r in on_clocks([whole(m) for m in motions])
+            ]
+            learnt = Problem(runs, self.full.fit, self.band.scales)
+            return rms(learnt.residual(model), learnt.masks)
+
+        again = prepare_again(self.records, preparation, error)
+        return again if again.cutoff > preparation.cutoff else None
 
     def _learnt(self) -> Problem:
         """The fit data at the measured rate with the force as measured."""
