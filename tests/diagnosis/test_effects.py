@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.diagnose.effects import EFFECTS
-from inerter.diagnose.statistics import advantage, block_squares, where_apart
+from inerter.diagnose.statistics import advantage, block_squares, where_apart, win_shares
 from inerter.identify.split import blocks
 
 DOCS = Path(__file__).parents[2] / "docs" / "diagnosis.md"
@@ -44,3 +44,13 @@ def test_an_effect_in_one_place_is_judged_there() -> None:
         return advantage(block_squares(wrong, over), block_squares(right, over))
 
     assert gain(stretches) > 3 * gain(everywhere)
+
+
+def test_a_handicap_is_counted_in_standard_errors() -> None:
+    """A model that is better by two standard errors wins, with a handicap of four it does not."""
+    random = np.random.default_rng(4)
+    first = 10 + random.standard_normal(48)
+    spread = random.standard_normal(48)
+    other = first - 2 * np.std(spread, ddof=1) / np.sqrt(48) + spread - spread.mean()
+    assert win_shares([first, other])[1] > 0.9
+    assert win_shares([first, other], [0.0, 4.0])[1] < 0.1

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from inerter.identify.preparation import prepare, prepare_again
+from inerter.identify.preparation import prepare, prepare_again, weighed
 from inerter.records import Record
-from inerter.records.motion import Motion
+from inerter.records.motion import Motion, weight_above
 
 RATE = 500.0
 
@@ -58,3 +59,22 @@ def test_a_cutoff_that_leaves_too_little_is_not_chosen() -> None:
 def test_a_record_too_short_for_any_cutoff_is_refused() -> None:
     with pytest.raises(ValueError, match="too few to tell motion from noise"):
         prepare([moving(0.05)])
+
+
+@pytest.mark.parametrize("frequency", [1.0, 5.0, 40.0])
+def test_a_weight_falls_with_the_square_above_its_corner(frequency: float) -> None:
+    time = np.arange(0, 20, 1 / RATE)
+    wave = np.sin(2 * np.pi * frequency * time)
+    inner = slice(2000, 8000)
+    left = weight_above(wave, 1 / RATE, 5.0)[inner] @ wave[inner] / (wave[inner] @ wave[inner])
+    assert left == pytest.approx((1 + (frequency / 5.0) ** 4) ** -0.5, rel=0.02)
+    assert weight_above(wave, 1 / RATE, np.inf) is wave
+
+
+def test_the_corner_is_where_the_noises_are_equal() -> None:
+    record = moving(10.0, noise=4e-6)
+    preparation = weighed([record], prepare([record]))
+    # 0.1 N = 40 kg (2 pi f)^2 4e-6 m
+    assert preparation.corner == pytest.approx(np.sqrt(0.1 / (40 * 4e-6)) / (2 * np.pi), rel=0.1)
+    fused = replace(preparation, channels=("velocity",))
+    assert weighed([record], fused) is fused

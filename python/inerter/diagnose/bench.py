@@ -206,13 +206,13 @@ class _Bench:
         """
         final = self.search.run(until="backlash")
         for _ in range(MORE_BANDS):
-            if "backlash" in final.model.free:
-                return self._with_play(final.model)
             wider = self._wider(self.weighed, final.model)
-            if wider is None:
+            if "backlash" in final.model.free or wider is None:
                 break
             self.weighed, self.search = wider, self._weighed_search(wider)
-            final = self.search.run(final.model)
+            final = self.search.run(final.model, until="backlash")
+        if "backlash" in final.model.free:
+            return self._with_play(final.model)
         if raw := self._wider(self.preparation, final.model):
             self._take(raw)
         return final

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.records import Record
-from inerter.records.motion import Motion, smooth, weight_above, white_noise
+from inerter.records.motion import Motion, lowpass, smooth, weight_above, white_noise
 
 Array = NDArray[np.float64]
 
@@ -103,7 +103,9 @@ def weighed(records: Sequence[Record], preparation: Preparation) -> Preparation:
     if preparation.channels:
         return preparation
     a = np.concatenate([m.acceleration[m.inner] for m in preparation.motions])
-    force = np.concatenate([m.force[m.inner] for m in preparation.motions])
+    force = np.concatenate(
+        [lowpass(m.force, m.spacing, m.cutoff)[m.inner] for m in preparation.motions]
+    )
     inertance = abs(float(a @ force)) / float(a @ a)
     noise = inertance * np.sqrt(np.mean([white_noise(r.displacement) ** 2 for r in records]))
     if not noise > 0:
