@@ -55,6 +55,8 @@ TONES_FROM = 0.7
 TRANSITION = 0.005
 # bands in which the search goes on, each wider than the one before, at most
 MORE_BANDS = 2
+# share of the error that a wider band has to take away
+WORTH_A_BAND = 0.1
 # samples without which there is nothing to learn from or to judge on
 FEWEST = 8
 
@@ -239,7 +241,12 @@ class _Bench:
             return rms(learnt.residual(model), learnt.masks)
 
         again = prepare_again(self.records, preparation, error)
-        return again if again.cutoff > preparation.cutoff else None
+        here, there = (
+            float(again.errors[np.searchsorted(again.cutoffs, 0.999 * p.cutoff)])
+            for p in (preparation, again)
+        )
+        wider = again.cutoff > preparation.cutoff and there < (1 - WORTH_A_BAND) * here
+        return again if wider else None
 
     def _learnt(self) -> Problem:
         """The fit data at the measured rate with the force as measured."""
