@@ -28,8 +28,9 @@ def test_every_cutoff_is_judged_on_the_same_samples() -> None:
     records = [moving(6.0, seed=0), moving(4.0, seed=1)]
     seen: list[list[np.ndarray]] = []
 
-    def error(motions: Sequence[Motion]) -> float:
-        seen.append([motion.inner for motion in motions])
+    def error(motions: Sequence[Motion], masks: Sequence[np.ndarray]) -> float:
+        assert all(m.inner[mask].all() for m, mask in zip(motions, masks, strict=True))
+        seen.append(list(masks))
         return 1.0
 
     preparation = prepare(records)

@@ -11,12 +11,13 @@ from threadpoolctl import threadpool_limits
 
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
+from inerter.diagnose.candidates import has_series
 from inerter.diagnose.chain import Link, chain_of, tone_link
-from inerter.diagnose.composition import effects_of, simpler_laws, submodel
+from inerter.diagnose.composition import effects_of, simpler_laws, stripped, submodel
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
-from inerter.diagnose.play import fit_play
+from inerter.diagnose.play import comes_in_blows, find_play, fit_play, forgiving, from_contact
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -32,7 +33,7 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
 from inerter.identify.channel import UNITS, channel_values
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import Fit, Problem, parameter_errors, rms
+from inerter.identify.fit import Fit, Masks, Problem, parameter_errors, rms
 from inerter.identify.model import Model, stated_values
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.preparation import (
@@ -57,6 +58,8 @@ TRANSITION = 0.005
 MORE_BANDS = 2
 # share of the error that a wider band has to take away
 WORTH_A_BAND = 0.1
+# share of the error that a free play sought for on its own has to take away
+WORTH_A_PLAY = 0.2
 # samples without which there is nothing to learn from or to judge on
 FEWEST = 8
 
@@ -215,32 +218,69 @@ class _Bench:
             final = self.search.run(final.model, until="backlash")
         if "backlash" in final.model.free:
             return self._with_play(final.model)
+        if play := self._play_beyond_the_band(final.model):
+            return self._with_play(play)
         if raw := self._wider(self.preparation, final.model):
             self._take(raw)
         return final
 
-    def _with_play(self, model: Model) -> Scored:
+    def _play_beyond_the_band(self, model: Model) -> Model | None:
+        """A model with free play where the search found none and what remains comes in blows."""
+        learnt = self._followed()
+        if has_series(self.baseline) or not comes_in_blows(
+            learnt, model, self.judge.noise_floor(model)
+        ):
+            return None
+        self.progress("what remains comes in blows: trying free play")
+        rigid = stripped(model, "series_elasticity", self.baseline)
+        starts = [rigid] if rigid.free == self.baseline.free else [rigid, self.baseline]
+        plays = [find_play(learnt, start) for start in starts]
+        problem = forgiving(learnt, plays[0])
+        without, *found = (rms(problem.residual(m), problem.masks) for m in (model, *plays))
+        best = int(np.argmin(found))
+        return plays[best] if found[best] < (1 - WORTH_A_PLAY) * without else None
+
+    def _with_play(self, play: Model) -> Scored:
         """The search from a model with free play on, with the force as measured."""
         self.progress("free play: fitting it to the force as measured")
-        play = fit_play(self._learnt(), model).model
-        if wider := self._wider(self.preparation, play):
-            self._take(wider)
-            play = fit_play(self._learnt(), play).model
-        self.search = Search(self.whole, self.full, self.baseline, self.progress)
+        play = fit_play(self._followed(), play)
+        for _ in range(MORE_BANDS):
+            far = forgiving(self._followed(), play).runs[0].far
+            band = self._prepared_for(play, self.preparation, far)
+            if band is self.preparation:
+                break
+            self._take(band)
+            play = fit_play(self._followed(), play)
+        self.whole = [from_contact(run) for run in self.whole]
+        self.raw = forgiving(Problem(self.whole, self.full.holdout, self.band.scales), play)
+        learnt = forgiving(self._learnt(), play)
+        self.search = Search(learnt.runs, self.full, self.baseline, self.progress)
         return self.search.run(play)
+
+    def _followed(self) -> Problem:
+        """The fit data at the measured rate, each run followed from a contact on."""
+        learnt = self._learnt()
+        return Problem([from_contact(run) for run in learnt.runs], learnt.masks, learnt.scales)
+
+    def _prepared_for(
+        self, model: Model, preparation: Preparation, far: float = np.inf
+    ) -> Preparation:
+        """The records in the band in which a model predicts the fit data best."""
+
+        def error(motions: Sequence[Motion], masks: Masks) -> float:
+            runs = [
+                replace(run, corner=preparation.corner, far=far)
+                for run in on_clocks([whole(motion) for motion in motions])
+            ]
+            fit = [mask & fit for mask, fit in zip(masks, self.full.fit, strict=True)]
+            learnt = Problem(runs, fit, self.band.scales)
+            return rms(learnt.residual(model), learnt.masks)
+
+        return prepare_again(self.records, preparation, error)
 
     def _wider(self, preparation: Preparation, model: Model) -> Preparation | None:
         """The records in the wider band in which a model predicts the fit data better, if any."""
-
-        def error(motions: Sequence[Motion]) -> float:
-            runs = [
-                replace(r, corner=preparation.corner)
-                for r in on_clocks([whole(m) for m in motions])
-            ]
-            learnt = Problem(runs, self.full.fit, self.band.scales)
-            return rms(learnt.residual(model), learnt.masks)
-
-        again = prepare_again(self.records, preparation, error)
+        again = self._prepared_for(model, preparation)
         here, there = (
             float(again.errors[np.searchsorted(again.cutoffs, 0.999 * p.cutoff)])
             for p in (preparation, again)
@@ -342,7 +382,7 @@ class _Bench:
             floor,
             extended.rmse,
             self.whole,
-            self.raw.residual(final.model),
+            self.raw.errors(final.model),
         )
         self.progress("simulating the extended device in MuJoCo")
         engines = simulate_engines(final.model, self.whole, self.raw.masks)

@@ -159,9 +159,9 @@ def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate
 
 
 def _series(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    if _has_series(model):
+    if has_series(model):
         return
-    slow = _frequency(sizes)
+    slow = sizes.frequency
     fast = max(2 * sizes.cutoff, 4 * slow) if np.isfinite(sizes.cutoff) else 20 * slow
     starts = tuple(
         model.adding(series_frequency=float(f), series_loss=0.1)
@@ -173,9 +173,9 @@ def _series(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
 def _backlash(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if "backlash" in model.values:
         return
-    x, slow = sizes.displacement, _frequency(sizes)
+    x, slow = sizes.displacement, sizes.frequency
     contacts: list[dict[str, float]] = [{}]
-    if not _has_series(model):
+    if not has_series(model):
         contacts = [{"series_frequency": ratio * slow, "series_loss": 0.3} for ratio in (5, 20)]
     starts = tuple(
         model.adding(None, backlash=ratio * x, **contact)
@@ -185,14 +185,10 @@ def _backlash(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
     yield Candidate(effect, None, starts)
 
 
-def _has_series(model: Model) -> bool:
+def has_series(model: Model) -> bool:
+    """Whether a model has a series element."""
     names = ("series_frequency", "series_stiffness", "series_damping")
     return any(name in model.values for name in names)
-
-
-def _frequency(sizes: Scales) -> float:
-    """Typical frequency of the motion [Hz]."""
-    return float(np.sqrt(sizes.acceleration / sizes.displacement)) / (2 * np.pi)
 
 
 def _end_stop(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:

@@ -79,6 +79,7 @@ def _link(
     search: Search, judge: Judge, effect: str, law: str | None, before: Fit, after: Fit
 ) -> Link:
     errors = judge.rmse(before.model), judge.rmse(after.model)
+    counted = judge.counted(before.model), judge.counted(after.model)
     silent = effect in LOCAL and not judge.visible(
         float(np.hypot(errors[1], judge.difference(before.model, after.model))),
         errors[1],
@@ -89,13 +90,14 @@ def _link(
         # nothing held out goes there: blocks of the other runs, left out in turn, have to tell
         simple, rich = (search.score_on_blocks(fit) for fit in (before, after))
         errors = rms(simple.errors, masks), rms(rich.errors, masks)
+        counted = rms(simple.residual, masks), rms(rich.residual, masks)
         won = search.advantage(simple, rich, effect)
     else:
         won = judge.advantage(before.model, after.model, effect)
     stands = (
-        errors[1] < errors[0]
+        counted[1] < counted[0]
         and won >= CONFIRMING_ADVANTAGE
-        and judge.visible(errors[0], errors[1], after.model)
+        and judge.visible(counted[0], counted[1], after.model)
         and not (effect == "sensor_delay" and not judge.delay_visible(after.model))
     )
     return Link(effect, law, before, after, errors[0], errors[1], silent, stands)

@@ -47,6 +47,10 @@ class Judge:
 
     def rmse(self, model: Model) -> float:
         """Rms force error at the measured rate [N]."""
+        return _rms(self.raw.errors(model), self.raw.masks)
+
+    def counted(self, model: Model) -> float:
+        """The same as it counts: what is far off behind a free play counts little [N]."""
         return _rms(self.raw.residual(model), self.raw.masks)
 
     def difference(self, one: Model, other: Model) -> float:

@@ -1,9 +1,10 @@
 """Free play in the flywheel's drive, fitted to the force as measured.
 
 Behind a play the flywheel is thrown from side to side. How hard and when it lands is in the force
-far above the band of the motion, so the fit needs the force as measured; there it has many minima,
-one for each way in which the impacts can be out of step. So it starts from many points about what
-the band tells.
+far above the band of the motion, so the fit needs the force as measured. An impact that is a sample
+early or late leaves an error as large as its force, whatever else is right: what is far off counts
+little (`Run.far`), or a few impacts would decide. There are many minima, one for each way in which
+impacts can be out of step, so the fit starts from many points about what the band tells.
 """
 
 from __future__ import annotations
@@ -13,14 +14,17 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.stats import qmc
+from scipy.stats import kurtosis, qmc
 
 from inerter.diagnose.parallel import parallel
-from inerter.identify.fit import Fit, Problem, rms
+from inerter.identify.bench import Run
+from inerter.identify.fit import Fit, Problem, rms, typical
 from inerter.identify.model import Model
 
+Ranges = Mapping[str, tuple[float, float]]
+
 # factors between which the starting points lie: in the band contacts look soft and plays small
-RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
+RANGES: Ranges = MappingProxyType(
     {
         "backlash": (0.8, 1.4),
         "series_frequency": (0.7, 2.5),
@@ -34,13 +38,72 @@ _POWER = 8
 _ROUNDS = 8
 _GAIN = 0.02
 _PATIENCE = 2
+# the same where nothing is known, and of how many of these the fit begins
+_WIDE = 11
+_BELIEVED = 2
 # points that are followed, and how far
 _FOLLOWED = 4
 _EVALUATIONS = 20
 _TOLERANCE = 1e-4
+# share of the rms error beyond which errors count little at first, and of that in the next round
+_FAR = 0.5
+_NARROWER = 0.3
+# noises, and kurtosis (of a normal distribution: 3), from which on errors are blows
+_LOUD = 3.0
+_PEAKED = 10.0
+# share of the rms force that tells a contact, and of the longest contact that is long
+_CONTACT = 0.2
+_LONG = 0.5
 
 
-def fit_play(problem: Problem, model: Model) -> Fit:
+def from_contact(run: Run) -> Run:
+    """A run at the measured rate that is followed from a contact on, where the state is known.
+
+    In free flight nothing tells where the flywheel is and how it turns. In the middle of a contact
+    it moves with the terminals, and the force tells how far the contact gives way.
+    """
+    side = _side(run) * run.inner
+    edges = np.flatnonzero(np.diff(side)) + 1
+    begins, ends = np.r_[0, edges], np.r_[edges, side.size]
+    lengths = np.where(side[begins] != 0, ends - begins, 0)
+    if not lengths.any():
+        return run
+    chosen = int(np.argmax(lengths >= _LONG * lengths.max()))
+    first = int(begins[chosen] + lengths[chosen] // 2)
+    near = slice(first - lengths[chosen] // 4, first + lengths[chosen] // 4 + 1)
+    known = np.arange(side.size) >= first
+    return replace(
+        run, first=first, first_force=float(np.mean(run.force[near])), inner=run.inner & known
+    )
+
+
+def _side(run: Run) -> np.ndarray:
+    """Sign of the force of contacts, 0 in free flight, shape (n,)."""
+    return np.sign(run.force) * (np.abs(run.force) > _CONTACT * np.std(run.force))
+
+
+def comes_in_blows(problem: Problem, model: Model, noise: float) -> bool:
+    """Whether what a model misses is far above the noise [N] and lies in few samples."""
+    errors = problem.errors(model)
+    flat = np.concatenate([e[m] for e, m in zip(errors, problem.masks, strict=True)])
+    return bool(np.std(flat) > _LOUD * noise and kurtosis(flat, fisher=False) > _PEAKED)
+
+
+def forgiving(problem: Problem, model: Model, far: float = 0.0) -> Problem:
+    """The problem with errors counting little beyond what is usual with a model, or `far` [N].
+
+    Usual is what contacts leave: in free flight everything is right that says so.
+    """
+    errors = problem.errors(model)
+    pairs = zip(problem.masks, problem.runs, strict=True)
+    contacts = [mask & (_side(run) != 0) for mask, run in pairs]
+    usual = contacts if any(mask.any() for mask in contacts) else problem.masks
+    far = max(far, typical(errors, usual))
+    runs = [replace(run, far=far) for run in problem.runs]
+    return Problem(runs, problem.masks, problem.scales)
+
+
+def fit_play(problem: Problem, model: Model) -> Model:
     """The best of many fits about a model with free play, and again about that, while it gains.
 
     Parameters
@@ -50,29 +113,63 @@ def fit_play(problem: Problem, model: Model) -> Fit:
     model
         What the band told.
     """
-    best, idle = _fit_about(problem, model, 0), 0
-    for seed in range(1, _ROUNDS):
-        fit = _fit_about(problem, best.model, seed)
-        idle = 0 if fit.rmse(problem.masks) < (1 - _GAIN) * best.rmse(problem.masks) else idle + 1
-        best = fit
+    idle, far = 0, _FAR * rms(problem.errors(model), problem.masks)
+    for seed in range(_ROUNDS):
+        problem = forgiving(problem, model, far)
+        before = rms(problem.residual(model), problem.masks)
+        fit = _fit_about(problem, model, seed)
+        gain = 1 - fit.rmse(problem.masks) / before
+        model = fit.model if gain > 0 else model
+        # while much is wrong most errors are far off, and the impacts tell the way
+        settled = problem.runs[0].far > far
+        idle = idle + 1 if settled and gain < _GAIN else 0
+        far *= _NARROWER
         if idle == _PATIENCE:
             break
-    return best
+    return model
+
+
+def find_play(problem: Problem, model: Model) -> Model:
+    """A free play added to a model, from anywhere: of a large one the band tells nothing.
+
+    Parameters
+    ----------
+    problem
+        Runs at the measured rate with the force as measured.
+    model
+        One without free play or series element.
+    """
+    sizes = problem.scales
+    inertance = sizes.force / sizes.acceleration
+    ranges = {
+        "backlash": (0.002 * sizes.displacement, 1.5 * sizes.displacement),
+        "series_frequency": (3 * sizes.frequency, 100 * sizes.frequency),
+        "series_loss": (0.05, 2.0),
+        "inertance": (0.1 * inertance, 3 * inertance),
+    }
+    start = model.adding(None, **{name: low for name, (low, _) in ranges.items()})
+    problem = forgiving(problem, model, _FAR * rms(problem.errors(model), problem.masks))
+    best = _best(problem, _points(start, ranges, _WIDE, 0))[:_BELIEVED]
+    fits = [fit_play(problem, start) for start in best]
+    return min(fits, key=lambda model: rms(problem.residual(model), problem.masks))
 
 
 def _fit_about(problem: Problem, model: Model, seed: int) -> Fit:
-    names = [name for name in RANGES if name in model.free]
-    low, high = np.log([RANGES[name] for name in names]).T
-    points = low + (high - low) * qmc.Sobol(len(names), rng=seed).random_base2(_POWER)
-    points[0] = 0.0  # the model itself
-
-    def moved(point: np.ndarray) -> Model:
-        factors = dict(zip(names, np.exp(point), strict=True))
-        values = {name: model.values[name] * float(factor) for name, factor in factors.items()}
-        return replace(model, values={**model.values, **values})
-
-    starts = [moved(point) for point in points]
-    errors = parallel(lambda start: rms(problem.errors(start), problem.masks), starts)
-    best = [starts[i] for i in np.argsort(errors)[:_FOLLOWED]]
+    here = {name: model.values[name] for name in RANGES if name in model.free}
+    ranges = {name: (at * RANGES[name][0], at * RANGES[name][1]) for name, at in here.items()}
+    best = _best(problem, [model, *_points(model, ranges, _POWER, seed)])
     fits = parallel(lambda start: problem.fit(start, _EVALUATIONS, tolerance=_TOLERANCE), best)
     return min(fits, key=lambda fit: fit.rmse(problem.masks))
+
+
+def _points(model: Model, ranges: Ranges, power: int, seed: int) -> list[Model]:
+    """The model with its coordinates anywhere within ranges."""
+    low, high = np.log(list(ranges.values())).T
+    points = np.exp(low + (high - low) * qmc.Sobol(len(ranges), rng=seed).random_base2(power))
+    moved = [dict(zip(ranges, map(float, point), strict=True)) for point in points]
+    return [replace(model, values={**model.values, **values}) for values in moved]
+
+
+def _best(problem: Problem, models: list[Model]) -> list[Model]:
+    errors = parallel(lambda model: rms(problem.residual(model), problem.masks), models)
+    return [models[i] for i in np.argsort(errors)[:_FOLLOWED]]

@@ -110,7 +110,7 @@ def with_tone_above(raw: Problem, fit: Fit, lowest: float) -> Fit | None:
     model = fit.model
     if _TONE[0] in model.values:
         return None
-    line = strongest_line(raw.runs, raw.residual(model), raw.masks, lowest)
+    line = strongest_line(raw.runs, raw.errors(model), raw.masks, lowest)
     if line is None:
         return None
     frequency, amplitude = line

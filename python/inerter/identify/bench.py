@@ -49,6 +49,8 @@ class Run:
     corner : float
         Frequency [Hz] above which the motion's noise outweighs the force's; residuals count less
         there.
+    far : float
+        Size [N] beyond which a residual counts little, see `weighted`.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Run:
     first: int = 0
     clock: float = 0.0
     corner: float = np.inf
+    far: float = np.inf
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
         """Forces of a device at the measured rate [N], shape (m,) each.
@@ -93,10 +96,15 @@ class Run:
         White noise of the displacement becomes one of b a whose power grows with the fourth power
         of the frequency: below the corner a residual counts in full, above ever less. Without that
         a model would win by predicting less of this noise.
+
+        What is beyond `far` counts by its logarithm: the sum of the squares is the Cauchy loss.
         """
-        if np.isinf(self.corner):
-            return values
-        return weight_above(np.where(mask, values, 0.0), self.spacing, self.corner)
+        if np.isfinite(self.corner):
+            values = weight_above(np.where(mask, values, 0.0), self.spacing, self.corner)
+        if np.isfinite(self.far):
+            share = values / self.far
+            values = self.far * np.sign(share) * np.sqrt(np.log1p(share**2))
+        return values
 
     def gain(self, frequency: float) -> float:
         """What the low-pass leaves of a tone."""

@@ -47,6 +47,11 @@ class Scales:
     elapsed: float = 1.0
     force_range: tuple[float, float] = (-np.inf, np.inf)
 
+    @property
+    def frequency(self) -> float:
+        """Typical frequency of the motion [Hz]."""
+        return float(np.sqrt(self.acceleration / self.displacement)) / (2 * np.pi)
+
 
 @dataclass(frozen=True)
 class Coordinate:
@@ -106,7 +111,7 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
     resolution = 0.5 * a / (2 * np.pi * scales.cutoff)
 
     # frequency of the motion, and the highest one that is told from noise
-    slow = float(np.sqrt(a / x)) / (2 * np.pi)
+    slow = scales.frequency
 
     low, high = scales.travel
     middle = 0.5 * (low + high) if np.isfinite(scales.travel).all() else 0.0

@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 from inerter.core import Device, DeviceError, parameters
 from inerter.identify.bench import Run, thin, whole
 from inerter.identify.coordinates import coordinate, device_values
-from inerter.identify.fit import Fit, Problem, parameter_errors
+from inerter.identify.fit import Fit, Masks, Problem, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
 from inerter.identify.model import NUISANCES, Model
@@ -158,11 +158,12 @@ class _Data:
     def _smoothed_for(self, model: Model) -> _Data:
         """The same data, smoothed as suits the model; itself where that changes nothing."""
 
-        def error(motions: Sequence[BenchMotion]) -> float:
+        def error(motions: Sequence[BenchMotion], masks: Masks) -> float:
             # what is held out has no say
             smoothed = replace(self.preparation, motions=list(motions))
             data = prepared(self.records, smoothed, self.holdout, self.fixed)
-            return data._raw_error(model, data.parted.fit)[0]
+            parts = zip(data.parted.fit, masks, data.runs, strict=True)
+            return data._raw_error(model, [f & m[:: r.thinned] for f, m, r in parts])[0]
 
         preparation = prepare_again(self.records, self.preparation, error)
         return (

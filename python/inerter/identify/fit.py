@@ -72,6 +72,12 @@ def rms(residual: Sequence[Array], masks: Masks) -> float:
     return float(np.sqrt(square / max(sum(int(m.sum()) for m in masks), 1)))
 
 
+def typical(residual: Sequence[Array], masks: Masks) -> float:
+    """Size of a masked residual from which on a robust fit lets it count less [N]."""
+    flat = np.concatenate([r[m] for r, m in zip(residual, masks, strict=True)])
+    return ROBUST * 1.4826 * float(np.median(np.abs(flat))) + 1e-300
+
+
 class Problem:
     """Runs, and which of their samples count."""
 
@@ -112,6 +118,7 @@ class Problem:
             # a state begins where the first force puts it, and so hangs on every term
             and not model.device().nstate
             and not clips(model.values)
+            and all(np.isinf(run.far) for run in self.runs)
             and not (name == "inertance" and any(other in model.values for other in ENTANGLED))
         ):
             columns = []
@@ -219,7 +226,7 @@ class Problem:
             jac=jacobian,  # pyright: ignore[reportArgumentType]
             bounds=(lower, upper),
             loss=loss,
-            f_scale=self._typical(at(inside)) / size if loss != "linear" else 1.0,
+            f_scale=typical(at(inside), self.masks) / size if loss != "linear" else 1.0,
             xtol=1e-7,
             ftol=tolerance,
             gtol=1e-10,
@@ -228,13 +235,9 @@ class Problem:
         fitted = self._decode(model, solution.x)
         residual = at(solution.x)
         flat = self._masked(residual)
-        weight = robust_weight(flat, self._typical(residual), loss)
+        weight = robust_weight(flat, typical(residual, self.masks), loss)
         covariance = self._covariance(fitted, jacobian(solution.x) * size, flat, weight)
         return Fit(fitted, residual, covariance, int(solution.nfev), float(solution.cost))
-
-    def _typical(self, residual: list[Array]) -> float:
-        """Size of a residual from which on a robust fit lets it count less [N]."""
-        return ROBUST * 1.4826 * float(np.median(np.abs(self._masked(residual)))) + 1e-300
 
     def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
         """Covariance of the free coordinates, see `sandwich`."""

@@ -13,6 +13,7 @@ from inerter.records import Record
 from inerter.records.motion import Motion, lowpass, smooth, weight_above, white_noise
 
 Array = NDArray[np.float64]
+Masks = Sequence[NDArray[np.bool_]]
 
 # the lowest cut-off that predicts the force this nearly as well as the best one is taken
 TOLERANCE = 0.005
@@ -113,8 +114,8 @@ def weighed(records: Sequence[Record], preparation: Preparation) -> Preparation:
     corner = np.sqrt(preparation.noise_floor / noise) / (2 * np.pi)
     corner = float(max(corner, preparation.cutoffs[0]))
 
-    def error(motions: Sequence[Motion]) -> float:
-        return _force_error(motions, corner)
+    def error(motions: Sequence[Motion], masks: Masks) -> float:
+        return _force_error(motions, masks, corner)
 
     return replace(prepare_again(records, preparation, error), corner=corner)
 
@@ -139,12 +140,14 @@ def refuse_unusable(records: Sequence[Record]) -> None:
 
 
 def prepare_again(
-    records: Sequence[Record], preparation: Preparation, error: Callable[[Sequence[Motion]], float]
+    records: Sequence[Record],
+    preparation: Preparation,
+    error: Callable[[Sequence[Motion], Masks], float],
 ) -> Preparation:
     """The records smoothed at the cut-off at which a fitted model predicts the raw force best.
 
     A broad linear model does not know a device's resonances, whose force may lie far above its
-    motion. `error` gives the model's force error [N] along motions.
+    motion. `error` gives the model's force error [N] along motions over masked samples.
     """
     use = preparation.channels
     errors = _errors(records, preparation.cutoffs, use, error)
@@ -171,12 +174,13 @@ def _errors(
     records: Sequence[Record],
     cutoffs: Array,
     use: tuple[str, ...],
-    error: Callable[[Sequence[Motion]], float],
+    error: Callable[[Sequence[Motion], Masks], float],
 ) -> Array:
     """Errors at some cut-offs, all on the same samples; infinite where too few would be left.
 
     The lower a cut-off, the more is unsure at the ends. Judged on what it leaves itself, a low one
-    would look good for leaving out how the motion begins.
+    would look good for leaving out how the motion begins. The motions keep their own beginnings: a
+    flywheel behind a play remembers how it was thrown.
     """
 
     def smoothed(cutoff: float) -> list[Motion]:
@@ -192,12 +196,12 @@ def _errors(
             if any(n < max(SMALLEST, KEPT * m) for n, m in zip(left, most, strict=True)):
                 continue
             common = [motion.inner for motion in motions]
-        same = [replace(m, inner=m.inner & c) for m, c in zip(motions, common, strict=True)]
-        found[i] = error(same)
+        same = [motion.inner & c for motion, c in zip(motions, common, strict=True)]
+        found[i] = error(motions, same)
     return found
 
 
-def _force_error(motions: Sequence[Motion], corner: float = np.inf) -> float:
+def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory.
 
     Above a `corner` [Hz] errors count less, see `weight_above`.
@@ -205,7 +209,7 @@ def _force_error(motions: Sequence[Motion], corner: float = np.inf) -> float:
     x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
     v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
     columns, forces = [], []
-    for motion in motions:
+    for motion, mask in zip(motions, masks, strict=True):
         x, v, a = motion.displacement, motion.velocity, motion.acceleration
         rows = [a, v, x, np.ones_like(x), v * np.abs(v), np.tanh(v / (0.01 * v_rms))]
         for share in (0.003, 0.03, 0.3):
@@ -214,8 +218,8 @@ def _force_error(motions: Sequence[Motion], corner: float = np.inf) -> float:
             )
             rows.append(bristle.along(motion.spacing, x, v, a)["friction"])
         table = weight_above(np.array([*rows, motion.force]), motion.spacing, corner)
-        columns.append(table[:-1].T[motion.inner])
-        forces.append(table[-1][motion.inner])
+        columns.append(table[:-1].T[mask])
+        forces.append(table[-1][mask])
     matrix, force = np.vstack(columns), np.concatenate(forces)
     matrix = matrix / (np.std(matrix, axis=0) + np.abs(np.mean(matrix, axis=0)) + 1e-300)
     gram, right = matrix.T @ matrix, matrix.T @ force
@@ -223,6 +227,7 @@ def _force_error(motions: Sequence[Motion], corner: float = np.inf) -> float:
     square = float(np.mean((force - matrix @ solution) ** 2))
 
     # a low-passed record has two free values per period of the cut-off; the fit takes some of them
-    values = sum(2 * m.cutoff * m.spacing * int(m.inner.sum()) for m in motions)
+    counts = [int(mask.sum()) for mask in masks]
+    values = sum(2 * m.cutoff * m.spacing * n for m, n in zip(motions, counts, strict=True))
     left = values - matrix.shape[1]
     return float(np.sqrt(square * values / left)) if left > 0 else np.inf

@@ -1,0 +1,113 @@
+"""Free play is fitted to the force as measured, in which impacts come a sample early or late."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inerter.core import Device
+from inerter.diagnose.play import comes_in_blows, find_play, fit_play, forgiving, from_contact
+from inerter.identify.bench import Run
+from inerter.identify.fit import Problem, rms
+from inerter.identify.model import Model
+
+RATE = 1000.0
+TRUTH = Device(inertance=60.0, backlash=4e-4, series_stiffness=8e5, series_damping=5e3)
+NOISE = 0.3
+RIGID = Model("none", {"inertance": 40.0, "transition_velocity": 1e-4}, ("inertance",))
+
+
+def run(seed: int, seconds: float = 6.0) -> Run:
+    """A flywheel thrown about in its play by some sines; begun as it flies."""
+    random = np.random.default_rng(seed)
+    t = np.arange(0, seconds + 3, 1 / RATE)
+    x, v, a = np.zeros((3, t.size))
+    for frequency in random.uniform(0.4, 2.5, 6):
+        phase, w = random.uniform(0, 2 * np.pi), 2 * np.pi * frequency
+        x += 3e-3 * np.cos(w * t + phase)
+        v -= 3e-3 * w * np.sin(w * t + phase)
+        a -= 3e-3 * w**2 * np.cos(w * t + phase)
+    force = TRUTH.along(1 / RATE, x, v, a, TRUTH.state_of_force(x[0], v[0], a[0], 60 * a[0]))
+    begin = 1000 + int(np.argmax(np.abs(force["total"][1000:]) < 1e-3 * np.std(force["total"])))
+    part = slice(begin + 5, begin + 5 + int(seconds * RATE))
+    x, v, a, force = (c[part] for c in (x, v, a, force["total"]))
+    force = force + NOISE * random.standard_normal(force.size)
+    inner = np.ones(force.size, bool)
+    return Run(f"run{seed}", 0.0, 1 / RATE, x, v, a, force, inner, float(force[:10].mean()), np.inf)
+
+
+def problem(count: int = 2) -> Problem:
+    runs = [run(seed) for seed in range(count)]
+    return Problem(runs, [np.ones(r.force.size, bool) for r in runs])
+
+
+def followed(given: Problem) -> Problem:
+    return Problem([from_contact(r) for r in given.runs], given.masks, given.scales)
+
+
+def true_model() -> Model:
+    values = {**RIGID.values, "inertance": 60.0, "backlash": 4e-4}
+    rate = np.sqrt(TRUTH.given["series_stiffness"] / 60.0)
+    values |= {"series_frequency": rate / (2 * np.pi), "series_loss": 5e3 / (2 * rate * 60.0)}
+    return Model("none", values, ("inertance", "backlash", "series_frequency", "series_loss"))
+
+
+def test_a_run_is_followed_from_a_contact_on() -> None:
+    """Followed from free flight on, in which nothing tells its state, the truth itself errs."""
+    given = [run(seed) for seed in range(20)]
+    begun = [from_contact(r) for r in given]
+    model, masks = true_model(), [np.arange(r.force.size) < r.first + 1000 for r in begun]
+    here, there = (Problem(runs, masks) for runs in (given, begun))
+    size = np.std(np.concatenate([r.force for r in given]))
+    late = [r.first / RATE for r in begun]
+    assert max(late) < 3.0
+    assert rms(there.errors(model), there.masks) < 0.05 * size
+    assert rms(here.errors(model), here.masks) > 3 * rms(there.errors(model), there.masks)
+    for r in begun:
+        assert abs(r.first_force) > 0.1 * size
+        assert not r.inner[: r.first].any()
+
+
+def test_a_run_without_a_contact_stays_as_it_is() -> None:
+    still = replace(run(0), force=np.zeros(6000))
+    assert from_contact(still) is still
+
+
+def test_play_is_found_from_anywhere() -> None:
+    found = find_play(followed(problem(1)), RIGID).device().given
+    for name in ("inertance", "backlash", "series_stiffness", "series_damping"):
+        assert found[name] == pytest.approx(TRUTH.given[name], rel=0.02), name
+
+
+def test_a_few_false_impacts_do_not_matter() -> None:
+    """Of 12 s 20 ms are struck by something else, five times as hard as the flywheel strikes."""
+    given = problem()
+    struck = []
+    for r in given.runs:
+        force = r.force.copy()
+        force[3000:3010] += 5 * np.max(np.abs(r.force))
+        struck.append(replace(r, force=force))
+    given = followed(Problem(struck, given.masks, given.scales))
+    start = true_model()
+    wrong = {"backlash": 3.5e-4, "series_frequency": 10.0, "inertance": 58.0}
+    start = replace(start, values={**start.values, **wrong})
+    found = fit_play(given, start).device().given
+    for name in ("inertance", "backlash", "series_stiffness"):
+        assert found[name] == pytest.approx(TRUTH.given[name], rel=0.02), name
+
+
+def test_far_errors_count_by_their_logarithm() -> None:
+    given = forgiving(problem(), RIGID, far=50.0)
+    far = given.runs[0].far
+    plain, counted = given.errors(RIGID)[0], given.residual(RIGID)[0]
+    np.testing.assert_allclose(counted**2, far**2 * np.log1p((plain / far) ** 2), atol=1e-9)
+    assert np.all(np.sign(counted) == np.sign(plain))
+
+
+def test_blows_are_told_from_what_is_smooth() -> None:
+    given = followed(problem())
+    assert comes_in_blows(given, RIGID, NOISE)
+    assert not comes_in_blows(given, true_model(), NOISE)
+    smooth = [replace(r, force=45 * r.acceleration + 20 * np.sign(r.velocity)) for r in given.runs]
+    assert not comes_in_blows(Problem(smooth, given.masks), RIGID, NOISE)
