@@ -110,8 +110,21 @@ double series_heat(const InerterDevice* p, double v, const double* z);
 int series_valid(const InerterDevice* p, const double* z, char* message);
 void series_of_force(const InerterDevice* p, double v, double force, double* z);
 
+// oscillator.c: a flywheel on a linear spring, and its states after a time
+typedef struct Oscillator_ {
+  double mass, damping, stiffness;
+  double lost;         // part of the damping that holds the flywheel
+  double push, drift;  // force that deflects the spring, and its rate
+} Oscillator;
+
+void oscillator_step(const Oscillator* o, double v, double a, double jerk, double t, double* z);
+
 // series_exact.c: states after a time h, 1; 0 and nothing done where no closed form holds
 int series_exact(const InerterDevice* p, double v, double a, double jerk, double* z, double h);
+
+// series_frozen.c: the same of varying coefficients, where less than `most` parts are enough
+int series_frozen(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
+                  double h, int most);
 
 // series_step.c: states after a time h from x, v, acceleration a and its rate; force over a step
 // and states at its end, where the velocity is v, for a mobility of the terminals

@@ -3,9 +3,8 @@
 //   in contact:  b s'' + (c_s + c_w) s' + k_s (s - gap) = b a(t) + c_w v(t),  w = v - s'
 //   loose:       w' = -c_w w / b,  d' = -k_s d / c_s,  s' = v - w
 //
-// The right side is a polynomial of second order in time: s is a polynomial and a free oscillation.
-// With backlash a step is only taken where the force keeps its sign, or the play is not used up, in
-// its middle and at its end; others are left to series_step.c.
+// In contact see oscillator.c. With backlash a step is only taken where the force keeps its sign,
+// or the play is not used up, in its middle and at its end; others are left to series_step.c.
 //
 // b, k_s > 0, c_s, c_w, s, d, gap, w: as in series.c.
 // Source: linear oscillator.
@@ -15,45 +14,16 @@
 
 enum { S, W, GAP };  // places in z
 
-// free oscillation from value u and rate r over a time t: value and rate at its end
-static void oscillate(double stiffness, double damping, double mass, double t, double* u,
-                      double* r) {
-  double decay = 0.5 * damping / mass, square = stiffness / mass - decay * decay;
-  double scale = exp(-decay * t), even, odd;  // cos, sin / frequency, or their hyperbolic sisters
-  if (fabs(square) * t * t < 1e-8) {
-    even = 1 - 0.5 * square * t * t;
-    odd = t * (1 - square * t * t / 6);
-  } else if (square > 0) {
-    double frequency = sqrt(square);
-    even = cos(frequency * t);
-    odd = sin(frequency * t) / frequency;
-  } else {
-    // the exponentials apart, so that a strong damper does not overflow
-    double rate = sqrt(-square), slow = exp((rate - decay) * t), fast = exp(-(rate + decay) * t);
-    even = 0.5 * (slow + fast);
-    odd = 0.5 * (slow - fast) / rate;
-    scale = 1;
-  }
-  double value = *u, speed = *r, lead = speed + decay * value;
-  *u = scale * (value * even + lead * odd);
-  *r = scale * (speed * even - (stiffness / mass * value + decay * speed) * odd);
-}
-
 // s and w a time t into contact at a play's position
 static void contact(const InerterDevice* p, double v, double a, double jerk, double gap, double t,
                     double* z) {
-  double b = p->inertance, k = p->series_stiffness, lost = p->flywheel_viscous;
-  double damping = p->series_damping + lost;
-
-  // the polynomial that the motion drives
-  double two = 0.5 * lost * jerk / k;
-  double one = (b * jerk + lost * a - 2 * damping * two) / k;
-  double zero = (b * a + lost * v - damping * one - 2 * b * two) / k;
-
-  double u = z[S] - gap - zero, r = v - z[W] - one;
-  oscillate(k, damping, b, t, &u, &r);
-  z[S] = gap + zero + (one + two * t) * t + u;
-  z[W] = v + (a + 0.5 * jerk * t) * t - (one + 2 * two * t + r);
+  Oscillator o = {.mass = p->inertance,
+                  .damping = p->series_damping + p->flywheel_viscous,
+                  .stiffness = p->series_stiffness,
+                  .lost = p->flywheel_viscous};
+  z[S] -= gap;
+  oscillator_step(&o, v, a, jerk, t, z);
+  z[S] += gap;
 }
 
 static double contact_force(const InerterDevice* p, double v, const double* z) {

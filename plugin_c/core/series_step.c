@@ -151,13 +151,6 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
 // parts of a sixteenth of a radian as long as they are not too many, else a few that settle
 enum { PER_RADIAN = 16, MOST_PARTS = 256, FEW_PARTS = 4 };
 
-static int count_parts(double radians) {
-  if (!(PER_RADIAN * radians < MOST_PARTS)) {
-    return FEW_PARTS;
-  }
-  return 1 + (int)(PER_RADIAN * radians);
-}
-
 void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
                  double h) {
   if (h == 0) {
@@ -166,9 +159,13 @@ void series_step(const InerterDevice* p, double x, double v, double a, double je
   double inertance = inertance_felt(p, x - z[S], z[W], NULL);
   double stiffness = series_spring(p, z[S] - series_gap(p, z)).slope;
   double rate = sqrt(stiffness / inertance) + p->series_damping / inertance;
-  int count = count_parts(fabs(h) * rate);
-  if (count > FEW_PARTS && series_exact(p, v, a, jerk, z, h)) {
-    return;
+  double parts = PER_RADIAN * fabs(h) * rate;
+  int count = FEW_PARTS;
+  if (parts < MOST_PARTS) {
+    count = 1 + (int)parts;
+    if (series_exact(p, v, a, jerk, z, h) || series_frozen(p, x, v, a, jerk, z, h, 1 + count / 2)) {
+      return;
+    }
   }
   double part = h / count;
   for (int i = 0; i < count; i++) {

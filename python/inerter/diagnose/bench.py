@@ -218,10 +218,10 @@ class _Bench:
             final = self.search.run(final.model, until="backlash")
         if "backlash" in final.model.free:
             return self._with_play(final.model)
-        if play := self._play_beyond_the_band(final.model):
-            return self._with_play(play)
         if raw := self._wider(self.preparation, final.model):
             self._take(raw)
+        if play := self._play_beyond_the_band(final.model):
+            return self._with_play(play)
         return final
 
     def _play_beyond_the_band(self, model: Model) -> Model | None:
@@ -234,7 +234,9 @@ class _Bench:
         self.progress("what remains comes in blows: trying free play")
         rigid = stripped(model, "series_elasticity", self.baseline)
         starts = [rigid] if rigid.free == self.baseline.free else [rigid, self.baseline]
-        plays = [find_play(learnt, start) for start in starts]
+        plays = [play for start in starts if (play := find_play(learnt, start))]
+        if not plays:
+            return None
         problem = forgiving(learnt, plays[0])
         without, *found = (rms(problem.residual(m), problem.masks) for m in (model, *plays))
         best = int(np.argmin(found))

@@ -48,9 +48,13 @@ _TOLERANCE = 1e-4
 # share of the rms error beyond which errors count little at first, and of that in the next round
 _FAR = 0.5
 _NARROWER = 0.3
-# noises, and kurtosis (of a normal distribution: 3), from which on errors are blows
-_LOUD = 3.0
+# blows are errors this many times the noise, in this share of the samples, with this kurtosis (a
+# normal distribution has 3)
+_LOUD = 5.0
+_SOME = 0.02
 _PEAKED = 10.0
+# share of the error that the best of points anywhere has to take away to be followed
+_PROMISE = 0.1
 # share of the rms force that tells a contact, and of the longest contact that is long
 _CONTACT = 0.2
 _LONG = 0.5
@@ -83,10 +87,14 @@ def _side(run: Run) -> np.ndarray:
 
 
 def comes_in_blows(problem: Problem, model: Model, noise: float) -> bool:
-    """Whether what a model misses is far above the noise [N] and lies in few samples."""
+    """Whether what a model misses is far above the noise [N] and lies in some samples.
+
+    Not in single ones: so do errors where friction reverses.
+    """
     errors = problem.errors(model)
     flat = np.concatenate([e[m] for e, m in zip(errors, problem.masks, strict=True)])
-    return bool(np.std(flat) > _LOUD * noise and kurtosis(flat, fisher=False) > _PEAKED)
+    loud = np.quantile(np.abs(flat), 1 - _SOME) > _LOUD * noise
+    return bool(loud and kurtosis(flat, fisher=False) > _PEAKED)
 
 
 def forgiving(problem: Problem, model: Model, far: float = 0.0) -> Problem:
@@ -129,8 +137,10 @@ def fit_play(problem: Problem, model: Model) -> Model:
     return model
 
 
-def find_play(problem: Problem, model: Model) -> Model:
+def find_play(problem: Problem, model: Model) -> Model | None:
     """A free play added to a model, from anywhere: of a large one the band tells nothing.
+
+    None where nothing tried is better than the model.
 
     Parameters
     ----------
@@ -150,6 +160,9 @@ def find_play(problem: Problem, model: Model) -> Model:
     start = model.adding(None, **{name: low for name, (low, _) in ranges.items()})
     problem = forgiving(problem, model, _FAR * rms(problem.errors(model), problem.masks))
     best = _best(problem, _points(start, ranges, _WIDE, 0))[:_BELIEVED]
+    here, there = (rms(problem.residual(m), problem.masks) for m in (model, best[0]))
+    if there > (1 - _PROMISE) * here:
+        return None
     fits = [fit_play(problem, start) for start in best]
     return min(fits, key=lambda model: rms(problem.residual(model), problem.masks))
 
