@@ -1,0 +1,67 @@
+"""One step of Gauss and Newton foretells what a candidate can gain."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.diagnose.candidates import Candidate, candidates
+from inerter.diagnose.promise import FAR, Promise
+from inerter.identify.bench import Run
+from inerter.identify.fit import Fit, Problem, rms
+from inerter.identify.model import Model
+
+RATE = 500.0
+IDEAL = Model("none", {"inertance": 60.0, "transition_velocity": 1e-4}, ("inertance",))
+SINES = ((0.02, 3.1), (0.01, 8.3), (0.005, 17.7))
+
+
+def problem(force: str, noise: float = 0.5) -> Problem:
+    """A run of 10 s; `force` is what 60 kg have beside them, of x, v, a."""
+    t = np.arange(0, 10, 1 / RATE)
+    x, v, a = np.zeros((3, t.size))
+    for phase, (size, rate) in enumerate(SINES):
+        x += size * np.sin(rate * t + phase)
+        v += size * rate * np.cos(rate * t + phase)
+        a -= size * rate**2 * np.sin(rate * t + phase)
+    beside = {"nothing": 0 * x, "viscous": 40 * v, "stiffness": 500 * x, "cubic": 2e6 * x**3}[force]
+    total = 60 * a + beside + noise * np.random.default_rng(1).standard_normal(t.size)
+    run = Run("run", 0.0, 1 / RATE, x, v, a, total, np.ones(t.size, bool), float(total[0]), np.inf)
+    return Problem([run], [np.ones(t.size, bool)])
+
+
+def fitted(given: Problem) -> tuple[Fit, list[Candidate]]:
+    fit = given.fit(IDEAL)
+    return fit, list(candidates(fit.model, given.scales))
+
+
+def holding(given: Problem, share: float) -> set[str]:
+    fit, trials = fitted(given)
+    promise = Promise(given, fit, (1 - share) * fit.rmse(given.masks))
+    return {trial.effect for trial in trials if promise.holds(trial)}
+
+
+def test_noise_promises_nothing() -> None:
+    assert holding(problem("nothing"), 0.02) == set(FAR)
+
+
+@pytest.mark.parametrize(
+    ("force", "effect"),
+    [
+        ("viscous", "viscous_friction"),
+        ("stiffness", "parallel_stiffness"),
+        ("cubic", "hardening_stiffness"),
+    ],
+)
+def test_what_is_there_is_promised(force: str, effect: str) -> None:
+    assert effect in holding(problem(force), 0.5)
+
+
+def test_of_a_linear_term_the_step_tells_what_the_fit_gains() -> None:
+    """To the limit that the fit reaches a candidate holds, to one just below it does not."""
+    given = problem("viscous")
+    fit, trials = fitted(given)
+    viscous = next(trial for trial in trials if trial.effect == "viscous_friction")
+    reached = given.fit(viscous.starts[0])
+    error = rms(reached.residual, given.masks)
+    assert Promise(given, fit, 1.001 * error).holds(viscous)
+    assert not Promise(given, fit, 0.999 * error).holds(viscous)
