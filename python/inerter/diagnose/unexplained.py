@@ -48,6 +48,8 @@ MOST = 3
 # more than this many times the noise, and this share of the force, is no noise whatever it is
 EXCESS = 2.0
 EXCESS_PART = 0.05
+# an rms this many times what the median tells of a normal distribution is made by few large errors
+BLOWS = 5.0
 
 
 def unexplained(
@@ -128,6 +130,7 @@ def unexplained(
         structure,
         excess,
         proposal["text"] if proposal else None,
+        _usual(whole, whole_residual, split, runs, raw),
     )
     return Unexplained(
         significant,
@@ -247,6 +250,22 @@ def _held_at(whole: Sequence[Run], runs: Sequence[Run], split: Split) -> list[ND
         np.interp(run.time, thin.time, out.astype(float)) > 0.5
         for run, thin, out in zip(whole, runs, split.holdout, strict=True)
     ]
+
+
+def _usual(
+    whole: Sequence[Run],
+    residual: Sequence[Array],
+    split: Split,
+    runs: Sequence[Run],
+    raw: float,
+) -> float | None:
+    """Median size of the error [N] on held-out data, where few large ones make the rms."""
+    if not len(whole):
+        return None
+    held = _held_at(whole, runs, split)
+    parts = [np.abs(r[m & run.inner]) for r, m, run in zip(residual, held, whole, strict=True)]
+    usual = float(np.median(np.concatenate(parts)))
+    return usual if raw > BLOWS * 1.4826 * usual else None
 
 
 def _loud(louder: Bursts, floor: float, force: float) -> bool:

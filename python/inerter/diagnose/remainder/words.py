@@ -33,6 +33,7 @@ def summary(
     structure: float,
     excess: bool,
     proposal: str | None,
+    usual: float | None = None,
 ) -> str:
     """One paragraph.
 
@@ -48,8 +49,11 @@ def summary(
         Far more remains than noise, but it goes with nothing that was tested.
     proposal
         A formula.
+    usual
+        What half of the errors are below [N], where few large ones make the rms.
     """
-    start = f"What remains ({raw:.3g} N rms; noise of the force channel {floor:.3g} N)"
+    blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} N"
+    start = f"What remains ({raw:.3g} N rms{blows}; noise of the force channel {floor:.3g} N)"
     if excess:
         return (
             f"{start} is far more than noise, but goes with nothing that was tested: position, "
