@@ -1,7 +1,8 @@
 // Steps of a series element (series.c) whose coefficients vary, exact for those of the middle.
 //
-//   B w' + R + G = phi + c_s s',   w = v - s'
-//   B_m s'' + (c_s + D_m) s' + phi'_m s = B_m a + D_m v + e + e' t
+//   in contact:  B w' + R + G = phi + c_s s',   w = v - s',   d = s - gap
+//                B_m d'' + (c_s + D_m) d' + phi'_m d = B_m a + D_m v + e + e' t
+//   loose:       B w' + R + G = 0,   d' = -phi / c_s
 //   e + e' t:  R + G_gas + (B - B_m) w' through the start and the middle, and what the tangents of
 //              the spring and of the dampers leave there
 //
@@ -12,19 +13,21 @@
 
 #include "laws.h"
 
-enum { S, W };  // places in z
+enum { S, W, GAP };  // places in z
 
 // what the coefficients are at one state
 typedef struct Coefficients_ {
   double mass, damper_slope, spring_slope;
   double varying;  // R + gas
   double fixed;    // what the tangents of dampers and spring leave
+  double force;    // F_s
   double rate;     // w'
 } Coefficients;
 
-static Coefficients coefficients(const InerterDevice* p, double x, double v, const double* z) {
-  double rest, mass = inertance_felt(p, x - z[S], z[W], &rest);
-  Tangent damper = flywheel_damper(p, z[W]), spring = series_spring(p, z[S]);
+static Coefficients coefficients(const InerterDevice* p, double x, double v, double gap,
+                                 const double* z) {
+  double rest, d = z[S] - gap, mass = inertance_felt(p, x - z[S], z[W], &rest);
+  Tangent damper = flywheel_damper(p, z[W]), spring = series_spring(p, d);
   double varying = rest + (has(p, PART_GAS) ? gas_force(p, x - z[S]) : 0);
   double force = spring.value + p->series_damping * (v - z[W]);
   return (Coefficients){
@@ -32,7 +35,8 @@ static Coefficients coefficients(const InerterDevice* p, double x, double v, con
       .damper_slope = damper.slope,
       .spring_slope = spring.slope,
       .varying = varying,
-      .fixed = damper.value - damper.slope * z[W] - (spring.value - spring.slope * z[S]),
+      .fixed = damper.value - damper.slope * z[W] - (spring.value - spring.slope * d),
+      .force = force,
       .rate = (force - damper.value - varying) / mass,
   };
 }
@@ -58,19 +62,22 @@ static double change(const InerterDevice* p, const Coefficients* start, const Co
   return 2 * (masses + springs + dampers) + gas;
 }
 
-// one step; how much the coefficients changed, infinite where there is no oscillation
+// one step in contact at a play's side (0: there is no play); how much the coefficients changed,
+// infinite where there is no oscillation or contact is lost
 static double frozen(const InerterDevice* p, double x, double v, double a, double jerk, double h,
-                     double* z) {
-  double half = 0.5 * h, middle[2] = {z[S], z[W]};
-  Coefficients start = coefficients(p, x, v, z);
+                     int side, double* z) {
+  double half = 0.5 * h, gap = side * p->backlash, middle[2] = {z[S] - gap, z[W]};
+  Coefficients start = coefficients(p, x, v, gap, z);
   if (!(start.spring_slope > 0)) {
     return INFINITY;
   }
   Oscillator o = oscillator(p, &start);
   oscillator_step(&o, v, a, jerk, half, middle);
+  middle[S] += gap;
 
   double midway = x + (v + (0.5 * a + jerk * half / 6) * half) * half;
-  Coefficients there = coefficients(p, midway, v + (a + 0.5 * jerk * half) * half, middle);
+  double v_middle = v + (a + 0.5 * jerk * half) * half;
+  Coefficients there = coefficients(p, midway, v_middle, gap, middle);
   if (!(there.spring_slope > 0)) {
     return INFINITY;
   }
@@ -78,9 +85,45 @@ static double frozen(const InerterDevice* p, double x, double v, double a, doubl
   o = oscillator(p, &there);
   o.drift = (there.varying - before) / half;
   o.push -= o.drift * half;
-  double step = midway - middle[S] - (x - z[S]);
-  oscillator_step(&o, v, a, jerk, h, z);
+  double step = midway - middle[S] - (x - z[S]), end[2] = {z[S] - gap, z[W]};
+  oscillator_step(&o, v, a, jerk, h, end);
+  if (side) {
+    double last = series_spring(p, end[S]).value +
+                  p->series_damping * (v + (a + 0.5 * jerk * h) * h - end[W]);
+    if (!(side * start.force > 0 && side * there.force > 0 && side * last > 0)) {
+      return INFINITY;
+    }
+  }
+  z[S] = end[S] + gap;
+  z[W] = end[W];
   return change(p, &start, &there, step, h);
+}
+
+// one step within the play, in which only the flywheel's own forces change its velocity; 0 and
+// nothing done where the play is used up
+static int loose(const InerterDevice* p, double x, double v, double a, double jerk, double h,
+                 double* z) {
+  double d = z[S] - z[GAP], half = 0.5 * h, rest;
+  double mass = inertance_felt(p, x - z[S], z[W], &rest);
+  double w = z[W] - half * (rest + flywheel_force(p, x - z[S], z[W])) / mass;
+  double midway = x + (v + (0.5 * a + jerk * half / 6) * half) * half;
+  double s = z[S] + midway - x - half * 0.5 * (z[W] + w);
+  mass = inertance_felt(p, midway - s, w, &rest);
+  double end = z[W] - h * (rest + flywheel_force(p, midway - s, w)) / mass;
+  double travel = (v + (0.5 * a + jerk * h / 6) * h) * h;
+  double s1 = z[S] + travel - h * 0.5 * (z[W] + end);
+
+  // the spring relaxes with the stiffness of its chord
+  double fade = p->series_damping > 0 && d != 0
+                    ? exp(-series_spring(p, d).value / d * half / p->series_damping)
+                    : 0;
+  if (!(fabs(s - d * fade) < p->backlash && fabs(s1 - d * fade * fade) < p->backlash)) {
+    return 0;
+  }
+  z[S] = s1;
+  z[W] = end;
+  z[GAP] = s1 - d * fade * fade;
+  return 1;
 }
 
 // parts in which the coefficients change by a sixteenth
@@ -88,11 +131,19 @@ enum { PER_CHANGE = 16 };
 
 int series_frozen(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
                   double h, int most) {
-  if (has(p, PART_BACKLASH) || h < 0) {
+  if (h < 0) {
     return 0;
   }
+  int side = 0;
+  if (has(p, PART_BACKLASH)) {
+    double gap = series_gap(p, z);
+    side = (gap >= p->backlash) - (gap <= -p->backlash);
+    if (side == 0) {
+      return loose(p, x, v, a, jerk, h, z);
+    }
+  }
   double next[2] = {z[S], z[W]};
-  double parts = PER_CHANGE * frozen(p, x, v, a, jerk, h, next);
+  double parts = PER_CHANGE * frozen(p, x, v, a, jerk, h, side, next);
   if (!(parts < most)) {
     return 0;
   }
@@ -103,7 +154,8 @@ int series_frozen(const InerterDevice* p, double x, double v, double a, double j
     next[W] = z[W];
     for (int i = 0; i < count; i++) {
       double t = part * i, here = x + (v + (0.5 * a + jerk * t / 6) * t) * t;
-      if (isinf(frozen(p, here, v + (a + 0.5 * jerk * t) * t, a + jerk * t, jerk, part, next))) {
+      double speed = v + (a + 0.5 * jerk * t) * t;
+      if (isinf(frozen(p, here, speed, a + jerk * t, jerk, part, side, next))) {
         return 0;
       }
     }

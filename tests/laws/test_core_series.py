@@ -313,6 +313,17 @@ VARYING = {
 }  # fmt: skip
 
 
+def along_two_sines(device: Device, parts: int) -> dict[str, Array]:
+    """2 s in 1600 samples, each of them divided, from where the flywheel moves along."""
+    t = np.linspace(0.0, 2.0, 1600 * parts + 1)
+    x, v, a = np.zeros((3, t.size))
+    for size, rate in ((0.02, 12.6), (0.003, 56.5)):
+        x += size * np.sin(rate * t)
+        v += size * rate * np.cos(rate * t)
+        a -= size * rate**2 * np.sin(rate * t)
+    return device.along(t[1], x, v, a, [0.0, v[0], 0.0][: device.nstate])
+
+
 @pytest.mark.parametrize("stiffness", [1e5, 3e6, 3e7])
 @pytest.mark.parametrize("what", VARYING)
 def test_along_need_not_resolve_an_oscillation_whose_coefficients_vary(
@@ -323,19 +334,38 @@ def test_along_need_not_resolve_an_oscillation_whose_coefficients_vary(
     device = Device(**given, series_stiffness=stiffness, series_damping=60.0)
 
     def force(parts: int) -> Array:
-        t = np.linspace(0.0, 2.0, 1600 * parts + 1)
-        x, v, a = np.zeros((3, t.size))
-        for size, rate in ((0.02, 12.6), (0.003, 56.5)):
-            x += size * np.sin(rate * t)
-            v += size * rate * np.cos(rate * t)
-            a -= size * rate**2 * np.sin(rate * t)
-        return device.along(t[1], x, v, a, [0.0, v[0]])["total"][::parts]
+        return along_two_sines(device, parts)["total"][::parts]
 
     true = force(32)
     error = [float(np.max(np.abs(force(parts) - true)) / np.std(true)) for parts in (1, 2, 4)]
     assert error[0] < 3e-3
     # second order, where not the step is divided already
     assert error[2] < error[0] / 10 or error[0] < 1e-4
+
+
+@pytest.mark.parametrize("what", ["stroke", "speed", "hardening", "gas"])
+def test_a_play_behind_coefficients_that_hardly_vary_is_a_plain_one(what: str) -> None:
+    """Two sets of formulas, one for linear elements, tell the same impacts."""
+    hardly = {
+        "stroke": {"inertance_gradient": 1e-9},
+        "speed": {"inertance_speed_gradient": 1e-9},
+        "hardening": {"series_hardening": 1e-9},
+        "gas": {**VARYING["gas"], "gas_pressure": 1e-6},
+    }[what]
+    plain = GAP | {"series_stiffness": 8e5, "series_damping": 3e3}
+    one, other = (along_two_sines(Device(**plain, **more), 1) for more in ({}, hardly))
+    size = np.std(one["total"])
+    np.testing.assert_allclose(other["total"], one["total"], atol=1e-4 * size)
+    assert np.mean(one["total"] == 0) > 0.01  # it flies
+
+
+@pytest.mark.parametrize("what", VARYING)
+def test_along_behind_a_play_needs_no_small_steps(what: str) -> None:
+    given = VARYING[what] | ({} if what == "pipe" else {"inertance": 80.0})
+    device = Device(**given, series_stiffness=1e6, series_damping=4e3, backlash=2e-4)
+    coarse, fine = (along_two_sines(device, parts)["total"][::parts] for parts in (1, 16))
+    # where the flywheel lands is told by the step; at nine of ten samples nothing of it is left
+    assert np.quantile(np.abs(coarse - fine), 0.9) < 5e-3 * np.std(fine)
 
 
 def test_a_run_with_all_states_can_be_cut_in_two() -> None:

@@ -30,7 +30,7 @@ from inerter.diagnose.statistics import (
 )
 from inerter.diagnose.tone import strongest_line
 from inerter.identify.bench import Run, head, head_size
-from inerter.identify.fit import Fit, Problem
+from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.split import Mask, Split, blocks, spread_folds
 
@@ -63,6 +63,10 @@ HOPELESS = 0.002
 LIKELY = 0.7 * REQUIRED_GAIN
 FEW = 8
 NEAR = 1.1
+# starting points of a free play that are tried, and how far above what it has to beat a fit to part
+# of the data may be to be followed
+NEAREST = 3
+AT_LEAST = 1.5
 # errors this near belong to the same fit
 SAME = 1e-5
 # share of the rms error that these must take away where they show
@@ -213,12 +217,16 @@ class Search:
         """Errors of a fitted model on blocks of every run, left out of its refits."""
         return self.score("", None, fit, self._spread)
 
-    def fit(self, candidate: Candidate, limit: float = np.inf) -> Fit:
+    def fit(self, candidate: Candidate, limits: tuple[float, float] = (np.inf, np.inf)) -> Fit:
         """Best fit over a candidate's starting points, which are compared on part of the data.
 
-        What is not below `limit` [N] after a few steps from each of them is not followed further.
+        What after a few steps from each of them is not below the first of the `limits` [N], or on
+        that part anywhere near the second, is not followed further.
         """
         starts, masks = candidate.starts, self.problem.masks
+        limit, limit_of_part = limits
+        if candidate.effect == "backlash":
+            starts = self._nearest(starts)
         if len(starts) > 1:
             # states take time to follow; what has none is compared wherever it may show
             fast = all(not start.device().nstate for start in starts)
@@ -226,11 +234,16 @@ class Search:
             trials = [part.fit(start, evaluations, tolerance=1e-3) for start in starts]
             trials.sort(key=lambda fit: fit.rmse(part.masks))
             best = trials[0].rmse(part.masks)
-            if fast and best > limit:
-                return trials[0]
+            if best > (limit if fast else AT_LEAST * limit_of_part):
+                return replace(trials[0], residual=self.problem.residual(trials[0].model))
             near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
             starts = tuple(trial.model for trial in near or trials[:1])
         return min((self._follow(start, limit) for start in starts), key=lambda f: f.rmse(masks))
+
+    def _nearest(self, starts: Sequence[Model]) -> list[Model]:
+        """The starting points whose errors are least as they are."""
+        errors = [rms(self._part.residual(start), self._part.masks) for start in starts]
+        return [starts[i] for i in np.argsort(errors)[:NEAREST]]
 
     def _follow(self, start: Model, limit: float) -> Fit:
         fit = self.problem.fit(start, FEW, tolerance=ROUGH)
@@ -244,7 +257,11 @@ class Search:
         better than friction without memory, or is in the model already.
         """
         masks = self.problem.masks
-        limit = (1 - HOPELESS) * current.rmse(masks)
+        here = self._part.residual(current.model)
+        limits = (
+            (1 - HOPELESS) * current.rmse(masks),
+            (1 - HOPELESS) * rms(here, self._part.masks),
+        )
         known = self._fitted_before(current)
         promise = Promise(self.problem, current, (1 - LIKELY) * current.rmse(masks))
         rich = [t for t in trials if t.law in RICH_LAWS]
@@ -253,7 +270,7 @@ class Search:
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
             new = [t for t in some if t.key not in known and promise.holds(t)]
             old = [(t, known[t.key]) for t in some if t.key in known]
-            return [*zip(new, parallel(lambda t: self.fit(t, limit), new), strict=True), *old]
+            return [*zip(new, parallel(lambda t: self.fit(t, limits), new), strict=True), *old]
 
         fitted = fits(plain)
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
