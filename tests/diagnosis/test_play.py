@@ -48,7 +48,7 @@ def followed(given: Problem) -> Problem:
 
 def true_model() -> Model:
     values = {**RIGID.values, "inertance": 60.0, "backlash": 4e-4}
-    rate = np.sqrt(TRUTH.given["series_stiffness"] / 60.0)
+    rate = np.sqrt(8e5 / 60.0)
     values |= {"series_frequency": rate / (2 * np.pi), "series_loss": 5e3 / (2 * rate * 60.0)}
     return Model("none", values, ("inertance", "backlash", "series_frequency", "series_loss"))
 
@@ -75,7 +75,9 @@ def test_a_run_without_a_contact_stays_as_it_is() -> None:
 
 
 def test_play_is_found_from_anywhere() -> None:
-    found = find_play(followed(problem(1)), RIGID).device().given
+    model = find_play(followed(problem(1)), RIGID)
+    assert model is not None
+    found = model.device().given
     for name in ("inertance", "backlash", "series_stiffness", "series_damping"):
         assert found[name] == pytest.approx(TRUTH.given[name], rel=0.02), name
 

@@ -354,7 +354,7 @@ def test_a_play_behind_coefficients_that_hardly_vary_is_a_plain_one(what: str) -
     }[what]
     plain = GAP | {"series_stiffness": 8e5, "series_damping": 3e3}
     one, other = (along_two_sines(Device(**plain, **more), 1) for more in ({}, hardly))
-    size = np.std(one["total"])
+    size = float(np.std(one["total"]))
     np.testing.assert_allclose(other["total"], one["total"], atol=1e-4 * size)
     assert np.mean(one["total"] == 0) > 0.01  # it flies
 
