@@ -79,13 +79,17 @@ def diagnose_command(
     as_json: Annotated[
         bool, typer.Option("--json", help="Print diagnosis.json alone on stdout.")
     ] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Print the summary in the terminal and write nothing.")
+    ] = False,
 ) -> None:
     """What does the simulation of a device get wrong, what is the cause, how much does it cost?
 
     Writes diagnosis.json, report.html, device.toml and model.xml.
     """
     mapping = (inputs or [], sensors or [])
-    _diagnose(record, device, model, holdout or [], out_dir, as_json, mapping)
+    folder = None if quick else out_dir
+    _diagnose(record, device, model, holdout or [], folder, as_json, mapping)
 
 
 def _diagnose(
@@ -93,24 +97,28 @@ def _diagnose(
     device: Path | None,
     model: Path | None,
     holdout: list[str],
-    folder: Path,
+    folder: Path | None,
     as_json: bool,
     mapping: tuple[list[str], list[str]] = ([], []),
 ) -> Diagnosis:
+    """Without a folder nothing is written."""
     with refusing(folder):
-        refuse_folder(folder)
+        if folder:
+            refuse_folder(folder)
         # a user's data that overflow are judged by what comes out, not by numpy's warnings
         with status(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
             simplefilter("ignore", RuntimeWarning)
             result = diagnose(record, device, model, holdout, progress, *mapping)
-            write_outputs(result, folder)
+            if folder:
+                write_outputs(result, folder)
     if as_json:
         print(json.dumps(result.json(), indent=2))
     else:
         from inerter.report.terminal import print_summary
 
         print_summary(result, out)
-        out.print(f"Written to {folder}: report.html, diagnosis.json, device.toml, model.xml")
+        if folder:
+            out.print(f"Written to {folder}: report.html, diagnosis.json, device.toml, model.xml")
     return result
 
 

@@ -86,6 +86,14 @@ def test_summary_for_people(folder: Path, tmp_path: Path) -> None:
     assert (tmp_path / "deep" / "out" / "report.html").exists()
 
 
+def test_quick_writes_nothing(folder: Path, tmp_path: Path) -> None:
+    done = inerter("diagnose", folder / "run_0.csv", "--quick", "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    assert "constant force" in " ".join(done.stdout.split())
+    assert "Written" not in done.stdout
+    assert not (tmp_path / "out").exists()
+
+
 def test_model_and_device_as_baseline(folder: Path, diagnosed, tmp_path: Path) -> None:
     for option, file in (("--device", "device.toml"), ("--model", "model.xml")):
         done = inerter("diagnose", folder, option, diagnosed[1] / file, "--json",

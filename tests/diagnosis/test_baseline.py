@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import mujoco
@@ -12,6 +13,7 @@ from inerter.core import DeviceError
 from inerter.device_file import device_text, read_device
 from inerter.diagnose import diagnose, diagnose_bench
 from inerter.diagnose.output import write_outputs
+from inerter.diagnose.result import StatedValue
 from inerter.mjcf import device_of_model
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, response, strokes, sum_of_sines
@@ -85,8 +87,15 @@ def test_a_device_with_every_part_can_be_the_baseline(records) -> None:
 def test_wrong_inertance_is_named_alone(records) -> None:
     diagnosis = diagnose_bench(records, Device(**{**TRUE, "inertance": 70.0}))
     assert [finding.effect for finding in diagnosis.findings] == ["inertance_error"]
-    assert diagnosis.parameters["inertance"].value == pytest.approx(80, rel=0.01)
+    found = diagnosis.parameters["inertance"]
+    assert found.value == pytest.approx(80, rel=0.01)
     assert diagnosis.extended.device["viscous"] == 40.0
+    # what the data contradict is told in units and in per cent
+    assert isinstance(found, StatedValue)
+    assert found.stated == 70.0
+    assert found.difference == pytest.approx(10, abs=0.8)
+    assert re.search(r"stated 70, \+(9\.\d+|10(\.\d)?) kg, \+1[345] %", diagnosis.verdict)
+    assert diagnosis.json()["parameters"]["inertance"]["stated"] == 70.0
 
 
 def test_missing_friction_is_named_beside_stated_values(records) -> None:
@@ -95,6 +104,8 @@ def test_missing_friction_is_named_beside_stated_values(records) -> None:
     assert [finding.effect for finding in diagnosis.findings] == ["coulomb_friction"]
     assert diagnosis.parameters["coulomb_force"].value == pytest.approx(12, rel=0.03)
     assert "inertance" not in diagnosis.parameters
+    assert diagnosis.json()["parameters"]["coulomb_force"]["stated"] is None
+    assert "contradict" not in diagnosis.verdict
 
 
 def test_two_effects_are_found_without_a_device(records) -> None:

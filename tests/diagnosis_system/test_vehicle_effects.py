@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hidden_vehicles import Car, diagnose, records
-from inerter.diagnose.system.outcome import StatedValue
+from inerter.diagnose.result import StatedValue
 from inerter.records import VehicleRecord
 
 # effect: the car it is hidden in, the road, parameter -> (true value, allowed relative error)

@@ -22,7 +22,6 @@ from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
     Finding,
-    ParameterValue,
     RecordSummary,
     RunCurves,
 )
@@ -30,10 +29,11 @@ from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.diagnose.unexplained import unexplained
+from inerter.diagnose.values import parameter_values
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
-from inerter.identify.channel import UNITS, channel_values
+from inerter.identify.channel import channel_values
 from inerter.identify.coordinates import Scales
-from inerter.identify.fit import Fit, Masks, Problem, parameter_errors, rms
+from inerter.identify.fit import Fit, Masks, Problem, rms
 from inerter.identify.model import Model, stated_values
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.preparation import (
@@ -155,6 +155,7 @@ class _Bench:
         self.holdout = holdout
         self._take(prepare(self.records))
         _refuse_too_little(self.split, self.band, self.raw)
+        self.device = device
         self.baseline = baseline_model(device, self.band.scales)
         if delay:
             stated = {**self.baseline.values, "delay": delay}
@@ -343,7 +344,7 @@ class _Bench:
         chain: list[Link],
         standings: dict[str, Standing],
     ) -> list[Finding]:
-        values = self._parameters(final)
+        values = parameter_values(final, self.device)
         findings = []
         for link in chain:
             known = standings.get(link.effect)
@@ -361,13 +362,6 @@ class _Bench:
             )
             findings.append(replace(finding, evidence=wording.evidence(finding)))
         return sorted(findings, key=lambda finding: -finding.gain)
-
-    def _parameters(self, fit: Fit) -> dict[str, ParameterValue]:
-        units = {name: entry.unit for name, entry in parameters().items()} | dict(UNITS)
-        return {
-            name: ParameterValue(value, error, units[name])
-            for name, (value, error) in parameter_errors(fit).items()
-        }
 
     def _accuracy(self, model: Model) -> Accuracy:
         rmse, spread = self.judge.rmse(model), float(np.std(self.judge.force))
@@ -408,7 +402,7 @@ class _Bench:
             remains,
             engines,
             "",
-            self._parameters(final),
+            parameter_values(final, self.device),
             self._method(),
             self._curves(before.model, final.model),
         )

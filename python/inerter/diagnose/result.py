@@ -22,6 +22,18 @@ class ParameterValue:
 
 
 @dataclass(frozen=True)
+class StatedValue(ParameterValue):
+    """An identified value beside the one that the user states; None: there is none."""
+
+    stated: float | None = None
+
+    @property
+    def difference(self) -> float | None:
+        """How far the value is from the one stated."""
+        return None if self.stated is None else self.value - self.stated
+
+
+@dataclass(frozen=True)
 class Rival:
     """Another effect that could explain the same data, and how likely it is."""
 

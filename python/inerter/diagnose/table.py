@@ -30,8 +30,9 @@ from inerter.diagnose.result import (
     Unexplained,
 )
 from inerter.diagnose.statistics import win_shares
+from inerter.diagnose.values import parameter_values
 from inerter.identify.coordinates import Scales, coordinate
-from inerter.identify.fit import Fit, parameter_errors
+from inerter.identify.fit import Fit
 from inerter.identify.model import NUISANCES, Model, stated_values
 from inerter.records import BenchTable
 from inerter.rig import simulate_along
@@ -204,7 +205,7 @@ def diagnose_table(
             break
         fit, squares = after, after_squares
         findings.append(Finding(effect, None, confidence, {}, rmse_before, rmse_after, "", rivals))
-    values = _parameters(fit)
+    values = parameter_values(fit, device)
     findings = [
         replace(f, parameters={n: values[n] for n in EFFECTS[f.effect].parameters if n in values})
         for f in findings
@@ -241,14 +242,6 @@ def _best(
         if share > 0.005
     ]
     return effect, after, best, float(shares[0]), sorted(rivals, key=lambda r: -r.confidence)
-
-
-def _parameters(fit: Fit) -> dict[str, ParameterValue]:
-    units = {name: entry.unit for name, entry in parameters().items()}
-    return {
-        name: ParameterValue(value, error, units[name])
-        for name, (value, error) in parameter_errors(fit).items()
-    }
 
 
 def _diagnosis(

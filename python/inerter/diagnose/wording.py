@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from inerter.diagnose.effects import EFFECTS
-from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival
+from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival, StatedValue
 
 _NAMES = {
     "coulomb_force": "sliding level f_c",
@@ -57,6 +57,21 @@ def quantity(value: ParameterValue, digits: int = 3) -> str:
     return f"{value.value:.{digits}g} ± {value.stderr:.1g}{unit}"
 
 
+def value_in_words(name: str, value: ParameterValue) -> str:
+    """Such as "b = 92.3 ± 0.02 kg (stated 100, -7.7 kg, -7.7 %)"."""
+    off = departure(value)
+    return f"{name} = {quantity(value)}" + (f" ({off})" if off else "")
+
+
+def departure(value: ParameterValue) -> str:
+    """What is stated and how far off it is, in its unit and per cent; empty where nothing is."""
+    if not isinstance(value, StatedValue) or value.stated is None or value.difference is None:
+        return ""
+    unit = "" if value.unit == "1" else f" {value.unit}"
+    text = f"stated {value.stated:.4g}, {value.difference:+.3g}{unit}"
+    return text + (f", {100 * value.difference / value.stated:+.2g} %" if value.stated else "")
+
+
 def effect_in_words(finding: Finding) -> str:
     """Such as "friction with memory (Dahl)"."""
     law = f" ({_LAWS[finding.law]})" if finding.law in _LAWS else ""
@@ -71,8 +86,7 @@ def _rival_in_words(rival: Rival) -> str:
 def evidence(finding: Finding) -> str:
     """One sentence: values, and what the effect does to the error on held-out data."""
     values = ", ".join(
-        f"{_NAMES.get(name, name)} = {quantity(value)}"
-        for name, value in finding.parameters.items()
+        value_in_words(_NAMES.get(name, name), value) for name, value in finding.parameters.items()
     )
     where = (
         "blocks left out of the fit (what is held out does not reach it)"
@@ -144,6 +158,13 @@ def _verdict(diagnosis: Diagnosis) -> str:
         f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms, "
         f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {diagnosis.unexplained.summary}"
     )
+    contradicted = [
+        value_in_words(_NAMES.get(name, name), value)
+        for name, value in diagnosis.parameters.items()
+        if departure(value)
+    ]
+    if contradicted:
+        text += f" The data contradict what is stated: {'; '.join(contradicted)}."
     doubts = [
         f"{effect_in_words(finding)} can hardly be told from "
         f"{_rival_in_words(finding.rivals[0])} "

@@ -20,6 +20,7 @@ from inerter.diagnose.result import (
     RunCurves,
     TablePoints,
 )
+from inerter.diagnose.wording import departure
 from inerter.report import text
 from inerter.report.files import write_atomic
 from inerter.report.other_plots import cutoff_plot, table_plots
@@ -213,6 +214,7 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 "meaning": text.parameter_meaning(name),
                 "before": _value(old, suffix),
                 "after": text.with_error(found) if found else _value(new, suffix),
+                "off": departure(found) if found else "",
                 "how": "identified" if found else "as set" if new is not None else "left out",
                 "vague": found is not None and _vague(found),
             }

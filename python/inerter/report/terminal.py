@@ -7,7 +7,8 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from inerter.diagnose.result import Diagnosis
+from inerter.diagnose.result import Diagnosis, ParameterValue
+from inerter.diagnose.wording import departure
 from inerter.report import text
 from inerter.report.runs import role
 from inerter.report.subject import subject
@@ -58,7 +59,8 @@ def _findings(diagnosis: Diagnosis) -> Table:
             names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
             effect.append(f"\nor {names}", style="dim not bold")
         values = "\n".join(
-            f"{name} {text.with_error(value)}" for name, value in finding.parameters.items()
+            f"{name} {text.with_error(value)}{_departure(value)}"
+            for name, value in finding.parameters.items()
         )
         table.add_row(
             effect,
@@ -71,6 +73,11 @@ def _findings(diagnosis: Diagnosis) -> Table:
             text.confidence(finding.confidence),
         )
     return table
+
+
+def _departure(value: ParameterValue) -> str:
+    off = departure(value)
+    return f" ({off})" if off else ""
 
 
 def _records(diagnosis: Diagnosis) -> Table:

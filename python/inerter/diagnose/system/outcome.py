@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from inerter.core import Device
-from inerter.diagnose.result import Accuracy, Diagnosis, ParameterValue
+from inerter.diagnose.result import Accuracy, Diagnosis
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,6 @@ class SystemAccuracy(Accuracy):
         """As in the contract, with the channels."""
         channels = {name: vars(error) for name, error in self.channels.items()}
         return {**super().json(), "channels": channels}
-
-
-@dataclass(frozen=True)
-class StatedValue(ParameterValue):
-    """An identified value beside the one that the model states; None: it states none."""
-
-    stated: float | None = None
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import parameters
-from inerter.diagnose.result import ParameterValue
+from inerter.diagnose.result import ParameterValue, StatedValue
 from inerter.diagnose.system.build import UserModel
 from inerter.diagnose.system.model import SystemModel
-from inerter.diagnose.system.outcome import StatedValue
 from inerter.diagnose.system.search import Scored
 from inerter.identify.residual import sandwich
 

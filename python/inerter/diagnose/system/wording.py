@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from inerter.diagnose.result import Finding, ParameterValue
+from inerter.diagnose.result import Finding
 from inerter.diagnose.system.named import KNOWN
-from inerter.diagnose.system.outcome import StatedValue, SystemAccuracy
-from inerter.diagnose.wording import quantity
+from inerter.diagnose.system.outcome import SystemAccuracy
+from inerter.diagnose.wording import value_in_words
 
 # the same force between the same bodies: no record of the vehicle can tell these apart
 EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
@@ -19,7 +19,9 @@ def in_words(effect: str, law: str | None = None) -> str:
 
 def evidence(finding: Finding, place: str) -> str:
     """One sentence: values, stated ones beside them, and what the effect does to the error."""
-    values = ", ".join(_value(name, value) for name, value in finding.parameters.items())
+    values = ", ".join(
+        value_in_words(name.replace("_", " "), value) for name, value in finding.parameters.items()
+    )
     where = f" in {place}" if place else ""
     text = (
         f"{values}{where}: the error on held-out data falls from "
@@ -41,15 +43,6 @@ def evidence(finding: Finding, place: str) -> str:
         others = " or ".join(in_words(r.effect, r.law) for r in likely[:2])
         text += f"; {others} would explain these data nearly as well"
     return text + "."
-
-
-def _value(name: str, value: ParameterValue) -> str:
-    text = f"{name.replace('_', ' ')} = {quantity(value)}"
-    stated = value.stated if isinstance(value, StatedValue) else None
-    if stated:
-        off = 100 * (value.value / stated - 1)
-        text += f" (stated {stated:.4g}, {off:+.2g} %)"
-    return text
 
 
 def verdict(

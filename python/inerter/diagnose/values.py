@@ -1,0 +1,23 @@
+"""Fitted parameters with their standard errors, beside those that the user states."""
+
+from __future__ import annotations
+
+from inerter.core import Device, parameters
+from inerter.diagnose.result import ParameterValue, StatedValue
+from inerter.identify.channel import UNITS
+from inerter.identify.fit import Fit, parameter_errors
+
+
+def parameter_values(fit: Fit, device: Device | None) -> dict[str, ParameterValue]:
+    """Every parameter that a fit decided, by name.
+
+    device: the user's own, if any; what it states stands beside what was found.
+    """
+    units = {name: entry.unit for name, entry in parameters().items()} | dict(UNITS)
+    found = parameter_errors(fit)
+    if device is None:
+        return {n: ParameterValue(value, error, units[n]) for n, (value, error) in found.items()}
+    stated = {n: value for n, value in device.given.items() if not isinstance(value, str)}
+    return {
+        n: StatedValue(value, error, units[n], stated.get(n)) for n, (value, error) in found.items()
+    }
