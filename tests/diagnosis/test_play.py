@@ -7,7 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter.core import Device
-from inerter.diagnose.play import comes_in_blows, find_play, fit_play, forgiving, from_contact
+from inerter.diagnose.play import (
+    comes_in_blows,
+    find_play,
+    fit_play,
+    forgiving,
+    from_contact,
+    jackknife,
+)
 from inerter.identify.bench import Run
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
@@ -80,6 +87,19 @@ def test_play_is_found_from_anywhere() -> None:
     found = model.device().given
     for name in ("inertance", "backlash", "series_stiffness", "series_damping"):
         assert found[name] == pytest.approx(TRUTH.given[name], rel=0.02), name
+
+
+def test_the_spread_is_that_of_fits_to_other_data() -> None:
+    """Of three runs each left out; the truth lies within some standard errors of the fit."""
+    given = forgiving(followed(problem(3)), true_model())
+    found = given.fit(true_model())
+    nothing = [np.zeros_like(mask) for mask in given.masks]
+    folds = [[m if i == k else nothing[i] for i, m in enumerate(given.masks)] for k in range(3)]
+    error = np.sqrt(np.diag(jackknife(given, folds, found.model)))
+    for name, sigma in zip(found.model.free, error, strict=True):
+        value, true = found.model.values[name], true_model().values[name]
+        assert sigma < 0.02 * true, name
+        assert abs(value - true) < max(5 * sigma, 2e-3 * true), name
 
 
 def test_a_few_false_impacts_do_not_matter() -> None:

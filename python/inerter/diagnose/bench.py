@@ -13,11 +13,11 @@ from inerter.core import Device, parameters
 from inerter.diagnose import wording
 from inerter.diagnose.candidates import has_series
 from inerter.diagnose.chain import Link, chain_of, tone_link
-from inerter.diagnose.composition import effects_of, simpler_laws, stripped, submodel
+from inerter.diagnose.composition import effects_of, simpler_laws, submodel
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
-from inerter.diagnose.play import comes_in_blows, find_play, fit_play, forgiving, from_contact
+from inerter.diagnose.play import fit_play, forgiving, from_contact, jackknife, play_of
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -58,8 +58,8 @@ TRANSITION = 0.005
 MORE_BANDS = 2
 # share of the error that a wider band has to take away
 WORTH_A_BAND = 0.1
-# share of the error that a free play sought for on its own has to take away
-WORTH_A_PLAY = 0.2
+# effects that take away the rigid drive of the flywheel
+SERIES = ("backlash", "series_elasticity")
 # samples without which there is nothing to learn from or to judge on
 FEWEST = 8
 
@@ -201,6 +201,10 @@ class _Bench:
             final = self.search.score("", None, fit)
             chain = chain_of(self.search, self.judge, final.model)
         fit = self._with_tone(final.fit, chain, standings)
+        if "backlash" in fit.model.free:
+            self.progress("free play: how far other data would lead")
+            spread = jackknife(self.search.problem, self.full.folds, fit.model)
+            fit = replace(fit, covariance=fit.covariance + spread)
         findings = self._findings(fit, chain, standings)
         return self._diagnosis(before, fit, findings)
 
@@ -218,35 +222,26 @@ class _Bench:
             self.weighed, self.search = wider, self._weighed_search(wider)
             final = self.search.run(final.model, until="backlash")
         if "backlash" in final.model.free:
-            return self._with_play(final.model)
-        if raw := self._wider(self.preparation, final.model):
+            self.progress("free play: fitting it to the force as measured")
+        elif raw := self._wider(self.preparation, final.model):
             self._take(raw)
-        if play := self._play_beyond_the_band(final.model):
+        if play := self._play(final.model):
             return self._with_play(play)
         return final
 
-    def _play_beyond_the_band(self, model: Model) -> Model | None:
-        """A model with free play where the search found none and what remains comes in blows."""
-        learnt = self._followed()
-        if has_series(self.baseline) or not comes_in_blows(
-            learnt, model, self.judge.noise_floor(model)
-        ):
-            return None
-        self.progress("what remains comes in blows: trying free play")
-        rigid = stripped(model, "series_elasticity", self.baseline)
-        starts = [rigid] if rigid.free == self.baseline.free else [rigid, self.baseline]
-        plays = [play for start in starts if (play := find_play(learnt, start))]
-        if not plays:
-            return None
-        problem = forgiving(learnt, plays[0])
-        without, *found = (rms(problem.residual(m), problem.masks) for m in (model, *plays))
-        best = int(np.argmin(found))
-        return plays[best] if found[best] < (1 - WORTH_A_PLAY) * without else None
+    def _play(self, model: Model) -> Model | None:
+        """The model with free play fitted to the force as measured, if it has one or needs one."""
+        starts: list[Model] = []
+        if not has_series(self.baseline):
+            rigid = submodel(
+                model, [n for n, _ in effects_of(model, self.baseline) if n not in SERIES],
+                self.baseline,
+            )  # fmt: skip
+            starts = [rigid] if rigid.free == self.baseline.free else [rigid, self.baseline]
+        return play_of(self._followed(), model, starts, self.judge.noise_floor(model))
 
     def _with_play(self, play: Model) -> Scored:
         """The search from a model with free play on, with the force as measured."""
-        self.progress("free play: fitting it to the force as measured")
-        play = fit_play(self._followed(), play)
         for _ in range(MORE_BANDS):
             far = forgiving(self._followed(), play).runs[0].far
             band = self._prepared_for(play, self.preparation, far)

@@ -9,11 +9,12 @@ impacts can be out of step, so the fit starts from many points about what the ba
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import kurtosis, qmc
 
 from inerter.diagnose.parallel import parallel
@@ -21,6 +22,8 @@ from inerter.identify.bench import Run
 from inerter.identify.fit import Fit, Problem, rms, typical
 from inerter.identify.model import Model
 
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 Ranges = Mapping[str, tuple[float, float]]
 
 # factors between which the starting points lie: in the band contacts look soft and plays small
@@ -32,6 +35,17 @@ RANGES: Ranges = MappingProxyType(
         "inertance": (0.97, 1.12),
     }
 )
+# the same where only the way in which impacts are out of step is uncertain
+NEAR: Ranges = MappingProxyType(
+    {
+        "backlash": (0.985, 1.015),
+        "series_frequency": (0.95, 1.05),
+        "series_loss": (0.9, 1.1),
+        "inertance": (0.99, 1.01),
+    }
+)
+# the same where a fit is found again without knowing it
+AROUND: Ranges = MappingProxyType(dict.fromkeys(RANGES, (0.9, 1.1)))
 # starting points of a round are two to this power
 _POWER = 8
 # rounds at most; of those that do not take this share of the error away, so many end it
@@ -55,6 +69,8 @@ _SOME = 0.02
 _PEAKED = 10.0
 # share of the error that the best of points anywhere has to take away to be followed
 _PROMISE = 0.1
+# share of the error that a play sought for on its own has to take away
+_WORTH = 0.2
 # share of the rms force that tells a contact, and of the longest contact that is long
 _CONTACT = 0.2
 _LONG = 0.5
@@ -134,7 +150,35 @@ def fit_play(problem: Problem, model: Model) -> Model:
         far *= _NARROWER
         if idle == _PATIENCE:
             break
-    return model
+    return _fit_about(problem, model, 0, NEAR).model
+
+
+def play_of(problem: Problem, model: Model, rigid: Sequence[Model], noise: float) -> Model | None:
+    """A model with its free play fitted, or with one where it has none and needs one; else None.
+
+    Where what remains comes in blows a play is sought from anywhere on top of the `rigid` models.
+
+    Parameters
+    ----------
+    problem
+        Runs at the measured rate with the force as measured.
+    model
+        What the band told.
+    rigid
+        Models without free play or series element.
+    noise
+        Rms of the force's noise [N].
+    """
+    has_play = "backlash" in model.free
+    best = fit_play(problem, model) if has_play else model
+    if comes_in_blows(problem, best, noise):
+        plays = [play for start in rigid if (play := find_play(problem, start))]
+        if plays:
+            problem = forgiving(problem, plays[0])
+            here, *found = (rms(problem.residual(m), problem.masks) for m in (best, *plays))
+            if min(found) < (1.0 if has_play else 1 - _WORTH) * here:
+                return plays[int(np.argmin(found))]
+    return best if has_play else None
 
 
 def find_play(problem: Problem, model: Model) -> Model | None:
@@ -167,10 +211,38 @@ def find_play(problem: Problem, model: Model) -> Model | None:
     return min(fits, key=lambda model: rms(problem.residual(model), problem.masks))
 
 
-def _fit_about(problem: Problem, model: Model, seed: int) -> Fit:
-    here = {name: model.values[name] for name in RANGES if name in model.free}
-    ranges = {name: (at * RANGES[name][0], at * RANGES[name][1]) for name, at in here.items()}
-    best = _best(problem, [model, *_points(model, ranges, _POWER, seed)])
+def jackknife(problem: Problem, folds: Sequence[Sequence[Mask]], model: Model) -> Array:
+    """Covariance of a model's free coordinates by fits that leave out one fold each, shape (p, p).
+
+    One minimum of many tells by its curvature how sharp it is, not how far the others are. With
+    other data the impacts are out of step in another way.
+
+    Parameters
+    ----------
+    problem
+        With errors that count little beyond what is usual.
+    folds
+        Masks of every run for each fold.
+    model
+        The fit to all data.
+    """
+    found = []
+    for fold in folds:
+        rest = [mask & ~left for mask, left in zip(problem.masks, fold, strict=True)]
+        fit = _fit_about(problem.with_masks(rest), model, 0, AROUND, with_it=False)
+        found.append([fit.model.values[name] for name in model.free])
+    apart = np.array(found) - np.mean(found, axis=0)
+    count = len(found)
+    return (count - 1) / count * apart.T @ apart
+
+
+def _fit_about(
+    problem: Problem, model: Model, seed: int, near: Ranges = RANGES, with_it: bool = True
+) -> Fit:
+    here = {name: model.values[name] for name in near if name in model.free}
+    ranges = {name: (at * near[name][0], at * near[name][1]) for name, at in here.items()}
+    points = _points(model, ranges, _POWER, seed)
+    best = _best(problem, [model, *points] if with_it else points)
     fits = parallel(lambda start: problem.fit(start, _EVALUATIONS, tolerance=_TOLERANCE), best)
     return min(fits, key=lambda fit: fit.rmse(problem.masks))
 
