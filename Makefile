@@ -15,13 +15,14 @@ SOURCES := pyproject.toml CMakeLists.txt README.md LICENSE \
 C_FILES = $(shell find plugin_c tests benchmarks -name '*.[ch]')
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench lint format check wheel clean
+.PHONY: help demo test bench docs lint format check wheel clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped record into out/demo'
 	@echo 'make test    every test, on all cores, against the installed package'
 	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
 	@echo 'make bench   benchmarks, into out/bench'
+	@echo 'make docs    the documentation as pages, into out/docs'
 	@echo 'make lint    ruff, pyright, clang-format'
 	@echo 'make format  let ruff and clang-format rewrite the files'
 	@echo 'make check   lint and test'
@@ -67,6 +68,10 @@ test: $(VENV)/dev
 
 bench: $(VENV)/lab
 	@$(BIN)/python -m benchmarks
+
+docs: $(VENV)/dev
+	@$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
+	@echo 'open out/docs/index.html'
 
 # every tool has its say, then the sum decides
 lint: $(VENV)/dev

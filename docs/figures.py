@@ -1,0 +1,166 @@
+"""Pictures of what each part of a device does, drawn from the device itself, into docs/figures.
+
+The page builder runs this; `python docs/figures.py` does it by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from inerter import Device
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FOLDER = Path(__file__).parent / "figures"
+RATE = 4000.0
+AMPLITUDE = 0.01
+FRICTION: Mapping[str, dict[str, Any]] = {
+    "coulomb": {"coulomb_force": 10},
+    "stribeck": {"coulomb_force": 10, "static_force": 15, "stribeck_velocity": 0.01},
+    "dahl": {"coulomb_force": 10, "bristle_stiffness": 1e4},
+    "lugre": {
+        "coulomb_force": 10, "static_force": 15, "stribeck_velocity": 0.01,
+        "bristle_stiffness": 1e4, "bristle_damping": 40,
+    },
+    "bouc_wen": {"bw_stiffness": 1e4, "bw_beta": 600, "bw_gamma": 400},
+    "brown_mcphee": {"coulomb_force": 10, "static_force": 15, "stribeck_velocity": 0.01},
+}  # fmt: skip
+SERIES = {"inertance": 100, "series_stiffness": 2e5, "series_damping": 400}
+
+
+def sine(frequency: float, periods: float = 2, amplitude: float = AMPLITUDE) -> tuple[Array, ...]:
+    """Time, displacement, velocity, acceleration of a sine that begins at rest at its crest."""
+    rate = 2 * np.pi * frequency
+    t = np.arange(0, periods / frequency, 1 / RATE)
+    return (
+        t,
+        -amplitude * np.cos(rate * t),
+        amplitude * rate * np.sin(rate * t),
+        amplitude * rate**2 * np.cos(rate * t),
+    )
+
+
+def along(device: Device, motion: Sequence[Array], state: Any = None) -> Array:
+    """Force of a device along time, displacement, velocity, acceleration [N]."""
+    state = np.zeros(device.nstate) if state is None else state
+    x, v, a = motion[1:]
+    return device.along(1 / RATE, x, v, a, state)["total"]
+
+
+def settled(values: Array, frequency: float) -> Array:
+    """The last period."""
+    return values[-round(RATE / frequency) :]
+
+
+def loops(name: str, devices: Mapping[str, Device], frequency: float, amplitude: float) -> None:
+    """Force over displacement and over velocity, last period of some."""
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    left, right = figure.subplots(1, 2, sharey=True)
+    motion = sine(frequency, 4, amplitude)
+    for label, device in devices.items():
+        force = settled(along(device, motion), frequency)
+        left.plot(1e3 * settled(motion[1], frequency), force, label=label)
+        right.plot(settled(motion[2], frequency), force)
+    left.set(xlabel="displacement [mm]", ylabel="force [N]")
+    right.set(xlabel="velocity [m/s]")
+    if len(devices) > 1:
+        left.legend(fontsize="small")
+    _save(figure, name)
+
+
+def in_time(name: str, devices: Mapping[str, Device], motion: Sequence[Array]) -> None:
+    """Force over time."""
+    figure = Figure(figsize=(8, 2.8), layout="constrained")
+    axes: Axes = figure.subplots()
+    for label, device in devices.items():
+        state = np.zeros(device.nstate)
+        if device.nstate:
+            x, v, a = (float(channel[0]) for channel in motion[1:])
+            state = device.state_of_force(x, v, a, 0.0)
+        axes.plot(motion[0], along(device, motion, state), label=label)
+    axes.set(xlabel="time [s]", ylabel="force [N]")
+    axes.legend(fontsize="small")
+    _save(figure, name)
+
+
+def draw() -> list[Path]:
+    """Every picture."""
+    FOLDER.mkdir(exist_ok=True)
+    for law, values in FRICTION.items():
+        loops(law, {law: Device(friction=law, **values)}, 0.5, AMPLITUDE)
+    dahl = FRICTION["dahl"]
+    loops(
+        "friction_backlash",
+        {
+            "Dahl": Device(friction="dahl", **dahl),
+            "2 mm of play before it": Device(friction="dahl", **dahl, friction_backlash=1e-3),
+        },
+        0.5,
+        AMPLITUDE,
+    )
+    loops(
+        "inertance",
+        {
+            "constant": Device(inertance=100),
+            "along the stroke": Device(inertance=100, inertance_gradient=50),
+            "with speed": Device(inertance=100, inertance_speed_gradient=5),
+        },
+        1.0,
+        AMPLITUDE,
+    )
+    loops(
+        "end_stops",
+        {"8 mm": Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)},
+        1.0,
+        AMPLITUDE,
+    )  # fmt: skip
+    gas = {"gas_pressure": 1e5, "gas_area": 1e-3, "gas_volume": 2.2e-5}
+    loops(
+        "gas",
+        {law: Device(**gas, gas_law=law) for law in ("polytropic", "expanded")},
+        1.0,
+        AMPLITUDE,
+    )
+    loops(
+        "fluid",
+        {
+            f"{viscosity:g} Pa s": Device(
+                piston_area=2e-3, channel_area=8e-5, channel_length=2.0,
+                fluid_density=850, fluid_viscosity=viscosity,
+            )
+            for viscosity in (0.0, 0.02, 0.1)
+        },
+        1.0,
+        AMPLITUDE,
+    )  # fmt: skip
+    stroke = sine(2.0, 3)
+    in_time(
+        "series",
+        {
+            "rigid": Device(inertance=100),
+            "elastic": Device(**SERIES),
+            "elastic, 0.4 mm of play": Device(**SERIES, backlash=2e-4),
+        },
+        stroke,
+    )
+    return sorted(FOLDER.glob("*.svg"))
+
+
+def _save(figure: Figure, name: str) -> None:
+    for axes in figure.axes:
+        axes.grid(alpha=0.3)
+        axes.spines[["top", "right"]].set_visible(False)
+    with mpl.rc_context({"svg.hashsalt": "inerter"}):
+        figure.savefig(FOLDER / f"{name}.svg", metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    for path in draw():
+        print(path)
