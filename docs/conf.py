@@ -36,4 +36,5 @@ napoleon_google_docstring = False
 
 html_theme = "furo"
 html_title = "inerter"
-html_theme_options = {"source_edit_link": ""}
+html_static_path = ["_static"]
+html_css_files = ["page.css"]

@@ -28,7 +28,7 @@ def test_command_end_to_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert found["single"]["gain_on_truth"]["worst"] > 0.5
     assert found["failures"] == []
     assert {path.name for path in tmp_path.iterdir()} == {
-        "blind_test.json", "confusion.png", "calibration.png",
+        "blind_test.json", "confusion.png", "calibration.png", "cases",
     }  # fmt: skip
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from inerter.blind_test import case as blind_case
-from inerter.blind_test.case import compare, hide, solve
+from inerter.blind_test.case import Named, Outcome, ParameterError, compare, hide, solve
 from inerter.blind_test.plan import Plan, Task
 from inerter.blind_test.run import run_tasks
 from inerter.core import Device
@@ -65,6 +66,42 @@ def test_a_process_that_dies_is_a_failure_of_its_case_alone() -> None:
     assert died.first == "failed"
     assert died.error == "the process ended without a result (exit status 9)"
     assert all(0.0 <= share <= 1.0 for share in shares)
+
+
+CALLS: list[int] = []
+
+
+def solve_and_count(task: Task) -> Outcome:
+    CALLS.append(task.seed)
+    named = (Named("backlash", None, 0.75),)
+    errors = (ParameterError("backlash", "backlash", 1e-4, float("nan"), None),)
+    return Outcome(task, named=named, parameters=errors, gain=0.5, verdict=str(task.seed))
+
+
+def test_a_test_that_was_broken_off_goes_on(tmp_path: Path) -> None:
+    """What was found by the same code is taken as it is; the rest, and what is torn, is done."""
+    tasks = [Task("single", seed, 0.01, ("backlash",)) for seed in (1, 2, 3)]
+    CALLS.clear()
+    before = run_tasks(tasks[:2], 1, work=solve_and_count, folder=tmp_path)
+    torn = next(tmp_path.glob("*-2.json"))
+    torn.write_text(torn.read_text()[:50])
+    after = run_tasks(tasks, 1, work=solve_and_count, folder=tmp_path)
+    assert CALLS == [1, 2, 2, 3]
+    assert repr(after[:2]) == repr(before)
+    assert [outcome.verdict for outcome in after] == ["1", "2", "3"]
+
+    # another code
+    kept = next(tmp_path.glob("*-1.json"))
+    kept.write_text(kept.read_text().replace('"code": "', '"code": "x'))
+    run_tasks(tasks, 1, work=solve_and_count, folder=tmp_path)
+    assert CALLS[4:] == [1]
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_effects_take_turns() -> None:
+    plan = Plan(effects=("coulomb_friction", "backlash"), count=2)
+    assert [task.effects[0] for task in plan.tasks()] == ["coulomb_friction", "backlash"] * 2
+    assert len({task.name for task in plan.tasks()}) == 4
 
 
 def test_a_diagnosis_that_raises_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
@@ -73,6 +75,25 @@ class Outcome:
     processor_seconds: float = 0.0
     share: float | None = None
     error: str | None = None
+
+    def json(self) -> dict[str, Any]:
+        """As a JSON object."""
+        return asdict(self)
+
+    @classmethod
+    def of_json(cls, data: Mapping[str, Any]) -> Outcome:
+        """From what `json` gave.
+
+        Raises
+        ------
+        KeyError, TypeError
+            It is no such object.
+        """
+        task = Task(**{**data["task"], "effects": tuple(data["task"]["effects"])})
+        named = tuple(Named(**each) for each in data["named"])
+        errors = tuple(ParameterError(**each) for each in data["parameters"])
+        return cls(**{**data, "task": task, "named": named, "parameters": errors})
+
     truth: dict[str, float] = field(default_factory=dict)
 
     @property

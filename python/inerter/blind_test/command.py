@@ -52,7 +52,8 @@ def blind_test_command(
 ) -> None:
     """Hide effects in records made by other equations, diagnose them, count what was found.
 
-    Writes blind_test.json, confusion.png and calibration.png.
+    Writes blind_test.json, confusion.png and calibration.png. Broken off, the same command with the
+    same --seed goes on where it ended: each outcome is kept in the folder "cases".
     """
     from inerter.blind_test.output import write_blind_test
     from inerter.blind_test.plan import Plan
@@ -75,7 +76,11 @@ def blind_test_command(
         notes.print(f"blind test: {len(tasks)} cases, --seed {plan.seed}", highlight=False)
         start = time.perf_counter()
         with progress_bar("hiding and diagnosing", as_json) as progress:
-            outcomes = run_tasks(tasks, workers, progress)
+            try:
+                outcomes = run_tasks(tasks, workers, progress, folder=out_dir / "cases")
+            except KeyboardInterrupt:
+                notes.print(f"broken off; the same command with --seed {plan.seed} goes on")
+                raise
         result = score(plan, outcomes, time.perf_counter() - start)
         files = write_blind_test(result, out_dir)
     if as_json:

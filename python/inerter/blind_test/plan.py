@@ -25,6 +25,12 @@ class Task:
     kind: str | None = None
 
     @property
+    def name(self) -> str:
+        """What tells it from every other case, as a file's name."""
+        what = self.kind or "+".join(self.effects) or "nothing"
+        return "-".join([self.group, what, *([self.law] if self.law else []), str(self.seed)])
+
+    @property
     def levels(self) -> NoiseLevels:
         """Noise: a share of the force rms; a micrometre of displacement for 1 %."""
         return NoiseLevels(0.0, self.noise, 1e-4 * self.noise)
@@ -85,10 +91,13 @@ class Plan:
             raise ValueError("--count: no case is asked for; give a number above 0")
 
     def tasks(self) -> list[Task]:
-        """All cases; the number of one kind does not change the seeds of another."""
+        """All cases; the number of one kind does not change the seeds of another.
+
+        The effects take turns, so that a test that is broken off has some of each.
+        """
         found: list[Task] = []
-        for effect in self.effects:
-            for i in range(self.count):
+        for i in range(self.count):
+            for effect in self.effects:
                 # the laws take turns
                 hysteretic = effect == "hysteretic_friction"
                 law = HYSTERETIC_LAWS[i % len(HYSTERETIC_LAWS)] if hysteretic else None

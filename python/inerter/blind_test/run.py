@@ -1,13 +1,21 @@
-"""All cases of a blind test in parallel; a process that dies takes no other case with it."""
+"""All cases of a blind test in parallel; a process that dies takes no other case with it.
+
+Each outcome is kept in a file of its own, with a fingerprint of the code that found it: a test that
+was broken off goes on where it ended.
+"""
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import json
 import multiprocessing
-import pickle
+import os
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import inerter
 from inerter.blind_test.case import Outcome, solve
 from inerter.blind_test.plan import Task
 from inerter.parallel import WorkError, run_all
@@ -21,6 +29,7 @@ def run_tasks(
     workers: int | None = None,
     progress: Callable[[float], None] = lambda share: None,
     work: Solve = solve,
+    folder: Path | None = None,
 ) -> list[Outcome]:
     """Every case's outcome, in the order of the tasks.
 
@@ -35,37 +44,69 @@ def run_tasks(
         Called with the share that is done, 0 to 1.
     work
         What solves a case: a function at the top of a module.
+    folder
+        Where the outcomes are kept, and taken from where the same code has found them before; by
+        default nowhere.
 
     Raises
     ------
     WorkError
         Processes end before they take up a case.
+    OSError
+        The folder cannot be written.
     """
-    with tempfile.TemporaryDirectory(prefix="blind-test-") as scratch:
-        folder = Path(scratch)
-        pieces = [(work, task, folder / str(number)) for number, task in enumerate(tasks)]
-        left = pieces
-        while left:
-            done = len(pieces) - len(left)
+    if folder is None:
+        with tempfile.TemporaryDirectory(prefix="blind-test-") as scratch:
+            return run_tasks(tasks, workers, progress, work, Path(scratch))
+    folder.mkdir(parents=True, exist_ok=True)
+    pieces = [(work, task, folder / task.name) for task in tasks]
+    left = [piece for piece in pieces if _found(piece) is None]
+    for piece in left:
+        piece[2].unlink(missing_ok=True)
+        _result(piece).unlink(missing_ok=True)
+    while left:
+        done = len(pieces) - len(left)
 
-            def report(share: float, done: int = done, left: int = len(left)) -> None:
-                progress((done + share * left) / len(pieces))
+        def report(share: float, done: int = done, left: int = len(left)) -> None:
+            progress((done + share * left) / len(pieces))
 
-            try:
-                run_all(_solve_piece, left, jobs=workers, progress=report)
-            except WorkError:
-                # a process died: what it may have been at is tried again, each in its own
-                suspects = _under_way(left)
-                if not suspects:
-                    raise
-                for piece in suspects:
-                    _solve_alone(piece)
-            left = [piece for piece in pieces if not _result(piece).exists()]
-        return [pickle.loads(_result(piece).read_bytes()) for piece in pieces]
+        try:
+            run_all(_solve_piece, left, jobs=workers, progress=report)
+        except WorkError:
+            # a process died: what it may have been at is tried again, each in its own
+            suspects = _under_way(left)
+            if not suspects:
+                raise
+            for piece in suspects:
+                _solve_alone(piece)
+        left = [piece for piece in left if _found(piece) is None]
+    return [outcome for piece in pieces if (outcome := _found(piece))]
+
+
+@functools.cache
+def fingerprint() -> str:
+    """Of this package's code: outcomes of another one say nothing about it."""
+    root = Path(inerter.__file__).parent
+    found = hashlib.sha256()
+    for path in sorted([*root.rglob("*.py"), *root.rglob("*.so"), *root.rglob("*.dylib")]):
+        found.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    return found.hexdigest()[:16]
 
 
 def _result(piece: Piece) -> Path:
-    return piece[2].with_suffix(".done")
+    return piece[2].with_name(piece[2].name + ".json")
+
+
+def _found(piece: Piece) -> Outcome | None:
+    """The outcome that is kept, if this code found it."""
+    try:
+        data = json.loads(_result(piece).read_text(encoding="utf-8"))
+        if data.pop("code") != fingerprint():
+            return None
+        outcome = Outcome.of_json(data)
+    except (FileNotFoundError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+    return outcome if outcome.task == piece[1] else None
 
 
 def _under_way(pieces: Sequence[Piece]) -> list[Piece]:
@@ -73,7 +114,7 @@ def _under_way(pieces: Sequence[Piece]) -> list[Piece]:
 
 
 def _solve_piece(piece: Piece) -> None:
-    """Solve a case and leave its outcome in the scratch folder."""
+    """Solve a case and leave its outcome in the folder."""
     work, task, mark = piece
     mark.touch()
     _keep(piece, work(task))
@@ -83,12 +124,13 @@ def _solve_alone(piece: Piece) -> None:
     process = multiprocessing.get_context("spawn").Process(target=_solve_piece, args=(piece,))
     process.start()
     process.join()
-    if not _result(piece).exists():
+    if _found(piece) is None:
         text = f"the process ended without a result (exit status {process.exitcode})"
         _keep(piece, Outcome(piece[1], piece[1].law, error=text))
 
 
 def _keep(piece: Piece, outcome: Outcome) -> None:
-    partial = piece[2].with_suffix(".partial")
-    partial.write_bytes(pickle.dumps(outcome))
-    partial.replace(_result(piece))
+    partial = piece[2].with_name(piece[2].name + ".partial")
+    partial.write_text(json.dumps({"code": fingerprint(), **outcome.json()}), encoding="utf-8")
+    os.replace(partial, _result(piece))
+    piece[2].unlink(missing_ok=True)
