@@ -18,6 +18,7 @@ from inerter.diagnose.search import (
     Search,
 )
 from inerter.diagnose.statistics import advantage, win_shares
+from inerter.identify.model import Model
 
 # where the data cannot tell two effects apart, the earlier one here is named
 PRECEDENCE = (
@@ -98,7 +99,8 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     )
     pairs = sorted(zip(scored, shares[2:], strict=True), key=lambda pair: -pair[1])
     better = next(
-        (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect)), None
+        (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect, baseline)),
+        None,
     )
     # another law or form of the same effect is no doubt about the effect; a law is told
     same = float(sum(share for s, share in pairs if s.effect == effect))
@@ -110,12 +112,17 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     return Standing(min(float(shares[0]) + same, 1.0), rivals, better)
 
 
-def _takes_precedence(rival: Scored, final: Scored, effect: str) -> bool:
-    """Whether a rival does as well with no more parameters and is the more usual cause."""
+def _takes_precedence(rival: Scored, final: Scored, effect: str, baseline: Model) -> bool:
+    """Whether a rival does as well with no more parameters, and is one cause instead of two.
+
+    Or as many, and the more usual one.
+    """
+    causes = [len(effects_of(scored.model, baseline)) for scored in (rival, final)]
+    usual = PRECEDENCE.index(rival.effect) < PRECEDENCE.index(effect)
     loss = np.sqrt(rival.squares.sum() / final.squares.sum()) - 1
     return bool(
         rival.model.complexity <= final.model.complexity
-        and PRECEDENCE.index(rival.effect) < PRECEDENCE.index(effect)
+        and (causes[0] < causes[1] or (causes[0] == causes[1] and usual))
         and loss < EQUAL_LOSS
         and advantage(rival.squares, final.squares) < EQUAL_ADVANTAGE
     )
