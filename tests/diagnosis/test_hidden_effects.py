@@ -78,37 +78,28 @@ def _size(case: HiddenCase, name: str) -> float | None:
 def test_gain_is_real(solved) -> None:
     """On data that neither the fit nor the search saw, against the truth without noise."""
     case, diagnosis = solved
-    assert diagnosis.extended.rmse < 0.5 * diagnosis.baseline.rmse or case.effect == "backlash"
+    assert diagnosis.extended.rmse < 0.5 * diagnosis.baseline.rmse
     for curve, run in zip(diagnosis.curves, case.runs, strict=True):
         if curve.role == "holdout":
-            truth = run.truth.force
-            before, after = (
-                _size_of_error((model - truth)[curve.inner], case.effect)
-                for model in (curve.baseline, curve.extended)
-            )
+            inner = curve.inner
+            truth = run.truth.force[inner]
+            before = np.sqrt(np.mean((curve.baseline[inner] - truth) ** 2))
+            after = np.sqrt(np.mean((curve.extended[inner] - truth) ** 2))
             assert after < 0.5 * before, f"seed {case.seed}"
-
-
-def _size_of_error(error: np.ndarray, effect: str) -> float:
-    """Rms; behind a play, where one impact that comes otherwise outweighs the rest, a quantile."""
-    if effect == "backlash":
-        return float(np.quantile(np.abs(error), 0.75))
-    return float(np.sqrt(np.mean(error**2)))
 
 
 def test_engines_agree_with_the_diagnosis(solved) -> None:
     """Each engine, along the held-out motion, misses the measured force by as much as was said.
 
     MuJoCo steps the states as the diagnosis does; Exudyn and the reference resolve what happens
-    between two samples. Behind a play one impact that comes otherwise changes the next: there the
-    forces agree most of the time, and the errors need not.
+    between two samples. Behind a play one impact that comes otherwise changes the next.
     """
     case, diagnosis = solved
-    if case.effect == "backlash":
+    play = case.effect == "backlash"
+    if play:
         _agree_mostly(diagnosis)
-        return
     rmse = diagnosis.extended.rmse
-    assert diagnosis.engines["mujoco"] == pytest.approx(rmse, rel=1e-3)
+    assert diagnosis.engines["mujoco"] == pytest.approx(rmse, rel=0.02 if play else 1e-3)
     for engine in ("reference", *(["exudyn"] if installed() else [])):
         assert diagnosis.engines[engine] == pytest.approx(rmse, rel=0.02), engine
 
@@ -126,9 +117,6 @@ def _agree_mostly(diagnosis: Diagnosis) -> None:
         force = simulate(device, spacing, x, v, a, state)["total"]
         apart = np.abs(force - curve.extended[first:])[inner]
         assert np.quantile(apart, 0.75) < 0.01 * np.std(force), simulate.__module__
-    for engine, error in diagnosis.engines.items():
-        assert error is not None, engine
-        assert error < 0.8 * diagnosis.baseline.rmse, engine
 
 
 @pytest.mark.parametrize("offset", [100, 101, 102])

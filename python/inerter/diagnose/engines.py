@@ -20,6 +20,9 @@ from inerter.reference import Motion, ReferenceDevice, response
 Array = NDArray[np.float64]
 Along = Callable[[Device, Run, Any], dict[str, Array]]
 
+# steps per sample of a device with free play
+PLAY_PARTS = 8
+
 
 def simulate_engines(
     model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
@@ -61,19 +64,29 @@ def _error(
 
 
 def _mujoco(device: Device, run: Run, state: Any) -> dict[str, Array]:
-    motion = (run.displacement, run.velocity, run.acceleration)
-    return _forces(rig.simulate_along(device, run.spacing, *motion, state))
-
-
-def _forces(found: dict[str, Array]) -> dict[str, Array]:
-    return {name: found[name] for name in ("total", "friction")}
+    return _stepped(rig.simulate_along, device, run, state)
 
 
 def _exudyn(device: Device, run: Run, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
-    motion = (run.displacement, run.velocity, run.acceleration)
-    return _forces(simulate_along(device, run.spacing, *motion, state))
+    return _stepped(simulate_along, device, run, state)
+
+
+def _stepped(
+    simulate: Callable[..., dict[str, Array]], device: Device, run: Run, state: Any
+) -> dict[str, Array]:
+    """Forces at the samples; behind a play with steps within them, for when the flywheel lands."""
+    parts = PLAY_PARTS if device.backlash else 1
+    channels: tuple[Any, ...] = (run.displacement, run.velocity, run.acceleration)
+    if parts > 1:
+        motion = _motion(run)
+        times = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
+        channels = tuple(
+            of(times) for of in (motion.displacement, motion.velocity, motion.acceleration)
+        )
+    found = simulate(device, run.spacing / parts, *channels, state)
+    return {name: found[name][::parts] for name in ("total", "friction")}
 
 
 def _reference(device: Device, run: Run, state: Any) -> dict[str, Array]:

@@ -57,6 +57,10 @@ def quantity(value: ParameterValue, digits: int = 3) -> str:
     return f"{value.value:.{digits}g} ± {value.stderr:.1g}{unit}"
 
 
+# standard errors by which a stated value is contradicted
+CONTRADICTION = 3.0
+
+
 def value_in_words(name: str, value: ParameterValue) -> str:
     """Such as "b = 92.3 ± 0.02 kg (stated 100, -7.7 kg, -7.7 %)"."""
     off = departure(value)
@@ -70,6 +74,12 @@ def departure(value: ParameterValue) -> str:
     unit = "" if value.unit == "1" else f" {value.unit}"
     text = f"stated {value.stated:.4g}, {value.difference:+.3g}{unit}"
     return text + (f", {100 * value.difference / value.stated:+.2g} %" if value.stated else "")
+
+
+def _contradicts(value: ParameterValue) -> bool:
+    """Whether a value is another than stated, by more than its error leaves open."""
+    off = value.difference if isinstance(value, StatedValue) else None
+    return off is not None and abs(off) > CONTRADICTION * value.stderr
 
 
 def effect_in_words(finding: Finding) -> str:
@@ -161,7 +171,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
     contradicted = [
         value_in_words(_NAMES.get(name, name), value)
         for name, value in diagnosis.parameters.items()
-        if departure(value)
+        if name != "transition_velocity" and _contradicts(value)
     ]
     if contradicted:
         text += f" The data contradict what is stated: {'; '.join(contradicted)}."
