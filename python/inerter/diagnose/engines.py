@@ -81,7 +81,7 @@ def _stepped(
     channels: tuple[Any, ...] = (run.displacement, run.velocity, run.acceleration)
     if parts > 1:
         motion = _motion(run)
-        times = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
+        times: Any = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
         channels = tuple(
             of(times) for of in (motion.displacement, motion.velocity, motion.acceleration)
         )
