@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from inerter.diagnose.effects import EFFECTS, LAW_COORDINATES, LEVEL_COORDINATES
+from inerter.identify.coordinates import Scales, coordinate
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 
@@ -27,8 +28,20 @@ _AMPLITUDES = {
 }
 
 
-def is_distinct(effect: str, fit: Fit, required: float) -> bool:
-    """Whether a fitted effect differs from none by some standard errors of its coordinates."""
+# a fall of the friction narrower than this many of the narrowest that is searched for is the blur
+# of a reversal, which any friction has in smoothed data
+_NARROWEST = 1.5
+
+
+def is_distinct(effect: str, fit: Fit, required: float, scales: Scales) -> bool:
+    """Whether a fitted effect differs from none by some standard errors of its coordinates.
+
+    What lies at the edge of what smoothed data resolve is not told from none either.
+    """
+    if effect == "stribeck_friction":
+        narrowest = coordinate("stribeck_velocity", scales).lower
+        if fit.model.values["stribeck_velocity"] < _NARROWEST * narrowest:
+            return False
     names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
     errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
     known = [name for name in names if name in errors]

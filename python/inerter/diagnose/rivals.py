@@ -83,7 +83,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     trials = [
         (candidate, fit)
         for candidate, fit in search.fit_all(others, without.fit)
-        if is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION)
+        if is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, problem.scales)
     ]
     scored = parallel(
         lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), trials[:SHORTLIST]

@@ -327,7 +327,8 @@ class Search:
         good = [
             s
             for s in scored
-            if self._better(current, s) and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION)
+            if self._better(current, s)
+            and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.problem.scales)
         ]
         if not good:
             return None
