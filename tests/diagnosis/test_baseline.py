@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -13,7 +14,8 @@ from inerter.core import DeviceError
 from inerter.device_file import device_text, read_device
 from inerter.diagnose import diagnose, diagnose_bench
 from inerter.diagnose.output import write_outputs
-from inerter.diagnose.result import StatedValue
+from inerter.diagnose.result import Diagnosis, StatedValue
+from inerter.diagnose.wording import verdict
 from inerter.mjcf import device_of_model
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, response, strokes, sum_of_sines
@@ -84,8 +86,14 @@ def test_a_device_with_every_part_can_be_the_baseline(records) -> None:
         diagnose_bench(records, channel)
 
 
-def test_wrong_inertance_is_named_alone(records) -> None:
-    diagnosis = diagnose_bench(records, Device(**{**TRUE, "inertance": 70.0}))
+@pytest.fixture(scope="module")
+def of_wrong_inertance(records) -> Diagnosis:
+    """80 kg, stated as 70."""
+    return diagnose_bench(records, Device(**{**TRUE, "inertance": 70.0}))
+
+
+def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
+    diagnosis = of_wrong_inertance
     assert [finding.effect for finding in diagnosis.findings] == ["inertance_error"]
     found = diagnosis.parameters["inertance"]
     assert found.value == pytest.approx(80, rel=0.01)
@@ -96,6 +104,25 @@ def test_wrong_inertance_is_named_alone(records) -> None:
     assert found.difference == pytest.approx(10, abs=0.8)
     assert re.search(r"stated 70, \+(9\.\d+|10(\.\d)?) kg, \+1[345] %", diagnosis.verdict)
     assert diagnosis.json()["parameters"]["inertance"]["stated"] == 70.0
+
+
+@pytest.mark.parametrize(
+    ("stated", "told"),
+    [
+        (76.4, "stated 76.4, +3.6 kg, +4.7 %"),
+        (76.6, None),
+        (83.4, None),
+        (83.6, "stated 83.6, -3.6 kg"),
+    ],
+)
+def test_a_contradiction_is_more_than_the_error_of_the_fit(
+    of_wrong_inertance: Diagnosis, stated: float, told: str | None
+) -> None:
+    # 80 +- 1.15 kg: three standard errors reach from 76.55 to 83.45
+    value = StatedValue(80.0, 1.15, "kg", stated)
+    words = verdict(replace(of_wrong_inertance, parameters={"inertance": value}))
+    assert ("contradict" in words) == (told is not None)
+    assert told is None or told in words
 
 
 def test_missing_friction_is_named_beside_stated_values(records) -> None:
