@@ -103,7 +103,12 @@ def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
     assert found.stated == 70.0
     assert found.difference == pytest.approx(10, abs=0.8)
     assert re.search(r"stated 70, \+(9\.\d+|10(\.\d)?) kg, \+1[345] %", diagnosis.verdict)
-    assert diagnosis.json()["parameters"]["inertance"]["stated"] == 70.0
+    told = diagnosis.json()
+    assert told["parameters"]["inertance"]["stated"] == 70.0
+    # one finding: its gain is the whole one
+    low, high = told["findings"][0]["gain_interval"]
+    assert low < told["gain"]["value"] < high
+    assert told["gain"]["interval"] == pytest.approx([low, high], rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
+from inerter.diagnose.statistics import gain_interval
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
@@ -354,6 +355,7 @@ class _Bench:
                 "",
                 [r for r in known.rivals if r.confidence >= 0.005] if known else [],
                 link.seen_in_blocks,
+                link.interval,
             )
             findings.append(replace(finding, evidence=wording.evidence(finding)))
         return sorted(findings, key=lambda finding: -finding.gain)
@@ -400,6 +402,9 @@ class _Bench:
             parameter_values(final, self.device),
             self._method(),
             self._curves(before.model, final.model),
+            gain_interval=gain_interval(
+                *(self.judge.error_squares(fit.model) for fit in (before, final))
+            ),
         )
         return replace(diagnosis, verdict=wording.verdict(diagnosis))
 

@@ -9,7 +9,13 @@ import numpy as np
 from inerter.diagnose.composition import effects_of, submodel
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.search import LOCAL, Search
-from inerter.diagnose.statistics import advantage, win_shares
+from inerter.diagnose.statistics import (
+    Interval,
+    advantage,
+    block_squares,
+    gain_interval,
+    win_shares,
+)
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
@@ -25,6 +31,8 @@ class Link:
     ----------
     rmse_before, rmse_after : float
         Error [N] on held-out data, or where these do not reach the effect, on blocks left out.
+    interval : tuple of float, optional
+        95 % interval of the gain, 1 - rmse_after / rmse_before.
     seen_in_blocks : bool
         Whether the latter is the case.
     stands : bool
@@ -37,6 +45,7 @@ class Link:
     after: Fit
     rmse_before: float
     rmse_after: float
+    interval: Interval | None
     seen_in_blocks: bool
     stands: bool
 
@@ -91,16 +100,19 @@ def _link(
         simple, rich = (search.score_on_blocks(fit) for fit in (before, after))
         errors = rms(simple.errors, masks), rms(rich.errors, masks)
         counted = rms(simple.residual, masks), rms(rich.residual, masks)
+        squares = [block_squares(scored.errors, search.blocks) for scored in (simple, rich)]
         won = search.advantage(simple, rich, effect)
     else:
         won = judge.advantage(before.model, after.model, effect)
+        squares = [judge.error_squares(fit.model) for fit in (before, after)]
     stands = (
         counted[1] < counted[0]
         and won >= CONFIRMING_ADVANTAGE
         and judge.visible(counted[0], counted[1], after.model)
         and not (effect == "sensor_delay" and not judge.delay_visible(after.model))
     )
-    return Link(effect, law, before, after, errors[0], errors[1], silent, stands)
+    interval = gain_interval(*squares)
+    return Link(effect, law, before, after, *errors, interval, silent, stands)
 
 
 def tone_link(judge: Judge, before: Fit, after: Fit) -> tuple[Link, float]:
@@ -110,5 +122,7 @@ def tone_link(judge: Judge, before: Fit, after: Fit) -> tuple[Link, float]:
     stands = advantage(squares[0], squares[1]) >= CONFIRMING_ADVANTAGE and judge.visible(
         errors[0], errors[1], after.model
     )
-    link = Link("periodic_disturbance", None, before, after, errors[0], errors[1], False, stands)
+    interval = gain_interval(*(judge.error_squares(fit.model) for fit in (before, after)))
+    tone = "periodic_disturbance"
+    link = Link(tone, None, before, after, errors[0], errors[1], interval, False, stands)
     return link, float(win_shares(squares[::-1])[0])

@@ -113,6 +113,11 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
     if effect == "backlash" and "series_frequency" in model.free:
         # its elasticity alone
         return [model.without(("backlash",)), without]
+    if effect == "variable_inertance":
+        # along the stroke alone, with the speed alone
+        along, speed = ("inertance_gradient", "inertance_curvature"), ("inertance_speed_gradient",)
+        if {*along, *speed} <= set(model.free):
+            return [model.without(speed), model.without(along), without]
     if effect in _MODULATIONS:
         # the variation of the level alone
         return [model.without(EFFECTS[effect].coordinates), without]

@@ -70,6 +70,10 @@ class Judge:
         """Squared errors at the measured rate over blocks, shape (blocks,)."""
         return block_squares(self.raw.residual(model), blocks(self.raw.masks))
 
+    def error_squares(self, model: Model) -> Array:
+        """The same of the plain errors, of which `rmse` is the root of the mean [N^2]."""
+        return block_squares(self.raw.errors(model), blocks(self.raw.masks))
+
     def visible(self, before: float, after: float, model: Model) -> bool:
         """Whether an error that fell from `before` to `after` [N] is more than no one can tell."""
         force = float(np.sqrt(np.mean(self.force**2)))

@@ -49,7 +49,7 @@ class Finding:
     rmse_before, rmse_after: rms force error on held-out data [N] before and after adding it (on
     blocks left out of the fit where the held-out data do not reach the effect: seen_in_blocks);
     confidence: share of resamples of the data in which it does better than without it and better
-    than every rival.
+    than every rival; gain_interval: 95 % interval of the gain, None where there are too few data.
     """
 
     effect: str
@@ -61,6 +61,7 @@ class Finding:
     evidence: str
     rivals: list[Rival]
     seen_in_blocks: bool = False
+    gain_interval: tuple[float, float] | None = None
 
     @property
     def gain(self) -> float:
@@ -77,6 +78,7 @@ class Finding:
             "rmse_before": self.rmse_before,
             "rmse_after": self.rmse_after,
             "gain": self.gain,
+            "gain_interval": self.gain_interval,
             "evidence": self.evidence,
             "rivals": [
                 {"effect": r.effect, "law": r.law, "confidence": round(r.confidence, 4)}
@@ -210,6 +212,14 @@ class Diagnosis:
     points: TablePoints | None = None
     rest_length: float = 0.0
     """As stated [m]; the displacement of records counts from it, so that no law reads it here."""
+    gain_interval: tuple[float, float] | None = None
+    """95 % interval of `gain`, None where there are too few data."""
+
+    @property
+    def gain(self) -> float:
+        """Share of the held-out rms error that the extension takes away."""
+        before = self.baseline.rmse
+        return 1 - self.extended.rmse / before if before > 0 else 0.0
 
     def json(self) -> dict[str, Any]:
         """The contract's diagnosis.json; null for a number that is not finite."""
@@ -221,6 +231,7 @@ class Diagnosis:
                 "findings": [finding.json() for finding in self.findings],
                 "extended": self.extended.json(),
                 "parameters": {name: vars(value) for name, value in self.parameters.items()},
+                "gain": {"value": self.gain, "interval": self.gain_interval},
                 "noise": {"rmse_floor": self.noise_floor},
                 "unexplained": vars(self.unexplained),
                 "engines": {name: {"rmse": rmse} for name, rmse in self.engines.items()},

@@ -49,6 +49,8 @@ PRECEDENCE = (
 WITH_LAWS = ("hysteretic_friction",)
 EQUAL_ADVANTAGE = 2.0
 EQUAL_LOSS = 0.005
+# share of the resamples in which a rival must be the best to be named instead
+PREFERRED = 0.5
 # rivals that are worth cross-validating
 SHORTLIST = 3
 # share of the rms error by which a rival with more parameters has to be better
@@ -99,7 +101,15 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     )
     pairs = sorted(zip(scored, shares[2:], strict=True), key=lambda pair: -pair[1])
     better = next(
-        (s for s in scored if s.effect != effect and _takes_precedence(s, final, effect, baseline)),
+        (
+            s
+            for s, share in pairs
+            if s.effect != effect
+            and (
+                _takes_precedence(s, final, effect, baseline)
+                or (share > PREFERRED and _is_better(s, final, baseline))
+            )
+        ),
         None,
     )
     # another law or form of the same effect is no doubt about the effect; a law is told
@@ -119,10 +129,27 @@ def _takes_precedence(rival: Scored, final: Scored, effect: str, baseline: Model
     """
     causes = [len(effects_of(scored.model, baseline)) for scored in (rival, final)]
     usual = PRECEDENCE.index(rival.effect) < PRECEDENCE.index(effect)
-    loss = np.sqrt(rival.squares.sum() / final.squares.sum()) - 1
     return bool(
         rival.model.complexity <= final.model.complexity
         and (causes[0] < causes[1] or (causes[0] == causes[1] and usual))
-        and loss < EQUAL_LOSS
-        and advantage(rival.squares, final.squares) < EQUAL_ADVANTAGE
+        and _does_as_well(rival, final)
     )
+
+
+def _is_better(rival: Scored, final: Scored, baseline: Model) -> bool:
+    """Whether a rival does better with no more parameters and no more causes.
+
+    What a search adds is the best beside what it has; effects found later can change that.
+    """
+    causes = [len(effects_of(scored.model, baseline)) for scored in (rival, final)]
+    return bool(
+        rival.model.complexity <= final.model.complexity
+        and causes[0] <= causes[1]
+        and not _does_as_well(final, rival)
+    )
+
+
+def _does_as_well(one: Scored, other: Scored) -> bool:
+    """Whether the errors of a model are hardly larger than those of another."""
+    loss = np.sqrt(one.squares.sum() / other.squares.sum()) - 1
+    return bool(loss < EQUAL_LOSS and advantage(one.squares, other.squares) < EQUAL_ADVANTAGE)

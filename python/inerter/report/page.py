@@ -39,6 +39,7 @@ _METHOD_WORDS = {
     "channels": "motion taken from",
     "split": "split",
     "held_out_samples": "held-out samples",
+    "one_tone": "nearly one sine",
 }
 ENGINES = {"mujoco": "MuJoCo", "exudyn": "Exudyn", "reference": "reference (SciPy)"}
 
@@ -109,6 +110,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         tidy=text.tidy,
         count=text.count,
         percent=text.percent,
+        between=text.between,
     )
 
 
@@ -165,6 +167,7 @@ def _finding(finding: Finding, scale: float) -> dict[str, Any]:
         "before_width": width(finding.rmse_before),
         "after_width": width(finding.rmse_after),
         "gain": finding.gain,
+        "gain_interval": finding.gain_interval,
         "rivals": [
             (text.effect_name(r.effect), r.law, text.confidence(r.confidence))
             for r in finding.rivals
@@ -279,7 +282,9 @@ def _method(method: dict[str, Any]) -> list[tuple[str, str]]:
     for key, value in method.items():
         if key in _PLACED:
             continue
-        if isinstance(value, (list, tuple)):
+        if isinstance(value, bool):
+            shown = "yes" if value else "no"
+        elif isinstance(value, (list, tuple)):
             shown = ", ".join(str(item) for item in value)
         elif isinstance(value, int):
             shown = text.count(value)

@@ -40,6 +40,14 @@ def percent(share: float | None) -> str:
     return f"{100 * share:.0f}\u00a0%".replace("-", "−")
 
 
+def between(interval: tuple[float, float] | None) -> str:
+    """Such as " (95 % interval 84 to 89 %)"; nothing where there is none."""
+    if interval is None:
+        return ""
+    low, high = (f"{100 * end:.0f}".replace("-", "−") for end in interval)
+    return f" (95\u00a0% interval {low} to {high}\u00a0%)"
+
+
 def confidence(share: float) -> str:
     """A percentage that never claims certainty."""
     if share > 0.995:

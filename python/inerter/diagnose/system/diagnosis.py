@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from inerter.diagnose.acceptance import visible
 from inerter.diagnose.result import Finding, RecordSummary, Rival
-from inerter.diagnose.statistics import advantage, win_shares
+from inerter.diagnose.statistics import advantage, gain_interval, win_shares
 from inerter.diagnose.system import wording
 from inerter.diagnose.system.build import UserModel, model_of_text
 from inerter.diagnose.system.curves import channel_curves
@@ -270,9 +270,16 @@ class _System:
         return None
 
     def _findings(
-        self, search: SystemSearch, chain: list[Scored], errors: list[float]
+        self,
+        search: SystemSearch,
+        chain: list[Scored],
+        errors: list[float],
+        squares: list[Array],
     ) -> list[tuple[Finding, str]]:
-        """Findings, the most useful first, and where each of them is."""
+        """Findings, the most useful first, and where each of them is.
+
+        errors, squares: held-out errors along the chain, and their squares over blocks.
+        """
         final = chain[-1]
         values = parameter_values(self.user, final)
         several = len(self.user.devices) > 1
@@ -284,10 +291,8 @@ class _System:
                 # beside the effects found since, a rival may not be one any more
                 self.progress(f"comparing {added.effect} with what else could explain the data")
                 without, others = search.standing(final, i, step)
-                squares = [final.squares, without.squares, *(s.squares for s in others)]
-                confidence, rivals = _standing(
-                    Step(without, final, others, win_shares(squares)), added
-                )
+                shares = win_shares([final.squares, without.squares, *(s.squares for s in others)])
+                confidence, rivals = _standing(Step(without, final, others, shares), added)
             finding = Finding(
                 added.effect,
                 added.law,
@@ -297,6 +302,7 @@ class _System:
                 errors[i + 1],
                 "",
                 rivals,
+                gain_interval=gain_interval(squares[i], squares[i + 1]),
             )
             kind, _, name = added.element.partition(":")
             place = (name or kind) if several and kind != "body" else ""
@@ -311,7 +317,9 @@ class _System:
     ) -> SystemDiagnosis:
         residuals = self.held.stacked([scored.model for scored in chain])
         errors = [self.held.error(residual) for residual in residuals]
-        named = self._findings(search, chain, errors)
+        blocks = stacked_blocks(self.held)
+        squares = [block_squares(residual, blocks) for residual in residuals]
+        named = self._findings(search, chain, errors, squares)
         findings, places = [f for f, _ in named], [place for _, place in named]
         before = self._accuracy(SystemModel(), residuals[0], residuals[0])
         after = self._accuracy(final.model, residuals[-1], residuals[0])
@@ -341,6 +349,7 @@ class _System:
             curves,
             model_xml=xml,
             devices={d.name: self.user.device_of(d.name, final.model) for d in self.user.devices},
+            gain_interval=gain_interval(squares[0], squares[-1]),
         )
 
     def _accuracy(self, model: SystemModel, residual: Array, first: Array) -> SystemAccuracy:
