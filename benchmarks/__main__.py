@@ -1,54 +1,100 @@
-"""Run every benchmark, print tables, write out/bench/bench.json."""
+"""Run the benchmarks: tables, pictures, and out/bench/bench.json."""
 
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
-import platform
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from inerter.exudyn.engine import installed
+from inerter.bench.machine import busy, machine
+from inerter.bench.rows import Row, aims, table
 from rich.console import Console
-from rich.progress import track
-from rich.table import Table
 
 from benchmarks import along_motion, exudyn_cost, step_cost
 
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A comparison: its title, its rows, its picture, the optional packages that it needs."""
+
+    title: str
+    run: Callable[[bool], list[Row]]
+    picture: Callable[[list[Row], Path], None] | None = None
+    needs: tuple[str, ...] = ()
+
+
 BENCHMARKS = {
-    "step_cost": ("What one step of a quarter-car costs", step_cost.run),
-    "exudyn_cost": ("What one step costs in Exudyn", exudyn_cost.run),
-    "along_motion": ("What a sample along a measured motion costs", along_motion.run),
+    "step_cost": Benchmark("What one step costs", step_cost.run),
+    "exudyn_cost": Benchmark("What one step costs in Exudyn", exudyn_cost.run, needs=("exudyn",)),
+    "along_motion": Benchmark("What a sample along a motion costs", along_motion.run),
 }
 
 
-def show(title: str, rows: list[dict[str, Any]], console: Console) -> None:
-    """Print rows as a table."""
-    table = Table(*rows[0], title=title)
-    for row in rows:
-        table.add_row(*(f"{v:.3g}" if isinstance(v, float) else str(v) for v in row.values()))
-    console.print(table)
+def lacking(benchmark: Benchmark) -> str | None:
+    """Why a benchmark cannot run here, and what to do."""
+    absent = [name for name in benchmark.needs if not _installed(name)]
+    return f"is left out: pip install {' '.join(absent)}" if absent else None
+
+
+def _installed(package: str) -> bool:
+    found = importlib.util.find_spec(package)
+    return found is not None and found.origin is not None
+
+
+def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[str, Any]:
+    """Run benchmarks by name; print tables, write pictures and bench.json.
+
+    Every benchmark that is done is written at once: what is broken off keeps what it has.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    described = machine()
+    result: dict[str, Any] = {
+        "schema": "inerter.bench/1", "quick": quick, "machine": described, "benchmarks": {},
+    }  # fmt: skip
+    console.print(", ".join(f"{key} {value}" for key, value in described.items() if value))
+    if remark := busy(described):
+        console.print(remark)
+    done: dict[str, list[Row]] = {}
+    for name in names:
+        benchmark = BENCHMARKS[name]
+        if reason := lacking(benchmark):
+            console.print(f"{name} {reason}")
+            continue
+        start = time.perf_counter()
+        done[name] = rows = benchmark.run(quick)
+        seconds = time.perf_counter() - start
+        console.print(table(f"{benchmark.title} ({name}, {seconds:.0f} s)", rows))
+        result["benchmarks"][name] = {
+            "title": benchmark.title, "seconds": seconds, "rows": rows,
+        }  # fmt: skip
+        if benchmark.picture is not None:
+            benchmark.picture(rows, folder / f"{name}.png")
+        text = json.dumps(result, indent=1, allow_nan=False) + "\n"
+        (folder / "bench.json").write_text(text, encoding="utf-8")
+    if met := aims(done):
+        console.print(table("Aims", met))
+    return result
 
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="fewer rounds")
-    parser.add_argument("--out", type=Path, default=Path("out/bench"))
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="fewer and shorter rounds")
+    parser.add_argument(
+        "--only", action="append", choices=BENCHMARKS, metavar="NAME",
+        help=f"run this one; may be given again: {', '.join(BENCHMARKS)}",
+    )  # fmt: skip
+    parser.add_argument("--out", type=Path, default=Path("out/bench"), help="folder of the results")
     options = parser.parse_args()
     console = Console()
-    results: dict[str, Any] = {"machine": platform.processor() or platform.machine()}
-    for name in track(BENCHMARKS, description="benchmarks", console=console):
-        title, run = BENCHMARKS[name]
-        if name == "exudyn_cost" and not installed():
-            console.print('exudyn_cost is left out: `pip install "inerter[exudyn]"`')
-            continue
-        results[name] = run(options.quick)
-        show(title, results[name], console)
-    options.out.mkdir(parents=True, exist_ok=True)
-    path = options.out / "bench.json"
-    path.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    console.print(f"Written to {path}")
+    names = [name for name in BENCHMARKS if name in (options.only or BENCHMARKS)]
+    run(names, options.quick, options.out, console)
+    console.print(f"Written to {options.out}")
 
 
 if __name__ == "__main__":

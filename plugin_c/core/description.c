@@ -71,3 +71,13 @@ const char* inerter_state_name(const InerterDevice* device, int i) {
   int friction = kFriction[device->friction].nstate;
   return i < friction ? "friction_state" : kSeries[i - friction];
 }
+
+const char* inerter_compiler(void) {
+#if defined(__clang__)
+  return "clang " __clang_version__;
+#elif defined(__GNUC__)
+  return "gcc " __VERSION__;
+#else
+  return "unknown";
+#endif
+}

@@ -124,6 +124,9 @@ INERTER_API int inerter_finish(InerterDevice* device, char message[INERTER_MESSA
 // Number of states of the device, at most INERTER_MAXSTATE.
 INERTER_API int inerter_nstate(const InerterDevice* device);
 
+// The compiler that made the library, with its version.
+INERTER_API const char* inerter_compiler(void);
+
 // Name of state i: "friction_state", "series_deflection", "flywheel_velocity", "gap_position"; NULL
 // past the end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);

@@ -1,0 +1,99 @@
+"""Rows of a benchmark as tables, and its aims beside what was measured.
+
+A row is a dict of texts and numbers, the same keys in every row of a benchmark. Three keys mean the
+same everywhere: `ratio` (with its quartiles `ratio_lower`, `ratio_upper`), `aim`, a text such as
+"<= 1.05" or ">= 20" for the ratio or None, and `met`, whether the ratio reaches it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from rich.table import Table
+
+Row = dict[str, Any]
+
+
+def aimed(ratio: float, aim: str | None) -> dict[str, Any]:
+    """The keys `aim` and `met` of a row.
+
+    Parameters
+    ----------
+    ratio
+        What was measured.
+    aim
+        "<= number" or ">= number", or None where there is no aim.
+
+    Raises
+    ------
+    ValueError
+        An aim of another form.
+    """
+    if aim is None:
+        return {"aim": None, "met": None}
+    relation, _, number = aim.partition(" ")
+    if relation not in ("<=", ">="):
+        raise ValueError(f"aim is {aim!r}; it is '<= number' or '>= number'")
+    bound = float(number)
+    return {"aim": aim, "met": bool(ratio <= bound if relation == "<=" else ratio >= bound)}
+
+
+def table(title: str, rows: Sequence[Row]) -> Table:
+    """Rows as a table; columns that are empty throughout and quartiles are left out."""
+    shown = [
+        key
+        for key in rows[0]
+        if not key.endswith(("_lower", "_upper")) and any(row[key] is not None for row in rows)
+    ]
+    made = Table(title=title, title_justify="left")
+    for key in shown:
+        numbers = all(isinstance(row[key], int | float | None) for row in rows)
+        made.add_column(key.replace("_", " "), justify="right" if numbers else "left")
+    for row in rows:
+        made.add_row(*(_text(row, key) for key in shown), style=None if row.get("met", 1) else "")
+    return made
+
+
+def aims(results: dict[str, Sequence[Row]]) -> list[Row]:
+    """Every row with an aim: benchmark, what it is about, ratio, aim, whether it is met."""
+    found = []
+    for name, rows in results.items():
+        for row in rows:
+            if row.get("aim") is not None:
+                words = [value for value in row.values() if isinstance(value, str)]
+                about = ", ".join(word for word in words if word not in (name, row["aim"]))
+                found.append(
+                    {
+                        "benchmark": name, "about": about, "ratio": row["ratio"],
+                        "aim": row["aim"], "met": row["met"],
+                    }
+                )  # fmt: skip
+    return found
+
+
+def _text(row: Row, key: str) -> str:
+    value = row[key]
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, float):
+        return str(value)
+    text = _number(value)
+    if f"{key}_lower" in row and row[f"{key}_lower"] is not None:
+        # half the distance of the quartiles, relative
+        half = 0.5 * (row[f"{key}_upper"] - row[f"{key}_lower"])
+        text += f" ±{100 * half / abs(value):.0f}%" if value else ""
+    return text
+
+
+def _number(value: float) -> str:
+    """Three significant digits, without an exponent where that is short."""
+    if not math.isfinite(value):
+        return str(value)
+    if value == 0 or 1e-3 <= abs(value) < 1e6:
+        digits = 2 if value == 0 else max(0, 2 - math.floor(math.log10(abs(value))))
+        return f"{value:.{digits}f}"
+    return f"{value:.2e}"
