@@ -1,1 +1,5 @@
-"""Benchmarks: comparisons taken in turn within one run, as ratios. Run `make bench`."""
+"""Benchmarks: comparisons taken in turn within one run, as ratios. Run `make bench`.
+
+A module has `run(quick) -> list[dict]` (rows as in `inerter.bench.rows`, timed by
+`inerter.bench.timing`) and, where it helps, `picture(rows, path)`; `__main__.BENCHMARKS` lists it.
+"""

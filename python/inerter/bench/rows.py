@@ -8,7 +8,7 @@ same everywhere: `ratio` (with its quartiles `ratio_lower`, `ratio_upper`), `aim
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.table import Table
@@ -56,7 +56,7 @@ def table(title: str, rows: Sequence[Row]) -> Table:
     return made
 
 
-def aims(results: dict[str, Sequence[Row]]) -> list[Row]:
+def aims(results: Mapping[str, Sequence[Row]]) -> list[Row]:
     """Every row with an aim: benchmark, what it is about, ratio, aim, whether it is met."""
     found = []
     for name, rows in results.items():

@@ -101,7 +101,7 @@ def interleaved(
         raise ValueError(f"rounds is {rounds}; timing needs at least 1")
     seconds: dict[str, list[float]] = {name: [] for name in works}
     for turn in range(-int(warm_up), rounds):
-        names = list(works) if turn % 2 == 0 else list(reversed(works))
+        names = list(works) if turn % 2 == 0 else list(works)[::-1]
         for name in names:
             spent = once(works[name], clock)
             if turn >= 0:
