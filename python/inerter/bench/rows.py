@@ -1,8 +1,9 @@
 """Rows of a benchmark as tables, and its aims beside what was measured.
 
-A row is a dict of texts and numbers, the same keys in every row of a benchmark. Three keys mean the
+A row is a dict of texts and numbers, the same keys in every row of a benchmark. Some keys mean the
 same everywhere: `ratio` (with its quartiles `ratio_lower`, `ratio_upper`), `aim`, a text such as
-"<= 1.05" or ">= 20" for the ratio or None, and `met`, whether the ratio reaches it.
+"<= 1.05" or ">= 20" for the ratio or None, and `met`, whether the ratio reaches it. Rows with an aim
+have a `question` too: what is held against what.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.table import Table
+
+from inerter.bench.timing import Spread
 
 Row = dict[str, Any]
 
@@ -40,6 +43,11 @@ def aimed(ratio: float, aim: str | None) -> dict[str, Any]:
     return {"aim": aim, "met": bool(ratio <= bound if relation == "<=" else ratio >= bound)}
 
 
+def spread_of(key: str, spread: Spread) -> dict[str, float]:
+    """The keys `key`, `key_lower`, `key_upper` of a row: median and quartiles."""
+    return {key: spread.median, f"{key}_lower": spread.lower, f"{key}_upper": spread.upper}
+
+
 def table(title: str, rows: Sequence[Row]) -> Table:
     """Rows as a table; columns that are empty throughout and quartiles are left out."""
     shown = [
@@ -52,25 +60,30 @@ def table(title: str, rows: Sequence[Row]) -> Table:
         numbers = all(isinstance(row[key], int | float | None) for row in rows)
         made.add_column(key.replace("_", " "), justify="right" if numbers else "left")
     for row in rows:
-        made.add_row(*(_text(row, key) for key in shown), style=None if row.get("met", 1) else "")
+        made.add_row(*(_text(row, key) for key in shown))
     return made
 
 
 def aims(results: Mapping[str, Sequence[Row]]) -> list[Row]:
-    """Every row with an aim: benchmark, what it is about, ratio, aim, whether it is met."""
-    found = []
+    """The aims of benchmarks and what was measured: one row for each question of a benchmark.
+
+    Rows with an aim have a `question`, a text; those of one question share an aim.
+    """
+    found: dict[tuple[str, str, str], list[Row]] = {}
     for name, rows in results.items():
         for row in rows:
             if row.get("aim") is not None:
-                words = [value for value in row.values() if isinstance(value, str)]
-                about = ", ".join(word for word in words if word not in (name, row["aim"]))
-                found.append(
-                    {
-                        "benchmark": name, "about": about, "ratio": row["ratio"],
-                        "aim": row["aim"], "met": row["met"],
-                    }
-                )  # fmt: skip
-    return found
+                found.setdefault((name, row["question"], row["aim"]), []).append(row)
+    return [
+        {
+            "benchmark": name, "question": question, "aim": aim,
+            "met": f"{sum(row['met'] for row in rows)} of {len(rows)}",
+            "least": min(row["ratio"] for row in rows),
+            "median": Spread.of([row["ratio"] for row in rows]).median,
+            "most": max(row["ratio"] for row in rows),
+        }
+        for (name, question, aim), rows in found.items()
+    ]  # fmt: skip
 
 
 def _text(row: Row, key: str) -> str:
