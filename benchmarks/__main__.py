@@ -15,24 +15,40 @@ from inerter.bench.machine import busy, machine
 from inerter.bench.rows import Row, aims, table
 from rich.console import Console
 
-from benchmarks import along_motion, exudyn_cost, step_cost
+from benchmarks import along_motion, exudyn_cost, one_step, work_precision
 
 
 @dataclass(frozen=True)
 class Benchmark:
-    """A comparison: its title, its rows, its picture, the optional packages that it needs."""
+    """A comparison.
+
+    `run` gives the rows, quickly or not; `summary` the rows that are printed, if not all of them;
+    `picture` writes a PNG; `notes` says what of it cannot run here, and what to install; `needs`
+    are optional packages without which all of it is left out.
+    """
 
     title: str
     run: Callable[[bool], list[Row]]
+    summary: Callable[[list[Row]], list[Row]] | None = None
     picture: Callable[[list[Row], Path], None] | None = None
+    notes: Callable[[], list[str]] = list
     needs: tuple[str, ...] = ()
 
 
+# fmt: off
 BENCHMARKS = {
-    "step_cost": Benchmark("What one step costs", step_cost.run),
+    "one_step": Benchmark(
+        "One step of a car, as a multiple of MuJoCo's own armature",
+        one_step.run, one_step.summary, one_step.picture,
+    ),
+    "work_precision": Benchmark(
+        "Time for a given error, 10 s of a quarter-car",
+        work_precision.run, work_precision.summary, work_precision.picture, work_precision.notes,
+    ),
     "exudyn_cost": Benchmark("What one step costs in Exudyn", exudyn_cost.run, needs=("exudyn",)),
     "along_motion": Benchmark("What a sample along a motion costs", along_motion.run),
 }
+# fmt: on
 
 
 def lacking(benchmark: Benchmark) -> str | None:
@@ -68,10 +84,13 @@ def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[s
         start = time.perf_counter()
         done[name] = rows = benchmark.run(quick)
         seconds = time.perf_counter() - start
-        console.print(table(f"{benchmark.title} ({name}, {seconds:.0f} s)", rows))
+        shown = benchmark.summary(rows) if benchmark.summary else rows
+        console.print(table(f"{benchmark.title} ({name}, {seconds:.0f} s)", shown))
         result["benchmarks"][name] = {
             "title": benchmark.title, "seconds": seconds, "rows": rows,
         }  # fmt: skip
+        for note in benchmark.notes():
+            console.print(note)
         if benchmark.picture is not None:
             benchmark.picture(rows, folder / f"{name}.png")
         text = json.dumps(result, indent=1, allow_nan=False) + "\n"
@@ -92,6 +111,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("out/bench"), help="folder of the results")
     options = parser.parse_args()
     console = Console()
+    if not console.is_terminal:
+        # into a file or a log: wide enough for every table
+        console = Console(width=160)
     names = [name for name in BENCHMARKS if name in (options.only or BENCHMARKS)]
     run(names, options.quick, options.out, console)
     console.print(f"Written to {options.out}")

@@ -1,27 +1,27 @@
 """What one step in Exudyn costs, with the element and with user functions written by hand.
 
 Two systems: a quarter-car, and the stick-slip of Canudas de Wit et al. 1995 as one of Exudyn's
-own examples states it (a first-order system in one Python function on NumPy arrays). Rounds go
-through all variants in turn; a ratio is the median of the ratios within rounds.
-
-    python -m benchmarks.exudyn_cost [--quick]
+own examples states it (a first-order system in one Python function on NumPy arrays).
 """
 
 from __future__ import annotations
 
 import math
-import statistics
-import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from inerter.bench.laws import LAWS
+from inerter.bench.rows import Row, spread_of
+from inerter.bench.timing import Work, interleaved
 from inerter.exudyn import CreateInerter
 from inerter.exudyn.engine import exudyn
 
-from benchmarks.step_cost import LUGRE
-
+KEYS = (
+    "bristle_stiffness", "bristle_damping", "coulomb_force", "static_force", "stribeck_velocity",
+)  # fmt: skip
+LUGRE = {key: LAWS["lugre"][key] for key in KEYS}
 SOLVERS = ("RK44", "GeneralizedAlpha")
 STIFFNESS, PULL = 2.0, 0.1
 STICK_SLIP: dict[str, Any] = {
@@ -50,7 +50,7 @@ ELEMENTS: dict[str, dict[str, Any]] = {
 
 def _friction(v: float, z: float, law: dict[str, float]) -> tuple[float, float]:
     """Force and state rate of LuGre, as short as Python can say it."""
-    s0, s1, fc, fs, vs = (law[key] for key in LUGRE)
+    s0, s1, fc, fs, vs = (law[key] for key in KEYS)
     rate = v - s0 * abs(v) * z / (fc + (fs - fc) * math.exp(-((v / vs) ** 2)))
     return s0 * z + s1 * rate, rate
 
@@ -134,54 +134,45 @@ def _stick_slip(name: str) -> Any:
     return mbs
 
 
-def _seconds(build: Callable[[str], Any], name: str, solver: str, steps: int) -> float:
-    """Time of one step."""
-    engine = exudyn()
-    mbs = build(name)
-    mbs.Assemble()
-    settings = engine.SimulationSettings()
-    settings.timeIntegration.numberOfSteps = steps
-    settings.timeIntegration.endTime = steps * 1e-4
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    start = time.perf_counter()
-    mbs.SolveDynamic(settings, solverType=getattr(engine.DynamicSolverType, solver))
-    return (time.perf_counter() - start) / steps
+def _work(name: str, solver: str, steps: int) -> Work:
+    """A run; the model is built anew for each, untimed."""
+    engine, made = exudyn(), []
+    build = _stick_slip if name.startswith("stick-slip") else _quarter_car
+
+    def prepare() -> None:
+        made[:] = [build(name)]
+        made[0].Assemble()
+
+    def solve() -> None:
+        settings = engine.SimulationSettings()
+        settings.timeIntegration.numberOfSteps = steps
+        settings.timeIntegration.endTime = steps * 1e-4
+        settings.timeIntegration.verboseMode = 0
+        settings.solution.file.write = False
+        made[0].SolveDynamic(settings, solverType=getattr(engine.DynamicSolverType, solver))
+
+    return Work(solve, steps, prepare)
 
 
-def run(quick: bool = False) -> list[dict[str, Any]]:
+def run(quick: bool = False) -> list[Row]:
     """Measure every variant under every solver.
 
     Returns
     -------
     list of dict
-        benchmark, solver, variant, microseconds (median), against, ratio (median within rounds).
+        solver, variant, microseconds, against (another variant or None), ratio to it.
     """
-    rounds, steps = (3, 2000) if quick else (15, 10000)
-    rows: list[dict[str, Any]] = []
+    rounds, steps = (3, 1000) if quick else (15, 5000)
+    rows: list[Row] = []
     for solver in SOLVERS:
-        times: dict[str, list[float]] = {name: [] for name in VARIANTS}
-        for round_ in range(-1, rounds):  # the first one warms up
-            for name in VARIANTS:
-                build = _stick_slip if name.startswith("stick-slip") else _quarter_car
-                seconds = _seconds(build, name, solver, steps)
-                if round_ >= 0:
-                    times[name].append(seconds)
+        works = {name: _work(name, solver, steps) for name in VARIANTS}
+        times = interleaved(works, rounds, clock=time.process_time)
         for name, against in VARIANTS.items():
-            pairs = zip(times[name], times[against], strict=True) if against else ()
-            rows.append(
-                {
-                    "benchmark": "exudyn_cost",
-                    "solver": solver,
-                    "variant": name,
-                    "microseconds": 1e6 * statistics.median(times[name]),
-                    "against": against,
-                    "ratio": statistics.median(a / b for a, b in pairs) if against else None,
-                }
-            )
+            row = {
+                "solver": solver, "variant": name,
+                **spread_of("microseconds", times[name].spread.times(1e6)), "against": against,
+            }  # fmt: skip
+            empty = dict.fromkeys(("ratio", "ratio_lower", "ratio_upper"))
+            ratio = spread_of("ratio", times[name].ratio(times[against])) if against else empty
+            rows.append(row | ratio)
     return rows
-
-
-if __name__ == "__main__":
-    for row in run("--quick" in sys.argv):
-        print(*row.values(), sep="\t")

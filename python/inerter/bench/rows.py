@@ -2,8 +2,8 @@
 
 A row is a dict of texts and numbers, the same keys in every row of a benchmark. Some keys mean the
 same everywhere: `ratio` (with its quartiles `ratio_lower`, `ratio_upper`), `aim`, a text such as
-"<= 1.05" or ">= 20" for the ratio or None, and `met`, whether the ratio reaches it. Rows with an aim
-have a `question` too: what is held against what.
+"<= 1.05" or ">= 20" for the ratio or None, and `met`, whether the ratio reaches it. Rows with an
+aim have a `question` too: what is held against what.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from inerter.bench.timing import Spread
@@ -55,7 +56,7 @@ def table(title: str, rows: Sequence[Row]) -> Table:
         for key in rows[0]
         if not key.endswith(("_lower", "_upper")) and any(row[key] is not None for row in rows)
     ]
-    made = Table(title=title, title_justify="left")
+    made = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     for key in shown:
         numbers = all(isinstance(row[key], int | float | None) for row in rows)
         made.add_column(key.replace("_", " "), justify="right" if numbers else "left")
