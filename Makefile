@@ -21,7 +21,7 @@ help:
 	@echo 'make demo    install with the lab, diagnose the shipped record into out/demo'
 	@echo 'make test    every test, on all cores, against the installed package'
 	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
-	@echo 'make bench   benchmarks, into out/bench'
+	@echo 'make bench   benchmarks, into out/bench; ARGS=--quick for a first look'
 	@echo 'make docs    the documentation as pages, into out/docs'
 	@echo 'make lint    ruff, pyright, clang-format'
 	@echo 'make format  let ruff and clang-format rewrite the files'
@@ -58,6 +58,13 @@ $(VENV)/dev: $(SOURCES) | $(VENV)/created
 	@$(PIP) '.[oracles]' || echo 'no OpenSees for this Python: its tests are skipped'
 	@touch $(VENV)/lab $@
 
+# what the benchmarks compare with, each where it has a wheel for this Python
+$(VENV)/bench: $(VENV)/lab
+	@for extra in bench oracles; do \
+	  $(PIP) ".[$$extra]" || echo "without the extra $$extra: make bench says what it leaves out"; \
+	done
+	@touch $@
+
 #------------------------------ use ----------------------------------------------------------------
 
 demo: $(VENV)/lab
@@ -66,8 +73,8 @@ demo: $(VENV)/lab
 test: $(VENV)/dev
 	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
 
-bench: $(VENV)/lab
-	@$(BIN)/python -m benchmarks
+bench: $(VENV)/bench
+	@$(BIN)/python -m benchmarks $(ARGS)
 
 docs: $(VENV)/dev
 	@$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs

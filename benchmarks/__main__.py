@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
-import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from inerter.bench.machine import busy, machine
+from inerter.bench.report import print_machine
 from inerter.bench.rows import Row, aims, table
+from inerter.bench.step import tables
+from inerter.folder import json_text, write_files
 from rich.console import Console
 
 from benchmarks import along_motion, exudyn_cost, one_step, work_precision
@@ -22,14 +24,15 @@ from benchmarks import along_motion, exudyn_cost, one_step, work_precision
 class Benchmark:
     """A comparison.
 
-    `run` gives the rows, quickly or not; `summary` the rows that are printed, if not all of them;
+    `run` gives the rows, quickly or not; `summary` the tables that are printed, by title, if not
+    all of the rows;
     `picture` writes a PNG; `notes` says what of it cannot run here, and what to install; `needs`
     are optional packages without which all of it is left out.
     """
 
     title: str
     run: Callable[[bool], list[Row]]
-    summary: Callable[[list[Row]], list[Row]] | None = None
+    summary: Callable[[list[Row]], Mapping[str, list[Row]]] | None = None
     picture: Callable[[list[Row], Path], None] | None = None
     notes: Callable[[], list[str]] = list
     needs: tuple[str, ...] = ()
@@ -39,14 +42,17 @@ class Benchmark:
 BENCHMARKS = {
     "one_step": Benchmark(
         "One step of a car, as a multiple of MuJoCo's own armature",
-        one_step.run, one_step.summary, one_step.picture,
+        one_step.run, tables, one_step.picture,
     ),
     "work_precision": Benchmark(
         "Time for a given error, 10 s of a quarter-car",
         work_precision.run, work_precision.summary, work_precision.picture, work_precision.notes,
     ),
-    "exudyn_cost": Benchmark("What one step costs in Exudyn", exudyn_cost.run, needs=("exudyn",)),
-    "along_motion": Benchmark("What a sample along a motion costs", along_motion.run),
+    "exudyn_cost": Benchmark("One step in Exudyn", exudyn_cost.run, needs=("exudyn",)),
+    "along_motion": Benchmark(
+        "A sample along a motion, and how much longer others take",
+        along_motion.run, picture=along_motion.picture, notes=along_motion.notes,
+    ),
 }
 # fmt: on
 
@@ -72,7 +78,7 @@ def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[s
     result: dict[str, Any] = {
         "schema": "inerter.bench/1", "quick": quick, "machine": described, "benchmarks": {},
     }  # fmt: skip
-    console.print(", ".join(f"{key} {value}" for key, value in described.items() if value))
+    print_machine(described, console)
     if remark := busy(described):
         console.print(remark)
     done: dict[str, list[Row]] = {}
@@ -84,8 +90,10 @@ def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[s
         start = time.perf_counter()
         done[name] = rows = benchmark.run(quick)
         seconds = time.perf_counter() - start
-        shown = benchmark.summary(rows) if benchmark.summary else rows
-        console.print(table(f"{benchmark.title} ({name}, {seconds:.0f} s)", shown))
+        console.rule(f"{benchmark.title} ({name}, {seconds:.0f} s)", align="left", style="dim")
+        shown = benchmark.summary(rows) if benchmark.summary else {"": rows}
+        for title, lines in shown.items():
+            console.print(table(title, lines))
         result["benchmarks"][name] = {
             "title": benchmark.title, "seconds": seconds, "rows": rows,
         }  # fmt: skip
@@ -93,8 +101,7 @@ def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[s
             console.print(note)
         if benchmark.picture is not None:
             benchmark.picture(rows, folder / f"{name}.png")
-        text = json.dumps(result, indent=1, allow_nan=False) + "\n"
-        (folder / "bench.json").write_text(text, encoding="utf-8")
+        write_files(folder, {"bench.json": json_text(result)})
     if met := aims(done):
         console.print(table("Aims", met))
     return result

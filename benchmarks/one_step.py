@@ -9,7 +9,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from inerter.bench.cars import CARS, INTEGRATORS, PLUGIN
-from inerter.bench.laws import LAWS
 from inerter.bench.rows import Row
 from inerter.bench.step import step_costs
 
@@ -19,28 +18,6 @@ from benchmarks.picture import COLOURS, figure, save
 def run(quick: bool = False) -> list[Row]:
     """Rows as `inerter.bench.step.step_costs` gives them."""
     return step_costs(tuple(CARS), INTEGRATORS, *((7, 200) if quick else (41, 500)))
-
-
-def summary(rows: list[Row]) -> list[Row]:
-    """One line for each car, topology and integrator: the ratios of the laws to the armature."""
-    found = []
-    cases = dict.fromkeys((row["car"], row["topology"], row["integrator"]) for row in rows)
-    for case in cases:
-        here = [row for row in rows if (row["car"], row["topology"], row["integrator"]) == case]
-        cost = {row["variant"]: row["microseconds"] for row in here}
-        ratio = {(row["variant"], row["against"]): row["ratio"] for row in here}
-        laws = {law: ratio[f"plugin {law}", "armature"] for law in LAWS}
-        python = [row for row in here if row["question"] and row["question"].startswith("Python")]
-        found.append(
-            {
-                "car": case[0].removesuffix("-car"), "wheels": case[1], "integrator": case[2],
-                "armature_µs": cost["armature"], **laws,
-                "lugre/native": ratio.get(("plugin lugre", "native lugre")),
-                "python": python[0]["ratio"] if python else None,
-                "python_adds": python[0]["added"] if python else None,
-            }
-        )  # fmt: skip
-    return found
 
 
 def picture(rows: list[Row], path: Path) -> None:
@@ -57,8 +34,8 @@ def picture(rows: list[Row], path: Path) -> None:
             axes.axhline(1.0, color=COLOURS["text"], lw=0.8)
             axes.set_xticks(range(len(INTEGRATORS)), INTEGRATORS)
             axes.set_title(f"{car}, {meaning}", fontsize=9.5, loc="left")
-            axes.set_ylim(bottom=0.7)
     for line in panels:
+        line[0].set_ylim(bottom=0.7)
         line[0].set_ylabel("cost of a step / armature's", fontsize=9)
     handles, labels = panels[0][0].get_legend_handles_labels()
     made.legend(handles, labels, loc="outside lower center", ncols=len(shown), frameon=False,

@@ -151,19 +151,18 @@ def _targets(problem: str, rows: Sequence[Row]) -> list[Row]:
     return found
 
 
-def summary(rows: list[Row]) -> list[Row]:
-    """One line for each problem and solver: milliseconds at the target errors."""
-    found: dict[tuple[str, str], Row] = {}
+def summary(rows: list[Row]) -> dict[str, list[Row]]:
+    """A table for each problem, a line for each solver: milliseconds at the target errors."""
+    found: dict[str, dict[str, Row]] = {meaning: {} for meaning in PROBLEMS.values()}
     for row in rows:
         if row["question"] is None:
-            line = found.setdefault(
-                (row["problem"], row["solver"]),
-                {"problem": row["problem"], "solver": row["solver"]}
-                | {f"ms_at_{target:.0e}": None for target in TARGETS},
+            line = found[PROBLEMS[row["problem"]]].setdefault(
+                row["solver"],
+                {"solver": row["solver"]} | {f"ms at {target:.0e}": None for target in TARGETS},
             )
             if row["target"] is not None:
-                line[f"ms_at_{row['target']:.0e}"] = row["milliseconds"]
-    return list(found.values())
+                line[f"ms at {row['target']:.0e}"] = row["milliseconds"]
+    return {meaning: list(lines.values()) for meaning, lines in found.items()}
 
 
 def picture(rows: list[Row], path: Path) -> None:
@@ -186,6 +185,9 @@ def picture(rows: list[Row], path: Path) -> None:
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_title(meaning, fontsize=10, loc="left")
+        axes.set_ylim(FLOOR, 1.0)
+        axes.set_yticks([10.0**k for k in range(-12, 1, 3)])
+        axes.minorticks_off()
         axes.set_xlabel("time for 10 s of simulation [ms]", fontsize=9)
     panels[0].set_ylabel("error at 10 s / largest displacement", fontsize=9)
     handles, labels = panels[0].get_legend_handles_labels()

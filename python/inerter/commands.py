@@ -11,6 +11,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
+from inerter.bench.command import bench_command
 from inerter.blind_test.command import blind_test_command
 from inerter.console import out, progress_bar, refuse, refusing, status
 from inerter.core import DeviceError, parameters
@@ -37,6 +38,7 @@ app.command("identify")(identify_command)
 app.add_typer(design_app, name="design")
 app.command("prepare")(prepare_command)
 app.command("blind-test")(blind_test_command)
+app.command("bench")(bench_command)
 app.add_typer(study_app, name="study")
 
 

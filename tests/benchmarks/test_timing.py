@@ -79,6 +79,8 @@ def test_rows_become_a_table() -> None:
             "ratio_upper": 1.02, **aimed(1.0, "<= 1.05"),
         },
     ]  # fmt: skip
+    for row in rows:
+        row["question"] = "b against a"
     rows[0] |= {"ratio_lower": None, "ratio_upper": None}
     console = Console(width=100, record=True, file=io.StringIO())
     console.print(table("Cost", rows))
@@ -87,8 +89,11 @@ def test_rows_become_a_table() -> None:
         assert words in text
     assert "lower" not in text
     assert aims({"step": rows}) == [
-        {"benchmark": "step", "about": "b", "ratio": 1.0, "aim": "<= 1.05", "met": True}
-    ]
+        {
+            "benchmark": "step", "question": "b against a", "aim": "<= 1.05", "met": "1 of 1",
+            "least": 1.0, "median": 1.0, "most": 1.0,
+        }
+    ]  # fmt: skip
 
 
 def test_the_machine_is_described() -> None:

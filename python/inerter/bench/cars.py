@@ -69,7 +69,7 @@ CARS = {
     "half-car": Car(
         HALF_CAR.body_mass,
         _PITCH,
-        (HALF_CAR.pitch_inertia,) * 3,
+        (HALF_CAR.pitch_inertia, HALF_CAR.pitch_inertia, HALF_CAR.pitch_inertia),
         [_wheel(x, 0.0, getattr(HALF_CAR, axle)) for x, axle in _AXLES],
     ),
     "full-car": Car(

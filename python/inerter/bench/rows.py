@@ -56,7 +56,7 @@ def table(title: str, rows: Sequence[Row]) -> Table:
         for key in rows[0]
         if not key.endswith(("_lower", "_upper")) and any(row[key] is not None for row in rows)
     ]
-    made = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    made = Table(title=title or None, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     for key in shown:
         numbers = all(isinstance(row[key], int | float | None) for row in rows)
         made.add_column(key.replace("_", " "), justify="right" if numbers else "left")

@@ -15,6 +15,7 @@ from inerter.bench.timing import Timing, Work, interleaved
 from inerter.plugin import load_plugin
 
 CALLBACK, LOOP = "callback lugre", "python loop"
+TOPOLOGIES = {"nested": "wheels in the body", "branches": "wheels beside the body"}
 IDEAL, LUGRE = "plugin none", "plugin lugre"
 
 # what a variant is held against, in the same topology: question, variant, against, aim
@@ -68,6 +69,33 @@ def step_costs(
             rows += [labels | row for row in _rows(times, branches)]
             progress((done + (k + 1) / len(integrators)) / len(cases))
     return rows
+
+
+def tables(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    """For each car and topology a table by title: the cost of a step over the armature's.
+
+    One line for each variant, one column for each integrator; the armature's own in microseconds.
+    """
+    found: dict[str, list[Row]] = {}
+    for car, topology in dict.fromkeys((row["car"], row["topology"]) for row in rows):
+        here = [row for row in rows if (row["car"], row["topology"]) == (car, topology)]
+        cost = {(row["variant"], row["integrator"]): row["microseconds"] for row in here}
+        integrators = dict.fromkeys(row["integrator"] for row in here)
+        lines = [
+            {"over the armature's": variant}
+            | {
+                name: cost[variant, name] / cost["armature", name]
+                if (variant, name) in cost
+                else None
+                for name in integrators
+            }
+            for variant in (*NATIVE, *PLUGIN, CALLBACK, LOOP)
+            if variant != "armature" and any(row["variant"] == variant for row in here)
+        ]
+        armature = {name: cost["armature", name] for name in integrators}
+        lines.insert(0, {"over the armature's": "armature [µs]"} | armature)
+        found[f"One step of a {car}, {TOPOLOGIES[topology]}"] = lines
+    return found
 
 
 def _works(car: str, branches: bool, integrator: str, steps: int) -> dict[str, Work]:
