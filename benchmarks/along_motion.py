@@ -123,8 +123,8 @@ def _scipy_work(law: str, count: int) -> Work:
             return INERTANCE * a + _static(law, p, v)
         slide = rate
         done = solve_ivp(
-            lambda t, z: [slide(float(path.velocity(t)), z[0])], (0.0, times[-1]), [0.0], method="LSODA",
-            t_eval=times, rtol=1e-6, atol=1e-9,
+            lambda t, z: [slide(float(path.velocity(t)), z[0])], (0.0, times[-1]), [0.0],
+            method="LSODA", t_eval=times, rtol=1e-6, atol=1e-9,
         )  # fmt: skip
         z = done.y[0]
         if law == "bouc_wen":

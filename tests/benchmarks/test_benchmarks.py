@@ -71,7 +71,7 @@ def test_nested_and_branches_are_the_same_car(car: str) -> None:
         moved(car, "plugin lugre", "RK4", branches=branches, step=5e-4)
         for branches in (False, True)
     )
-    assert nested == pytest.approx(branches, abs=1e-9 if car == "quarter-car" else 2e-5)
+    assert nested == pytest.approx(branches, abs=1e-12 if car == "quarter-car" else 2e-5)
     assert np.abs(nested).max() > 2e-3
 
 
