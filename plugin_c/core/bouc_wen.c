@@ -12,23 +12,22 @@
 // Free play before the yielding share: friction_play.c.
 // Not modelled: pinching, degradation.
 
-#include <float.h>
-
 #include "friction.h"
 
-// z' along the path: rate per unit |v| in direction s = sgn(v), and its slope over z
-static double slope(const InerterDevice* p, double s, double z, double* derivative) {
+// z' along the path: rate per unit |v| in direction s = sgn(v), and its slope over z. `loading`: z
+// has the direction of s, or is 0 and about to have it; else it has the other one.
+static double slope(const InerterDevice* p, double s, double z, int loading, double* derivative) {
   double n = p->bw_exponent;
-  double c = p->bw_gamma * s + p->bw_beta * sign(z);
+  double c = loading ? p->bw_gamma + p->bw_beta : p->bw_gamma - p->bw_beta;
   double power = n == 1 ? 1 : pow(fabs(z), n - 1);
-  *derivative = -c * n * power * (z < 0 ? -1 : 1);
-  return p->bw_alpha * s - c * power * fabs(z);
+  *derivative = (loading ? -c : c) * n * power;
+  return s * (p->bw_alpha - c * power * fabs(z));
 }
 
 static double rate(const InerterDevice* p, double x, double v, double z) {
   (void)x;
   double derivative;
-  return fabs(v) * slope(p, sign(v), z, &derivative);
+  return fabs(v) * slope(p, sign(v), z, v * z >= 0, &derivative);
 }
 
 // (e^x - 1) / x
@@ -41,7 +40,7 @@ static double growth(double x) {
 static double advance(const InerterDevice* p, double s, double z, double path) {
   double derivative;
   if (z * s < 0) {
-    double value = slope(p, s, z, &derivative);
+    double value = slope(p, s, z, 0, &derivative);
     double next = z + path * growth(derivative * path) * value;
     if (next * s < 0) {
       return next;
@@ -52,7 +51,7 @@ static double advance(const InerterDevice* p, double s, double z, double path) {
     path -= fabs(x) < 1e-8 ? -z / value : log1p(x) / derivative;
     z = 0;
   }
-  double value = slope(p, s, z == 0 ? s * DBL_MIN : z, &derivative);
+  double value = slope(p, s, z, 1, &derivative);
   return z + fmax(path, 0) * growth(derivative * fmax(path, 0)) * value;
 }
 
@@ -118,4 +117,8 @@ static double stiffness(const InerterDevice* p) {
   return fmax(0, 1 - p->bw_ratio) * p->bw_stiffness * p->bw_alpha;
 }
 
-const FrictionLaw inerter_bouc_wen = {rate, step, straight, force, energy, stiffness};
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  friction_along(p, path, z, forces, step, force);
+}
+
+const FrictionLaw inerter_bouc_wen = {rate, step, straight, force, energy, stiffness, along};

@@ -18,4 +18,8 @@ static double force(const InerterDevice* p, double x, double v, double z) {
   return friction_level(p, x, v) * (sliding + peak);
 }
 
-const FrictionLaw inerter_brown_mcphee = {.force = force};
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  friction_along(p, path, z, forces, NULL, force);
+}
+
+const FrictionLaw inerter_brown_mcphee = {.force = force, .along = along};

@@ -16,4 +16,8 @@ static double force(const InerterDevice* p, double x, double v, double z) {
   return friction_level(p, x, v) * p->coulomb_force * friction_direction(p, v);
 }
 
-const FrictionLaw inerter_coulomb = {.force = force};
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  friction_along(p, path, z, forces, NULL, force);
+}
+
+const FrictionLaw inerter_coulomb = {.force = force, .along = along};

@@ -29,13 +29,15 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   if (v == 0) {
     return z;
   }
-  double u = slack(p, level, v, z);
   double path = p->bristle_stiffness * fabs(v) * h / level;
   double m = p->dahl_exponent;
-  double change;  // u(h) / u - 1, kept exact for short paths and for m near 1
   if (m == 1) {
-    change = expm1(-path);
-  } else if (u == 0) {
+    double end = sign(v) * level / p->bristle_stiffness;
+    return z - expm1(-path) * (end - z);
+  }
+  double u = slack(p, level, v, z);
+  double change;  // u(h) / u - 1, kept exact for short paths and for m near 1
+  if (u == 0) {
     change = 0;
   } else {
     double growth = (m - 1) * path * pow(fabs(u), m - 1);
@@ -69,4 +71,8 @@ static double stiffness(const InerterDevice* p) {
   return p->bristle_stiffness;
 }
 
-const FrictionLaw inerter_dahl = {rate, step, straight, force, energy, stiffness};
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  friction_along(p, path, z, forces, step, force);
+}
+
+const FrictionLaw inerter_dahl = {rate, step, straight, force, energy, stiffness, along};

@@ -108,14 +108,6 @@ double inerter_load_factor(const InerterDevice* device, double v) {
   return device->load_friction ? device->load_friction * friction_direction(device, v) : 0;
 }
 
-// T without friction
-static double parallel_force(const InerterDevice* device, double stretch, double v) {
-  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
-  double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
-  double stops = has(device, PART_STOPS) ? stop_force(device, stretch, v) : 0;
-  return spring + damper + device->force_offset + stops;
-}
-
 double inerter_inertance(const InerterDevice* device, double x, double v, double* rest) {
   double carried = 0, inertance = has(device, PART_SERIES) ? 0 : device->inertance;
   if (has(device, PART_VARYING) && !has(device, PART_SERIES)) {

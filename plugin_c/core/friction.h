@@ -8,10 +8,21 @@
 
 #include "device.h"
 
+// Samples [first, last) of a motion, h seconds apart. states, if not NULL, takes the law's state at
+// each of them.
+typedef struct FrictionPath_ {
+  int first, last;
+  double h;
+  const double* x;
+  const double* v;
+  double* states;
+} FrictionPath;
+
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
 // straight: time until a state that v straightens is 0; asked for where z v < 0 only.
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
-// Laws without states leave all but force NULL.
+// along: force and state at samples of a motion, see `friction_along`.
+// Laws without states leave all but force and along NULL.
 typedef struct FrictionLaw_ {
   double (*rate)(const InerterDevice* p, double x, double v, double z);
   double (*step)(const InerterDevice* p, double x, double v, double z, double h);
@@ -19,6 +30,7 @@ typedef struct FrictionLaw_ {
   double (*force)(const InerterDevice* p, double x, double v, double z);
   double (*energy)(const InerterDevice* p, double x, double z);
   double (*stiffness)(const InerterDevice* p);
+  void (*along)(const InerterDevice* p, const FrictionPath* path, double* z, double* forces);
 } FrictionLaw;
 
 extern const FrictionLaw inerter_coulomb;
@@ -72,6 +84,31 @@ static inline double friction_stribeck_curve(const InerterDevice* p, double v) {
 
 static inline double sign(double v) {
   return (v > 0) - (v < 0);
+}
+
+// Forces at the samples of a path, the state z stepped from each to the next at the mean velocity
+// and the middle between them, which keeps the path of the law. Every law has this loop compiled
+// with its own step and force in it; without a state step is NULL.
+static inline void friction_along(const InerterDevice* restrict p, const FrictionPath* path,
+                                  double* restrict z, double* restrict forces,
+                                  double (*step)(const InerterDevice* p, double x, double v,
+                                                 double z, double h),
+                                  double (*force)(const InerterDevice* p, double x, double v,
+                                                  double z)) {
+  const double *x = path->x, *v = path->v;
+  double h = path->h, rest = p->rest_length, now = step ? *z : 0;
+  for (int i = path->first; i < path->last; i++) {
+    if (step && i) {
+      now = step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, now, h);
+    }
+    forces[i - path->first] = force(p, x[i] - rest, v[i], now);
+    if (step && path->states) {
+      path->states[i] = now;
+    }
+  }
+  if (step) {
+    *z = now;
+  }
 }
 
 #endif  // INERTER_CORE_FRICTION_H_

@@ -85,6 +85,14 @@ double stop_force(const InerterDevice* p, double x, double v);
 double stop_energy(const InerterDevice* p, double x);
 double stop_heat(const InerterDevice* p, double x, double v);
 
+// T without friction, at displacement `stretch`
+static inline double parallel_force(const InerterDevice* device, double stretch, double v) {
+  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
+  double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
+  double stops = has(device, PART_STOPS) ? stop_force(device, stretch, v) : 0;
+  return spring + damper + device->force_offset + stops;
+}
+
 // flywheel damping with its slope: flywheel_viscous w + pipe(w)
 static inline Tangent flywheel_damper(const InerterDevice* p, double w) {
   Tangent damper = {0, 0};

@@ -52,4 +52,8 @@ static double stiffness(const InerterDevice* p) {
   return p->bristle_stiffness;
 }
 
-const FrictionLaw inerter_lugre = {rate, step, straight, force, energy, stiffness};
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  friction_along(p, path, z, forces, step, force);
+}
+
+const FrictionLaw inerter_lugre = {rate, step, straight, force, energy, stiffness, along};

@@ -14,4 +14,8 @@ static double force(const InerterDevice* p, double x, double v, double z) {
   return friction_level(p, x, v) * friction_stribeck_curve(p, v) * friction_direction(p, v);
 }
 
-const FrictionLaw inerter_stribeck = {.force = force};
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  friction_along(p, path, z, forces, NULL, force);
+}
+
+const FrictionLaw inerter_stribeck = {.force = force, .along = along};

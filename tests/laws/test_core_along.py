@@ -146,3 +146,24 @@ def test_channels_of_any_kind_of_array_are_read() -> None:
     x = np.array([0, 1, 2, 3])
     found = device.along(0.1, x[::2], x[::2].astype(np.float32), x[::-2])["total"]
     np.testing.assert_array_equal(found, 3.0 * x[::2] + 2.0 * x[::-2])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_along_is_its_samples_one_by_one(law: str) -> None:
+    """Law by law and in blocks, along gives what step and evaluate give sample by sample."""
+    rng = np.random.default_rng(3)
+    friction = draw_friction(rng, law)
+    beside = {"viscous": 3.0, "quadratic_damping": 2.0, "stiffness": 40.0, "stiffness_cubic": 9.0}
+    device = Device(inertance=2.0, rest_length=0.3, force_offset=1.5, **beside, **friction)
+    h = 1e-3
+    _, x, v, a = sampled(MOTION, h, 0.7)
+    x = x + 0.3
+    found = device.along(h, x, v, a, state=1e-5 if device.nstate else 0.0)
+    z = 1e-5
+    for i in range(x.size):
+        if i and device.nstate:
+            z = device.step(0.5 * (x[i] + x[i - 1]), (x[i] - x[i - 1]) / h, z, h)
+        alone = device.evaluate(x[i], v[i], a[i], z)
+        assert found["total"][i] == pytest.approx(alone["total"][0], rel=1e-13)
+        assert found["friction"][i] == pytest.approx(alone["friction"][0], rel=1e-13, abs=1e-15)
+        assert not device.nstate or found["state"][i] == z
