@@ -5,12 +5,13 @@
 #include <math.h>
 
 #include "mujoco/engine_private.h"
+#include "mujoco/groups.h"
 #include "mujoco/metric.h"
 #include "mujoco/monotone.h"
 
-// most rounds with the engine's constraint solver, and the fit that ends them
+// most rounds with the engine's constraint solver, and the fits that end them, early and late
 enum { CONSTRAINT_ROUNDS = 60 };
-static const double kFit = 1e-10, kLooseFit = 1e-7;
+static const double kFit = 1e-10, kStalledFit = 1e-8, kLooseFit = 1e-7;
 
 // one device in the equations of coupled.h
 typedef struct Coupled_ {
@@ -77,22 +78,25 @@ static int collect(const mjModel* m, const mjData* d, int last, Coupled* all) {
 
 //------------------------------ what the model answers --------------------------------------------
 
-// the model seen from the devices
+// the model seen from the devices, which stand group by group
 typedef struct Answer_ {
   int n;
   const Coupled* all;
+  int ngroup;
+  const Group* groups;
   Metric metric;
-  mjtNum* J;       // moment arms (n x nv)
+  mjtNum* W;       // acceleration that the forces take away, n_g x n_g for each group [1/kg]
   mjtNum* smooth;  // smooth force and acceleration without the devices' forces (nv each)
   mjtNum* free;
-  mjtNum* plain;  // M^-1 J', which the constraint solver sees (n x nv)
-  mjtNum* work;   // nv
+  mjtNum* work;  // 2 nv
 } Answer;
 
 // acceleration along the devices for the acceleration of the model
-static void along(const mjModel* m, const Answer* answer, const mjtNum* qacc, mjtNum* a) {
+static void along(const mjModel* m, const mjData* d, const Answer* answer, const mjtNum* qacc,
+                  mjtNum* a) {
   for (int i = 0; i < answer->n; i++) {
-    a[i] = mju_dot(answer->J + i * m->nv, qacc, m->nv) + answer->all[i].self->bias;
+    const Instance* self = answer->all[i].self;
+    a[i] = instance_along(m, d, self, qacc) + self->bias;
   }
 }
 
@@ -100,21 +104,63 @@ static void along(const mjModel* m, const Answer* answer, const mjtNum* qacc, mj
 static void respond(const mjModel* m, mjData* d, const Answer* answer, const mjtNum* force,
                     mjtNum* a) {
   int nv = m->nv;
-  mju_copy(d->qfrc_smooth, answer->smooth, nv);
-  mju_copy(d->qacc_smooth, answer->free, nv);
+  mjtNum *pull = answer->work, *qacc = answer->work + nv;
+  mju_zero(pull, nv);
   for (int i = 0; i < answer->n; i++) {
-    mju_addToScl(d->qfrc_smooth, answer->J + i * nv, -force[i], nv);
-    mju_addToScl(d->qacc_smooth, answer->plain + i * nv, -force[i], nv);
+    instance_add_moment(m, d, answer->all[i].self, force[i], pull);
   }
+  mju_sub(d->qfrc_smooth, answer->smooth, pull, nv);
+
+  // what the constraint solver sees: the metric of the discrete integrator, else the inertia
+  if (metric_moves_qacc(&answer->metric)) {
+    mj_solveM(m, d, qacc, pull, 1);
+  } else {
+    metric_solve(m, d, &answer->metric, qacc, pull, 1);
+  }
+  mju_sub(d->qacc_smooth, answer->free, qacc, nv);
   mj_fwdConstraint(m, d);
   if (!metric_moves_qacc(&answer->metric)) {
-    along(m, answer, d->qacc, a);
+    along(m, d, answer, d->qacc, a);
     return;
   }
-  mjtNum *total = answer->work, *qacc = answer->work + nv;
+  mjtNum* total = answer->work;
   mju_add(total, d->qfrc_smooth, d->qfrc_constraint, nv);
   metric_solve(m, d, &answer->metric, qacc, total, 1);
-  along(m, answer, qacc, a);
+  along(m, d, answer, qacc, a);
+}
+
+// W of every group: the k-th devices of all groups are asked at once, since no force of one group
+// moves another
+static void find_mobilities(const mjModel* m, mjData* d, Coupled* all, const Answer* answer) {
+  int nv = m->nv, most = 0;
+  for (int g = 0; g < answer->ngroup; g++) {
+    most = mjMAX(most, answer->groups[g].n);
+  }
+  mj_markStack(d);
+  mjtNum* J = mj_stackAllocNum(d, most * nv);
+  mjtNum* X = mj_stackAllocNum(d, most * nv);
+  mju_zero(J, most * nv);
+  for (int g = 0; g < answer->ngroup; g++) {
+    const Group* group = answer->groups + g;
+    for (int k = 0; k < group->n; k++) {
+      instance_add_moment(m, d, all[group->first + k].self, 1, J + k * nv);
+    }
+  }
+  metric_solve(m, d, &answer->metric, X, J, most);
+  mjtNum* W = answer->W;
+  for (int g = 0; g < answer->ngroup; g++) {
+    Coupled* devices = all + answer->groups[g].first;
+    int n = answer->groups[g].n;
+    for (int i = 0; i < n; i++) {
+      devices[i].mobility = 0;
+      for (int j = 0; j < n; j++) {
+        W[i * n + j] = instance_along(m, d, devices[i].self, X + j * nv);
+        devices[i].mobility += fabs(W[i * n + j]);
+      }
+    }
+    W += n * n;
+  }
+  mj_freeStack(d);
 }
 
 // Broyden's update: W such that it explains the last change of a by the last change of force
@@ -134,52 +180,62 @@ static void learn(int n, mjtNum* W, const mjtNum* da, const mjtNum* dforce) {
 // With constraints: ask for the answer to a set of forces, take it as linear, solve, ask again.
 // The answer's slope lies between 0 and W, so this converges even with the plain W; the update
 // makes it fast. scale: size of the accelerations that the answer is a difference of.
-static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, const mjtNum* W,
-                             const mjtNum* scale, const mjtNum* start, mjtNum* a, mjtNum* force) {
-  int n = answer->n;
+static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, int nW,
+                             int nscratch, const mjtNum* scale, const mjtNum* start, mjtNum* a,
+                             mjtNum* force) {
+  int all = answer->n;
   mj_markStack(d);
-  mjtNum* slope = mj_stackAllocNum(d, n * n);
-  mjtNum* p = mj_stackAllocNum(d, n);
-  mjtNum* asked = mj_stackAllocNum(d, n);
-  mjtNum* answered = mj_stackAllocNum(d, n);
-  mjtNum* change = mj_stackAllocNum(d, 2 * n);
-  mjtNum* scratch = mj_stackAllocNum(d, n * (n + 4));
-  mju_copy(slope, W, n * n);
-  mju_copy(force, start, n);
-  mju_zero(asked, n);
-  mju_zero(answered, n);
+  mjtNum* slopes = mj_stackAllocNum(d, nW);
+  mjtNum* p = mj_stackAllocNum(d, all);
+  mjtNum* asked = mj_stackAllocNum(d, all);
+  mjtNum* answered = mj_stackAllocNum(d, all);
+  mjtNum* change = mj_stackAllocNum(d, 2 * all);
+  mjtNum* scratch = mj_stackAllocNum(d, nscratch);
+  mju_copy(slopes, answer->W, nW);
+  mju_copy(force, start, all);
+  mju_zero(asked, all);
+  mju_zero(answered, all);
 
   int fits = 0;
   for (int round = 0; !fits && round < CONSTRAINT_ROUNDS; round++) {
-    mju_sub(change, force, asked, n);
-    mju_copy(change + n, answered, n);
-    mju_copy(asked, force, n);
+    mju_sub(change, force, asked, all);
+    mju_copy(change + all, answered, all);
+    mju_copy(asked, force, all);
     respond(m, d, answer, asked, answered);
-    if (round) {
-      mju_sub(change + n, answered, change + n, n);
-      learn(n, slope, change + n, change);
-    }
-    if (round % 20 == 19 || (n == 1 && !(slope[0] >= 0 && slope[0] <= W[0]))) {
-      mju_copy(slope, W, n * n);
-    }
-
-    // a = p - slope force near the forces asked for
-    for (int i = 0; i < n; i++) {
-      p[i] = answered[i] + mju_dot(slope + i * n, asked, n);
-      a[i] = answered[i];
-    }
-    monotone_solve(law, answer->all, n, slope, p, a, force, scratch);
+    mju_sub(change + all, answered, change + all, all);
 
     // the engine's solver leaves an error of its own: what does not get better is good enough
-    double allowed = round < 12 ? kFit : kLooseFit;
+    double allowed = round < 12 ? kFit : round < 24 ? kStalledFit : kLooseFit;
     fits = 1;
-    for (int i = 0; i < n; i++) {
-      mjtNum size = fabs(a[i]) + fabs(answered[i]) + scale[i], miss = 0;
-      for (int j = 0; j < n; j++) {
-        size += fabs(W[i * n + j] * force[j]);
-        miss += W[i * n + j] * fabs(force[j] - asked[j]);
+    mjtNum* slope = slopes;
+    const mjtNum* W = answer->W;
+    for (int g = 0; g < answer->ngroup; g++) {
+      int first = answer->groups[g].first, n = answer->groups[g].n, end = first + n;
+      if (round) {
+        learn(n, slope, change + all + first, change + first);
       }
-      fits &= fabs(miss) <= allowed * size;
+      if (round % 20 == 19 || (n == 1 && !(slope[0] >= 0 && slope[0] <= W[0]))) {
+        mju_copy(slope, W, n * n);
+      }
+
+      // a = p - slope force near the forces asked for
+      for (int i = first; i < end; i++) {
+        p[i] = answered[i] + mju_dot(slope + (i - first) * n, asked + first, n);
+        a[i] = answered[i];
+      }
+      monotone_solve(law, answer->all + first, n, slope, p + first, a + first, force + first,
+                     scratch);
+      for (int i = first; i < end; i++) {
+        const mjtNum* row = W + (i - first) * n;
+        mjtNum size = fabs(a[i]) + fabs(answered[i]) + scale[i], miss = 0;
+        for (int j = first; j < end; j++) {
+          size += fabs(row[j - first] * force[j]);
+          miss += row[j - first] * fabs(force[j] - asked[j]);
+        }
+        fits &= fabs(miss) <= allowed * size;
+      }
+      slope += n * n;
+      W += n * n;
     }
   }
   mj_freeStack(d);
@@ -214,7 +270,7 @@ static void forward_without(const mjModel* m, mjData* d, int last) {
 // forces that the devices would have at the acceleration of the last step: a first guess for the
 // constraint solver, which starts from the same place
 static void guess(const mjModel* m, const mjData* d, const Answer* answer, mjtNum* force) {
-  along(m, answer, d->qacc_warmstart, force);
+  along(m, d, answer, d->qacc_warmstart, force);
   for (int i = 0; i < answer->n; i++) {
     force[i] = law(answer->all, i, force[i]);
   }
@@ -243,6 +299,25 @@ static int is_linear(const mjModel* m, const mjData* d, const Metric* metric) {
   return linear;
 }
 
+// the devices group by group; returns how many groups
+static int grouped(const mjModel* m, mjData* d, const Metric* metric, int n, Coupled* all,
+                   Group* groups) {
+  mj_markStack(d);
+  int* row = mj_stackAllocInt(d, n);
+  int* order = mj_stackAllocInt(d, n);
+  Coupled* before = mj_stackAllocByte(d, n * sizeof(Coupled), _Alignof(Coupled));
+  for (int i = 0; i < n; i++) {
+    row[i] = m->actuator_outadr[all[i].self->actuator];
+    before[i] = all[i];
+  }
+  int count = groups_find(m, d, metric, n, row, order, groups);
+  for (int i = 0; i < n; i++) {
+    all[i] = before[order[i]];
+  }
+  mj_freeStack(d);
+  return count;
+}
+
 void coupled_solve(const mjModel* m, mjData* d, int last) {
   int nv = m->nv;
   mj_markStack(d);
@@ -255,60 +330,53 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
 
   // the model without these forces
   Answer answer = {.n = n, .all = all};
-  answer.J = mj_stackAllocNum(d, n * nv);
-  answer.plain = mj_stackAllocNum(d, n * nv);
   answer.smooth = mj_stackAllocNum(d, nv);
   answer.free = mj_stackAllocNum(d, nv);
   answer.work = mj_stackAllocNum(d, 2 * nv);
-  mjtNum* X = mj_stackAllocNum(d, n * nv);
-  mjtNum* W = mj_stackAllocNum(d, n * n);
   mjtNum* p = mj_stackAllocNum(d, n);
   mjtNum* a = mj_stackAllocNum(d, n);
   mjtNum* force = mj_stackAllocNum(d, 2 * n);
   mjtNum* scale = mj_stackAllocNum(d, n);
-  mjtNum* scratch = mj_stackAllocNum(d, n * (n + 4));
+  Group* groups = mj_stackAllocByte(d, n * sizeof(Group), _Alignof(Group));
   forward_without(m, d, last);
   mju_copy(answer.smooth, d->qfrc_smooth, nv);
   mju_copy(answer.free, d->qacc_smooth, nv);
   answer.metric = metric_of_step(m, d);
+  answer.groups = groups;
+  answer.ngroup = grouped(m, d, &answer.metric, n, all, groups);
+  int nW = 0, nscratch = 0;
+  for (int g = 0; g < answer.ngroup; g++) {
+    nW += groups[g].n * groups[g].n;
+    nscratch = mjMAX(nscratch, groups[g].n * (groups[g].n + 4));
+  }
+  answer.W = mj_stackAllocNum(d, nW);
+  mjtNum* scratch = mj_stackAllocNum(d, nscratch);
 
   // acceleration along the devices: without the forces, and what each force takes away
-  for (int i = 0; i < n; i++) {
-    instance_moment(m, d, all[i].self, answer.J + i * nv);
-  }
-  metric_solve(m, d, &answer.metric, X, answer.J, n);
+  find_mobilities(m, d, all, &answer);
   if (metric_moves_qacc(&answer.metric)) {
     metric_solve(m, d, &answer.metric, answer.work, answer.smooth, 1);
-    along(m, &answer, answer.work, p);
+    along(m, d, &answer, answer.work, p);
   } else {
-    along(m, &answer, answer.free, p);
-  }
-  for (int i = 0; i < n; i++) {
-    all[i].mobility = 0;
-    for (int j = 0; j < n; j++) {
-      W[i * n + j] = mju_dot(answer.J + i * nv, X + j * nv, nv);
-      all[i].mobility += fabs(W[i * n + j]);
-    }
+    along(m, d, &answer, answer.free, p);
   }
 
   mju_copy(a, p, n);
   int fits = 1;
   if (is_linear(m, d, &answer.metric)) {
-    monotone_solve(law, all, n, W, p, a, force, scratch);
-  } else {
-    if (metric_moves_qacc(&answer.metric)) {
-      mj_solveM(m, d, answer.plain, answer.J, n);
-    } else {
-      mju_copy(answer.plain, X, n * nv);
+    const mjtNum* W = answer.W;
+    for (int g = 0; g < answer.ngroup; g++) {
+      int first = groups[g].first, size = groups[g].n;
+      monotone_solve(law, all + first, size, W, p + first, a + first, force + first, scratch);
+      W += size * size;
     }
+  } else {
     for (int i = 0; i < n; i++) {
-      scale[i] = fabs(all[i].self->bias);
-      for (int k = 0; k < nv; k++) {
-        scale[i] += fabs(answer.J[i * nv + k] * answer.free[k]);
-      }
+      const Instance* self = all[i].self;
+      scale[i] = instance_along_size(m, d, self, answer.free) + fabs(self->bias);
     }
     guess(m, d, &answer, force + n);
-    fits = solve_constrained(m, d, &answer, W, scale, force + n, a, force);
+    fits = solve_constrained(m, d, &answer, nW, nscratch, scale, force + n, a, force);
   }
   for (int i = 0; i < n; i++) {
     apply(m, d, all + i, a[i]);

@@ -2,6 +2,7 @@
 
 #include "mujoco/instance.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "mujoco/engine_private.h"
@@ -128,12 +129,12 @@ mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* 
   return d->actuator_length[m->actuator_outadr[self->actuator]] - self->rest_length;
 }
 
-void instance_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum* row) {
-  int output = m->actuator_outadr[self->actuator];
-  int start = d->moment_rowadr[output];
-  mju_zero(row, m->nv);
-  for (int k = start; k < start + d->moment_rownnz[output]; k++) {
-    row[d->moment_colind[k]] = d->actuator_moment[k];
+void instance_add_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum force,
+                         mjtNum* vec) {
+  int row = m->actuator_outadr[self->actuator];
+  int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
+  for (int k = start; k < end; k++) {
+    vec[d->moment_colind[k]] += force * d->actuator_moment[k];
   }
 }
 
@@ -143,6 +144,17 @@ mjtNum instance_along(const mjModel* m, const mjData* d, const Instance* self, c
   mjtNum sum = 0;
   for (int k = start; k < end; k++) {
     sum += d->actuator_moment[k] * vec[d->moment_colind[k]];
+  }
+  return sum;
+}
+
+mjtNum instance_along_size(const mjModel* m, const mjData* d, const Instance* self,
+                           const mjtNum* vec) {
+  int row = m->actuator_outadr[self->actuator];
+  int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
+  mjtNum sum = 0;
+  for (int k = start; k < end; k++) {
+    sum += fabs(d->actuator_moment[k] * vec[d->moment_colind[k]]);
   }
   return sum;
 }

@@ -119,11 +119,15 @@ mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* 
 // Velocity of the actuator at the present qvel, with the moment arms of the last forward pass.
 mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self);
 
-// Row of the moment arms of the actuator, dense (nv).
-void instance_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum* row);
+// Add the actuator's moment arms, times a force, to a vector of the model's dofs.
+void instance_add_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum force,
+                         mjtNum* vec);
 
-// Product of the actuator's moment arms and a vector of the model's dofs.
+// Product of the actuator's moment arms and a vector of the model's dofs; the same with every term
+// positive, which is what rounding is to be compared with.
 mjtNum instance_along(const mjModel* m, const mjData* d, const Instance* self, const mjtNum* vec);
+mjtNum instance_along_size(const mjModel* m, const mjData* d, const Instance* self,
+                           const mjtNum* vec);
 
 // The part of the actuator's acceleration that qvel alone causes: d(moment)/dt qvel.
 mjtNum instance_bias_acceleration(const mjModel* m, mjData* d, const Instance* self);

@@ -30,6 +30,9 @@ static void solve_dense(int n, mjtNum* A, mjtNum* y, mjtNum* x) {
     y[c] = y[pivot];
     y[pivot] = swapped;
     for (int r = c + 1; r < n; r++) {
+      if (A[r * n + c] == 0) {
+        continue;
+      }
       mjtNum factor = A[r * n + c] / A[c * n + c];
       for (int k = c; k < n; k++) {
         A[r * n + k] -= factor * A[c * n + k];

@@ -108,8 +108,8 @@ static int merge(const InerterDevice* device, int index, mjtNum configured, cons
   return 0;
 }
 
-// Derive again what depends on armature and damping: inverse weights, which actuators act on which
-// joint or tendon. The statistics stay as they are; no computation reads the mean inertia.
+// Inverse weights, and which actuators act on which joint or tendon. The statistics stay as they
+// are; no computation reads the mean inertia. It takes long in large models: once for all devices.
 static void derive(mjModel* m) {
   mjtSize nplugin = m->nplugin;
   int enableflags = m->opt.enableflags;
@@ -164,11 +164,18 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
     }
     model->actuator_armature[actuator] = inertance;
     model->actuator_damping[actuator] = viscous;
-    if (inertance != armature || viscous != damping) {
-      derive(model);
-    }
   }
   model->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] =
       *native ? PLACED_NATIVE : PLACED_PLUGIN;
   return 0;
+}
+
+void placement_finish(const mjModel* m) {
+  for (int i = 0; i < m->nactuator; i++) {
+    if (m->actuator_gainprm[mjNGAIN * i + kPlacedSlot] == PLACED_NATIVE &&
+        (m->actuator_armature[i] != 0 || m->actuator_damping[i] != 0)) {
+      derive((mjModel*)m);
+      return;
+    }
+  }
 }

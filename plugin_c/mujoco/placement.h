@@ -16,4 +16,8 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
 // Whether the model is being compiled: nothing is placed yet.
 int placement_is_new(const mjModel* m, int actuator);
 
+// By the compiler's init, when the last device is placed: derive anew what depends on the armature
+// and damping of actuators.
+void placement_finish(const mjModel* m);
+
 #endif  // INERTER_MUJOCO_PLACEMENT_H_

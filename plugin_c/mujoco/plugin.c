@@ -95,6 +95,9 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   for (int k = instance + 1; k < m->nplugin; k++) {
     self->last &= m->plugin[k] != m->plugin[instance];
   }
+  if (compiling && self->last) {
+    placement_finish(m);
+  }
   return 0;
 }
 
