@@ -17,7 +17,17 @@ from inerter.bench.step import tables
 from inerter.folder import json_text, write_files
 from rich.console import Console
 
-from benchmarks import along_motion, exudyn_cost, one_step, work_precision
+from benchmarks import (
+    along_motion,
+    diagnosis,
+    exudyn_cost,
+    growth,
+    identification,
+    many,
+    memory,
+    one_step,
+    work_precision,
+)
 
 
 @dataclass(frozen=True)
@@ -53,6 +63,15 @@ BENCHMARKS = {
         "A sample along a motion, and how much longer others take",
         along_motion.run, picture=along_motion.picture, notes=along_motion.notes,
     ),
+    "many": Benchmark("Steps of many simulations", many.run, picture=many.picture),
+    "memory": Benchmark("Memory of a simulation", memory.run),
+    "growth": Benchmark(
+        "How cost grows with size", growth.run, growth.summary, growth.picture,
+    ),
+    "identification": Benchmark(
+        "An identification", identification.run, notes=identification.notes,
+    ),
+    "diagnosis": Benchmark("A whole diagnosis", diagnosis.run, notes=diagnosis.notes),
 }
 # fmt: on
 

@@ -104,9 +104,9 @@ def exponent(sizes: Sequence[int], times: Sequence[Timing]) -> Spread:
     return Spread.of(np.polyfit(np.log(sizes), costs, 1)[0])
 
 
-def summary(rows: list[Row]) -> list[Row]:
+def summary(rows: list[Row]) -> dict[str, list[Row]]:
     """What is printed: the ends of the sizes instead of all of them."""
-    return [
+    short = [
         {
             "subject": row["subject"],
             "sizes": f"{row['sizes'][0]} to {row['sizes'][-1]} {row['of']}",
@@ -115,6 +115,7 @@ def summary(rows: list[Row]) -> list[Row]:
         }
         for row in rows
     ]
+    return {"cost ~ size^exponent": short}
 
 
 def picture(rows: list[Row], path: Path) -> None:

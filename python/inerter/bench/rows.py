@@ -3,7 +3,8 @@
 A row is a dict of texts and numbers, the same keys in every row of a benchmark. Some keys mean the
 same everywhere: `ratio` (with its quartiles `ratio_lower`, `ratio_upper`), `aim`, a text such as
 "<= 1.05" or ">= 20" for the ratio or None, and `met`, whether the ratio reaches it. Rows with an
-aim have a `question` too: what is held against what.
+aim have a `question` too: what is held against what. Where there is no ratio, the aim is one for
+the `exponent`, or else for the `seconds`.
 """
 
 from __future__ import annotations
@@ -79,12 +80,17 @@ def aims(results: Mapping[str, Sequence[Row]]) -> list[Row]:
         {
             "benchmark": name, "question": question, "aim": aim,
             "met": f"{sum(row['met'] for row in rows)} of {len(rows)}",
-            "least": min(row["ratio"] for row in rows),
-            "median": Spread.of([row["ratio"] for row in rows]).median,
-            "most": max(row["ratio"] for row in rows),
+            "least": min(map(_measured, rows)),
+            "median": Spread.of([_measured(row) for row in rows]).median,
+            "most": max(map(_measured, rows)),
         }
         for (name, question, aim), rows in found.items()
     ]  # fmt: skip
+
+
+def _measured(row: Row) -> float:
+    """What the aim of a row is about."""
+    return next(row[key] for key in ("ratio", "exponent", "seconds") if key in row)
 
 
 def _text(row: Row, key: str) -> str:
