@@ -117,7 +117,7 @@ def cases(quick: bool, seconds: float) -> list[Case]:
     if where is not None:
         measured = MEASURED[2:] if quick else MEASURED
         found += [
-            Case(pattern, "measured", lambda pattern=pattern: diagnose([where / pattern]))
+            Case(pattern, "measured", lambda path=where / pattern: diagnose([path]))
             for pattern in measured
         ]
     return found

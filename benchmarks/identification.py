@@ -20,7 +20,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -62,7 +61,7 @@ def notes() -> list[str]:
     return [] if has_sysid() else ['mujoco.sysid is left out: pip install "mujoco[sysid]"']
 
 
-def example() -> ModuleType:
+def example() -> Any:
     """The example as a module."""
     name = EXAMPLE.stem
     if name not in sys.modules:
@@ -204,7 +203,7 @@ def _lugre(seconds: float) -> dict[str, Counted]:
 def _plain(seconds: float) -> dict[str, Counted]:
     """A device without a state, its parameters off by a third, up and down in turn."""
     spacing = 1e-3
-    t = spacing * np.arange(round(seconds / spacing))
+    t = spacing * np.arange(round(seconds / spacing), dtype=np.float64)
     x, v, a = np.zeros((3, t.size))
     for size, frequency in ((0.02, 0.6), (0.004, 2.1), (0.0006, 6.3)):
         w = 2 * np.pi * frequency

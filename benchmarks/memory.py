@@ -51,12 +51,11 @@ def run(quick: bool = False, share: float = 1.0) -> list[Row]:
             for variant in (NATIVE, PLUGIN) if quick else (NATIVE, PLUGIN, BRANCHES):
                 found, state = pool.submit(resident, variant, kind, count).result()
                 native = found if variant == NATIVE else native
-                known = found is not None and native is not None
                 rows.append(
                     {
                         "question": "bytes of a simulation", "variant": variant, "kind": kind,
                         "simulations": count, "bytes": found, "state": state, "against": NATIVE,
-                        "extra": found - native if known else None, **aimed(0.0, None),
+                        "extra": None if found is None or native is None else found - native, **aimed(0.0, None),
                     }
                 )  # fmt: skip
     return rows

@@ -26,6 +26,7 @@ def simulate_along(
     v: ArrayLike,
     a: ArrayLike,
     state: ArrayLike = 0.0,
+    every: int = 1,
 ) -> dict[str, NDArray[np.float64]]:
     """Run a device in Exudyn along a sampled motion.
 
@@ -43,16 +44,20 @@ def simulate_along(
         Relative displacement [m], velocity, acceleration.
     state : float or sequence (nstate,)
         States at the first sample; one number is the first of them, the others are 0.
+    every : int
+        Forces and states are given at every so many samples, which divide n - 1; reading them costs
+        more than a step.
 
     Returns
     -------
     dict of ndarray
-        total [N], friction [N], shape (n,); states (n, nstate).
+        total [N], friction [N], shape (m,), m = 1 + (n - 1) / every; states (m, nstate).
 
     Raises
     ------
     ValueError
-        h is not positive, x, v, a are not of one length, or the run diverged.
+        h is not positive, x, v, a are not of one length, `every` does not divide n - 1, or the run
+        diverged.
     ImportError
         Exudyn is not installed.
     """
@@ -62,6 +67,8 @@ def simulate_along(
         raise ValueError(f"x, v, a must be arrays of one length >= 2; their shapes are {shapes}")
     if not h > 0:
         raise ValueError(f"h is {h}: give a sample spacing > 0 s")
+    if every < 1 or (x.size - 1) % every:
+        raise ValueError(f"every is {every}: give a divisor of the {x.size - 1} sample spacings")
     states = np.zeros(device.nstate)
     states[: np.size(state)] = state
 
@@ -93,7 +100,7 @@ def simulate_along(
     settings.timeIntegration.endTime = (x.size - 1) * h
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = h
+    settings.solution.sensors.writePeriod = every * h
     with quiet():
         mbs.SolveDynamic(settings, solverType=engine.DynamicSolverType.RK44)
     found = mbs.GetSensorStoredData(forces)
@@ -101,7 +108,7 @@ def simulate_along(
     stretch = float(x[0]) - device.rest_length
     first = law.forces(inerter.element.device, stretch, float(v[0]), float(a[0]), states.tolist())
     found[0, 1:] = [first[name] for name in FORCES]
-    inner = np.zeros((x.size, 0)) if own is None else mbs.GetSensorStoredData(own)[:, 1:]
+    inner = np.zeros((len(found), 0)) if own is None else mbs.GetSensorStoredData(own)[:, 1:]
     return {"total": found[:, 1], "friction": found[:, 3], "states": inner}
 
 

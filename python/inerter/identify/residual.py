@@ -12,6 +12,8 @@ Array = NDArray[np.float64]
 
 # squared rms residual per squared size that a transient is expected to have
 TIMID = 1e-2
+# exponent of a decay that leaves nothing
+_DECAYED = 60.0
 
 
 def robust_weight(residual: Array, typical: float, loss: str) -> Array:
@@ -61,7 +63,10 @@ def without_transient(
     at = np.arange(residual.size)[mask]
     if at.size < 4 or not np.isfinite(roots).all():
         return residual
-    time = spacing * np.arange(residual.size)
+    # what is below rounding by then has no share
+    slowest = float(np.max(roots.real)) * spacing
+    count = residual.size if slowest >= 0 else min(residual.size, int(_DECAYED / -slowest) + 2)
+    at, time = at[at < count], spacing * np.arange(count)
     with np.errstate(under="ignore"):
         if abs(roots[0].imag) > 0:
             wave = np.exp(roots[0] * time)
@@ -71,7 +76,9 @@ def without_transient(
     basis /= np.max(np.abs(basis), axis=0) + 1e-300
     if not np.isfinite(basis).all():
         return residual
-    count = basis.shape[1]
-    seen = np.vstack([basis[at], np.sqrt(TIMID) * np.eye(count)])
-    share = np.linalg.lstsq(seen, np.r_[residual[at], np.zeros(count)], rcond=None)[0]
-    return residual - basis @ share
+    # normal equations do: what holds the size back keeps them well conditioned
+    seen = basis[at]
+    share = np.linalg.solve(seen.T @ seen + TIMID * np.eye(basis.shape[1]), seen.T @ residual[at])
+    rest = residual.copy()
+    rest[:count] -= basis @ share
+    return rest
