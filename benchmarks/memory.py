@@ -55,7 +55,8 @@ def run(quick: bool = False, share: float = 1.0) -> list[Row]:
                     {
                         "question": "bytes of a simulation", "variant": variant, "kind": kind,
                         "simulations": count, "bytes": found, "state": state, "against": NATIVE,
-                        "extra": None if found is None or native is None else found - native, **aimed(0.0, None),
+                        "extra": None if found is None or native is None else found - native,
+                        **aimed(0.0, None),
                     }
                 )  # fmt: skip
     return rows
