@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 from inerter.bench.rows import Row, aimed, spread_of
 from inerter.bench.timing import Spread, Timing, Work, interleaved
+from matplotlib.ticker import NullFormatter
 
 from benchmarks import growth_lab, growth_models
 from benchmarks.picture import COLOURS, figure, save
@@ -126,7 +127,7 @@ def summary(rows: list[Row]) -> dict[str, list[Row]]:
 
 def picture(rows: list[Row], path: Path) -> None:
     """Cost over size, both by logarithm, with the fitted slopes."""
-    made = figure(11.0, 4.6)
+    made = figure(11.0, 6.6)
     panels = made.subplots(1, 2)
     of_models = {row["subject"]: row["subject"].startswith(("step", "compile")) for row in rows}
     for axes, title, side in zip(
@@ -142,8 +143,9 @@ def picture(rows: list[Row], path: Path) -> None:
                 sizes, middle * sizes ** row["exponent"], "-" if row["aim"] else ":", lw=1.2,
                 color=colour, label=f"{row['subject']}: {row['exponent']:.2f}",
             )  # fmt: skip
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_title(title, fontsize=9.5, loc="left")
         axes.set_xlabel("size")
-        axes.legend(fontsize=7, frameon=False)
+        axes.legend(fontsize=7.5, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14))
     panels[0].set_ylabel("seconds")
     save(made, path)

@@ -21,6 +21,7 @@ from inerter.bench.cars import car_xml, jolt
 from inerter.bench.rows import Row, aimed, spread_of
 from inerter.bench.timing import Timing, Work, interleaved
 from inerter.plugin import load_plugin
+from matplotlib.ticker import NullLocator
 
 from benchmarks.picture import COLOURS, figure, save
 
@@ -161,7 +162,10 @@ def picture(rows: list[Row], path: Path) -> None:
         style = "o-" if way == AT_ONCE else "s--"
         axes.plot(sizes, middle, style, color=colour, ms=4, label=f"{variant}, {way}")
         axes.fill_between(sizes, low, high, color=colour, alpha=0.15, lw=0)
-    axes.set_xscale("log", base=4)
+    axes.set_xscale("log")
+    sizes = sorted({row["simulations"] for row in rows})
+    axes.set_xticks(sizes, [f"{size:,}" for size in sizes])
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.set_ylim(bottom=0)
     axes.set_xlabel("simulations of a batch")
     axes.set_ylabel("million steps per second of one core")
