@@ -30,7 +30,12 @@ _SEED = pytest.StashKey[int]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add --effects-seed."""
+    """Add --effects-seed and --long."""
+    parser.addoption(
+        "--long",
+        action="store_true",
+        help="run sanitizers, fuzzers and the soak of tests/sanitized for minutes each",
+    )
     parser.addoption(
         "--effects-seed",
         default=os.environ.get("INERTER_SEED") or str(DEFAULT_SEED),
@@ -92,6 +97,12 @@ def _together(nodeid: str) -> str:
 def effects_seed(request: pytest.FixtureRequest) -> int:
     """Seed that hidden effects are drawn from."""
     return request.config.stash[_SEED]
+
+
+@pytest.fixture(scope="session")
+def long_run(request: pytest.FixtureRequest) -> bool:
+    """Whether the programs of tests/sanitized are to run for minutes."""
+    return bool(request.config.getoption("--long"))
 
 
 @pytest.fixture(scope="session")

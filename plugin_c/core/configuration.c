@@ -92,8 +92,11 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
     return set_law(key, text, inerter_friction_name, &device->friction, message);
   }
   if (!strcmp(key, "gas_law")) {
+    if (set_law(key, text, inerter_gas_law_name, &device->gas_law, message)) {
+      return -1;
+    }
     device->given |= UINT64_C(1) << INERTER_INDEX_gas_law;
-    return set_law(key, text, inerter_gas_law_name, &device->gas_law, message);
+    return 0;
   }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);

@@ -2,6 +2,8 @@
 
 #include "device.h"
 
+#include <stdio.h>
+
 #include "laws.h"
 
 //------------------------------ states ------------------------------------------------------------
@@ -201,6 +203,17 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
 
 int inerter_valid(const InerterDevice* device, double x, const double* z,
                   char message[INERTER_MESSAGE_SIZE]) {
+  if (!isfinite(x)) {
+    snprintf(message, INERTER_MESSAGE_SIZE, "displacement is %g m: give a finite number", x);
+    return 0;
+  }
+  for (int i = 0; i < device->nstate; i++) {
+    if (!isfinite(z[i])) {
+      snprintf(message, INERTER_MESSAGE_SIZE, "%s is %g: give a finite number",
+               inerter_state_name(device, i), z[i]);
+      return 0;
+    }
+  }
   double y = stretch_of(device, x);
   if (has(device, PART_SERIES)) {
     const double* series = z + series_index(device);

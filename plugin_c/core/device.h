@@ -187,7 +187,9 @@ INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, 
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                             double a, const double* z);
 
-// Whether x and z lie where the laws hold: 1, or 0 with a message that names law, value and limit.
+// Whether x and z are finite numbers that lie where the laws hold: 1, or 0 with a message that
+// names law, value and limit. Every other function answers a number that is none with such a
+// number.
 INERTER_API int inerter_valid(const InerterDevice* device, double x, const double* z,
                               char message[INERTER_MESSAGE_SIZE]);
 

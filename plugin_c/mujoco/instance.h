@@ -74,7 +74,10 @@ typedef enum Complaint_ {
   COMPLAINT_VALIDITY = 1 << 1,  // of a law
   COMPLAINT_BRISTLE = 1 << 2,   // too fast for RK4
   COMPLAINT_STIFF = 1 << 3,     // too stiff for the step
-  COMPLAINT_SITES = 1 << 4      // that meet
+  COMPLAINT_SITES = 1 << 4,     // that meet
+  COMPLAINT_STATE = 1 << 5,     // that is no number
+  COMPLAINT_HEAT = 1 << 6,
+  COMPLAINT_FORCE = 1 << 7
 } Complaint;
 
 void instance_complain(const mjModel* m, Instance* self, Complaint reason, const char* text);

@@ -13,6 +13,7 @@
 // explicit spring. Heat is integrated in mjData.plugin_state where a sensor asks for it: with RK4
 // by the weights of its stages, else by the trapezoid.
 
+#include <math.h>
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <string.h>
@@ -135,7 +136,7 @@ static int init(const mjModel* m, mjData* d, int instance) {
     return -1;
   }
   self->model = m;
-  self->time = d->time;
+  self->time = -INFINITY;  // mjData.time is not set yet
   self->print = configuration_print(m, instance);
   d->plugin_data[instance] = (uintptr_t)self;
   return 0;
@@ -169,6 +170,7 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
     return;
   }
   int address = instance_act(m, self);
+  watch_state(m, self, d->act + address);
   mjtNum* rate = d->act_dot + address;
   mju_zero(rate, nstate);
   if (!instance_idle(m, d, self)) {
@@ -251,8 +253,13 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   }
   coupled_solve(m, d, instance);
   for (int k = 0; k <= instance; k++) {
-    if (m->plugin[k] == m->plugin[instance] && instance_of(d, k)->sensed) {
-      remember_power(m, d, instance_of(d, k));
+    if (m->plugin[k] != m->plugin[instance]) {
+      continue;
+    }
+    Instance* each = instance_of(d, k);
+    watch_force(m, each, d->actuator_force[m->actuator_outadr[each->actuator]]);
+    if (each->sensed) {
+      remember_power(m, d, each);
     }
   }
 }
@@ -277,12 +284,12 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   int nstate = inerter_nstate(&self->device);
   mjtNum* state = d->act + (nstate ? instance_act(m, self) : 0);
   watch_validity(m, self, state);
-
   // RK4 has integrated the states; the last four evaluations were its stages
   if (m->opt.integrator == mjINT_RK4) {
     keep_gap(&self->device, nstate, state);
     if (heat) {
       *heat += h / 6 * (power[0] + 2 * power[1] + 2 * power[2] + power[3]);
+      watch_heat(m, self, heat);
     }
     return;
   }
@@ -299,6 +306,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   if (heat) {
     mjtNum end = inerter_dissipated_power(&self->device, self->x + h * v, v, a, self->state);
     *heat += 0.5 * h * (power[MAXSTAGE - 1] + end);
+    watch_heat(m, self, heat);
   }
 }
 

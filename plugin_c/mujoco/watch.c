@@ -5,6 +5,54 @@
 #include <math.h>
 #include <stdio.h>
 
+//------------------------------ numbers -----------------------------------------------------------
+
+void watch_state(const mjModel* m, Instance* self, mjtNum* state) {
+  int nstate = inerter_nstate(&self->device), bad = -1;
+  for (int i = 0; i < nstate; i++) {
+    bad = isfinite(state[i]) ? bad : i;
+  }
+  if (bad < 0) {
+    return;
+  }
+  char message[INERTER_MESSAGE_SIZE];
+  snprintf(message, sizeof(message),
+           "%s is %g, no finite number: it goes on unloaded, with its states 0; either "
+           "that was written into mjData.act, or the motion is unstable: shorten the timestep",
+           inerter_state_name(&self->device, bad), state[bad]);
+  instance_complain(m, self, COMPLAINT_STATE, message);
+  mju_zero(state, nstate);
+}
+
+void watch_heat(const mjModel* m, Instance* self, mjtNum* heat) {
+  if (isfinite(*heat)) {
+    return;
+  }
+  char message[INERTER_MESSAGE_SIZE];
+  snprintf(message, sizeof(message),
+           "its dissipated energy is %g J, no finite number: it is counted from 0 again; either "
+           "that was written into mjData.plugin_state, or the motion is unstable: shorten the "
+           "timestep",
+           *heat);
+  instance_complain(m, self, COMPLAINT_HEAT, message);
+  *heat = 0;
+}
+
+void watch_force(const mjModel* m, Instance* self, mjtNum force) {
+  if (isfinite(force)) {
+    return;
+  }
+  char message[INERTER_MESSAGE_SIZE];
+  snprintf(message, sizeof(message),
+           "its force is %g N, no finite number, at displacement %g m and velocity %g m/s: the "
+           "motion is unstable, or a value of the model is absurd; shorten the timestep, look at "
+           "the values",
+           force, self->x, self->v);
+  instance_complain(m, self, COMPLAINT_FORCE, message);
+}
+
+//------------------------------ laws --------------------------------------------------------------
+
 void watch_validity(const mjModel* m, Instance* self, const mjtNum* state) {
   char message[INERTER_MESSAGE_SIZE];
   if (!(self->complained & COMPLAINT_VALIDITY) &&
@@ -34,7 +82,7 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
   there[0] += step;
   inerter_state_rate(device, x, v, there, beyond);
   double decay = (rate[0] - beyond[0]) / step, fastest = 2 / m->opt.timestep;
-  if (decay <= fastest) {
+  if (!(decay > fastest)) {
     return;
   }
   rate[0] *= fastest / decay;

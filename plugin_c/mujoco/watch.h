@@ -5,6 +5,17 @@
 
 #include "mujoco/instance.h"
 
+// Say that states are no finite numbers, and set them to 0, as the engine does with such controls:
+// nothing else would stop them, since the engine looks at positions, velocities and accelerations.
+void watch_state(const mjModel* m, Instance* self, mjtNum* state);
+
+// The same of the dissipated energy.
+void watch_heat(const mjModel* m, Instance* self, mjtNum* heat);
+
+// Say that a force is no finite number. The engine resets such a simulation, if its integrator is
+// not discrete, but does not tell what caused it.
+void watch_force(const mjModel* m, Instance* self, mjtNum force);
+
 // Say that a law has left the range that it is valid in.
 void watch_validity(const mjModel* m, Instance* self, const mjtNum* state);
 

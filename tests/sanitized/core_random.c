@@ -3,42 +3,19 @@
 // promise ends it with an error.
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/device.h"
 #include "core/motion.h"
+#include "random.h"
 
-static uint64_t seed = 20261121;
-
-// uniform in [0, 1): xorshift64*
-static double uniform(void) {
-  seed ^= seed >> 12;
-  seed ^= seed << 25;
-  seed ^= seed >> 27;
-  return (double)((seed * UINT64_C(2685821657736338717)) >> 11) / 9007199254740992.0;
-}
-
-static int below(int n) {
-  return (int)(uniform() * n);
-}
-
-// a number of any size and sign; every tenth from a list of the awkward ones
-static double any(void) {
-  const double awkward[] = {0,     -0.0,   1,       -1,       5e-324,   -5e-324, 2.3e-308, 1e-300,
-                            1e300, -1e300, 1.7e308, -1.7e308, INFINITY, NAN,     1e12,     -1e12};
-  if (below(10) == 0) {
-    return awkward[below((int)(sizeof(awkward) / sizeof(*awkward)))];
-  }
-  double size = pow(10, 24 * uniform() - 12);
-  return below(2) ? size : -size;
-}
+static Random source = {20261121};
 
 static double moderate(void) {
-  double size = pow(10, 6 * uniform() - 4);
-  return below(8) ? (below(2) ? size : -size) : 0;
+  double size = pow(10, 6 * uniform(&source) - 4);
+  return below(&source, 8) ? (below(&source, 2) ? size : -size) : 0;
 }
 
 // whether a parameter belongs to a part that a tame device leaves out; bits: series element,
@@ -61,26 +38,27 @@ static int random_device(InerterDevice* device, int tame) {
   char message[INERTER_MESSAGE_SIZE];
   char text[64];
   inerter_default(device);
-  int law = below(INERTER_NFRICTION);
+  int law = below(&source, INERTER_NFRICTION);
   if (inerter_set(device, "friction", inerter_friction_name(law), message)) {
     abort();
   }
-  unsigned parts = (unsigned)below(32);
+  unsigned parts = (unsigned)below(&source, 32);
   if (!(parts & 1)) {
     parts &= ~2u;
   }
-  if (tame ? parts >> 3 & 1 : below(8) == 0) {
-    if (inerter_set(device, "gas_law", inerter_gas_law_name(below(INERTER_NGAS)), message)) {
+  if (tame ? parts >> 3 & 1 : below(&source, 8) == 0) {
+    if (inerter_set(device, "gas_law", inerter_gas_law_name(below(&source, INERTER_NGAS)),
+                    message)) {
       abort();
     }
   }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
     int read = !*p->laws || strstr(p->laws, inerter_friction_name(law));
-    if (tame ? !read || left_out(p->name, parts) || below(16) == 0 : below(6)) {
+    if (tame ? !read || left_out(p->name, parts) || below(&source, 16) == 0 : below(&source, 6)) {
       continue;
     }
-    double value = tame ? fabs(moderate()) : any();
+    double value = tame ? fabs(moderate()) : any(&source);
     if (tame && !strcmp(p->name, "stop_lower")) value = -value;
     if (tame && value < p->lower) value = p->lower;
     if (tame && value > p->upper) value = p->upper;
@@ -146,19 +124,19 @@ int main(void) {
 
   for (int round = 0; round < 20000; round++) {
     InerterDevice device;
-    int tame = below(2);
+    int tame = below(&source, 2);
     if (!random_device(&device, tame)) {
       continue;
     }
     for (int i = 0; i < N; i++) {
-      x[i] = tame ? moderate() : any();
-      v[i] = tame ? moderate() : any();
-      a[i] = tame ? moderate() : any();
+      x[i] = tame ? moderate() : any(&source);
+      v[i] = tame ? moderate() : any(&source);
+      a[i] = tame ? moderate() : any(&source);
     }
     for (int i = 0; i < WIDE * N; i++) {
-      z[i] = tame ? 1e-6 * moderate() : any();
+      z[i] = tame ? 1e-6 * moderate() : any(&source);
     }
-    double h = tame ? pow(10, 18 * uniform() - 9) : any();
+    double h = tame ? pow(10, 18 * uniform(&source) - 9) : any(&source);
     int nstate = inerter_nstate(&device);
     calls++;
     by_states[nstate]++;
@@ -173,7 +151,7 @@ int main(void) {
     double* states = own + 1;
     memcpy(states, z, sizeof(double) * (size_t)nstate);
     inerter_state_step(&device, x[0], v[0], states, h);
-    inerter_state_of_force(&device, x[1], v[1], a[1], tame ? moderate() : any(), end + 1);
+    inerter_state_of_force(&device, x[1], v[1], a[1], tame ? moderate() : any(&source), end + 1);
     for (int i = 0; tame && i < nstate; i++) {
       int bounded = device.friction != INERTER_FRICTION_bouc_wen || i > 0;
       if (bounded && h < 1 && (!isfinite(states[i]) || !isfinite(end[i + 1]))) {
@@ -183,7 +161,8 @@ int main(void) {
       }
     }
     memcpy(states, z, sizeof(double) * (size_t)nstate);
-    inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h), fabs(any()), end + 1);
+    inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h), fabs(any(&source)),
+                            end + 1);
     inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h), 0, NULL);
     if (tame && h < 1 && h > 1e-7) {
       // never falls beyond the friction law's own fall; see the Python tests for the laws
