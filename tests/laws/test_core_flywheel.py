@@ -274,3 +274,13 @@ def test_validity_of_the_series_spring() -> None:
     assert device.validity(-0.02, [-0.009, 0.0, -1e-3]) is None
     assert "gas spring" in str(device.validity(-0.02, [0.0, 0.0, 0.0]))
     assert Device(inertance=10.0).validity(1e9) is None
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_what_is_no_number_is_not_valid(value: float) -> None:
+    device = Device(inertance=10.0, series_stiffness=1e5, backlash=1e-3)
+    assert device.validity(value) == f"displacement is {value} m: give a finite number"
+    for i, name in enumerate(device.state_names):
+        states = np.zeros(3)
+        states[i] = value
+        assert device.validity(0.0, states) == f"{name} is {value}: give a finite number"
