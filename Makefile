@@ -13,17 +13,26 @@ SOURCES := pyproject.toml CMakeLists.txt README.md LICENSE \
   $(shell find plugin_c python mjcf_models exudyn_models \
     \( -name __pycache__ -o -path python/inerter/lib \) -prune -o -print)
 C_FILES = $(shell find plugin_c tests benchmarks -name '*.[ch]')
+MUJOCO = $(shell $(BIN)/python -c \
+  "from importlib.util import find_spec as f; print(f('mujoco').submodule_search_locations[0])")
+
+# the engine gives the signatures of callbacks and the macro that begins one; scopes are a taste
+CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitInt \
+  --suppress=variableScope
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench docs lint format check wheel clean
+.PHONY: help demo test sanitize fuzz soak bench docs lint format check wheel clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped record into out/demo'
 	@echo 'make test    every test, on all cores, against the installed package'
 	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
+	@echo 'make sanitize  the C code under sanitizers and valgrind, some minutes'
+	@echo 'make fuzz    any bytes and any doubles for the C code, six minutes'
+	@echo 'make soak    1e8 steps, ten minutes'
 	@echo 'make bench   benchmarks, into out/bench; ARGS=--quick for a first look'
 	@echo 'make docs    the documentation as pages, into out/docs'
-	@echo 'make lint    ruff, pyright, clang-format'
+	@echo 'make lint    ruff, pyright, clang-format, cppcheck, clang-tidy'
 	@echo 'make format  let ruff and clang-format rewrite the files'
 	@echo 'make check   lint and test'
 	@echo 'make wheel   a wheel, into dist'
@@ -73,6 +82,10 @@ demo: $(VENV)/lab
 test: $(VENV)/dev
 	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
 
+# minutes each of what every test run does for seconds; -s: what the programs have counted
+sanitize fuzz soak: $(VENV)/dev
+	@$(BIN)/pytest -n 0 -s -rs --long tests/sanitized/test_$@.py $(ARGS)
+
 bench: $(VENV)/bench
 	@$(BIN)/python -m benchmarks $(ARGS)
 
@@ -88,6 +101,10 @@ lint: $(VENV)/dev
 	echo 'pyright';      $(BIN)/pyright --pythonpath $(BIN)/python || status=1; \
 	echo 'clang-format'; $(BIN)/clang-format --style=file:plugin_c/.clang-format --dry-run -Werror \
 	  $(C_FILES) || status=1; \
+	echo 'cppcheck';     $(BIN)/cppcheck --quiet --error-exitcode=1 --std=c11 -I plugin_c \
+	  --enable=warning,style,performance,portability $(CPPCHECK_LEAVES) plugin_c || status=1; \
+	echo 'clang-tidy';   find plugin_c -name '*.c' | xargs -P "$$(getconf _NPROCESSORS_ONLN)" -I FILE \
+	  $(BIN)/clang-tidy --quiet FILE -- -std=c17 -Iplugin_c -isystem $(MUJOCO)/include || status=1; \
 	exit $$status
 
 format: $(VENV)/dev

@@ -173,10 +173,10 @@ static int check_channel(InerterDevice* device, char* message) {
   }
 
   char missing[64] = "";
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0, length = 0; i < 3; i++) {
     if (*value_of(device, geometry[i]) == 0) {
-      if (*missing) strcat(missing, ", ");
-      strcat(missing, inerter_parameter(geometry[i])->name);
+      length += snprintf(missing + length, sizeof(missing) - (size_t)length, "%s%s",
+                         length ? ", " : "", inerter_parameter(geometry[i])->name);
     }
   }
   if (*missing) {

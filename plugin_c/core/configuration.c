@@ -3,7 +3,6 @@
 #include "configuration.h"
 
 #include <ctype.h>
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +15,7 @@ void inerter_default(InerterDevice* device) {
 }
 
 double* value_of(InerterDevice* device, int i) {
-  return (double*)((char*)device + inerter_parameter(i)->offset);
+  return (double*)(void*)((char*)device + inerter_parameter(i)->offset);
 }
 
 const char* range_text(const InerterParameter* p, char text[128]) {
@@ -38,11 +37,13 @@ int allowed(const InerterParameter* p, double value) {
          (p->lower_open ? value > p->lower : value >= p->lower);
 }
 
-// strtod that wants a decimal point whatever the program's locale
+// strtod that wants a decimal point whatever the program's locale; localeconv would write into one
+// place for all threads
 static double number(const char* text, const char** end) {
-  const char* point = localeconv()->decimal_point;
+  char half[16], local[128], point[16] = "";
+  int written = snprintf(half, sizeof(half), "%.1f", 0.5);
+  memcpy(point, half + 1, (size_t)(written - 2));
   size_t before = strcspn(text, "."), width = strlen(point);
-  char local[128];
   char* stop;
   *end = text;
   if (!strcmp(point, ".")) {
@@ -58,7 +59,7 @@ static double number(const char* text, const char** end) {
   memcpy(local, text, before);
   if (text[before]) {
     memcpy(local + before, point, width);
-    strcpy(local + before + width, text + before + 1);
+    memcpy(local + before + width, text + before + 1, strlen(text + before));
   } else {
     local[before] = 0;
   }
@@ -100,7 +101,7 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
   }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
-    if (strcmp(key, p->name)) {
+    if (strcmp(key, p->name) != 0) {
       continue;
     }
     const char* end;

@@ -35,8 +35,8 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
 
 // the same decay, from z against v until 0
 static double straight(const InerterDevice* p, double x, double v, double z) {
-  double rate = p->bristle_stiffness / yield_level(p, x, v);
-  return log1p(rate * fabs(z)) / (rate * fabs(v));
+  double decay = p->bristle_stiffness / yield_level(p, x, v);
+  return log1p(decay * fabs(z)) / (decay * fabs(v));
 }
 
 static double force(const InerterDevice* p, double x, double v, double z) {

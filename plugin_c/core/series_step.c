@@ -91,8 +91,8 @@ static double common_force(const InerterDevice* p, Element element, Flywheel fly
   }
   Tangent push = element.push, pull = element.pull;
   Tangent both = {push.value + pull.value, push.slope + pull.slope};
-  double candidates[] = {0, on_line(push, flywheel), on_line(pull, flywheel),
-                         on_line(both, flywheel)};
+  const double candidates[] = {0, on_line(push, flywheel), on_line(pull, flywheel),
+                               on_line(both, flywheel)};
   double found = 0, least = INFINITY;
   for (int i = 0; i < 4; i++) {
     double u = flywheel.free_u - flywheel.give_u * candidates[i];

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static double* value_of(InerterDevice* device, int parameter) {
-  return (double*)((char*)device + inerter_parameter(parameter)->offset);
+  return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
 }
 
 int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZE]) {

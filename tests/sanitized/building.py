@@ -118,11 +118,9 @@ def build_plugin(folder: Path, *flags: str) -> Path:
     return build(folder / "plugin.so", sources, *heap, *flags, link=["-shared"], mujoco=True)
 
 
-def run(
-    command: Sequence[str], timeout: float = 3600, **environment: str
-) -> subprocess.CompletedProcess[str]:
+def run(command: Sequence[str], **environment: str) -> subprocess.CompletedProcess[str]:
     """A program to its end."""
     return subprocess.run(
-        command, capture_output=True, text=True, check=False, timeout=timeout,
+        command, capture_output=True, text=True, check=False, timeout=3600,
         env={**os.environ, **environment},
     )  # fmt: skip
