@@ -2,6 +2,7 @@
 
 PYTHON ?= python3
 VENV ?= .venv
+DIST ?= dist
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input install --quiet
 
@@ -35,7 +36,7 @@ help:
 	@echo 'make lint    ruff, pyright, clang-format, cppcheck, clang-tidy'
 	@echo 'make format  let ruff and clang-format rewrite the files'
 	@echo 'make check   lint and test'
-	@echo 'make wheel   a wheel, into dist'
+	@echo 'make wheel   a wheel (on Linux for every recent one) and the sources of it, into dist'
 	@echo 'make clean   remove everything that was made, $(VENV) too'
 	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler.'
 
@@ -114,9 +115,15 @@ format: $(VENV)/dev
 
 check: lint test
 
-wheel: | $(VENV)/created
-	@$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --wheel-dir dist .
-	@ls dist
+# The wheel is built from the source distribution, so that both are proven. On Linux its libraries are
+# looked at for the oldest C library they run with, which names the wheel; MuJoCo's own is not taken in.
+wheel: $(VENV)/dev
+	@rm -rf build/wheel && mkdir -p build/wheel $(DIST)
+	@$(BIN)/python -m build --quiet --outdir build/wheel .
+	@if [ "$$(uname -s)" = Linux ]; then cd build/wheel && PATH="$(abspath $(BIN)):$$PATH" \
+	  auditwheel repair --exclude 'libmujoco.so.*' --wheel-dir . *-linux_*.whl && rm *-linux_*.whl; fi
+	@mv build/wheel/* $(DIST)
+	@ls $(DIST)
 
 clean:
 	rm -rf build dist out $(VENV) .pytest_cache .ruff_cache .hypothesis

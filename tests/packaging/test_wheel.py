@@ -1,0 +1,114 @@
+"""What `make wheel` makes: it runs elsewhere, without a compiler, and can be built from its sources."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+MODEL = """
+<mujoco>
+  <extension><plugin plugin="inerter.device"/></extension>
+  <worldbody><body><joint name="slide" type="slide"/><geom size="0.1" mass="1"/></body></worldbody>
+  <actuator>
+    <plugin plugin="inerter.device" joint="slide"><config key="inertance" value="2"/></plugin>
+  </actuator>
+</mujoco>
+"""
+# 1 kg and 2 kg of inertance fall for 0.2 s
+FALLS = f"""
+import mujoco
+model = mujoco.MjModel.from_xml_string('''{MODEL}''')
+data = mujoco.MjData(model)
+mujoco.mj_step(model, data, 100)
+print(abs(data.qvel[0] + 9.81 * 0.2 / 3) < 1e-9)
+"""
+
+
+def run(*command: str | Path, **options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, check=False, timeout=600,
+        **options,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder that `make wheel` has filled."""
+    tools = Path(sysconfig.get_path("scripts"))
+    if shutil.which("make") is None or not (tools / "auditwheel").exists():
+        pytest.skip("needs make, and the tools of the extra dev")
+    folder = tmp_path_factory.mktemp("dist")
+    # -o: the tests run in what is set up, whatever its age
+    old = f"{sys.prefix}/dev"
+    done = run("make", "-o", old, "wheel", f"VENV={sys.prefix}", f"DIST={folder}", cwd=ROOT)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(made: Path) -> Path:
+    (found,) = made.glob("*.whl")
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="manylinux is for Linux")
+def test_the_wheel_says_where_it_runs(wheel: Path) -> None:
+    # as old as the C library's versions of what the plugin calls: exp, log and pow of glibc 2.29
+    assert "-py3-none-manylinux_2_" in wheel.name or "-py3-none-musllinux_" in wheel.name
+    if "manylinux" in wheel.name:
+        assert int(wheel.name.split("manylinux_2_")[1].split("_")[0]) <= 35
+
+
+def test_the_wheel_holds_our_libraries_and_not_mujocos(wheel: Path) -> None:
+    names = zipfile.ZipFile(wheel).namelist()
+    libraries = {Path(name).stem for name in names if Path(name).suffix in (".so", ".dylib")}
+    assert libraries == {"libinerter_core", "libinerter_mujoco"}
+    assert not [name for name in names if "libmujoco" in name or "/tests/" in name]
+    assert "inerter/mjcf_models/quarter_car/model.xml" in names
+
+
+def test_the_sources_are_all_there_and_nothing_built(made: Path) -> None:
+    (sources,) = made.glob("*.tar.gz")
+    with tarfile.open(sources) as archive:
+        names = ["/".join(name.split("/")[1:]) for name in archive.getnames()]
+    for name in ("pyproject.toml", "CMakeLists.txt", "LICENSE", "plugin_c/core/device.c"):
+        assert name in names
+    assert not [name for name in names if name.endswith((".so", ".dylib", ".o", ".pyc", ".whl"))]
+
+
+def test_the_wheel_runs_where_there_is_only_mujoco(
+    wheel: Path, tmp_path: Path, long_run: bool
+) -> None:
+    where = tmp_path / "clean"
+    assert run(sys.executable, "-m", "venv", where).returncode == 0
+    python, tools = where / "bin" / "python", where / "bin"
+    bare = {"PATH": str(tools), "HOME": str(tmp_path)}
+    installed = run(python, "-m", "pip", "install", "--quiet", wheel, env={**os.environ, **bare})
+    assert installed.returncode == 0, installed.stderr
+    assert run("/usr/bin/env", "which", "cc", env=bare).returncode != 0
+
+    # no compiler, no lab
+    done = run(python, "-I", "-W", "error", "-c", FALLS, env=bare, cwd=tmp_path)
+    assert done.stdout.strip() == "True", done.stderr
+    assert done.stderr == ""
+    path = run(tools / "inerter", "plugin-path", env=bare).stdout.strip()
+    assert Path(path).is_relative_to(where)
+    refused = run(tools / "inerter", "parameters", env=bare)
+    assert refused.returncode == 2
+    assert "pip install 'inerter[lab]'" in refused.stderr
+
+    # with the lab: `make test ARGS="--long -k only_mujoco"`
+    if long_run:
+        run(python, "-m", "pip", "install", "--quiet", f"{wheel}[lab]", env={**os.environ, **bare})
+        done = run(tools / "inerter", "demo", "--out", tmp_path / "out", env=bare, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "out" / "report.html").is_file()
