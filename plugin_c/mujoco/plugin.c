@@ -312,6 +312,14 @@ static void advance(const mjModel* m, mjData* d, int instance) {
 
 //------------------------------ registration ------------------------------------------------------
 
+// Version of MuJoCo that this library was compiled for, as mj_version() tells it; for Python, which
+// turns the warning below into an error.
+INERTER_API int inerter_built_for(void);
+
+int inerter_built_for(void) {
+  return mjVERSION_HEADER;
+}
+
 mjPLUGIN_LIB_INIT(inerter) {
   // mjModel and mjData differ between versions: refuse to read them with the wrong headers
   if (mj_version() != mjVERSION_HEADER) {

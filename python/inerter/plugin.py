@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
 from pathlib import Path
 
@@ -35,7 +36,8 @@ def load_plugin() -> None:
     Raises
     ------
     ImportError
-        The installed MuJoCo is not the one the plugin was compiled for, or the library is missing.
+        The installed MuJoCo is not the one the plugin was compiled for, or the library is missing
+        or damaged.
     """
     global _loaded
     import mujoco
@@ -48,8 +50,27 @@ def load_plugin() -> None:
             f"inerter was compiled for MuJoCo {MUJOCO_VERSION}, installed is MuJoCo {found}; "
             f"run `pip install mujoco=={MUJOCO_VERSION}`, or an inerter made for MuJoCo {found}"
         )
-    mujoco.mj_loadPluginLibrary(str(plugin_path()))
+    path = str(plugin_path())
+    try:
+        mujoco.mj_loadPluginLibrary(path)
+        built_for = ctypes.CDLL(path).inerter_built_for()
+    except (mujoco.FatalError, OSError, AttributeError) as error:
+        raise ImportError(
+            f"{path} cannot be loaded ({str(error).strip()}): it was not compiled for MuJoCo "
+            f"{found}, or is damaged; reinstall with `pip install --force-reinstall inerter`"
+        ) from None
+    if built_for != mujoco.mj_version():
+        raise ImportError(
+            f"{path} was compiled for MuJoCo {_text(built_for)}, installed is MuJoCo {found}; "
+            f"run `pip install --force-reinstall inerter`, or `pip install "
+            f"mujoco=={_text(built_for)}`"
+        )
     _loaded = True
+
+
+def _text(version: int) -> str:
+    """A version as MuJoCo numbers it: 4001002 is 4.1.2."""
+    return f"{version // 1_000_000}.{version // 1000 % 1000}.{version % 1000}"
 
 
 def _numbers(version: str) -> list[int]:

@@ -1,4 +1,4 @@
-"""What `make wheel` makes: it runs elsewhere, without a compiler, and can be built from its sources."""
+"""What `make wheel` makes runs elsewhere, without a compiler, and can be built from its sources."""
 
 from __future__ import annotations
 
