@@ -15,6 +15,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.checked_motion import checked_motion
+
 LIBRARY_FOLDER = Path(__file__).parent / "lib"
 _MESSAGE_SIZE = 512
 
@@ -346,8 +348,13 @@ class Device:
         dict of ndarray
             total [N], friction [N], shape (n,); states (n, nstate); state (n,), the first of them
             (0 without states).
+
+        Raises
+        ------
+        ValueError
+            Channels of different lengths, a number that is not finite, a spacing that is not > 0.
         """
-        x, v, a = _motion(x, v, a)
+        x, v, a = checked_motion(h, x, v, a)
         result, states = np.empty((2, x.size)), np.empty((x.size, self.nstate))
         now = self._states(state)
         at, row = result.ctypes.data, result.strides[0]
@@ -393,7 +400,7 @@ def along_many(
     ndarray (m, n)
         Forces [N], the same whatever the number of threads.
     """
-    x, v, a = _motion(x, v, a)
+    x, v, a = checked_motion(h, x, v, a)
     total = np.empty((len(devices), x.size))
     array = (_device_type() * len(devices))(*(device._c for device in devices))
     size = ctypes.sizeof(_device_type())
@@ -418,15 +425,6 @@ def along_many(
         with ThreadPoolExecutor(workers) as pool:
             list(pool.map(run, bounds[:-1].tolist(), np.diff(bounds).tolist()))
     return total
-
-
-def _motion(*channels: NDArray) -> list[NDArray[np.float64]]:
-    arrays = [np.ascontiguousarray(channel, dtype=float) for channel in channels]
-    shape = arrays[0].shape
-    if len(shape) != 1 or any(array.shape != shape for array in arrays):
-        shapes = ", ".join(str(array.shape) for array in arrays)
-        raise ValueError(f"x, v, a must be arrays of one length; their shapes are {shapes}")
-    return arrays
 
 
 def _pointer(array: NDArray[np.float64]) -> Any:

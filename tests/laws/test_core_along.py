@@ -167,3 +167,23 @@ def test_along_is_its_samples_one_by_one(law: str) -> None:
         assert found["total"][i] == pytest.approx(alone["total"][0], rel=1e-13)
         assert found["friction"][i] == pytest.approx(alone["friction"][0], rel=1e-13, abs=1e-15)
         assert not device.nstate or found["state"][i] == z
+
+
+@pytest.mark.parametrize("channel", [0, 1, 2])
+@pytest.mark.parametrize("value", [np.nan, -np.inf])
+def test_a_motion_with_a_number_that_is_none_is_refused(channel: int, value: float) -> None:
+    _, *motion = sampled(MOTION, 1e-2, 0.1)
+    motion[channel][4] = value
+    device = Device(inertance=2.0)
+    message = f"{'xva'[channel]} is {value} at sample 4"
+    with pytest.raises(ValueError, match=message):
+        device.along(1e-2, *motion)
+    with pytest.raises(ValueError, match=message):
+        along_many([device], 1e-2, *motion)
+
+
+@pytest.mark.parametrize("h", [0.0, -1e-3, np.nan, np.inf])
+def test_a_spacing_that_cannot_be_is_refused(h: float) -> None:
+    _, *motion = sampled(MOTION, 1e-2, 0.1)
+    with pytest.raises(ValueError, match=f"h is {h} s; give a finite sample spacing > 0 s"):
+        Device(inertance=2.0).along(h, *motion)
