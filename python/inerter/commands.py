@@ -25,6 +25,7 @@ from inerter.plugin import plugin_path
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
+from inerter.view.command import view_command
 
 app = typer.Typer(
     add_completion=False,
@@ -40,6 +41,7 @@ app.command("prepare")(prepare_command)
 app.command("blind-test")(blind_test_command)
 app.command("bench")(bench_command)
 app.add_typer(study_app, name="study")
+app.command("view")(view_command)
 
 
 def run() -> None:

@@ -53,7 +53,7 @@ def load_model(
         names = "Euler, RK4, implicit, implicitfast, discrete"
         raise SimulationError(f"--integrator is {integrator!r}; choose one of {names}")
     try:
-        model = _binary(path) if path.suffix.lower() == ".mjb" else _xml(path)
+        model = _binary(path) if path.suffix.lower() == ".mjb" else readable_spec(path).compile()
     except (ValueError, mujoco.FatalError) as error:
         raise SimulationError(f"{path}: {engine_text(error)}") from None
     if timestep is not None:
@@ -81,11 +81,17 @@ def _binary(path: Path) -> mujoco.MjModel:
     return model
 
 
-def _xml(path: Path) -> mujoco.MjModel:
+def readable_spec(path: Path) -> mujoco.MjSpec:
+    """The specification of an MJCF file, not compiled yet, in which a sensor reads every device.
+
+    Raises
+    ------
+    ValueError
+        The file is no model, or it does not compile.
+    """
+    path = path.absolute()  # the engine looks for includes of includes from the wrong place
     model = mujoco.MjSpec.from_file(str(path)).compile()
     unread = {found.actuator for found in devices_of(model) if not found.sensor}
-    if not unread:
-        return model
 
     # a specification that was compiled cannot be read back: start anew
     spec = mujoco.MjSpec.from_file(str(path))
@@ -112,7 +118,7 @@ def _xml(path: Path) -> mujoco.MjModel:
             sensor.plugin.plugin_name = PLUGIN
             sensor.plugin.name = instance
             sensor.plugin.active = True
-    return spec.compile()
+    return spec
 
 
 def scalar_joints(model: mujoco.MjModel) -> list[int]:

@@ -44,7 +44,7 @@ def refuse_video(path: Path) -> None:
     parent = path.absolute().parent
     if not parent.is_dir() or not os.access(parent, os.W_OK):
         raise SimulationError(f"--video {path}: the folder {parent} cannot be written")
-    with _renderer(mujoco.MjModel.from_xml_string("<mujoco/>"), 16, 16):
+    with renderer(mujoco.MjModel.from_xml_string("<mujoco/>"), 16, 16, "--video"):
         pass
 
 
@@ -89,18 +89,24 @@ def _frames(
     data = mujoco.MjData(model)
     width = min(WIDTH, model.vis.global_.offwidth)
     height = min(HEIGHT, model.vis.global_.offheight)
-    with _renderer(model, width, height) as renderer:
+    with renderer(model, width, height, "--video") as picture:
         for i, state in enumerate(states):
             mujoco.mj_setState(model, data, state, _STATE)
             mujoco.mj_forward(model, data)
-            renderer.update_scene(data, camera=0 if model.ncam else -1)
-            yield renderer.render()
+            picture.update_scene(data, camera=0 if model.ncam else -1)
+            yield picture.render()
             progress((i + 1) / len(states))
 
 
 @contextlib.contextmanager
-def _renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[Any]:
-    """An off-screen renderer; without a display, by EGL unless MUJOCO_GL says otherwise."""
+def renderer(model: mujoco.MjModel, width: int, height: int, what: str) -> Iterator[Any]:
+    """An off-screen renderer; without a display, by EGL unless MUJOCO_GL says otherwise.
+
+    Raises
+    ------
+    SimulationError
+        No OpenGL works here; `what` needs it, and what to do.
+    """
     headless = not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     try:
         if sys.platform == "linux" and headless and not os.environ.get("MUJOCO_GL"):
@@ -108,16 +114,16 @@ def _renderer(model: mujoco.MjModel, width: int, height: int) -> Iterator[Any]:
             from mujoco.rendering.classic import gl_context
 
             gl_context.GLContext = egl.GLContext
-        renderer = mujoco.Renderer(model, height, width)
+        found = mujoco.Renderer(model, height, width)
     except Exception as error:
         raise SimulationError(
-            f"--video needs OpenGL, and none works here ({error}); on a machine without a display "
-            "install EGL and set MUJOCO_GL=egl, or leave --video out"
+            f"{what} needs OpenGL, and none works here ({error}); on a machine without a display "
+            "install EGL (Debian: libegl1 libgl1-mesa-dri) and set MUJOCO_GL=egl, or leave it out"
         ) from None
     try:
-        yield renderer
+        yield found
     finally:
-        renderer.close()
+        found.close()
 
 
 def _write_gif(frames: Iterator[Image], path: Path) -> None:

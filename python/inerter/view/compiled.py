@@ -1,0 +1,128 @@
+"""A model file compiled so that its devices can be changed, and once more for who has no plugin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from inerter.core import Device, parameters
+from inerter.device_in_model import PLUGIN, DeviceInModel, devices_of
+from inerter.simulate.errors import SimulationError, engine_text
+from inerter.simulate.load import readable_spec
+from inerter.view.sliders import keys_of, value_of
+
+# what a friction law begins with where the device states nothing of it
+FORCE = 50.0  # [N]
+STIFFNESS = 1e4  # [N/m]
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A compilation. Each is made anew from the file.
+
+    model: every parameter with a slider is live. shown: without the plugin, with a state of the
+    same size. devices: by name. first: values of the live parameters as stated, by device and key.
+    """
+
+    model: mujoco.MjModel
+    shown: mujoco.MjModel
+    devices: Mapping[str, DeviceInModel]
+    first: Mapping[str, Mapping[str, float]]
+
+
+def compiled(path: Path, laws: Mapping[str, str]) -> Compiled:
+    """Compile a model file, with other friction laws for some of its devices.
+
+    Raises
+    ------
+    DeviceError
+        A device cannot have that law.
+    SimulationError
+        The file is no model, does not compile, or has no device.
+    """
+    try:
+        spec = readable_spec(path)
+        first = _make_live(spec, laws)
+        if not first:
+            raise SimulationError(f"{path}: the model has no {PLUGIN}; there is nothing to see")
+        model = spec.copy().compile()
+        shown = without_plugin(spec, model.npluginstate).compile()
+    except SimulationError:
+        raise
+    except (ValueError, mujoco.FatalError) as error:
+        raise SimulationError(f"{path}: {engine_text(error)}") from None
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    return Compiled(model, shown, {place.name: place for place in devices_of(model)}, first)
+
+
+def with_law(device: Device, law: str) -> Device:
+    """A device with another friction law.
+
+    What only the old law reads is left out. What the new one needs and the device does not state
+    is `FORCE` and `STIFFNESS`.
+    """
+    table = parameters()
+    kept = {
+        key: value
+        for key, value in device.given.items()
+        if key not in table or not table[key].laws or law in table[key].laws
+    }
+    level = device.coulomb_force or FORCE
+    needed: dict[str, float] = {}
+    if law in table["coulomb_force"].laws:
+        needed = {"coulomb_force": level}
+    elif law == "bouc_wen":
+        shape = STIFFNESS / (2 * level)
+        needed = {"bw_stiffness": STIFFNESS, "bw_beta": shape, "bw_gamma": shape}
+    return Device(**{**needed, **kept, "friction": law})
+
+
+def without_plugin(spec: mujoco.MjSpec, plugin_state: int) -> mujoco.MjSpec:
+    """A copy of a specification in which each device is an actuator that does nothing.
+
+    A program without the plugin can load it. User data stand in for the states of the plugins, so
+    that the state has the same size and everything that is drawn lies at the same place in it.
+    """
+    plain = spec.copy()
+    for sensor in list(plain.sensors):
+        if sensor.plugin.plugin_name == PLUGIN:
+            plain.delete(sensor)
+    for actuator in plain.actuators:
+        if actuator.plugin.plugin_name == PLUGIN:
+            actuator.plugin.active = False
+            actuator.plugin.name = actuator.plugin.plugin_name = ""
+            if actuator.actdim > 0:
+                actuator.dyntype = mujoco.mjtDyn.mjDYN_USER
+            actuator.gainprm = np.zeros(mujoco.mjNGAIN)
+    for instance in list(plain.plugins):
+        if instance.plugin_name == PLUGIN:
+            plain.delete(instance)
+    plain.nuserdata = max(plain.nuserdata, 0) + plugin_state
+    return plain
+
+
+def _make_live(spec: mujoco.MjSpec, laws: Mapping[str, str]) -> dict[str, dict[str, float]]:
+    """Give devices their laws, and every parameter with a slider a numeric; the values."""
+    first: dict[str, dict[str, float]] = {}
+    for place in devices_of(spec.copy().compile()):
+        actuator = spec.actuators[place.actuator]
+        name = actuator.name = actuator.name or f"device_{place.actuator}"
+        device, instance = place.device, spec.plugin(actuator.plugin.name)
+        if name in laws and laws[name] != device.friction:
+            device = with_law(device, laws[name])
+            instance.config = {key: str(value) for key, value in device.given.items()}
+            actuator.actdim = device.nstate or -1
+        first[name] = {key: value_of(device, key) for key in keys_of(device)}
+        for key in parameters():
+            numeric = spec.numeric(f"{name}.{key}")
+            if numeric is not None and key in first[name]:
+                first[name][key] = float(numeric.data[0])
+            elif numeric is None and key in first[name]:
+                spec.add_numeric(name=f"{name}.{key}", data=[first[name][key]], size=1)
+            elif numeric is not None and name in laws:
+                spec.delete(numeric)  # of the law that it had
+    return first
