@@ -62,13 +62,13 @@ def view_command(
         if picture is None:
             _serve(session, first, shaken, port)
             return
-        missing = write_picture(session, first, shaken, picture, duration, shown)
+        notes = write_picture(session, first, shaken, picture, duration, shown)
     except (SimulationError, DeviceError) as error:
         refuse(str(error))
     except OSError as error:
         refuse(f"{error.filename or picture}: cannot be written ({error.strerror})")
-    if missing:
-        out.print(f"The loops alone: {missing}")
+    for note in notes:
+        out.print(note)
     out.print(f"Written: {picture}")
 
 

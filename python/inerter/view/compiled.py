@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,17 +45,21 @@ def compiled(path: Path, laws: Mapping[str, str]) -> Compiled:
         The file is no model, does not compile, or has no device.
     """
     try:
-        spec = readable_spec(path)
-        first = _make_live(spec, laws)
-        if not first:
+        # parsed anew each time: a specification that was compiled cannot be read back
+        places = devices_of(readable_spec(path).compile())
+        if not places:
             raise SimulationError(f"{path}: the model has no {PLUGIN}; there is nothing to see")
-        model = spec.copy().compile()
-        shown = without_plugin(spec, model.npluginstate).compile()
+        spec = readable_spec(path)
+        first = _make_live(spec, places, laws)
+        model = spec.compile()
+        plain = readable_spec(path)
+        _make_live(plain, places, laws)
+        _take_plugin_out(plain, model.npluginstate)
+        shown = plain.compile()
     except SimulationError:
         raise
     except (ValueError, mujoco.FatalError) as error:
         raise SimulationError(f"{path}: {engine_text(error)}") from None
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     return Compiled(model, shown, {place.name: place for place in devices_of(model)}, first)
 
 
@@ -81,34 +85,38 @@ def with_law(device: Device, law: str) -> Device:
     return Device(**{**needed, **kept, "friction": law})
 
 
-def without_plugin(spec: mujoco.MjSpec, plugin_state: int) -> mujoco.MjSpec:
-    """A copy of a specification in which each device is an actuator that does nothing.
+def _take_plugin_out(spec: mujoco.MjSpec, plugin_state: int) -> None:
+    """Make each device an actuator that does nothing: a program without the plugin can load that.
 
-    A program without the plugin can load it. User data stand in for the states of the plugins, so
-    that the state has the same size and everything that is drawn lies at the same place in it.
+    User data stand in for the states of the plugins: the state has the same size, and everything
+    that is drawn lies at the same place in it.
     """
-    plain = spec.copy()
-    for sensor in list(plain.sensors):
+    for sensor in list(spec.sensors):
         if sensor.plugin.plugin_name == PLUGIN:
-            plain.delete(sensor)
-    for actuator in plain.actuators:
+            spec.delete(sensor)
+    instances = set()
+    for actuator in spec.actuators:
         if actuator.plugin.plugin_name == PLUGIN:
+            instances.add(actuator.plugin.name)
             actuator.plugin.active = False
             actuator.plugin.name = actuator.plugin.plugin_name = ""
             if actuator.actdim > 0:
                 actuator.dyntype = mujoco.mjtDyn.mjDYN_USER
             actuator.gainprm = np.zeros(mujoco.mjNGAIN)
-    for instance in list(plain.plugins):
-        if instance.plugin_name == PLUGIN:
-            plain.delete(instance)
-    plain.nuserdata = max(plain.nuserdata, 0) + plugin_state
-    return plain
+    # by name: one that was configured in its actuator does not say of which plugin it is, and one
+    # that is left behind without an actuator ends the engine
+    for instance in list(spec.plugins):
+        if instance.name in instances:
+            spec.delete(instance)
+    spec.nuserdata = max(spec.nuserdata, 0) + plugin_state
 
 
-def _make_live(spec: mujoco.MjSpec, laws: Mapping[str, str]) -> dict[str, dict[str, float]]:
+def _make_live(
+    spec: mujoco.MjSpec, places: Sequence[DeviceInModel], laws: Mapping[str, str]
+) -> dict[str, dict[str, float]]:
     """Give devices their laws, and every parameter with a slider a numeric; the values."""
     first: dict[str, dict[str, float]] = {}
-    for place in devices_of(spec.copy().compile()):
+    for place in places:
         actuator = spec.actuators[place.actuator]
         name = actuator.name = actuator.name or f"device_{place.actuator}"
         device, instance = place.device, spec.plugin(actuator.plugin.name)

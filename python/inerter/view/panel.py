@@ -13,7 +13,7 @@ from inerter.view.loop import Array
 from inerter.view.shake import Shake
 
 POINTS = 600  # of a curve: more cannot be seen, and all of them go to the browser
-WIDTH, HEIGHT = 440, 740
+WIDTH, HEIGHT = 400, 760
 
 
 class DevicePanel(plugin.ViewerPlugin):
@@ -140,4 +140,5 @@ def copied(geom: mujoco.MjvGeom) -> mujoco.MjvGeom:
         new, geom.type, np.array(geom.size, float), np.array(geom.pos, float),
         np.array(geom.mat, float).ravel(), np.array(geom.rgba, np.float32),
     )  # fmt: skip
+    new.size[:] = geom.size  # as it is drawn, not as a model states it
     return new

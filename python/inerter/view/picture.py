@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.folder import write_files
+from inerter.simulate.checks import engine_warnings
 from inerter.simulate.errors import SimulationError
 from inerter.simulate.video import renderer
 from inerter.view.loop import Loop, instant
@@ -17,6 +18,12 @@ from inerter.view.session import Session
 from inerter.view.shake import Shake
 
 WIDTH, HEIGHT = 640, 480
+DIVERGED = (
+    mujoco.mjtWarning.mjWARN_BADQPOS,
+    mujoco.mjtWarning.mjWARN_BADQVEL,
+    mujoco.mjtWarning.mjWARN_BADQACC,
+    mujoco.mjtWarning.mjWARN_BADCTRL,
+)
 
 
 def run_loop(
@@ -37,10 +44,10 @@ def run_loop(
             shake.apply(model, data)
         mujoco.mj_step(model, data)
         loop.append(*instant(place, model, data))
-    if not np.isfinite(loop.last(shown)).all():
-        raise SimulationError(
-            f"{session.path}: the run diverged before {data.time:g} s; take a smaller time step"
-        )
+        if any(data.warning[int(kind)].number for kind in DIVERGED):
+            raise SimulationError(
+                f"{session.path}: the run diverged; shake it less, or take a smaller time step"
+            )
     return loop
 
 
@@ -62,8 +69,8 @@ def render(model: mujoco.MjModel, data: mujoco.MjData) -> NDArray[np.uint8]:
 
 def write_picture(
     session: Session, device: str, shake: Shake | None, path: Path, seconds: float, shown: float
-) -> str | None:
-    """Run a session and write scene and loops as PNG; the reason where the scene is missing.
+) -> list[str]:
+    """Run a session and write scene and loops as PNG; what there is to say about it.
 
     Raises
     ------
@@ -76,12 +83,14 @@ def write_picture(
 
     if path.suffix.lower() != ".png":
         raise SimulationError(f"--picture is {path}: give a name that ends in .png")
-    loop = run_loop(session, device, shake, seconds, shown)
-    missing = None
+    with engine_warnings() as warnings:
+        loop = run_loop(session, device, shake, seconds, shown)
+    notes = list(warnings)
     try:
         scene = render(session.model, session.data)
     except SimulationError as error:
-        scene, missing = None, str(error)
+        scene = None
+        notes.append(f"the loops alone: {error}")
 
     figure = Figure(figsize=(12 if scene is not None else 8, 4), layout="constrained")
     axes = figure.subplots(1, 2 if scene is None else 3)
@@ -98,4 +107,4 @@ def write_picture(
     buffer = BytesIO()
     figure.savefig(buffer, format="png", dpi=120)
     write_files(path.absolute().parent, {path.name: buffer.getvalue()})
-    return missing
+    return notes
