@@ -5,9 +5,10 @@ from importlib.metadata import version as version_of
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from figures import draw
+from generated import make
 
-draw()
+if missing := make():
+    print(f"scenes not rendered: {missing}")
 
 project = "inerter"
 author = "The inerter authors"
@@ -15,15 +16,21 @@ copyright = author
 version = release = version_of("inerter")
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
     "sphinx_copybutton",
 ]
 root_doc = "index"
-source_suffix = {".md": "markdown"}
-exclude_patterns = ["examples"]  # a script that stands on its own
+source_suffix = {".md": "myst-nb", ".ipynb": "myst-nb"}
+# scripts that stand on their own, and what other pages include
+exclude_patterns = ["examples/*.py", "figures/*.md"]
+
+# the notebook is run when its text, or the build's folder, is new
+nb_execution_mode = "cache"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120
 
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 # headings that a link may go to

@@ -5,7 +5,7 @@ The page builder runs this; `python docs/figures.py` does it by hand.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -90,70 +90,123 @@ def in_time(name: str, devices: Mapping[str, Device], motion: Sequence[Array]) -
     _save(figure, name)
 
 
-def draw() -> list[Path]:
-    """Every picture."""
-    FOLDER.mkdir(exist_ok=True)
+# --- one function per picture or group of pictures; the gallery shows them with their code --------
+
+
+def friction() -> None:
+    """Friction laws, each alone, at 0.5 Hz."""
     for law, values in FRICTION.items():
         loops(law, {law: Device(friction=law, **values)}, 0.5, AMPLITUDE)
-    dahl = FRICTION["dahl"]
-    loops(
-        "friction_backlash",
-        {
-            "Dahl": Device(friction="dahl", **dahl),
-            "2 mm of play before it": Device(friction="dahl", **dahl, friction_backlash=1e-3),
-        },
-        0.5,
-        AMPLITUDE,
-    )
-    loops(
-        "inertance",
-        {
-            "constant": Device(inertance=100),
-            "along the stroke": Device(inertance=100, inertance_gradient=50),
-            "with speed": Device(inertance=100, inertance_speed_gradient=5),
-        },
-        1.0,
-        AMPLITUDE,
-    )
-    loops(
-        "end_stops",
-        {"8 mm": Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)},
-        1.0,
-        AMPLITUDE,
-    )  # fmt: skip
-    gas = {"gas_pressure": 1e5, "gas_area": 1e-3, "gas_volume": 2.2e-5}
-    loops(
-        "gas",
-        {law: Device(**gas, gas_law=law) for law in ("polytropic", "expanded")},
-        1.0,
-        AMPLITUDE,
-    )
-    loops(
-        "fluid",
-        {
-            f"{viscosity:g} Pa s": Device(
-                piston_area=2e-3, channel_area=8e-5, channel_length=2.0,
-                fluid_density=850, fluid_viscosity=viscosity,
-            )
-            for viscosity in (0.0, 0.02, 0.1)
-        },
-        1.0,
-        AMPLITUDE,
-    )  # fmt: skip
-    stroke = sine(2.0, 3)
-    in_time(
-        "series",
-        {
-            "rigid": Device(inertance=100),
-            "elastic": Device(**SERIES),
-            "elastic, 0.4 mm of play": Device(**SERIES, backlash=2e-4),
-        },
-        stroke,
-    )
-    return sorted(FOLDER.glob("*.svg"))
+
+
+def friction_backlash() -> None:
+    """Free play before a bristle."""
+    devices = {
+        "Dahl": Device(friction="dahl", **FRICTION["dahl"]),
+        "2 mm of play before it": Device(
+            friction="dahl", **FRICTION["dahl"], friction_backlash=1e-3
+        ),
+    }
+    loops("friction_backlash", devices, 0.5, AMPLITUDE)
+
+
+def friction_level() -> None:
+    """A friction level that differs with direction, and along the stroke."""
+    level = {"friction": "dahl", **FRICTION["dahl"]}
+    devices = {
+        "constant": Device(**level),
+        "with direction": Device(**level, friction_asymmetry=0.3),
+        "along the stroke": Device(**level, friction_gradient=40),
+        "at the ends": Device(**level, friction_curvature=6e3),
+    }
+    loops("friction_level", devices, 0.5, AMPLITUDE)
+
+
+def load_friction() -> None:
+    """Friction of what the inertance presses on."""
+    devices = {
+        "ideal": Device(inertance=100),
+        "mu = 0.2": Device(inertance=100, load_friction=0.2),
+    }
+    loops("load_friction", devices, 1.0, AMPLITUDE)
+
+
+def damping_and_stiffness() -> None:
+    """Dampers and springs beside the inertance."""
+    devices = {
+        "viscous": Device(viscous=300),
+        "quadratic": Device(quadratic_damping=5000),
+        "stiffness": Device(stiffness=1500),
+        "hardening": Device(stiffness_cubic=1.5e7),
+    }
+    loops("damping_and_stiffness", devices, 1.0, AMPLITUDE)
+
+
+def inertance() -> None:
+    """Inertance that varies, at 1 Hz."""
+    devices = {
+        "constant": Device(inertance=100),
+        "along the stroke": Device(inertance=100, inertance_gradient=50),
+        "with speed": Device(inertance=100, inertance_speed_gradient=5),
+    }
+    loops("inertance", devices, 1.0, AMPLITUDE)
+
+
+def series() -> None:
+    """Elastic drive and free play: a start from rest at 2 Hz."""
+    devices = {
+        "rigid": Device(inertance=100),
+        "elastic": Device(**SERIES),
+        "elastic, 0.4 mm of play": Device(**SERIES, backlash=2e-4),
+    }
+    in_time("series", devices, sine(2.0, 3))
+
+
+def end_stops() -> None:
+    """End stops at 8 mm."""
+    stop = Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)
+    loops("end_stops", {"8 mm": stop}, 1.0, AMPLITUDE)
+
+
+def gas() -> None:
+    """The two laws of the gas spring."""
+    volume = {"gas_pressure": 1e5, "gas_area": 1e-3, "gas_volume": 2.2e-5}
+    devices = {law: Device(**volume, gas_law=law) for law in ("polytropic", "expanded")}
+    loops("gas", devices, 1.0, AMPLITUDE)
+
+
+def fluid() -> None:
+    """Fluid in a channel: inertance and losses."""
+    channel = {"piston_area": 2e-3, "channel_area": 8e-5, "channel_length": 2.0}
+    devices = {
+        f"{viscosity:g} Pa s": Device(**channel, fluid_density=850, fluid_viscosity=viscosity)
+        for viscosity in (0.0, 0.02, 0.1)
+    }
+    loops("fluid", devices, 1.0, AMPLITUDE)
+
+
+GALLERY: Sequence[Callable[[], None]] = (
+    friction, friction_backlash, friction_level, load_friction, damping_and_stiffness,
+    inertance, series, end_stops, gas, fluid,
+)  # fmt: skip
+
+
+def draw() -> dict[str, list[str]]:
+    """Every picture: their names by the function that makes them."""
+    FOLDER.mkdir(exist_ok=True)
+    found = {}
+    for make in GALLERY:
+        _drawn.clear()
+        make()
+        found[make.__name__] = sorted(_drawn)
+    return found
+
+
+_drawn: set[str] = set()
 
 
 def _save(figure: Figure, name: str) -> None:
+    _drawn.add(name)
     for axes in figure.axes:
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
@@ -162,5 +215,4 @@ def _save(figure: Figure, name: str) -> None:
 
 
 if __name__ == "__main__":
-    for path in draw():
-        print(path)
+    print(draw())

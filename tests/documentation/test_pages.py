@@ -1,7 +1,11 @@
-"""What the pages show runs: their Python, and the options of their command lines."""
+"""What the pages show runs: their Python, their notebook, the options of their command lines.
+
+Of the how-to pages everything runs, commands too, in the order of the page and in one folder.
+"""
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import subprocess
@@ -12,7 +16,26 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", ROOT / "plugin_c" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", ROOT / "plugin_c" / "README.md", *sorted(DOCS.glob("*.md"))]
+HOW_TO = sorted((DOCS / "how_to").glob("*.md"))
+
+# a page's blocks and commands as one program; what is shown as a file is written
+PROGRAM = """
+import json, sys
+from pathlib import Path
+from inerter.commands import app
+
+names = {}
+for kind, content in json.load(sys.stdin):
+    if kind == "python":
+        exec(compile(content, "the page", "exec"), names)
+    elif kind == "sh":
+        code = app(content, standalone_mode=False)
+        assert not code, content
+    else:
+        Path(kind).write_text(content, encoding="utf-8")
+"""
 
 
 def blocks(page: Path, language: str) -> list[str]:
@@ -67,3 +90,54 @@ def test_a_command_line_is_understood(page: str, line: str) -> None:
 
 def test_pages_name_commands() -> None:
     assert len(commands()) > 15
+
+
+def steps(page: Path) -> list[tuple[str, object]]:
+    """Blocks of a page in order: python, sh (a command's words), or the name of a file to write."""
+    found: list[tuple[str, object]] = []
+    text = page.read_text(encoding="utf-8")
+    for language, content in re.findall(r"^```(\w+)\n(.*?)^```", text, re.S | re.M):
+        if language == "python":
+            found.append(("python", content))
+        elif language == "sh":
+            lines = [shlex.split(line, comments=True) for line in content.splitlines()]
+            assert all(words[0] == "inerter" for words in lines), content
+            found += [("sh", words[1:]) for words in lines]
+        else:
+            named = re.match(r"(?:<!--|#) ([\w.]+)", content)
+            assert named, f"{page.name}: a block of {language} that names no file"
+            found.append((named[1], content))
+    return found
+
+
+@pytest.mark.parametrize("page", [page for page in HOW_TO if steps(page)], ids=lambda p: p.name)
+def test_a_how_to_works_as_it_stands(page: Path, tmp_path: Path) -> None:
+    todo = steps(page)
+    if any("exudyn" in str(content) for _, content in todo):
+        pytest.importorskip("exudyn")
+    # a viewer that serves until it is ended is tested on its own
+    todo = [(kind, what) for kind, what in todo if kind != "sh" or not serves(what)]
+    (tmp_path / "mjcf_models").symlink_to(ROOT / "mjcf_models")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", PROGRAM], input=json.dumps(todo),
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+
+
+def serves(words: object) -> bool:
+    assert isinstance(words, list)
+    return words[0] == "view" and "--picture" not in words
+
+
+@pytest.mark.parametrize("path", sorted(DOCS.rglob("*.ipynb")), ids=lambda path: path.name)
+def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
+    """Its cells as one program; the page builder runs it in a kernel."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    assert not any(cell.get("outputs") for cell in cells), "store it without outputs"
+    code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", "import matplotlib; matplotlib.use('agg')\n" + code],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
