@@ -55,8 +55,8 @@ def along(device: Device, motion: Sequence[Array], state: Any = None) -> Array:
 
 
 def settled(values: Array, frequency: float) -> Array:
-    """The last period."""
-    return values[-round(RATE / frequency) :]
+    """The last period, closed."""
+    return values[-round(RATE / frequency) - 1 :]
 
 
 def loops(name: str, devices: Mapping[str, Device], frequency: float, amplitude: float) -> None:

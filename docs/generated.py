@@ -75,9 +75,11 @@ def gallery(pictures: dict[str, list[str]]) -> str:
     parts = []
     for function, names in pictures.items():
         title = (getattr(figures, function).__doc__ or "").strip()
-        shown = "\n".join(f"![{name}](figures/{name}.svg)" for name in names)
+        shown = "\n".join(
+            f":::{{figure}} figures/{name}.svg\n{name.replace('_', ' ')}\n:::" for name in names
+        )
         parts.append(
-            f"## {title.rstrip('.')}\n{shown}\n\n"
+            f"## {title.rstrip('.')}\n::::{{container}} thumbnails\n{shown}\n::::\n\n"
             "```{raw} html\n<details><summary>the code</summary>\n```\n"
             f"```{{literalinclude}} figures.py\n:pyobject: {function}\n```\n"
             "```{raw} html\n</details>\n```\n"

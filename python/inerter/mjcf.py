@@ -23,7 +23,7 @@ def device_of_model(path: Path) -> Device:
     if not path.is_file():
         raise DeviceError(f"{path}: no such file; check the path")
     try:
-        text = mujoco.MjSpec.from_file(str(path)).to_xml()
+        text = mujoco.MjSpec.from_file(str(path.absolute())).to_xml()
     except ValueError as error:
         raise DeviceError(f"{path}: {' '.join(str(error).split())}") from None
 

@@ -17,6 +17,7 @@ import pytest
 from inerter.models import model_path
 from inerter.records import read_records
 from inerter.simulate.errors import SimulationError
+from inerter.simulate.load import load_model
 from inerter.simulate.output import write_run
 from inerter.simulate.page import render_page
 from inerter.simulate.run import Run, run_model
@@ -249,3 +250,23 @@ def test_without_opengl_it_says_so(tmp_path: Path) -> None:
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
     assert "--video needs OpenGL" in done.stderr
+
+
+def test_a_relative_path_to_includes_of_includes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The engine alone looks for the innermost file in the wrong place."""
+    body = '<worldbody><body><joint type="slide"/><geom size="0.1"/></body></worldbody>'
+    files = {
+        "scene.xml": '<include file="model.xml"/>',
+        "model.xml": '<include file="pipe.xml"/>',
+        "pipe.xml": '<include file="rig.xml"/>',
+        "rig.xml": body,
+    }
+    (tmp_path / "models").mkdir()
+    for name, content in files.items():
+        (tmp_path / "models" / name).write_text(f"<mujoco>{content}</mujoco>", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match="models/models"):
+        mujoco.MjModel.from_xml_path("models/scene.xml")
+    assert load_model(Path("models/scene.xml")).nq == 1
