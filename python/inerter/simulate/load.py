@@ -89,7 +89,9 @@ def readable_spec(path: Path) -> mujoco.MjSpec:
     ValueError
         The file is no model, or it does not compile.
     """
-    path = path.absolute()  # the engine looks for includes of includes from the wrong place
+    path = (
+        path.absolute()
+    )  # of a relative one the engine looks for attached models in the wrong place
     model = mujoco.MjSpec.from_file(str(path)).compile()
     unread = {found.actuator for found in devices_of(model) if not found.sensor}
 
