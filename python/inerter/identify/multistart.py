@@ -171,7 +171,9 @@ def _solved(problem: Problem, model: Model, names: Sequence[str], level: str | N
     target = np.concatenate([r.force[m] for r, m in zip(problem.runs, problem.masks, strict=True)])
     if not np.isfinite(matrix).all():
         return model
-    found = lsq_linear(matrix / size, target - base, (lower, upper), lsmr_tol="auto").x * units
+    # where its reflected step meets no bound SciPy multiplies 0 by infinity and takes another step
+    with np.errstate(invalid="ignore"):
+        found = lsq_linear(matrix / size, target - base, (lower, upper), lsmr_tol="auto").x * units
     values = dict(model.values)
     for name, value in zip(names, found, strict=True):
         how = coordinate(name, sizes)
