@@ -2,11 +2,53 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
+from typing import Any
+
+INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 
 
 def main() -> None:
-    """Entry point of the `inerter` command."""
+    """Entry point of the `inerter` command: no way out shows a traceback that a user can cause."""
+    interrupted = False
+
+    def interrupt(*_: Any) -> None:
+        nonlocal interrupted
+        interrupted = True
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
+    try:
+        try:
+            _command()
+        finally:
+            sys.stdout.flush()
+    except BaseException as error:
+        # libraries turn an interrupt into errors of their own
+        if interrupted:
+            _leave("interrupted", INTERRUPTED)
+        if isinstance(error, BrokenPipeError):
+            # whoever read has gone
+            _leave("", 1)
+        if isinstance(error, OSError):
+            place = error.filename or "standard output"
+            _leave(f"{place}: cannot be written ({error.strerror})", 1)
+        if isinstance(error, ImportError) and not isinstance(error, ModuleNotFoundError):
+            _leave(str(error), 1)
+        raise
+
+
+def _leave(message: str, status: int) -> None:
+    """End now: what is left in the buffer of stdout has nowhere to go."""
+    if message:
+        print(f"inerter: {message}", file=sys.stderr)
+    sys.stderr.flush()
+    os._exit(status)
+
+
+def _command() -> None:
     try:
         from inerter.commands import run
     except ModuleNotFoundError as error:
@@ -18,11 +60,16 @@ def main() -> None:
 
 
 def _without_lab(missing: str) -> None:
-    """The one command that needs no lab; for the others, how to install it."""
+    """What needs no lab; for the rest, how to install it."""
     if sys.argv[1:] == ["plugin-path"]:
         from inerter.plugin import plugin_path
 
         print(plugin_path())
+        return
+    if sys.argv[1:] == ["--version"]:
+        from inerter import __version__
+
+        print(f"inerter {__version__}")
         return
     print(
         f"inerter: this needs the lab, and {missing} is not installed; "

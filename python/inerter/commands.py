@@ -11,17 +11,17 @@ import numpy as np
 import typer
 from rich.table import Table
 
+import inerter
 from inerter.bench.command import bench_command
 from inerter.blind_test.command import blind_test_command
-from inerter.console import out, progress_bar, refuse, refusing, status
-from inerter.core import DeviceError, parameters
+from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing, status
+from inerter.core import parameters
 from inerter.design.commands import app as design_app
 from inerter.diagnose import Diagnosis, diagnose
 from inerter.diagnose.output import write_outputs
-from inerter.folder import refuse_folder
 from inerter.identify.command import identify_command
 from inerter.models import data_path
-from inerter.plugin import plugin_path
+from inerter.plugin import MUJOCO_VERSION, plugin_path
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
@@ -32,7 +32,6 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    help="Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong.",
 )
 app.add_typer(suspension_app, name="suspension")
 app.command("identify")(identify_command)
@@ -47,6 +46,24 @@ app.command("view")(view_command)
 def run() -> None:
     """Run the command line."""
     app()
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        print(f"inerter {inerter.__version__} for MuJoCo {MUJOCO_VERSION}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_version, is_eager=True, help="Print the version and end."
+        ),
+    ] = False,
+) -> None:
+    """Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong."""
 
 
 @app.command("diagnose")
@@ -77,12 +94,8 @@ def diagnose_command(
     holdout: Annotated[
         list[str] | None, typer.Option(help="Name of a run to hold out; may be given again.")
     ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/diagnosis"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print diagnosis.json alone on stdout.")
-    ] = False,
+    out_dir: Folder = Path("out/diagnosis"),
+    as_json: AsJson = False,
     quick: Annotated[
         bool, typer.Option("--quick", help="Print the summary in the terminal and write nothing.")
     ] = False,
@@ -106,15 +119,13 @@ def _diagnose(
     mapping: tuple[list[str], list[str]] = ([], []),
 ) -> Diagnosis:
     """Without a folder nothing is written."""
-    with refusing(folder):
-        if folder:
-            refuse_folder(folder)
-        # a user's data that overflow are judged by what comes out, not by numpy's warnings
-        with status(as_json) as progress, np.errstate(all="ignore"), catch_warnings():
-            simplefilter("ignore", RuntimeWarning)
+    # a user's data that overflow are judged by what comes out, not by numpy's warnings
+    with refusing(folder), np.errstate(all="ignore"), catch_warnings():
+        simplefilter("ignore", RuntimeWarning)
+        with status(as_json) as progress:
             result = diagnose(record, device, model, holdout, progress, *mapping)
-            if folder:
-                write_outputs(result, folder)
+        if folder:
+            write_outputs(result, folder)
     if as_json:
         print(json.dumps(result.json(), indent=2))
     else:
@@ -132,9 +143,7 @@ def simulate_command(
     duration: Annotated[
         float | None, typer.Option(help="Seconds; default: the control's length, else 10.")
     ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/simulation"
-    ),
+    out_dir: Folder = Path("out/simulation"),
     timestep: Annotated[
         float | None, typer.Option(help="Time step [s] in place of the model's.")
     ] = None,
@@ -153,9 +162,7 @@ def simulate_command(
         float | None, typer.Option(help="Samples per second of the records; default: at most 1000.")
     ] = None,
     video: Annotated[Path | None, typer.Option(help="Also write a video: .gif or .mp4.")] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print simulation.json alone on stdout.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Run a model; write what each inerter.device did as a record, and a page of pictures.
 
@@ -169,26 +176,22 @@ def simulate_command(
     from inerter.simulate.summary import print_run, summary
     from inerter.simulate.video import FRAME_RATE, refuse_video, write_video
 
-    try:
-        refuse_folder(out_dir)
+    with refusing(out_dir):
         if video is not None:
             refuse_video(video)
-        with progress_bar("simulating", as_json) as progress:
-            run = run_model(
-                model, duration, timestep=timestep, integrator=integrator, keyframe=keyframe,
-                control=control, rate=rate, frame_rate=FRAME_RATE if video else 0.0,
-                progress=progress,
-            )  # fmt: skip
+        try:
+            with progress_bar("simulating", as_json) as progress:
+                run = run_model(
+                    model, duration, timestep=timestep, integrator=integrator, keyframe=keyframe,
+                    control=control, rate=rate, frame_rate=FRAME_RATE if video else 0.0,
+                    progress=progress,
+                )  # fmt: skip
+        except mujoco.FatalError as error:
+            raise SimulationError(f"{model}: {engine_text(error)}") from None
         files = write_run(run, out_dir)
         if video is not None:
             with progress_bar("rendering", as_json) as progress:
                 write_video(run.model, run.frames, video, progress)
-    except (SimulationError, DeviceError) as error:
-        refuse(str(error))
-    except mujoco.FatalError as error:
-        refuse(f"{model}: {engine_text(error)}")
-    except OSError as error:
-        refuse(f"{error.filename or out_dir}: cannot be written ({error.strerror}); choose --out")
     if as_json:
         print(json.dumps(summary(run), indent=2))
     else:
@@ -212,15 +215,9 @@ def validate_command(
         list[str] | None, typer.Option(help="An integrator; may be given again.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="A few cases, in a minute.")] = False,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
-    ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/validate"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print validation.json alone on stdout.")
-    ] = False,
+    jobs: Jobs = None,
+    out_dir: Folder = Path("out/validate"),
+    as_json: AsJson = False,
 ) -> None:
     """Run models, laws and inputs in every engine and integrator, against the reference equations.
 
@@ -231,7 +228,6 @@ def validate_command(
     from inerter.validate.table import print_validation
 
     with refusing(out_dir):
-        refuse_folder(out_dir)
         names = (tuple(given or ()) for given in (model, law, engine, integrator))
         with progress_bar("validating", as_json) as progress:
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
@@ -247,9 +243,7 @@ def validate_command(
 
 @app.command()
 def demo(
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/demo"
-    ),
+    out_dir: Folder = Path("out/demo"),
 ) -> None:
     """Diagnose the two shipped records: a time record and a table of amplitudes."""
     from inerter.report.figures import loop_figure

@@ -1,4 +1,4 @@
-"""What the commands share: progress on a terminal's stderr, and the end of one that cannot be."""
+"""What the commands share: options, progress on a terminal's stderr, the end of one that fails."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 from rich.console import Console
@@ -15,22 +15,47 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 out = Console()
 notes = Console(stderr=True)
 
+# exit statuses: the input cannot be used; it could, but something else failed
+UNUSABLE, FAILED = 2, 1
 
-def refuse(message: str) -> NoReturn:
-    """End with one clear line and status 2: the input cannot be used."""
+Folder = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the JSON result alone on stdout.")]
+Jobs = Annotated[
+    int | None, typer.Option("--jobs", min=1, help="Processes; default: one per processor.")
+]
+
+
+def refuse(message: str, status: int = UNUSABLE) -> NoReturn:
+    """End with one clear line and a status."""
     print(f"inerter: {' '.join(message.split())}", file=sys.stderr)
-    raise typer.Exit(2)
+    raise typer.Exit(status)
 
 
 @contextmanager
 def refusing(folder: Path | None) -> Iterator[None]:
-    """End as `refuse` does where the input cannot be used, or results cannot be written."""
+    """End as `refuse` does where the input cannot be used, or results cannot be written.
+
+    A folder that cannot be written is refused before the work is done.
+    """
+    from inerter.folder import refuse_folder
+
+    try:
+        if folder is not None:
+            refuse_folder(folder)
+    except OSError as error:
+        refuse(_unwritten(error, folder))
     try:
         yield
     except ValueError as error:
         refuse(str(error))
     except OSError as error:
-        refuse(f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out")
+        refuse(_unwritten(error, folder), FAILED)
+    except MemoryError:
+        refuse("memory is short; take fewer or shorter records, or fewer --jobs", FAILED)
+
+
+def _unwritten(error: OSError, folder: Path | None) -> str:
+    return f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out"
 
 
 @contextmanager

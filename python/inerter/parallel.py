@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from importlib.util import find_spec
+from multiprocessing import resource_tracker
 from typing import Any, TypeVar
 from uuid import uuid4
 
@@ -89,10 +91,14 @@ def _on_processes(
         context = multiprocessing.get_context("spawn")
         others = set(multiprocessing.active_children())
         with ProcessPoolExecutor(workers, mp_context=context) as pool:
-            waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
             try:
-                for future in as_completed(waiting):
-                    yield waiting[future], future.result()
+                with _deaf_children():
+                    waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
+                while waiting:
+                    # a wait without end would not hear Ctrl-C where another thread gets it
+                    done, _ = wait(waiting, timeout=0.2, return_when=FIRST_COMPLETED)
+                    for future in done:
+                        yield waiting.pop(future), future.result()
             except BrokenProcessPool:
                 raise WorkError(
                     "jobs: a process ended without a result; is memory short? Take fewer --jobs"
@@ -161,6 +167,21 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
                 f"scheduler: {address} has no workers; start some: `dask worker {address}`"
             ) from None
         yield client
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Processes begun here do not hear the Ctrl-C of a terminal: this one ends them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    # begun before, as its beginning lets the signal through again
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

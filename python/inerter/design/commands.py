@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from inerter.console import out, refusing
+from inerter.console import AsJson, out, refusing
 from inerter.design.ball_screw.inputs import INPUTS as BALL_SCREW
 from inerter.design.fluid.inputs import INPUTS as FLUID
 from inerter.design.options import with_options
@@ -27,7 +27,6 @@ Folder = Annotated[
         "--out", help="Folder for design.json, device.toml, model.xml, design.png, design.html."
     ),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print design.json alone on stdout.")]
 
 
 @app.command("ball-screw")
@@ -41,7 +40,7 @@ def ball_screw_command(
         ),
     ] = None,
     out_dir: Folder = None,
-    as_json: Json = False,
+    as_json: AsJson = False,
     **inputs: Any,
 ) -> None:
     """Ball screw: sliding and rolling of the balls, inertance against load and frequency."""
@@ -63,7 +62,7 @@ def rack_pinion_command(
         ),
     ] = None,
     out_dir: Folder = None,
-    as_json: Json = False,
+    as_json: AsJson = False,
     **inputs: Any,
 ) -> None:
     """Rack and pinion with a gear train: inertance, play, elasticity of shafts, mesh losses."""
@@ -74,7 +73,7 @@ def rack_pinion_command(
 
 @app.command("fluid")
 @with_options(FLUID)
-def fluid_command(out_dir: Folder = None, as_json: Json = False, **inputs: Any) -> None:
+def fluid_command(out_dir: Folder = None, as_json: AsJson = False, **inputs: Any) -> None:
     """Fluid: inertance, losses of the channel, cavitation limit, compressibility, trapped air."""
     from inerter.design.fluid.design import design_fluid
 
@@ -84,12 +83,9 @@ def fluid_command(out_dir: Folder = None, as_json: Json = False, **inputs: Any) 
 def _design(calculate: Callable[[], Any], folder: Path | None, as_json: bool) -> None:
     from inerter.design.files import design_json, write_design
     from inerter.design.table import print_design
-    from inerter.folder import refuse_folder
 
     files: list[str] = []
     with refusing(folder):
-        if folder is not None:
-            refuse_folder(folder)
         design = calculate()
         if folder is not None:
             files = write_design(design, folder)

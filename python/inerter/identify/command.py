@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refusing
+from inerter.console import AsJson, Folder, out, progress_bar, refusing
 
 
 def identify_command(
@@ -47,18 +47,13 @@ def identify_command(
             help="Then fit the best law's motion under the measured force, without derivatives.",
         ),
     ] = False,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/identification"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print identification.json alone on stdout.")
-    ] = False,
+    out_dir: Folder = Path("out/identification"),
+    as_json: AsJson = False,
 ) -> None:
     """Parameters of a device with errors and intervals, laws compared on held-out data.
 
     Writes identification.json, identification.png, device.toml and model.xml of the best law.
     """
-    from inerter.folder import refuse_folder
     from inerter.identify.estimate import identify
     from inerter.identify.output import (
         json_text,
@@ -69,7 +64,6 @@ def identify_command(
     from inerter.records import read_records
 
     with refusing(out_dir):
-        refuse_folder(out_dir)
         records = read_records(record, "bench")
         with progress_bar("identifying", as_json) as progress:
             result = identify(

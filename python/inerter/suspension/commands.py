@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refusing
+from inerter.console import AsJson, Jobs, out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
@@ -67,9 +67,7 @@ def optimize_command(
     ] = None,
     velocity: Annotated[float, typer.Option(help="V [m/s].")] = _ROAD.velocity,
     roughness: Annotated[float, typer.Option(help="kappa [m^3/cycle].")] = _ROAD.roughness,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
-    ] = None,
+    jobs: Jobs = None,
     scheduler: Annotated[
         str | None,
         typer.Option(help="Dask scheduler to work on, tcp://HOST:8786; needs inerter[cluster]."),
@@ -78,12 +76,9 @@ def optimize_command(
         Path | None,
         typer.Option("--out", help="Folder for optimum.json and, over a range, the figures."),
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the rows alone on stdout, a JSON list.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Damping and inertance that minimise an index of a car, globally and exactly."""
-    from inerter.folder import refuse_folder
     from inerter.suspension.car_options import chosen_car, chosen_stiffnesses
     from inerter.suspension.output import rows_json, write_sweep
     from inerter.suspension.study import Study, read_indices, read_layouts, read_series
@@ -107,8 +102,6 @@ def optimize_command(
             road=Road(velocity=velocity, roughness=roughness),
             equal=equal,
         )
-        if out_dir is not None:
-            refuse_folder(out_dir)
         with progress_bar("optimising", as_json) as progress:
             rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)
         if out_dir is not None:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
-from inerter.console import out, refuse, refusing, status
+from inerter.console import AsJson, Folder, out, refuse, refusing, status
 
 
 def prepare_command(
@@ -43,19 +43,14 @@ def prepare_command(
         typer.Option(help="Seconds by which the force is late, or 'auto' to estimate them."),
     ] = None,
     form: Annotated[str, typer.Option("--format", help="csv or parquet.")] = "csv",
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/prepared"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print preparation.json alone on stdout.")
-    ] = False,
+    out_dir: Folder = Path("out/prepared"),
+    as_json: AsJson = False,
 ) -> None:
     """Clock, channel delay, denoising, derivatives, resampling of records; a picture of each.
 
     Writes NAME.csv (SI units), NAME.png and preparation.json. A diagnosis wants the records as
     measured: denoise for the eye, not for a fit.
     """
-    from inerter.folder import refuse_folder
     from inerter.records import read_records
     from inerter.records.prepare.options import Options
     from inerter.records.prepare.output import FILE, Format, summary, write_prepared
@@ -65,7 +60,6 @@ def prepare_command(
     if form not in forms:
         refuse(f"--format is {form!r}; take one of {', '.join(forms)}")
     with refusing(out_dir):
-        refuse_folder(out_dir)
         chosen: dict[str, Any] = {"channels": tuple(channel)} if channel else {}
         options = Options(
             denoise=denoise, noise=noise, rate=resample, derivatives=derivatives, cutoff=cutoff,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refusing
+from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing
 
 
 def fluid_rig_command(
@@ -23,21 +23,14 @@ def fluid_rig_command(
     factor: Annotated[
         float, typer.Option(help="Starting values are off by up to this factor.")
     ] = 2.0,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
-    ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/fluid_rig"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print fluid_rig.json alone on stdout.")
-    ] = False,
+    jobs: Jobs = None,
+    out_dir: Folder = Path("out/fluid_rig"),
+    as_json: AsJson = False,
 ) -> None:
     """The fluid inerter's experiment: its sweeps simulated, disturbed, identified, drawn.
 
     Writes fluid_rig.json, fluid_rig.html, dry.png, complete.png and levels.png.
     """
-    from inerter.folder import refuse_folder
     from inerter.studies.fluid_rig.output import json_text, write_study
     from inerter.studies.fluid_rig.settings import Settings
     from inerter.studies.fluid_rig.signals import Noise
@@ -52,7 +45,6 @@ def fluid_rig_command(
             noise=Noise(displacement_noise, force_noise),
             factor=factor,
         )
-        refuse_folder(out_dir)
         with progress_bar("tests by the reference", as_json) as progress:
             result = study(settings, jobs=jobs, progress=progress)
         files = write_study(result, out_dir)

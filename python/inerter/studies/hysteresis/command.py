@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refusing
+from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing
 
 
 def hysteresis_command(
@@ -27,21 +27,14 @@ def hysteresis_command(
     quick: Annotated[
         bool, typer.Option("--quick", help="Few draws and starts: rough, several times faster.")
     ] = False,
-    jobs: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
-    ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/hysteresis"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print hysteresis.json alone on stdout.")
-    ] = False,
+    jobs: Jobs = None,
+    out_dir: Folder = Path("out/hysteresis"),
+    as_json: AsJson = False,
 ) -> None:
     """Dahl, LuGre and Bouc-Wen on virtual bench tests of a ball-screw inerter, as in the paper.
 
     Writes hysteresis.json, hysteresis.html and pictures.
     """
-    from inerter.folder import refuse_folder
     from inerter.studies.hysteresis.output import json_text, print_study, write_study
     from inerter.studies.hysteresis.settings import Settings
     from inerter.studies.hysteresis.study import study
@@ -51,7 +44,6 @@ def hysteresis_command(
             noise=noise, rate=rate, duration=duration, denoise=denoise, draws=draws,
             random_starts=random_starts, seed=seed,
         )  # fmt: skip
-        refuse_folder(out_dir)
         with progress_bar("rebuilding the hysteresis paper", as_json) as progress:
             result = study(settings.quick() if quick else settings, jobs=jobs, progress=progress)
         files = write_study(result, out_dir)

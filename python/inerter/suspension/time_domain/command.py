@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import out, progress_bar, refusing
+from inerter.console import AsJson, Folder, out, progress_bar, refusing
 
 
 def evaluate_command(
@@ -77,18 +77,13 @@ def evaluate_command(
             "then the threads of each piece of work, 1 if not given."
         ),
     ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/suspension"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print evaluation.json alone on stdout.")
-    ] = False,
+    out_dir: Folder = Path("out/suspension"),
+    as_json: AsJson = False,
 ) -> None:
     """Indices of a car whose inerters have friction, elasticity, play, with error bars.
 
     Runs the MuJoCo models over many random roads. Writes evaluation.json and evaluation.csv.
     """
-    from inerter.folder import refuse_folder
     from inerter.suspension.time_domain.asked import (
         car_named,
         cases_asked,
@@ -107,7 +102,6 @@ def evaluate_command(
     from inerter.suspension.time_domain.simulate import RunSettings
 
     with refusing(out_dir):
-        refuse_folder(out_dir)
         asked = car_named(car)
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
         cases, own = cases_asked(case, device, step)

@@ -13,6 +13,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from inerter.folder import write_files
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.samples import CONFIDENCE
@@ -38,17 +39,20 @@ def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
 
 
-def write_evaluation(plan: Plan, rows: Sequence[Evaluation], folder: Path) -> tuple[str, ...]:
-    """Write evaluation.json and evaluation.csv; the names of the files."""
+def write_evaluation(plan: Plan, rows: Sequence[Evaluation], folder: Path) -> list[str]:
+    """Write evaluation.json and evaluation.csv; the names of the files.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(_FLAT)
     writer.writerows([getattr(row, name) for name in _FLAT] for row in rows)
-    folder.mkdir(parents=True, exist_ok=True)
     texts = {"evaluation.json": json_text(plan, rows), "evaluation.csv": table.getvalue()}
-    for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
-    return tuple(texts)
+    return write_files(folder, texts)
 
 
 def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -> None:
