@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from .quality import check_records
+from .raw_table import RawTable
 from .read import (
     _expand,
     _name_apart,
@@ -17,7 +18,7 @@ from .read import (
     _split_runs,
 )
 from .record import AnyRecord, Array, RecordError, TimeRecord
-from .table import RawTable, read_table
+from .table import read_table
 from .units import _GRAVITY, QUANTITIES, _parse, _registry, si_factor, split_header
 
 

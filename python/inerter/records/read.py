@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
 from .quality import check_records
+from .raw_table import RawTable, explain_cell
 from .record import AnyRecord, Array, BenchTable, Record, RecordError, TimeRecord, VehicleRecord
-from .table import EXTENSIONS, RawTable, explain_cell, read_table
+from .table import EXTENSIONS, read_table
 from .units import QUANTITIES, si_factor, split_header
 
 MIN_SAMPLES = 50  # of a record over time
@@ -151,7 +152,8 @@ def _read_file(path: Path, kind: Kind | None) -> list[AnyRecord]:
         for name, i in found.own.items()
         if name in names
     }
-    values = {name: _numbers(table, found.own[name]) * factors[name] for name in names}
+    values = {name: _numbers(table, found.own[name]) for name in names}
+    values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
     extra = {
         name: numbers
         for name, index in found.extra.items()
@@ -162,7 +164,9 @@ def _read_file(path: Path, kind: Kind | None) -> list[AnyRecord]:
     for run, rows in _split_runs(table, found.own.get("run")):
         part = _Part(table, run, rows)
         name = path.stem if run is None else f"{path.stem}:{run}"
-        columns, rows, notes = part.complete({n: v[rows] for n, v in values.items()}, cls)
+        # long records are many: no copies of a file that is one run
+        own = values if run is None else {n: v[rows] for n, v in values.items()}
+        columns, rows, notes = part.complete(own, cls)
         part.with_rows(rows).check(columns, cls)
         rest = {n: v[rows] for n, v in extra.items()}
         fields: dict[str, Any] = {"extra": rest, "comments": table.comments, **columns}

@@ -28,7 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.records import RecordError
-from inerter.records.table import RawTable, read_table
+from inerter.records.raw_table import RawTable
+from inerter.records.table import read_table
 from inerter.records.units import QUANTITIES, split_header
 from inerter.simulate.errors import SimulationError
 from inerter.simulate.load import scalar_joints
