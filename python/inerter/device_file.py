@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from inerter.core import Device, DeviceError, parameters
+from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
 SCHEMA = "inerter.device/1"
 LAWS = ("friction", "gas_law")  # keys whose value is a name
@@ -65,19 +66,20 @@ def read_delay(path: Path) -> float:
 
 def _with_unit(path: Path, key: str, text: str) -> float:
     """A text with a unit in the parameter's SI unit."""
-    import pint
-
     if key not in parameters():
         raise DeviceError(f"{path}: {key} is not a parameter of the device")
     unit = parameters()[key].unit
-    registry = pint.get_application_registry()
     wanted = "" if unit == "1" else unit.replace("m^-n", "dimensionless")
+    number, written = split_quantity(text) or (math.nan, "")
+    given = parse_unit(written or "dimensionless")
+    refusal = DeviceError(f'{path}: {key} is "{text}"; give a number, or a text in {unit}')
+    if given is None or math.isnan(number):
+        raise refusal
     try:
-        value = registry.Quantity(text).to(wanted)
-    except Exception as error:
-        raise DeviceError(
-            f'{path}: {key} is "{text}"; give a number, or a text in {unit} ({error})'
-        ) from None
+        value = unit_registry().Quantity(number, given).to(wanted)
+    except (ArithmeticError, TypeError, ValueError):
+        # another quantity
+        raise refusal from None
     return float(value.magnitude)
 
 

@@ -87,9 +87,7 @@ def test_too_many_rows_are_refused(
     monkeypatch.setattr(table, "MAX_ROWS", 300)
     assert len(read_records(path, "bench")[0].time) == 300
     monkeypatch.setattr(table, "MAX_ROWS", 299)
-    with pytest.raises(
-        RecordError, match="week.*about 300 rows, at most 299 are read; "
-    ):
+    with pytest.raises(RecordError, match=r"week.*about 300 rows, at most 299 are read; "):
         read_records(path)
 
 
@@ -103,7 +101,7 @@ def test_a_file_far_too_long_is_refused_by_its_first_block(
     blocks = []
     found = csv_table._columns
     monkeypatch.setattr(csv_table, "_columns", lambda *of: blocks.append(1) or found(*of))
-    with pytest.raises(RecordError, match="about [45] ?[0-9]00 rows, at most 1 000"):
+    with pytest.raises(RecordError, match=r"about [45] ?[0-9]00 rows, at most 1 000"):
         read_records(path)
     assert len(blocks) == 1
 

@@ -7,16 +7,14 @@ from __future__ import annotations
 
 import difflib
 import math
-import re
-import tokenize
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from inerter.unit_text import parse_unit, split_quantity, unit_registry
+
 PAPER = "printed in the ball-screw paper, Table 1"
 CHOSEN = "chosen here, not printed"
-
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 
 
 class DesignError(ValueError):
@@ -84,26 +82,27 @@ class Input:
             raise DesignError(f"{self.name} is {given!r}: give a number or a text with a unit")
         if not isinstance(given, str):
             return float(given)
-        match = _NUMBER.fullmatch(given)
-        if match is None:
+        found = split_quantity(given)
+        if found is None:
             raise DesignError(
                 f"{self.name} is {given!r}, not a number: write it as {self._example}"
             )
-        number, unit = float(match[1]), match[2]
+        number, unit = found
         return number if not unit else self._converted(number, unit, given)
 
     def _converted(self, number: float, unit: str, given: str) -> float:
-        import pint
-
-        registry: Any = pint.get_application_registry()
-        failures = (ArithmeticError, AssertionError, AttributeError, KeyError, TypeError)
+        parsed = parse_unit(unit)
+        refusal = DesignError(
+            f"{self.name} is {given!r}, whose unit is not that of {self.meaning}: "
+            f"write it as {self._example}"
+        )
+        if parsed is None:
+            raise refusal
         try:
-            quantity = registry.Quantity(number, unit).to(self.unit or "dimensionless")
-        except (*failures, ValueError, SyntaxError, tokenize.TokenError):
-            raise DesignError(
-                f"{self.name} is {given!r}, whose unit is not that of {self.meaning}: "
-                f"write it as {self._example}"
-            ) from None
+            quantity = unit_registry().Quantity(number, parsed).to(self.unit or "dimensionless")
+        except (ArithmeticError, TypeError, ValueError):
+            # another quantity
+            raise refusal from None
         return float(quantity.magnitude)
 
     @property

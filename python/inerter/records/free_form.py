@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from inerter.unit_text import parse_unit, unit_registry
+
 from .quality import check_records
 from .raw_table import RawTable
 from .read import (
@@ -19,7 +21,7 @@ from .read import (
 )
 from .record import AnyRecord, Array, RecordError, TimeRecord
 from .table import read_table
-from .units import _GRAVITY, QUANTITIES, _parse, _registry, si_factor, split_header
+from .units import _GRAVITY, QUANTITIES, si_factor, split_header
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -122,7 +124,7 @@ def _factor(table: RawTable, index: int, name: str) -> float:
         return 1.0
     if unit in _GRAVITY:
         return _GRAVITY[unit] * 9.80665
-    parsed = _parse(unit)
+    parsed = parse_unit(unit)
     if parsed is None:
         raise RecordError(f"{where}: unknown unit {unit!r}; write an SI unit, or leave it out")
-    return float(_registry().Quantity(1.0, parsed).to_base_units().magnitude)
+    return float(unit_registry().Quantity(1.0, parsed).to_base_units().magnitude)

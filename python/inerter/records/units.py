@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import re
-import tokenize
 from dataclasses import dataclass
-from typing import Any
+
+from inerter.unit_text import parse_unit, unit_registry
 
 from .record import RecordError
 
@@ -47,9 +46,8 @@ QUANTITIES: dict[str, Quantity] = {
     "tyre_force": FORCE,
 }
 
-# spellings of test benches that pint reads otherwise (g is a gram, mil an angle) or not at all
+# what test benches call accelerations; pint reads g as a gram
 _GRAVITY = {"g": 1.0, "G": 1.0, "gn": 1.0, "g0": 1.0, "g_n": 1.0, "mg": 1e-3, "ug": 1e-6}
-_SPELLINGS = {"kp": "kgf", "mil": "thou", "mils": "thou", "sec": "s", "secs": "s", "lbs": "lbf"}
 
 
 def split_header(header: str) -> tuple[str, str | None]:
@@ -77,50 +75,23 @@ def si_factor(name: str, unit: str | None, where: str) -> float:
         return 1.0
     if quantity is ACCELERATION and unit in _GRAVITY:
         return _GRAVITY[unit] * 9.80665
-    parsed = _parse(unit)
+    parsed = parse_unit(unit)
     if parsed is None:
         raise RecordError(
             f"{where}: unknown unit {unit!r}{_closest(unit, quantity)}; "
             f"{name} is {quantity.meaning}, write for example one of: {quantity.allowed}"
         )
-    if parsed.dimensionality != _parse(quantity.unit).dimensionality:
+    if parsed.dimensionality != parse_unit(quantity.unit).dimensionality:
         raise RecordError(
             f"{where}: unit {unit!r} is not {quantity.meaning}{_mass_hint(unit, quantity)}; "
             f"write for example one of: {quantity.allowed}, or leave it out for {quantity.unit}"
         )
-    base = _registry().Quantity(1.0, parsed).to_base_units()
+    base = unit_registry().Quantity(1.0, parsed).to_base_units()
     factor = float(base.magnitude)
     # a frequency stated as an angle per time: pint counts radians, a hertz is a whole turn
     if name == "frequency" and "radian" in str(base.units):
         factor /= 2.0 * math.pi
     return factor
-
-
-@functools.cache
-def _registry() -> Any:
-    """The pint registry, made on the first unit that is not SI (it takes 0.3 s)."""
-    import pint
-
-    return pint.UnitRegistry()
-
-
-@functools.cache
-def _parse(unit: str) -> Any:
-    """The pint unit, or None where pint knows none; ``m/s2``, ``m s-2`` and ``m·s^-2`` work."""
-    text = _SPELLINGS.get(unit, unit)
-    for sign in ("\u00b7", "\u22c5", "\u00d7"):
-        text = text.replace(sign, "*")
-    text = text.translate(str.maketrans("⁻⁰¹²³⁴", "-01234"))
-    if not re.fullmatch(r"[A-Za-zµμ°%Ω_0-9\s*/^().\-]+", text):
-        return None
-    text = re.sub(r"(?<=[A-Za-z])\.(?=[A-Za-z])", "*", text)
-    text = re.sub(r"(?<=[A-Za-z])(-?\d)(?!\d)", r"**\1", text)
-    # whatever pint makes of a text that is no unit, it is not a unit
-    known_failures = (ArithmeticError, AssertionError, AttributeError, KeyError, TypeError)
-    try:
-        return _registry().Unit(text)
-    except (*known_failures, ValueError, SyntaxError, tokenize.TokenError):
-        return None
 
 
 def _closest(unit: str, quantity: Quantity) -> str:

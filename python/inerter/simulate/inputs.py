@@ -33,6 +33,7 @@ from inerter.records.table import read_table
 from inerter.records.units import QUANTITIES, split_header
 from inerter.simulate.errors import SimulationError
 from inerter.simulate.load import scalar_joints
+from inerter.unit_text import parse_unit, unit_registry
 
 Array = NDArray[np.float64]
 _AXES = ("x", "y", "z")
@@ -212,12 +213,7 @@ def _numbers(table: RawTable, index: int, unit: str | None) -> Array:
         raise SimulationError(f"{table.path}: {place}: column {header!r} has no number there")
     if unit is None:
         return values
-    import pint
-
-    registry: Any = pint.get_application_registry()
-    try:
-        return registry.Quantity(values, unit).to_base_units().magnitude.astype(float)
-    except Exception as error:
-        raise SimulationError(
-            f"{table.path}: column {header!r}: unknown unit {unit!r} ({error})"
-        ) from None
+    parsed = parse_unit(unit)
+    if parsed is None:
+        raise SimulationError(f"{table.path}: column {header!r}: unknown unit {unit!r}")
+    return unit_registry().Quantity(values, parsed).to_base_units().magnitude.astype(float)
