@@ -15,6 +15,7 @@
 
 #include "mujoco/placement.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "mujoco/attachment.h"
@@ -24,6 +25,9 @@
 // model through copies and MJB files, so that later edits of actuator_armature count.
 static const int kPlacedSlot = mjNGAIN - 1;
 enum { PLACED_NATIVE = 1, PLACED_PLUGIN = 2 };
+
+// relative, of a number with six digits
+static const mjtNum kXmlRounding = 5e-6;
 
 // whether the inertia matrix has an entry for a pair of dofs
 static int in_inertia(const mjModel* m, int a, int b) {
@@ -86,12 +90,13 @@ int placement_is_new(const mjModel* m, int actuator) {
 }
 
 // Value that the model is to hold: the configured one, unless only the attribute states it.
-// Return 0, or -1 with a message if both are stated and differ.
+// Return 0, or -1 with a message if both are stated and differ by more than the engine's rounding
+// where it saves a compiled model as XML.
 static int merge(const InerterDevice* device, int index, mjtNum configured, const char* attribute,
                  mjtNum* value, char message[INERTER_MESSAGE_SIZE]) {
   const InerterParameter* parameter = inerter_parameter(index);
   int given = (int)(device->given >> index & 1);
-  if (*value != 0 && given && *value != configured) {
+  if (*value != 0 && given && fabs(*value - configured) > kXmlRounding * fabs(configured)) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "%s is %g %s, but the actuator's %s is %g: both mean the same; state one of them",
              parameter->name, configured, parameter->unit, attribute, *value);

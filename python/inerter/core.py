@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.checked_motion import checked_motion
+from inerter.parameter_text import value_text, with_suggestion
 
 LIBRARY_FOLDER = Path(__file__).parent / "lib"
 _MESSAGE_SIZE = 512
@@ -163,9 +164,12 @@ class Device:
         library, message = _library(), ctypes.create_string_buffer(_MESSAGE_SIZE)
         library.inerter_default(ctypes.byref(self._c))
         for name, value in values.items():
-            text = value if isinstance(value, str) else repr(float(value))
-            if library.inerter_set(ctypes.byref(self._c), name.encode(), text.encode(), message):
-                raise DeviceError(_with_suggestion(name, _text(message)))
+            text, key = value_text(value), value_text(name)
+            if text is None or key is None:
+                raise DeviceError(f"{name!a} is {value!a:.80}: give a number, or the name of a law")
+            if library.inerter_set(ctypes.byref(self._c), key.encode(), text.encode(), message):
+                known = [*parameters(), "friction", "gas_law"]
+                raise DeviceError(with_suggestion(name, _text(message), known))
         if library.inerter_finish(ctypes.byref(self._c), message):
             raise DeviceError(_text(message))
         self._given = {name: getattr(self, name) for name in values}
@@ -434,14 +438,3 @@ def _pointer(array: NDArray[np.float64]) -> Any:
 def _text(message: ctypes.Array[ctypes.c_char]) -> str:
     # a long value is cut, perhaps within a character
     return message.value.decode(errors="replace")
-
-
-def _with_suggestion(name: str, message: str) -> str:
-    known = [*parameters(), "friction", "gas_law"]
-    if name in known:
-        return message
-    import difflib
-
-    close = difflib.get_close_matches(name, known, n=3)
-    hint = f"did you mean {', '.join(close)}?" if close else "`inerter parameters` lists them"
-    return f"{message}; {hint}"
