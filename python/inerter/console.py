@@ -6,14 +6,25 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.text import Text
 
-out = Console()
-notes = Console(stderr=True)
+from inerter.printable import printable
+
+
+class _Console(Console):
+    """Names come from files: no markup, no control sequences to the terminal."""
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        return super().render_str(printable(text), **options)
+
+
+out = _Console(markup=False, emoji=False)
+notes = _Console(stderr=True, markup=False, emoji=False)
 
 # exit statuses: the input cannot be used; it could, but something else failed
 UNUSABLE, FAILED = 2, 1
@@ -27,7 +38,7 @@ Jobs = Annotated[
 
 def refuse(message: str, status: int = UNUSABLE) -> NoReturn:
     """End with one clear line and a status."""
-    print(f"inerter: {' '.join(message.split())}", file=sys.stderr)
+    print(f"inerter: {printable(' '.join(message.split()))}", file=sys.stderr)
     raise typer.Exit(status)
 
 
@@ -65,7 +76,7 @@ def status(quiet: bool) -> Iterator[Callable[[str], None]]:
         yield lambda text: None
         return
     with notes.status("starting") as line:
-        yield lambda text: line.update(text)
+        yield lambda text: line.update(Text(printable(text)))
 
 
 @contextmanager
@@ -74,7 +85,7 @@ def progress_bar(text: str, quiet: bool) -> Iterator[Callable[..., None]]:
     if quiet or not notes.is_terminal:
         yield lambda share, text=None: None
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeRemainingColumn())
     with Progress(*columns, console=notes, transient=True) as progress:
         task = progress.add_task(text, total=1.0)
 

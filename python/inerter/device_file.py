@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from inerter.core import Device, DeviceError, parameters
+from inerter.printable import printable
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
 SCHEMA = "inerter.device/1"
@@ -103,7 +104,8 @@ def device_text(
         Comment for the first line.
     """
     comments = comments or {}
-    lines = [f"# {line}" for line in title.splitlines()]
+    # names of records may hold what TOML does not allow
+    lines = [f"# {printable(line)}" for line in title.splitlines()]
     lines += [f'schema = "{SCHEMA}"', "", "[device]"]
     for name, value in device.given.items():
         text = f'"{value}"' if isinstance(value, str) else repr(float(value))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import math
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from plotly.subplots import make_subplots
 from inerter.design.result import Design, Panel
 from inerter.report.palette import LIGHT
 from inerter.report.plotting import FONT
+from inerter.report.png import png
 
 _COLOURS = (LIGHT["after"], LIGHT["before"], "#3f8f4f", "#a63d73", "#7a5cc0")
 
@@ -49,9 +49,7 @@ def picture(design: Design) -> bytes:
         axes.spines[:].set_visible(False)
         axes.margins(x=0.02)
         axes.legend(frameon=False, fontsize=8.5, handlelength=2.4)
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
+    return png(figure)
 
 
 def page(design: Design) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from io import BytesIO
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -13,6 +11,7 @@ from numpy.typing import NDArray
 from inerter.identify.prediction import force_along
 from inerter.identify.result import Identification
 from inerter.report.palette import LIGHT
+from inerter.report.png import png
 
 Array = NDArray[np.float64]
 
@@ -44,9 +43,7 @@ def picture(result: Identification) -> bytes:
     _lines(speed, run.velocity[part], rest[part],
            (predicted - result.best.device.inertance * run.acceleration)[part],
            "force less b a [N] against velocity [m/s]")  # fmt: skip
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
+    return png(figure)
 
 
 def _errors(axes: Axes, result: Identification) -> None:

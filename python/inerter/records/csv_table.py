@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
-from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers
+from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers, too_long
 from .record import Array, RecordError
 from .units import split_header
 
@@ -102,16 +102,6 @@ class _Growing:
         return RawTable(
             self.path, self.header, tuple(columns), tuple(comments), self.odd, lines
         )  # fmt: skip
-
-
-def too_long(path: Path, rows: float, most_rows: int) -> str:
-    """What is said of a file with too many rows."""
-    said = f"{float(f'{rows:.2g}'):,.0f}".replace(",", " ")
-    most = f"{most_rows:,}".replace(",", " ")
-    return (
-        f"{path}: about {said} rows, at most {most} are read; give a part of it, or low-pass it "
-        "and write every n-th row"
-    )
 
 
 # --- text --------------------------------------------------------------------------------------

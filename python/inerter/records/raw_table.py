@@ -139,3 +139,13 @@ def listed(names: tuple[str, ...] | list[str]) -> str:
     """Column names for an error text, at most twelve."""
     shown = ", ".join(name.strip() or "(blank)" for name in names[:12])
     return shown + (", ..." if len(names) > 12 else "")
+
+
+def too_long(path: Path, rows: float, most_rows: int) -> str:
+    """What is said of a file with too many rows."""
+    said = f"{float(f'{rows:.2g}'):,.0f}".replace(",", " ")
+    most = f"{most_rows:,}".replace(",", " ")
+    return (
+        f"{path}: about {said} rows, at most {most} are read; give a part of it, or low-pass it "
+        "and write every n-th row"
+    )

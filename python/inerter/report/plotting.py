@@ -18,7 +18,7 @@ _SINGLE = 1e-6
 
 
 def figure(x_title: str, y_title: str, **layout: Any) -> go.Figure:
-    """An empty plot with titled axes."""
+    """An empty plot with titled axes; titles may name columns of a file, and stay text."""
     axis: dict[str, Any] = {
         "gridcolor": LIGHT["grid"],
         "linecolor": LIGHT["line"],
@@ -43,8 +43,8 @@ def figure(x_title: str, y_title: str, **layout: Any) -> go.Figure:
                 "bordercolor": LIGHT["line"],
                 "font": {"color": LIGHT["text"]},
             },
-            "xaxis": axis | {"title": title | {"text": x_title}},
-            "yaxis": axis | {"title": title | {"text": y_title}},
+            "xaxis": axis | {"title": title | {"text": html.escape(x_title)}},
+            "yaxis": axis | {"title": title | {"text": html.escape(y_title)}},
             **layout,
         }
     )
@@ -59,7 +59,7 @@ def two_over_time(above: str, below: str) -> go.Figure:
         yaxis2=style | {"domain": [0.0, 0.36], "anchor": "x"},
         xaxis={"anchor": "y2"},
     )
-    plot.layout.yaxis2.title.text = below  # type: ignore[attr-defined]
+    plot.layout.yaxis2.title.text = html.escape(below)  # type: ignore[attr-defined]
     return plot
 
 

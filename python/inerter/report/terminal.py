@@ -9,6 +9,7 @@ from rich.text import Text
 
 from inerter.diagnose.result import Diagnosis, ParameterValue
 from inerter.diagnose.wording import departure
+from inerter.printable import printable
 from inerter.report import text
 from inerter.report.runs import role
 from inerter.report.subject import subject
@@ -112,6 +113,5 @@ def _table(title: str) -> Table:
 
 
 def _plain(words: str, style: str = "") -> Text:
-    # names come from files: no markup, and no control sequences to the terminal
-    shown = "".join(c if c.isprintable() or c in "\n\u00a0\u202f" else "\ufffd" for c in words)
-    return Text(shown, style=style)
+    # names come from files: no markup
+    return Text(printable(words), style=style)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import inerter
 from inerter.core import parameters
+from inerter.printable import printable
 from inerter.simulate.run import Run
 from inerter.simulate.sample import DeviceRun
 
@@ -75,5 +76,5 @@ def _unit(name: str) -> str:
 
 def _csv(notes: Iterable[str], columns: Mapping[str, NDArray]) -> str:
     # names come from the model: a line break in one must not end the comment
-    head = "".join(f"# {' '.join(note.split())}\n" for note in notes)
+    head = "".join(f"# {printable(' '.join(note.split()))}\n" for note in notes)
     return head + pl.DataFrame(dict(columns)).write_csv()

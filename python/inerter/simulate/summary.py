@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from inerter.printable import printable
 from inerter.report import text
 from inerter.simulate.record import device_names
 from inerter.simulate.run import Run
@@ -95,5 +96,5 @@ def _largest(spread: dict[str, float]) -> float:
 
 
 def _plain(words: str) -> Text:
-    # names come from files: no markup, no control sequences
-    return Text("".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in words))
+    # names come from files: no markup
+    return Text(printable(words))

@@ -6,7 +6,6 @@ One row of two panels for each index: a PNG for print, and a page that zooms and
 from __future__ import annotations
 
 import html
-from io import BytesIO
 from typing import Any
 
 import plotly.graph_objects as go
@@ -16,6 +15,7 @@ from plotly.subplots import make_subplots
 
 from inerter.report.palette import LIGHT
 from inerter.report.plotting import FONT
+from inerter.report.png import png
 from inerter.suspension.indices import INDICES
 from inerter.suspension.results import Curve, curves, improvements
 from inerter.suspension.sweep import Row
@@ -71,9 +71,7 @@ def picture(rows: list[Row]) -> bytes:
         handles, labels, loc="outside lower center", ncols=min(len(labels), 7), frameon=False,
         fontsize=9, handlelength=2.6,
     )  # fmt: skip
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
+    return png(figure)
 
 
 def page(rows: list[Row]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from inerter.report.palette import LIGHT
+from inerter.report.png import png
 from inerter.validate.bounds import AGREEMENT
 from inerter.validate.case import PUBLISHED
 from inerter.validate.laws import LAWS
@@ -40,9 +40,7 @@ def picture(validation: Validation) -> bytes:
         _laws(figure, axes.pop(0), validation.rows, laws)
     if validation.headline:
         _long_runs(axes.pop(0), validation)
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
+    return png(figure)
 
 
 def _laws(figure: Figure, axes: Any, rows: list[Row], laws: list[str]) -> None:

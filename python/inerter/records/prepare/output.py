@@ -13,6 +13,7 @@ import polars as pl
 
 import inerter
 from inerter.folder import write_files
+from inerter.printable import printable
 from inerter.records.prepare.options import Options
 from inerter.records.prepare.picture import picture
 from inerter.records.prepare.pipeline import Prepared
@@ -76,7 +77,8 @@ def table(record: TimeRecord) -> pl.DataFrame:
 def record_csv(prepared: Prepared) -> str:
     """Text of a prepared record; its comments say what was done."""
     notes = [*prepared.source.comments, *_history(prepared)]
-    head = "".join(f"# {' '.join(note.split())}\n" for note in notes)
+    # names come from files: the text must be one that can be read again
+    head = "".join(f"# {printable(' '.join(note.split()))}\n" for note in notes)
     return head + table(prepared.record).write_csv()
 
 

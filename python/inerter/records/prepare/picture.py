@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from inerter.records.denoise import Denoised
 from inerter.records.denoise.modes import Modes
 from inerter.records.prepare.pipeline import Prepared
 from inerter.report.palette import LIGHT
+from inerter.report.png import png
 from inerter.report.thinning import extremes
 
 Array = NDArray[np.float64]
@@ -69,9 +69,7 @@ def picture(prepared: Prepared) -> bytes:
             axes.set_title("from displacement", loc="left", fontsize=9, color=LIGHT["soft"])
         row += 1
     figure.suptitle(_title(prepared), x=0.01, ha="left", fontsize=11, color=LIGHT["text"])
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
+    return png(figure)
 
 
 def _title(prepared: Prepared) -> str:

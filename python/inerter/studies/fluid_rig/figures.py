@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from io import BytesIO
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -11,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from inerter.report.palette import LIGHT
+from inerter.report.png import png
 from inerter.studies.fluid_rig.panels import Panel, Picture
 
 COLOURS = {"measured": LIGHT["measured"], "fitted": LIGHT["after"]}
@@ -44,9 +43,7 @@ def picture(of: Picture) -> bytes:
     else:
         for axes_row in grid:
             axes_row[0].legend(frameon=False, fontsize=7, handlelength=3.2)
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
+    return png(figure)
 
 
 def _draw(axes: Axes, panel: Panel) -> None:

@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from inerter.report.palette import LIGHT
+from inerter.report.png import png
 from inerter.studies.hysteresis.conclusions import held_out
 from inerter.studies.hysteresis.crossing import FITTERS
-from inerter.studies.hysteresis.panels import COLOURS, blank, png, style
+from inerter.studies.hysteresis.panels import COLOURS, blank, style
 from inerter.studies.hysteresis.protocol import EQUAL
 from inerter.studies.hysteresis.published import (
     FREQUENCIES,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from io import BytesIO
-
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -25,13 +23,6 @@ def blank(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), dpi=130, layout="constrained", facecolor=LIGHT["page"])
     FigureCanvasAgg(figure)
     return figure
-
-
-def png(figure: Figure) -> bytes:
-    """The figure as a PNG."""
-    target = BytesIO()
-    figure.savefig(target, format="png")
-    return target.getvalue()
 
 
 def style(axes: Axes, title: str, x: str = "", y: str = "", grid: bool = True) -> None:
