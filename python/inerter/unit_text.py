@@ -53,7 +53,9 @@ def parse_unit(unit: str) -> Any:
 
 
 def _evaluable(text: str) -> bool:
-    """Whether every power is one of a small number, and no power of a power is hidden in it."""
+    """Whether its powers are few and small, also where one stands within another."""
+    if re.search(r"\)\s*(?:\^|\*\*)\s*\(?\s*[+-]?\d\d", text):
+        return False
     left, powers = _POWER.subn("\0", text)
     return powers <= _MOST_POWERS and not any(sign in left for sign in ("^", "**", "\0\0"))
 

@@ -166,8 +166,6 @@ ODD_TITLES = ["\x1b[2J\x00", 'a"""b\n[device]\ninertance = 1', "\ud800"]
 
 
 @pytest.mark.parametrize("name", [*NAMES, *ODD_TITLES])
-    "name", [*NAMES, "\x1b[2J\x00", 'a"""b\n[device]\ninertance = 1', "\ud800"]
-)
 def test_a_device_file_can_be_read_whatever_its_title(name: str, tmp_path: Path) -> None:
     text = device_text(Device(inertance=7), title=f"identified from {name}")
     (tmp_path / "device.toml").write_bytes(text.encode("utf-8", "replace"))
