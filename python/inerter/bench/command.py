@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import notes, out, progress_bar, refusing
-from inerter.folder import json_text, refuse_folder, write_files
+from inerter.console import AsJson, notes, out, progress_bar, refusing
+from inerter.folder import json_text, write_files
 
 
 def bench_command(
@@ -18,9 +18,7 @@ def bench_command(
     out_dir: Annotated[
         Path | None, typer.Option("--out", help="Folder for bench.json; default: nothing written.")
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print bench.json alone on stdout.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """What a step with devices costs in MuJoCo, and a sample in the core, on this machine.
 
@@ -30,8 +28,6 @@ def bench_command(
     from inerter.bench.report import measure, print_bench
 
     with refusing(out_dir):
-        if out_dir is not None:
-            refuse_folder(out_dir)
         with progress_bar("measuring", as_json) as progress:
             result = measure(quick, progress)
         if remark := busy(result["machine"]):

@@ -256,7 +256,8 @@ def read_model(path: Path) -> UserModel:
     if not path.is_file():
         raise DeviceError(f"{path}: no such file; check the path")
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
+        # the engine looks up attached models wrongly where the path is relative
+        spec = mujoco.MjSpec.from_file(str(path.absolute()))
         model = spec.copy().compile()
     except ValueError as error:
         raise DeviceError(f"{path}: {' '.join(str(error).split())}") from None
