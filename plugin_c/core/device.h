@@ -137,7 +137,8 @@ INERTER_API void inerter_state_rate(const InerterDevice* device, double x, doubl
 
 // States after a time h at constant velocity v from displacement x, in place; unconditionally
 // stable however stiff the law. A friction state: exact or second order, at the friction level of
-// x. The others: second order where h resolves them, settled where it does not.
+// x. The others: second order where h resolves them, settled where it does not; but the force of
+// gas at the flywheel is that of the start, so that h has to resolve its stiffness.
 INERTER_API void inerter_state_step(const InerterDevice* device, double x, double v, double* z,
                                     double h);
 
