@@ -39,6 +39,14 @@ def run(*command: str | Path, **options: object) -> subprocess.CompletedProcess[
     )  # fmt: skip
 
 
+def succeeded(done: subprocess.CompletedProcess[str]) -> None:
+    """What fetches packages has ended well; the test is skipped where no index can be reached."""
+    said = done.stdout + done.stderr
+    if done.returncode and "Failed to establish a new connection" in said:
+        pytest.skip("no package index can be reached from here")
+    assert done.returncode == 0, said
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder that `make wheel` has filled."""
@@ -49,7 +57,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # -o: the tests run in what is set up, whatever its age
     old = f"{sys.prefix}/dev"
     done = run("make", "-o", old, "wheel", f"VENV={sys.prefix}", f"DIST={folder}", cwd=ROOT)
-    assert done.returncode == 0, done.stdout + done.stderr
+    succeeded(done)
     return folder
 
 
@@ -94,7 +102,7 @@ def test_the_wheel_runs_where_there_is_only_mujoco(
     def install(what: str) -> None:
         pip = [sys.executable, "-m", "pip", "--python", python, "--disable-pip-version-check"]
         done = run(*pip, "install", "--quiet", "--no-compile", what)
-        assert done.returncode == 0, done.stderr
+        succeeded(done)
 
     install(str(wheel))
     bare = {"PATH": str(tools), "HOME": str(tmp_path)}
