@@ -114,11 +114,10 @@ def cases(quick: bool, seconds: float) -> list[Case]:
         Case(name, "made", lambda name=name: diagnose_bench(made(name, seconds))) for name in hidden
     ]
     where = folder()
-    if where is not None:
-        measured = MEASURED[2:] if quick else MEASURED
+    if where is not None and not quick:
         found += [
             Case(pattern, "measured", lambda path=where / pattern: diagnose([path]))
-            for pattern in measured
+            for pattern in MEASURED
         ]
     return found
 
@@ -131,7 +130,7 @@ def run(
     Parameters
     ----------
     quick
-        One made case and one measured one.
+        One made case.
     chosen
         By default `cases`.
     seconds

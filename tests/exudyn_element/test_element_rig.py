@@ -53,8 +53,26 @@ def test_first_states_are_the_ones_given() -> None:
     np.testing.assert_allclose(found["total"], 10.0, rtol=1e-10)
 
 
+def test_forces_at_some_samples_are_those_of_all() -> None:
+    motion = sine_motion(AMPLITUDE, FREQUENCY, PHASE)
+    times = SPACING * np.arange(81)
+    x, v, a = (
+        np.asarray(signal(times), dtype=float)  # pyright: ignore[reportArgumentType]
+        for signal in (motion.displacement, motion.velocity, motion.acceleration)
+    )
+    for name in ("lugre", "ideal"):
+        device = Device(inertance=100.0, **DEVICES[name][0])
+        whole = simulate_along(device, SPACING, x, v, a)
+        some = simulate_along(device, SPACING, x, v, a, every=8)
+        for quantity, values in whole.items():
+            np.testing.assert_array_equal(some[quantity], values[::8])
+
+
 def test_what_cannot_be() -> None:
     with pytest.raises(ValueError, match="arrays of one length >= 2"):
         simulate_along(Device(inertance=1.0), SPACING, [0.0, 1.0], [0.0], [0.0])
     with pytest.raises(ValueError, match="h is 0: give a sample spacing > 0 s"):
         simulate_along(Device(inertance=1.0), 0, [0.0, 1.0], [0.0, 1.0], [0.0, 1.0])
+    for every in (0, 3):
+        with pytest.raises(ValueError, match=f"every is {every}: give a divisor of the 4 sample"):
+            simulate_along(Device(inertance=1.0), 1.0, *np.zeros((3, 5)), every=every)
