@@ -17,8 +17,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from inerter.bench.rows import Row, aimed, spread_of
-from inerter.bench.timing import Spread
+from inerter.bench.rows import Row, aimed
 from inerter.diagnose import Diagnosis, diagnose, diagnose_bench
 from inerter.records import Record
 from inerter.reference import (
@@ -125,7 +124,7 @@ def cases(quick: bool, seconds: float) -> list[Case]:
 def run(
     quick: bool = False, chosen: Sequence[Case] | None = None, seconds: float = 10.0
 ) -> list[Row]:
-    """Diagnose every case once, in a full run twice.
+    """Diagnose every case once.
 
     Parameters
     ----------
@@ -139,27 +138,22 @@ def run(
     Returns
     -------
     list of dict
-        `question`, `case`, `records`, `seconds`, `computed` (both of one diagnosis, the faster of
-        two), `samples`, `found` (the effects named), `aim` (for the seconds), `met`.
+        `question`, `case`, `records`, `seconds`, `computed`, `samples`, `found` (the effects named), `aim` (for the seconds), `met`.
     """
     rows = []
     for case in cases(quick, seconds) if chosen is None else chosen:
         if case.records == "made":
             made(case.name, seconds)
-        spent, computed, diagnosis = [], [], None
-        for _ in range(1 if quick else 2):
-            start, before = time.perf_counter(), time.process_time()
-            diagnosis = case.call()
-            spent.append(time.perf_counter() - start)
-            computed.append(time.process_time() - before)
-        assert diagnosis is not None
+        start, before = time.perf_counter(), time.process_time()
+        diagnosis = case.call()
+        spent, computed = time.perf_counter() - start, time.process_time() - before
         rows.append(
             {
                 "question": "a whole diagnosis", "case": case.name, "records": case.records,
-                **spread_of("seconds", Spread.of(spent)), "computed": min(computed),
+                "seconds": spent, "computed": computed,
                 "samples": sum(record.samples for record in diagnosis.records),
                 "found": ", ".join(finding.effect for finding in diagnosis.findings) or "nothing",
-                **aimed(Spread.of(spent).median, AIM),
+                **aimed(spent, AIM),
             }
         )  # fmt: skip
     return rows
