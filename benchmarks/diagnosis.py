@@ -138,7 +138,8 @@ def run(
     Returns
     -------
     list of dict
-        `question`, `case`, `records`, `seconds`, `computed`, `samples`, `found` (the effects named), `aim` (for the seconds), `met`.
+        `question`, `case`, `records`, `seconds`, `computed`, `samples`, `found` (the effects
+        named), `aim` (for the seconds), `met`.
     """
     rows = []
     for case in cases(quick, seconds) if chosen is None else chosen:
