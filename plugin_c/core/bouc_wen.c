@@ -121,4 +121,12 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   friction_along(p, path, z, forces, step, force);
 }
 
-const FrictionLaw inerter_bouc_wen = {rate, step, straight, force, energy, stiffness, along};
+const FrictionLaw inerter_bouc_wen = {
+    .rate = rate,
+    .step = step,
+    .straight = straight,
+    .force = force,
+    .energy = energy,
+    .stiffness = stiffness,
+    .along = along,
+};

@@ -75,4 +75,12 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   friction_along(p, path, z, forces, step, force);
 }
 
-const FrictionLaw inerter_dahl = {rate, step, straight, force, energy, stiffness, along};
+const FrictionLaw inerter_dahl = {
+    .rate = rate,
+    .step = step,
+    .straight = straight,
+    .force = force,
+    .energy = energy,
+    .stiffness = stiffness,
+    .along = along,
+};

@@ -144,6 +144,16 @@ double inerter_force_motion(const InerterDevice* device, double x, double v, con
   return force;
 }
 
+double inerter_force_motion_of_rate(const InerterDevice* device, double x, double v,
+                                    const double* z, const double* rate) {
+  if (!has_bristle(device) || !law_of(device)->force_of_rate || device->friction_backlash != 0 ||
+      has(device, PART_SERIES)) {
+    return inerter_force_motion(device, x, v, z);
+  }
+  double friction = law_of(device)->force_of_rate(device, z[0], rate[0]);
+  return parallel_force(device, stretch_of(device, x), v) + friction;
+}
+
 InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
                            const double* z) {
   InerterForce force;

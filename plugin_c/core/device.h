@@ -156,6 +156,10 @@ INERTER_API void inerter_state_of_force(const InerterDevice* device, double x, d
 INERTER_API double inerter_force_motion(const InerterDevice* device, double x, double v,
                                         const double* z);
 
+// The same where the rates of the states at x, v, z are known (inerter_state_rate).
+INERTER_API double inerter_force_motion_of_rate(const InerterDevice* device, double x, double v,
+                                                const double* z, const double* rate);
+
 // Force of the friction law alone (without load friction).
 INERTER_API double inerter_friction_force(const InerterDevice* device, double x, double v,
                                           const double* z);
@@ -179,6 +183,10 @@ INERTER_API InerterForce inerter_force(const InerterDevice* device, double x, do
 INERTER_API InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v,
                                                  double a, const double* z, double h,
                                                  double mobility, double* end);
+
+// Whether its total is a line in a, start + rise a, and which; no memory, no corner.
+INERTER_API int inerter_line_over_step(const InerterDevice* device, double x, double v, double h,
+                                       double* start, double* rise);
 
 // Energy stored in inertance, springs, bristles, gas and stops [J].
 INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, double v,

@@ -21,6 +21,7 @@ typedef struct FrictionPath_ {
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
 // straight: time until a state that v straightens is 0; asked for where z v < 0 only.
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
+// force_of_rate: the force where the rate of the state is known already; NULL where it is no help.
 // along: force and state at samples of a motion, see `friction_along`.
 // Laws without states leave all but force and along NULL.
 typedef struct FrictionLaw_ {
@@ -31,6 +32,7 @@ typedef struct FrictionLaw_ {
   double (*energy)(const InerterDevice* p, double x, double z);
   double (*stiffness)(const InerterDevice* p);
   void (*along)(const InerterDevice* p, const FrictionPath* path, double* z, double* forces);
+  double (*force_of_rate)(const InerterDevice* p, double z, double rate);
 } FrictionLaw;
 
 extern const FrictionLaw inerter_coulomb;

@@ -39,8 +39,12 @@ static double straight(const InerterDevice* p, double x, double v, double z) {
   return log1p(decay * fabs(z)) / (decay * fabs(v));
 }
 
+static double force_of_rate(const InerterDevice* p, double z, double rate) {
+  return p->bristle_stiffness * z + p->bristle_damping * rate;
+}
+
 static double force(const InerterDevice* p, double x, double v, double z) {
-  return p->bristle_stiffness * z + p->bristle_damping * rate(p, x, v, z);
+  return force_of_rate(p, z, rate(p, x, v, z));
 }
 
 static double energy(const InerterDevice* p, double x, double z) {
@@ -56,4 +60,13 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   friction_along(p, path, z, forces, step, force);
 }
 
-const FrictionLaw inerter_lugre = {rate, step, straight, force, energy, stiffness, along};
+const FrictionLaw inerter_lugre = {
+    .rate = rate,
+    .step = step,
+    .straight = straight,
+    .force = force,
+    .energy = energy,
+    .stiffness = stiffness,
+    .along = along,
+    .force_of_rate = force_of_rate,
+};

@@ -69,3 +69,14 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
   }
   return force;
 }
+
+int inerter_line_over_step(const InerterDevice* device, double x, double v, double h, double* start,
+                           double* rise) {
+  if (device->friction != INERTER_FRICTION_none || device->load_friction != 0 ||
+      device->quadratic_damping != 0 || device->parts & ~(uint32_t)PART_VARYING) {
+    return 0;
+  }
+  *start = inerter_force_over_step(device, x, v, 0, NULL, h, 0, NULL).total;
+  *rise = inerter_inertance(device, x, v, NULL) + h * device->viscous;
+  return 1;
+}

@@ -23,6 +23,8 @@ typedef struct Coupled_ {
   mjtNum rest;       // force of the branch at a = 0 [N]
   mjtNum motion;     // force that does not depend on a [N]
   mjtNum load;       // load friction per force of the branch
+  int affine;        // 1: its force is start + rise a
+  mjtNum start, rise;
 } Coupled;
 
 //------------------------------ laws --------------------------------------------------------------
@@ -42,7 +44,26 @@ static InerterForce force_at(const Coupled* c, double a) {
 
 static double law(const void* devices, int i, double a) {
   const Coupled* c = (const Coupled*)devices + i;
-  return force_at(c, a).total - c->constant * a;
+  return c->affine ? c->start + c->rise * a : force_at(c, a).total - c->constant * a;
+}
+
+static double law_slope(const void* devices, int i, double a, double force) {
+  const Coupled* c = (const Coupled*)devices + i;
+  double difference = 1e-6 * (1 + fabs(a));
+  return c->affine ? c->rise : (law(devices, i, a + difference) - force) / difference;
+}
+
+// the force as a line, where it is one
+static void draw_line(Coupled* c) {
+  const Instance* self = c->self;
+  if (c->h > 0) {
+    c->affine = inerter_line_over_step(&self->share, self->x, self->v, c->h, &c->start, &c->rise);
+  } else {
+    c->affine = c->load == 0;
+    c->start = c->motion + c->rest;
+    c->rise = c->inertance;
+  }
+  c->rise -= c->constant;
 }
 
 int coupled_needed(const mjModel* m, const Instance* self) {
@@ -55,22 +76,27 @@ int coupled_needed(const mjModel* m, const Instance* self) {
          instance_has_stop(share) || instance_has_sharp_friction(share);
 }
 
+// a device at the last evaluation, its mobility not known yet
+static Coupled at_present(const mjModel* m, Instance* self) {
+  Coupled c = {.self = self};
+  int whole = self->share.inertance > 0 && !instance_has_series(&self->share);
+  c.constant = whole ? self->armature : 0;
+  c.h = m->opt.integrator == mjINT_RK4 ? 0 : m->opt.timestep;
+  if (c.h == 0) {
+    c.inertance = inerter_inertance(&self->share, self->x, self->v, &c.rest);
+    c.motion = instance_force_motion(self);
+    c.load = inerter_load_factor(&self->share, self->v);
+  }
+  return c;
+}
+
 // the devices to solve for
 static int collect(const mjModel* m, const mjData* d, int last, Coupled* all) {
   int n = 0;
   for (int k = 0; k <= last; k++) {
-    if (m->plugin[k] != m->plugin[last] || !instance_of(d, k)->solved) {
-      continue;
-    }
-    Coupled* c = all + n++;
-    Instance* self = c->self = instance_of(d, k);
-    int whole = self->share.inertance > 0 && !instance_has_series(&self->share);
-    c->constant = whole ? self->armature : 0;
-    c->h = m->opt.integrator == mjINT_RK4 ? 0 : m->opt.timestep;
-    if (c->h == 0) {
-      c->inertance = inerter_inertance(&c->self->share, self->x, self->v, &c->rest);
-      c->motion = inerter_force_motion(&c->self->share, self->x, self->v, self->state);
-      c->load = inerter_load_factor(&c->self->share, self->v);
+    if (instance_is_device(m, k) && instance_of(d, k)->solved) {
+      all[n] = at_present(m, instance_of(d, k));
+      draw_line(all + n++);
     }
   }
   return n;
@@ -223,8 +249,8 @@ static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, 
         p[i] = answered[i] + mju_dot(slope + (i - first) * n, asked + first, n);
         a[i] = answered[i];
       }
-      monotone_solve(law, answer->all + first, n, slope, p + first, a + first, force + first,
-                     scratch);
+      monotone_solve(law, law_slope, answer->all + first, n, slope, p + first, a + first,
+                     force + first, scratch);
       for (int i = first; i < end; i++) {
         const mjtNum* row = W + (i - first) * n;
         mjtNum size = fabs(a[i]) + fabs(answered[i]) + scale[i], miss = 0;
@@ -243,6 +269,45 @@ static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, 
 }
 
 //------------------------------ solution ----------------------------------------------------------
+
+// Whether the forces of all other actuators stand already, and nothing but them and what the
+// forward pass has made of position and velocity goes into the smooth force.
+static int smooth_force_stands(const mjModel* m, const mjData* d) {
+  if (m->opt.integrator == mjINT_DISCRETE || m->opt.enableflags & mjENBL_SLEEP || m->ngravcomp) {
+    return 0;
+  }
+  for (int i = 0; i < m->nactuator; i++) {
+    int other = m->actuator_plugin[i] >= 0 && !instance_is_device(m, m->actuator_plugin[i]);
+    if (other || m->actuator_forcelimited[i]) {
+      return 0;
+    }
+  }
+  for (int i = 0; i < m->ntendon; i++) {
+    if (m->tendon_actfrclimited[i]) {
+      return 0;
+    }
+  }
+  for (int i = 0; i < m->njnt; i++) {
+    if (m->jnt_actfrclimited[i]) {
+      return 0;
+    }
+  }
+  return mju_isZero(d->xfrc_applied, 6 * m->nbody);
+}
+
+// the smooth force without the forces that are sought, where it stands
+static void add_smooth_force(const mjModel* m, const mjData* d, mjtNum* smooth) {
+  for (int i = 0; i < m->nv; i++) {
+    smooth[i] = d->qfrc_passive[i] - d->qfrc_bias[i] + d->qfrc_applied[i];
+  }
+  for (int row = 0; row < m->nout; row++) {
+    mjtNum force = d->actuator_force[row];
+    int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
+    for (int k = start; force != 0 && k < end; k++) {
+      smooth[d->moment_colind[k]] += force * d->actuator_moment[k];
+    }
+  }
+}
 
 // The forward pass from actuation on, without the forces that are sought, so that every other force
 // is the engine's own. The engine comes back to this plugin on the way, which leaves the forces out
@@ -277,16 +342,21 @@ static void guess(const mjModel* m, const mjData* d, const Answer* answer, mjtNu
 }
 
 // hand the result to the actuator and remember it
-static void apply(const mjModel* m, mjData* d, const Coupled* c, mjtNum a) {
+static void apply(const mjModel* m, mjData* d, const Coupled* c, mjtNum a, mjtNum force) {
   Instance* self = c->self;
-  InerterForce force = force_at(c, a);
-  d->actuator_force[m->actuator_outadr[self->actuator]] -= force.total - c->constant * a;
-  if (c->h == 0) {
-    force.friction += inerter_friction_force(&c->self->share, self->x, self->v, self->state);
-  }
-  self->applied = force;
+  d->actuator_force[m->actuator_outadr[self->actuator]] -= force;
   self->acceleration = a;
   self->mobility = c->mobility;
+}
+
+InerterForce coupled_force(const mjModel* m, const Instance* self) {
+  Coupled c = at_present(m, (Instance*)self);
+  c.mobility = self->mobility;
+  InerterForce force = force_at(&c, self->acceleration);
+  if (c.h == 0) {
+    force.friction += inerter_friction_force(&self->share, self->x, self->v, self->state);
+  }
+  return force;
 }
 
 // whether the acceleration answers the forces by the metric alone: no constraints, and no free
@@ -319,14 +389,16 @@ static int grouped(const mjModel* m, mjData* d, const Metric* metric, int n, Cou
 }
 
 void coupled_solve(const mjModel* m, mjData* d, int last) {
-  int nv = m->nv;
+  int nv = m->nv, asked = 0;
+  for (int k = 0; k <= last; k++) {
+    asked |= instance_is_device(m, k) && instance_of(d, k)->solved;
+  }
+  if (!asked) {
+    return;
+  }
   mj_markStack(d);
   Coupled* all = mj_stackAllocByte(d, (last + 1) * sizeof(Coupled), _Alignof(Coupled));
   int n = collect(m, d, last, all);
-  if (!n) {
-    mj_freeStack(d);
-    return;
-  }
 
   // the model without these forces
   Answer answer = {.n = n, .all = all};
@@ -338,9 +410,14 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
   mjtNum* force = mj_stackAllocNum(d, 2 * n);
   mjtNum* scale = mj_stackAllocNum(d, n);
   Group* groups = mj_stackAllocByte(d, n * sizeof(Group), _Alignof(Group));
-  forward_without(m, d, last);
-  mju_copy(answer.smooth, d->qfrc_smooth, nv);
-  mju_copy(answer.free, d->qacc_smooth, nv);
+  if (smooth_force_stands(m, d)) {
+    add_smooth_force(m, d, answer.smooth);
+    mj_solveM(m, d, answer.free, answer.smooth, 1);
+  } else {
+    forward_without(m, d, last);
+    mju_copy(answer.smooth, d->qfrc_smooth, nv);
+    mju_copy(answer.free, d->qacc_smooth, nv);
+  }
   answer.metric = metric_of_step(m, d);
   answer.groups = groups;
   answer.ngroup = grouped(m, d, &answer.metric, n, all, groups);
@@ -367,7 +444,8 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
     const mjtNum* W = answer.W;
     for (int g = 0; g < answer.ngroup; g++) {
       int first = groups[g].first, size = groups[g].n;
-      monotone_solve(law, all + first, size, W, p + first, a + first, force + first, scratch);
+      monotone_solve(law, law_slope, all + first, size, W, p + first, a + first, force + first,
+                     scratch);
       W += size * size;
     }
   } else {
@@ -379,7 +457,7 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
     fits = solve_constrained(m, d, &answer, nW, nscratch, scale, force + n, a, force);
   }
   for (int i = 0; i < n; i++) {
-    apply(m, d, all + i, a[i]);
+    apply(m, d, all + i, a[i], force[i]);
     if (!fits) {
       instance_complain(m, all[i].self, COMPLAINT_FIT,
                         "force and acceleration of a step did not fit each other; shorten the "

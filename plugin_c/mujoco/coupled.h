@@ -30,4 +30,8 @@ int coupled_needed(const mjModel* m, const Instance* self);
 // add them to actuator_force.
 void coupled_solve(const mjModel* m, mjData* d, int last);
 
+// The force of a device marked `solved`, with its parts, at the acceleration that was found. What
+// the engine holds of the inertance is in it only where the share holds it too.
+InerterForce coupled_force(const mjModel* m, const Instance* self);
+
 #endif  // INERTER_MUJOCO_COUPLED_H_

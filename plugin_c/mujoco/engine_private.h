@@ -6,9 +6,6 @@
 
 #include <mujoco/mujoco.h>
 
-// Time derivative of a tendon's Jacobian times a vector.
-mjtNum mj_tendonDot(const mjModel* m, mjData* d, int id, const mjtNum* vec);
-
 // Derivative of the smooth forces by velocity into mjData.qDeriv; bias: Coriolis forces too.
 void mjd_smooth_vel(const mjModel* m, mjData* d, int bias);
 

@@ -5,9 +5,11 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "mujoco/engine_private.h"
+#include "mujoco/bias.h"
 
 //------------------------------ who it is ---------------------------------------------------------
+
+int instance_slot_sensed = -1, instance_slot_quiet = -1;
 
 int instance_actuator(const mjModel* m, int instance, int* count) {
   int found = -1;
@@ -64,6 +66,12 @@ int instance_is_live(const Instance* self, int parameter) {
   return 0;
 }
 
+static int is_nothing(const InerterDevice* share) {
+  return share->friction == INERTER_FRICTION_none && !share->parts && share->inertance == 0 &&
+         share->load_friction == 0 && share->viscous == 0 && share->quadratic_damping == 0 &&
+         share->stiffness == 0 && share->stiffness_cubic == 0 && share->force_offset == 0;
+}
+
 void instance_refresh(const mjModel* m, Instance* self, int force) {
   // viscous damping and inertance that the engine integrates: edits of the model count
   int undamped = (m->opt.disableflags & mjDSBL_DAMPER) != 0;
@@ -102,6 +110,7 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
         series || instance_varies(device) || instance_is_live(self, INERTER_INDEX_inertance);
     self->share.inertance = whole ? device->inertance : 0;
   }
+  self->forceless = is_nothing(&self->share);
 }
 
 //------------------------------ motion ------------------------------------------------------------
@@ -163,22 +172,21 @@ mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self
   return instance_along(m, d, self, d->qvel);
 }
 
-mjtNum instance_bias_acceleration(const mjModel* m, mjData* d, const Instance* self) {
+mjtNum instance_bias_acceleration(const mjModel* m, const mjData* d, const Instance* self) {
   int i = self->actuator;
   if (m->actuator_trntype[i] != mjTRN_TENDON) {
     return 0;
   }
+  return m->actuator_gear[6 * m->actuator_outadr[i]] *
+         bias_of_tendon(m, d, m->actuator_trnid[2 * i]);
+}
 
-  // the engine knows none for tendons that wrap around geoms; their device has no inertance of its
-  // terminals (placement.c), so that nobody reads it
-  int tendon = m->actuator_trnid[2 * i], start = m->tendon_adr[tendon];
-  for (int k = start; k < start + m->tendon_num[tendon]; k++) {
-    if (m->wrap_type[k] == mjWRAP_SPHERE || m->wrap_type[k] == mjWRAP_CYLINDER) {
-      return 0;
-    }
+double instance_force_motion(const Instance* self) {
+  // what the engine asked of the states a moment ago saves the friction law half its work
+  if (self->rate_x == self->x && self->rate_v == self->v && self->rate_state[0] == self->state[0]) {
+    return inerter_force_motion_of_rate(&self->share, self->x, self->v, self->state, self->rate);
   }
-  mjtNum gear = m->actuator_gear[6 * m->actuator_outadr[i]];
-  return gear * mj_tendonDot(m, d, tendon, d->qvel);
+  return inerter_force_motion(&self->share, self->x, self->v, self->state);
 }
 
 int instance_act(const mjModel* m, const Instance* self) {

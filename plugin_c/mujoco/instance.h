@@ -34,6 +34,7 @@ typedef struct Instance_ {
   mjtNum viscous;      // as stated or live, whoever integrates it
   mjtNum rest_length;  // actuator length at which the displacement is 0
   int actuator;        // index of the actuator
+  int forceless;       // 1: the plugin's share is nothing
   int native;          // 1: the engine integrates inertance and viscous damping (placement.h)
   int sensed;          // 1: a sensor reads this instance
   int last;            // 1: the last instance of the plugin in the model
@@ -41,13 +42,16 @@ typedef struct Instance_ {
   int nlive;           // number of live parameters
   LiveParameter live[INERTER_NPARAMETER];
 
+  // where the rates of the states were last asked for, and what they are there
+  mjtNum rate_x, rate_v;
+  double rate_state[INERTER_MAXSTATE], rate[INERTER_MAXSTATE];
+
   // the last evaluation
   mjtNum x, v;  // displacement, velocity
   mjtNum bias;  // acceleration that qvel alone causes: d(moment)/dt qvel
   double state[INERTER_MAXSTATE];
   int solved;              // 1: the force was found together with the acceleration (coupled.h)
-  InerterForce applied;    // that force and its parts [N]
-  double acceleration;     // and the acceleration [m/s^2]
+  double acceleration;     // which one [m/s^2]
   double mobility;         // acceleration of the terminals per force [1/kg]
   double power[MAXSTAGE];  // dissipated power at the last evaluations, newest last [W]
   int complained;          // reasons (Complaint) for which it has said once what is wrong
@@ -57,6 +61,13 @@ typedef struct Instance_ {
 
 static inline Instance* instance_of(const mjData* d, int instance) {
   return (Instance*)d->plugin_data[instance];
+}
+
+// The slots at which the engine knows the plugin, for instances with and without a sensor
+// (plugin.c); whether an instance of the model is a device.
+extern int instance_slot_sensed, instance_slot_quiet;
+static inline int instance_is_device(const mjModel* m, int instance) {
+  return m->plugin[instance] == instance_slot_quiet || m->plugin[instance] == instance_slot_sensed;
 }
 
 // The actuator of an instance, or -1 with *count != 1.
@@ -133,7 +144,10 @@ mjtNum instance_along_size(const mjModel* m, const mjData* d, const Instance* se
                            const mjtNum* vec);
 
 // The part of the actuator's acceleration that qvel alone causes: d(moment)/dt qvel.
-mjtNum instance_bias_acceleration(const mjModel* m, mjData* d, const Instance* self);
+mjtNum instance_bias_acceleration(const mjModel* m, const mjData* d, const Instance* self);
+
+// Force of the plugin's share without what depends on the acceleration: inerter_force_motion.
+double instance_force_motion(const Instance* self);
 
 // First address of the device's states in mjData.act.
 int instance_act(const mjModel* m, const Instance* self);

@@ -1,8 +1,8 @@
 // Forces and accelerations that fit each other: see monotone.h.
 //
-// Newton's method with slopes by differences: laws that are linear in a take two rounds. Where a
-// step does not shrink the residual (the corner of a friction law), one device after the other is
-// solved for alone within a bracket; such sweeps always converge.
+// Newton's method: laws that are linear in a take one round. Where a step does not shrink the
+// residual (the corner of a friction law), one device after the other is solved for alone within a
+// bracket; such sweeps always converge.
 
 #include "mujoco/monotone.h"
 
@@ -99,8 +99,8 @@ static double solve_alone(MonotoneForce law, const void* devices, int i, double 
   return fabs(at_low) < fabs(at_high) ? low : high;
 }
 
-void monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
-                    mjtNum* a, mjtNum* force, mjtNum* scratch) {
+void monotone_solve(MonotoneForce law, MonotoneSlope slope, const void* devices, int n,
+                    const mjtNum* W, const mjtNum* p, mjtNum* a, mjtNum* force, mjtNum* scratch) {
   mjtNum *A = scratch, *r = A + n * n, *step = r + n, *trial = step + n, *other = trial + n;
   for (int i = 0; i < n; i++) {
     force[i] = law(devices, i, a[i]);
@@ -109,10 +109,9 @@ void monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum*
 
   for (int round = 0; round < NEWTON_ROUNDS && size > 1; round++) {
     for (int j = 0; j < n; j++) {
-      double difference = 1e-6 * (1 + fabs(a[j]));
-      double slope = (law(devices, j, a[j] + difference) - force[j]) / difference;
+      double rise = slope(devices, j, a[j], force[j]);
       for (int i = 0; i < n; i++) {
-        A[i * n + j] = (i == j) + W[i * n + j] * slope;
+        A[i * n + j] = (i == j) + W[i * n + j] * rise;
       }
     }
     solve_dense(n, A, r, step);

@@ -14,9 +14,12 @@
 // force of device i at acceleration a
 typedef double (*MonotoneForce)(const void* devices, int i, double a);
 
+// how it changes with a, where the force is known; near enough will do
+typedef double (*MonotoneSlope)(const void* devices, int i, double a, double force);
+
 // Solve for a (in: a guess), as far as rounding lets. force: the n forces at the solution. scratch:
 // n * (n + 4) numbers.
-void monotone_solve(MonotoneForce law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
-                    mjtNum* a, mjtNum* force, mjtNum* scratch);
+void monotone_solve(MonotoneForce law, MonotoneSlope slope, const void* devices, int n,
+                    const mjtNum* W, const mjtNum* p, mjtNum* a, mjtNum* force, mjtNum* scratch);
 
 #endif  // INERTER_MUJOCO_MONOTONE_H_

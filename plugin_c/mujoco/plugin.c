@@ -28,7 +28,7 @@
 #include "mujoco/visual.h"
 #include "mujoco/watch.h"
 
-static const char kName[] = "inerter.device";
+static const char kName[] = "inerter.device", kQuietName[] = "inerter.device.quiet";
 
 //------------------------------ life of an instance -----------------------------------------------
 
@@ -94,7 +94,14 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   self->sensed = instance_sensed(m, instance);
   self->last = 1;
   for (int k = instance + 1; k < m->nplugin; k++) {
-    self->last &= m->plugin[k] != m->plugin[instance];
+    self->last &= !instance_is_device(m, k);
+  }
+
+  // Before it calls a sensor plugin the engine derives accelerations and forces of all bodies,
+  // which is a fifth of a full car's step: nobody needs them where no sensor reads the instance.
+  // The model is written here as in placement_decide, and only while it is compiled.
+  if (compiling && !self->sensed) {
+    ((mjModel*)m)->plugin[instance] = instance_slot_quiet;
   }
   if (compiling && self->last) {
     placement_finish(m);
@@ -102,16 +109,8 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   return 0;
 }
 
-// An mjData may be stepped with another model than it was made for: rollouts over a list of models
-// do so. What is configured there counts. Looked at where the model is another one or time has gone
-// back, which costs nothing in between.
-static void follow_model(const mjModel* m, const mjData* d, int instance) {
-  Instance* self = instance_of(d, instance);
-  int same = m == self->model && d->time >= self->time;
-  self->time = d->time;
-  if (same) {
-    return;
-  }
+// another model than the configuration was read from: does it state another device?
+static void follow_other(const mjModel* m, int instance, Instance* self) {
   self->model = m;
   uint64_t print = configuration_print(m, instance);
   if (print == self->print) {
@@ -123,6 +122,17 @@ static void follow_model(const mjModel* m, const mjData* d, int instance) {
     const char* name = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
     mju_error("inerter.device, actuator \"%.60s\", in a model that the data was not made for: %s",
               name ? name : "", message);
+  }
+}
+
+// An mjData may be stepped with another model than it was made for: rollouts over a list of models
+// do so. What is configured there counts. Looked at where the model is another one or time has gone
+// back, which costs nothing in between.
+static inline void follow_model(const mjModel* m, const mjData* d, int instance, Instance* self) {
+  int same = m == self->model && d->time >= self->time;
+  self->time = d->time;
+  if (!same) {
+    follow_other(m, instance, self);
   }
 }
 
@@ -163,7 +173,7 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
 
 static void act_dot(const mjModel* m, mjData* d, int instance) {
   Instance* self = instance_of(d, instance);
-  follow_model(m, d, instance);
+  follow_model(m, d, instance, self);
   live_update(m, self);
   int nstate = inerter_nstate(&self->device);
   if (!nstate) {
@@ -174,10 +184,12 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
   mjtNum* rate = d->act_dot + address;
   mju_zero(rate, nstate);
   if (!instance_idle(m, d, self)) {
-    mjtNum x = instance_displacement(m, d, self);
-    mjtNum v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
-    inerter_state_rate(&self->device, x, v, d->act + address, rate);
-    watch_bristle(m, self, x, v, d->act + address, rate);
+    mjtNum x = self->rate_x = instance_displacement(m, d, self);
+    mjtNum v = self->rate_v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
+    mju_copy(self->rate_state, d->act + address, nstate);
+    inerter_state_rate(&self->device, x, v, self->rate_state, self->rate);
+    mju_copy(rate, self->rate, nstate);
+    watch_bristle(m, self, x, v, self->rate_state, rate);
   }
 }
 
@@ -212,9 +224,12 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   }
   watch_stiffness(m, self);
   watch_sites(m, d, self);
+  d->actuator_force[row] = command(m, d, self->actuator);
+  if (self->forceless) {
+    return;
+  }
   int nstate = inerter_nstate(&self->device);
   mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
-  d->actuator_force[row] = command(m, d, self->actuator);
   self->solved = coupled_needed(m, self);
   if (self->solved) {
     self->bias = instance_bias_acceleration(m, d, self);
@@ -222,8 +237,7 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   }
   mjtNum rest;
   inerter_inertance(&self->share, self->x, self->v, &rest);
-  d->actuator_force[row] -=
-      rest + inerter_force_motion(&self->share, self->x, self->v, self->state);
+  d->actuator_force[row] -= rest + instance_force_motion(self);
 }
 
 // heat now, for the sensors
@@ -246,14 +260,14 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   if (!(capability & mjPLUGIN_ACTUATOR)) {
     return;
   }
-  follow_model(m, d, instance);
+  follow_model(m, d, instance, self);
   compute_force(m, d, self);
   if (!self->last || self->probing) {
     return;
   }
   coupled_solve(m, d, instance);
   for (int k = 0; k <= instance; k++) {
-    if (m->plugin[k] != m->plugin[instance]) {
+    if (!instance_is_device(m, k)) {
       continue;
     }
     Instance* each = instance_of(d, k);
@@ -275,7 +289,8 @@ static void keep_gap(const InerterDevice* device, int nstate, mjtNum* state) {
 
 static void advance(const mjModel* m, mjData* d, int instance) {
   Instance* self = instance_of(d, instance);
-  if (instance_idle(m, d, self)) {
+  int resting = !self->device.nstate && !self->device.parts && !self->sensed;
+  if (resting || instance_idle(m, d, self)) {
     return;
   }
   mjtNum h = m->opt.timestep;
@@ -355,5 +370,10 @@ mjPLUGIN_LIB_INIT(inerter) {
   plugin.compute = compute;
   plugin.advance = advance;
   plugin.visualize = visual_draw;
-  mjp_registerPlugin(&plugin);
+  instance_slot_sensed = mjp_registerPlugin(&plugin);
+
+  // the same for instances that no sensor reads; `prepare` moves them there
+  plugin.name = kQuietName;
+  plugin.capabilityflags = mjPLUGIN_ACTUATOR;
+  instance_slot_quiet = mjp_registerPlugin(&plugin);
 }

@@ -2,6 +2,8 @@
 
 #include "mujoco/sensor.h"
 
+#include "mujoco/coupled.h"
+
 int sensor_size(int nstate) {
   return 5 + nstate;
 }
@@ -24,7 +26,7 @@ InerterForce sensor_force(const mjModel* m, mjData* d, const Instance* self) {
   }
 
   // found together with the acceleration: what was applied, and what the engine adds
-  force = self->applied;
+  force = coupled_force(m, self);
   if (self->native && !instance_has_series(&self->share) && self->share.inertance == 0) {
     force.inertance += held;
     force.total += held;

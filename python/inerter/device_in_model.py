@@ -16,6 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.core import Device, DeviceError, parameters
 
 PLUGIN = "inerter.device"
+# what the compiled model calls it: the second name where no sensor reads the device
+_COMPILED = (PLUGIN.encode(), f"{PLUGIN}.quiet".encode())
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,7 @@ def devices_of(model: mujoco.MjModel) -> list[DeviceInModel]:
     found = []
     for actuator in range(model.nactuator):
         instance = int(model.actuator_plugin[actuator])
-        if instance >= 0 and _plugin(int(model.plugin[instance])).name == PLUGIN.encode():
+        if instance >= 0 and _plugin(int(model.plugin[instance])).name in _COMPILED:
             found.append(_device(model, actuator, instance))
     return found
 

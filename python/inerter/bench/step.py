@@ -20,13 +20,15 @@ IDEAL, LUGRE = "plugin none", "plugin lugre"
 
 # what a variant is held against, in the same topology: question, variant, against, aim
 NESTED_QUESTIONS = (
-    *(("device against armature", name, "armature", "<= 1.10") for name in PLUGIN),
+    ("ideal inerter against armature", IDEAL, "armature", "<= 1.10"),
+    *(("friction against armature", name, "armature", None) for name in PLUGIN if name != IDEAL),
     ("LuGre against native", LUGRE, "native lugre", "<= 1.05"),
     ("Coulomb against native", "plugin coulomb", "native friction loss", None),
     ("Python callback against plugin", CALLBACK, LUGRE, ">= 20"),
 )
 BRANCH_QUESTIONS = (
-    *(("coupling against armature", name, "armature", "<= 1.30") for name in PLUGIN),
+    ("coupling of branches against armature", IDEAL, "armature", "<= 1.30"),
+    *(("friction against armature", name, "armature", None) for name in PLUGIN if name != IDEAL),
     ("Python loop against plugin", LOOP, IDEAL, ">= 20"),
 )
 
