@@ -8,6 +8,7 @@
 #include "mujoco/groups.h"
 #include "mujoco/metric.h"
 #include "mujoco/monotone.h"
+#include "mujoco/smooth.h"
 
 // most rounds with the engine's constraint solver, and the fits that end them, early and late
 enum { CONSTRAINT_ROUNDS = 60 };
@@ -270,68 +271,6 @@ static int solve_constrained(const mjModel* m, mjData* d, const Answer* answer, 
 
 //------------------------------ solution ----------------------------------------------------------
 
-// Whether the forces of all other actuators stand already, and nothing but them and what the
-// forward pass has made of position and velocity goes into the smooth force.
-static int smooth_force_stands(const mjModel* m, const mjData* d) {
-  if (m->opt.integrator == mjINT_DISCRETE || m->opt.enableflags & mjENBL_SLEEP || m->ngravcomp) {
-    return 0;
-  }
-  for (int i = 0; i < m->nactuator; i++) {
-    int other = m->actuator_plugin[i] >= 0 && !instance_is_device(m, m->actuator_plugin[i]);
-    if (other || m->actuator_forcelimited[i]) {
-      return 0;
-    }
-  }
-  for (int i = 0; i < m->ntendon; i++) {
-    if (m->tendon_actfrclimited[i]) {
-      return 0;
-    }
-  }
-  for (int i = 0; i < m->njnt; i++) {
-    if (m->jnt_actfrclimited[i]) {
-      return 0;
-    }
-  }
-  return mju_isZero(d->xfrc_applied, 6 * m->nbody);
-}
-
-// the smooth force without the forces that are sought, where it stands
-static void add_smooth_force(const mjModel* m, const mjData* d, mjtNum* smooth) {
-  for (int i = 0; i < m->nv; i++) {
-    smooth[i] = d->qfrc_passive[i] - d->qfrc_bias[i] + d->qfrc_applied[i];
-  }
-  for (int row = 0; row < m->nout; row++) {
-    mjtNum force = d->actuator_force[row];
-    int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
-    for (int k = start; force != 0 && k < end; k++) {
-      smooth[d->moment_colind[k]] += force * d->actuator_moment[k];
-    }
-  }
-}
-
-// The forward pass from actuation on, without the forces that are sought, so that every other force
-// is the engine's own. The engine comes back to this plugin on the way, which leaves the forces out
-// then (Instance.probing). The discrete integrator builds its metric and its constraint rows in a
-// place that only the whole pass reaches (a control callback is called once more then).
-static void forward_without(const mjModel* m, mjData* d, int last) {
-  mj_markStack(d);
-  mjtNum* force = mj_stackAllocNum(d, m->nout);
-  mju_copy(force, d->actuator_force, m->nout);
-  Instance* self = instance_of(d, last);
-  self->probing = 1;
-  if (m->opt.integrator == mjINT_DISCRETE) {
-    mj_forwardSkip(m, d, mjSTAGE_VEL, 1);
-  } else {
-    mj_fwdActuation(m, d);
-    mj_fwdAcceleration(m, d);
-  }
-  self->probing = 0;
-
-  // the outer pass goes on with the forces that it had
-  mju_copy(d->actuator_force, force, m->nout);
-  mj_freeStack(d);
-}
-
 // forces that the devices would have at the acceleration of the last step: a first guess for the
 // constraint solver, which starts from the same place
 static void guess(const mjModel* m, const mjData* d, const Answer* answer, mjtNum* force) {
@@ -410,14 +349,7 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
   mjtNum* force = mj_stackAllocNum(d, 2 * n);
   mjtNum* scale = mj_stackAllocNum(d, n);
   Group* groups = mj_stackAllocByte(d, n * sizeof(Group), _Alignof(Group));
-  if (smooth_force_stands(m, d)) {
-    add_smooth_force(m, d, answer.smooth);
-    mj_solveM(m, d, answer.free, answer.smooth, 1);
-  } else {
-    forward_without(m, d, last);
-    mju_copy(answer.smooth, d->qfrc_smooth, nv);
-    mju_copy(answer.free, d->qacc_smooth, nv);
-  }
+  smooth_without(m, d, last, answer.smooth, answer.free);
   answer.metric = metric_of_step(m, d);
   answer.groups = groups;
   answer.ngroup = grouped(m, d, &answer.metric, n, all, groups);

@@ -2,6 +2,9 @@
 
 #include "mujoco/groups.h"
 
+// so few are solved for at once sooner than they are told apart
+enum { FEW = 4 };
+
 //------------------------------ ties between trees ------------------------------------------------
 
 // the tree that stands for all that a tree is tied to
@@ -46,7 +49,7 @@ static int all_tied(const mjModel* m, const mjData* d, const Metric* metric) {
 
 int groups_find(const mjModel* m, mjData* d, const Metric* metric, int n, const int* row,
                 int* order, Group* groups) {
-  if (n == 1 || all_tied(m, d, metric)) {
+  if (n <= FEW || all_tied(m, d, metric)) {
     for (int i = 0; i < n; i++) {
       order[i] = i;
     }
