@@ -88,6 +88,7 @@ def picture(rows: list[Row], path: Path) -> None:
         colour = COLOURS["after"] if k == 0 else ["#d4641c", "#8d97a3", "#c9b458"][k - 1]
         axes.bar(places, speeds, 0.72 / len(names), color=colour, label=name)
     axes.set_yscale("log")
+    axes.minorticks_off()
     axes.set_xticks(range(len(rows)), [row["law"].replace("_", " ") for row in rows])
     axes.set_ylabel("samples per second", fontsize=9)
     axes.legend(frameon=False, fontsize=9, loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=4)
