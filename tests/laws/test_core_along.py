@@ -179,7 +179,7 @@ def test_a_motion_with_a_number_that_is_none_is_refused(channel: int, value: flo
     with pytest.raises(ValueError, match=message):
         device.along(1e-2, *motion)
     with pytest.raises(ValueError, match=message):
-        along_many([device], 1e-2, *motion)
+        along_many([device], 1e-2, motion[0], motion[1], motion[2])
 
 
 @pytest.mark.parametrize("h", [0.0, -1e-3, np.nan, np.inf])

@@ -64,29 +64,25 @@ def _error(
 
 
 def _mujoco(device: Device, run: Run, state: Any) -> dict[str, Array]:
-    return _stepped(rig.simulate_along, device, run, state)
+    parts, channels = _steps(device, run)
+    found = rig.simulate_along(device, run.spacing / parts, *channels, state)
+    return {name: found[name][::parts] for name in ("total", "friction")}
 
 
 def _exudyn(device: Device, run: Run, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
-    return _stepped(simulate_along, device, run, state)
+    parts, channels = _steps(device, run)
+    return simulate_along(device, run.spacing / parts, *channels, state, every=parts)
 
 
-def _stepped(
-    simulate: Callable[..., dict[str, Array]], device: Device, run: Run, state: Any
-) -> dict[str, Array]:
-    """Forces at the samples; behind a play with steps within them, for when the flywheel lands."""
-    parts = PLAY_PARTS if device.backlash else 1
-    channels: tuple[Any, ...] = (run.displacement, run.velocity, run.acceleration)
-    if parts > 1:
-        motion = _motion(run)
-        times: Any = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
-        channels = tuple(
-            of(times) for of in (motion.displacement, motion.velocity, motion.acceleration)
-        )
-    found = simulate(device, run.spacing / parts, *channels, state)
-    return {name: found[name][::parts] for name in ("total", "friction")}
+def _steps(device: Device, run: Run) -> tuple[int, tuple[Any, Any, Any]]:
+    """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands."""
+    if not device.backlash:
+        return 1, (run.displacement, run.velocity, run.acceleration)
+    motion, parts = _motion(run), PLAY_PARTS
+    times: Any = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
+    return parts, (motion.displacement(times), motion.velocity(times), motion.acceleration(times))
 
 
 def _reference(device: Device, run: Run, state: Any) -> dict[str, Array]:
