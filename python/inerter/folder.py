@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -23,6 +24,17 @@ def refuse_folder(folder: Path) -> None:
         os.rmdir(tempfile.mkdtemp(prefix=".writing-", dir=existing))
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(existing)) from None
+
+
+def file_names(names: Sequence[str], otherwise: str) -> list[str]:
+    """What files may be called after names from a model, all different; `otherwise_0` for none."""
+    found: list[str] = []
+    for i, name in enumerate(names):
+        safe = re.sub(r"[^\w.+-]+", "_", name).strip("._") or f"{otherwise}_{i}"
+        while safe.casefold() in [other.casefold() for other in found]:
+            safe += "_2"
+        found.append(safe)
+    return found
 
 
 def write_files(folder: Path, files: Mapping[str, bytes | str]) -> list[str]:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from inerter.commands import app
-from inerter.folder import refuse_folder, write_files
+from inerter.folder import file_names, refuse_folder, write_files
 from inerter.models import data_path, model_path
 from typer.testing import CliRunner
 
@@ -183,6 +183,18 @@ def test_no_name_leads_out_of_the_folder(tmp_path: Path, name: str) -> None:
     with pytest.raises(ValueError, match="leads out of"):
         write_files(tmp_path / "out", {name: "b"})
     assert listing(tmp_path) == {}
+
+
+NAMES = ["a/../../x", "front", "Front", "", "..", "/etc/passwd", "né e", "a\0b", "..."]
+
+
+def test_files_after_names_of_a_model_are_all_there(tmp_path: Path) -> None:
+    found = file_names(NAMES, "device")
+    write_files(tmp_path, {f"{name}.csv": "" for name in found})
+    assert listing(tmp_path) == {f"{name}.csv": "" for name in found}
+    # different also where a file system does not tell capitals apart
+    assert len({name.casefold() for name in found}) == len(NAMES)
+    assert found[1:4] == ["front", "Front_2", "device_3"]
 
 
 # --- Ctrl-C ------------------------------------------------------------------------------------

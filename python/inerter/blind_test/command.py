@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import notes, out, progress_bar, refuse, refusing
+from inerter.console import AsJson, Folder, notes, out, progress_bar, refuse, refusing
 
 _AS_COUNT = "default: as --count, none with --effects"
 
@@ -43,12 +43,8 @@ def blind_test_command(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Processes; default: one per processor.")
     ] = None,
-    out_dir: Annotated[Path, typer.Option("--out", help="Folder for the results.")] = Path(
-        "out/blind_test"
-    ),
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print blind_test.json alone on stdout.")
-    ] = False,
+    folder: Folder = Path("out/blind_test"),
+    as_json: AsJson = False,
 ) -> None:
     """Hide effects in records made by other equations, diagnose them, count what was found.
 
@@ -60,14 +56,13 @@ def blind_test_command(
     from inerter.blind_test.run import run_tasks
     from inerter.blind_test.score import score
     from inerter.blind_test.table import print_blind_test
-    from inerter.folder import json_text, refuse_folder
+    from inerter.folder import json_text
     from inerter.reference import EFFECTS
 
     usual = count if effects is None else 0
     numbers = {"clean": clean, "pairs": pairs, "triples": triples, "unknown": unknown}
     names = EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
-    with refusing(out_dir):
-        refuse_folder(out_dir)
+    with refusing(folder):
         plan = Plan(
             effects=names, count=count, noise=noise, seed=_seed(seed),
             **{name: usual if given is None else given for name, given in numbers.items()},
@@ -77,17 +72,17 @@ def blind_test_command(
         start = time.perf_counter()
         with progress_bar("hiding and diagnosing", as_json) as progress:
             try:
-                outcomes = run_tasks(tasks, workers, progress, folder=out_dir / "cases")
+                outcomes = run_tasks(tasks, workers, progress, folder=folder / "cases")
             except KeyboardInterrupt:
                 notes.print(f"broken off; the same command with --seed {plan.seed} goes on")
                 raise
         result = score(plan, outcomes, time.perf_counter() - start)
-        files = write_blind_test(result, out_dir)
+        files = write_blind_test(result, folder)
     if as_json:
         print(json_text(result), end="")
     else:
         print_blind_test(result, out)
-        out.print(f"Written to {out_dir}: {', '.join(files)}")
+        out.print(f"Written to {folder}: {', '.join(files)}")
 
 
 def _seed(given: int | None) -> int:

@@ -9,7 +9,7 @@ from inerter.core import Device
 from inerter.device_file import device_text
 from inerter.diagnose.result import Diagnosis
 from inerter.diagnose.system.outcome import SystemDiagnosis
-from inerter.folder import write_files
+from inerter.folder import file_names, write_files
 from inerter.report.page import render_report
 from inerter.rig import device_mjcf
 
@@ -57,7 +57,8 @@ def _write_system(diagnosis: SystemDiagnosis, folder: Path) -> None:
         name: device_text(device, {}, 0.0, f"{name}: identified by inerter diagnose from {names}")
         for name, device in diagnosis.devices.items()
     }
-    several = {f"device_{name}.toml": text for name, text in tomls.items()}
+    safe = file_names(list(tomls), "unnamed")
+    several = {f"device_{name}.toml": text for name, text in zip(safe, tomls.values(), strict=True)}
     toml = next(iter(tomls.values()))
     write_files(
         folder,

@@ -6,7 +6,6 @@ Device: time, displacement, force, velocity, acceleration; then inertance_force,
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 
 import mujoco
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 
 import inerter
 from inerter.core import parameters
+from inerter.folder import file_names
 from inerter.printable import printable
 from inerter.simulate.run import Run
 from inerter.simulate.sample import DeviceRun
@@ -22,13 +22,7 @@ from inerter.simulate.sample import DeviceRun
 
 def device_names(run: Run) -> list[str]:
     """File names, without extension, of the devices: what a file may be called, all different."""
-    names: list[str] = []
-    for i, device in enumerate(run.devices):
-        name = re.sub(r"[^\w.+-]+", "_", device.place.name).strip("._") or f"device_{i}"
-        while name.casefold() in [other.casefold() for other in names]:
-            name += "_2"
-        names.append(name)
-    return names
+    return file_names([device.place.name for device in run.devices], "device")
 
 
 def device_csv(run: Run, device: DeviceRun) -> str:
