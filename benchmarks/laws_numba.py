@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from inerter.bench.laws import INERTANCE, LAWS
-from numba import njit
+from numba import njit  # pyright: ignore[reportMissingImports]
 from numpy.typing import NDArray
 
 

@@ -39,8 +39,8 @@ static double straight(const InerterDevice* p, double x, double v, double z) {
   return log1p(decay * fabs(z)) / (decay * fabs(v));
 }
 
-static double force_of_rate(const InerterDevice* p, double z, double rate) {
-  return p->bristle_stiffness * z + p->bristle_damping * rate;
+static double force_of_rate(const InerterDevice* p, double z, double z_rate) {
+  return p->bristle_stiffness * z + p->bristle_damping * z_rate;
 }
 
 static double force(const InerterDevice* p, double x, double v, double z) {

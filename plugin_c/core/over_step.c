@@ -42,7 +42,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
                                      const double* z, double h, double mobility, double* end) {
   double next[INERTER_MAXSTATE] = {0};
   double stretch = stretch_of(device, x), v1 = v + h * a;
-  if (device->nstate) {
+  if (z && device->nstate) {
     memcpy(next, z, sizeof(double) * (size_t)device->nstate);
   }
   InerterForce force;

@@ -8,7 +8,7 @@ int sensor_size(int nstate) {
   return 5 + nstate;
 }
 
-InerterForce sensor_force(const mjModel* m, mjData* d, const Instance* self) {
+InerterForce sensor_force(const mjModel* m, const mjData* d, const Instance* self) {
   // motion along the device; the acceleration that the whole model has found
   mjtNum v = instance_velocity(m, d, self);
   mjtNum a = instance_along(m, d, self, d->qacc) + instance_bias_acceleration(m, d, self);

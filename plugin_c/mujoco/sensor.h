@@ -9,7 +9,7 @@
 int sensor_size(int nstate);
 
 // Forces of the device as the model feels them now; runs after the constraint solver.
-InerterForce sensor_force(const mjModel* m, mjData* d, const Instance* self);
+InerterForce sensor_force(const mjModel* m, const mjData* d, const Instance* self);
 
 // Write the values into mjData.sensordata; runs after the constraint solver.
 void sensor_compute(const mjModel* m, mjData* d, int instance);
