@@ -68,7 +68,7 @@ static mjtNum flywheel(const mjModel* m, const mjData* d, const Instance* self, 
   return x - state[nstate - (device->backlash > 0 ? 3 : 2)];
 }
 
-void visual_draw(const mjModel* m, const mjData* d, const mjvOption* option, mjvScene* scene,
+void visual_draw(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* scene,
                  int instance) {
   const Instance* self = instance_of(d, instance);
   mjtNum from[3], to[3], axis[3], quat[4], mat[9], pos[3];

@@ -9,7 +9,7 @@
 // them. The barrel turns from grey to red with tension and to blue with compression, fully at the
 // force whose arrow would be as long as the strut (<visual><map force>); the flywheel turns with
 // its displacement, one revolution per kLead, and pales while it is loose in its play.
-void visual_draw(const mjModel* m, const mjData* d, const mjvOption* option, mjvScene* scene,
+void visual_draw(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* scene,
                  int instance);
 
 #endif  // INERTER_MUJOCO_VISUAL_H_
