@@ -26,8 +26,10 @@ def main() -> None:
         finally:
             sys.stdout.flush()
     except BaseException as error:
-        # libraries turn an interrupt into errors of their own
-        if interrupted:
+        # libraries turn an interrupt into errors of their own; a command that Ctrl-C ends as it
+        # should ends well
+        well = isinstance(error, SystemExit) and not error.code
+        if interrupted and not well:
             _leave("interrupted", INTERRUPTED)
         if isinstance(error, BrokenPipeError):
             # whoever read has gone
