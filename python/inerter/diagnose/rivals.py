@@ -11,6 +11,7 @@ from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import (
+    FAR,
     REQUIRED_DISTINCTION,
     RICH_LAWS,
     TOLERATED_ADVANTAGE,
@@ -53,6 +54,8 @@ EQUAL_LOSS = 0.005
 PREFERRED = 0.5
 # rivals that are worth cross-validating
 SHORTLIST = 3
+# one that misses so much more, fitted to all data, is the best in no resample of them
+BEATEN = 1.25
 # share of the rms error by which a rival with more parameters has to be better
 HANDICAP = 0.03
 
@@ -82,10 +85,13 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         and candidate.effect not in rest
         and (law is not None or candidate.law not in RICH_LAWS)
     ]
+    masks = problem.masks
+    error = final.fit.rmse(masks)
     trials = [
         (candidate, fit)
-        for candidate, fit in search.fit_all(others, without.fit)
-        if is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, problem.scales)
+        for candidate, fit in search.fit_all(others, without.fit, FAR * error)
+        if fit.rmse(masks) < BEATEN * error
+        and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, problem.scales)
     ]
     scored = parallel(
         lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), trials[:SHORTLIST]

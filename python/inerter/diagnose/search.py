@@ -63,6 +63,8 @@ HOPELESS = 0.002
 LIKELY = 0.7 * REQUIRED_GAIN
 FEW = 8
 NEAR = 1.1
+# how far above what it has to reach a candidate may be after these to be followed
+FAR = 2.0
 # starting points of a free play that are tried, and how far above what it has to beat a fit to part
 # of the data may be to be followed
 NEAREST = 3
@@ -250,8 +252,10 @@ class Search:
         hopeful = fit.evaluations >= FEW and fit.rmse(self.problem.masks) < limit
         return self.problem.fit(fit.model, tolerance=ROUGH) if hopeful else fit
 
-    def fit_all(self, trials: Sequence[Candidate], current: Fit) -> list[tuple[Candidate, Fit]]:
-        """Fits of candidates, the best first.
+    def fit_all(
+        self, trials: Sequence[Candidate], current: Fit, aim: float = np.inf
+    ) -> list[tuple[Candidate, Fit]]:
+        """Fits of candidates, the best first; those that stay above the `aim` [N] are rough.
 
         The laws with many parameters are tried where the simple law with memory, Dahl's, does
         better than friction without memory, or is in the model already.
@@ -259,7 +263,7 @@ class Search:
         masks = self.problem.masks
         here = self._part.residual(current.model)
         limits = (
-            (1 - HOPELESS) * current.rmse(masks),
+            min((1 - HOPELESS) * current.rmse(masks), aim),
             (1 - HOPELESS) * rms(here, self._part.masks),
         )
         known = self._fitted_before(current)
@@ -385,8 +389,11 @@ class Search:
                     trials.append(candidate)
         spare = current.model.complexity
         trials = [trial for trial in trials if trial.starts[0].complexity < spare]
-        fits = sorted(parallel(self.fit, trials), key=lambda fit: fit.rmse(masks))
         limit = current.fit.rmse(masks) * (1 + TOLERATED_LOSS)
+        fits = sorted(
+            parallel(lambda trial: self.fit(trial, (FAR * limit, np.inf)), trials),
+            key=lambda fit: fit.rmse(masks),
+        )
         near = [fit for fit in fits if fit.rmse(masks) < limit][:2]
         for scored in parallel(lambda fit: self.score("exchange", None, fit), near):
             loss = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
