@@ -15,7 +15,7 @@ from inerter.diagnose.play import (
     from_contact,
     jackknife,
 )
-from inerter.identify.bench import Run
+from inerter.identify.bench import Run, head, head_size
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 
@@ -133,3 +133,13 @@ def test_blows_are_told_from_what_is_smooth() -> None:
     assert not comes_in_blows(given, true_model(), NOISE)
     smooth = [replace(r, force=45 * r.acceleration + 20 * np.sign(r.velocity)) for r in given.runs]
     assert not comes_in_blows(Problem(smooth, given.masks), RIGID, NOISE)
+
+
+def test_the_first_part_of_a_run_holds_where_it_is_followed_from() -> None:
+    # the first contact can be late, behind what a share of the run from its begin would hold
+    whole = run(1)
+    size = whole.force.size
+    late = replace(whole, first=size - 1000)
+    assert head_size(late, 0.3) == head(late, 0.3).force.size == size - 700
+    assert head_size(replace(whole, first=0), 0.3) == int(0.3 * size)
+    assert head_size(replace(whole, first=size - 50), 0.3) == size

@@ -216,8 +216,9 @@ def from_first(run: Run) -> Run:
 
 
 def head_size(run: Run, share: float) -> int:
-    """Number of samples in the first part of a run."""
-    return max(int(share * run.force.size), min(200, run.force.size))
+    """Number of samples in the first part of a run, counted from where it is followed on."""
+    left = run.force.size - run.first
+    return run.first + max(int(share * left), min(200, left))
 
 
 def head(run: Run, share: float) -> Run:
