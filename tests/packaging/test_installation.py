@@ -15,17 +15,9 @@ import inerter.core
 import inerter.plugin
 import mujoco
 import pytest
+from falling_model import MODEL
 
 ROOT = Path(__file__).resolve().parents[2]
-MODEL = """
-<mujoco>
-  <extension><plugin plugin="inerter.device"/></extension>
-  <worldbody><body><joint name="slide" type="slide"/><geom size="0.1" mass="1"/></body></worldbody>
-  <actuator>
-    <plugin plugin="inerter.device" joint="slide"><config key="inertance" value="2"/></plugin>
-  </actuator>
-</mujoco>
-"""
 
 
 def run(script: str, *flags: str, **environment: str) -> subprocess.CompletedProcess[str]:

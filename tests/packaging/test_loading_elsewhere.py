@@ -13,18 +13,10 @@ from pathlib import Path
 
 import inerter
 import pytest
+from falling_model import MODEL
 
 ROOT = Path(__file__).resolve().parents[2]
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="builds shared libraries as on Linux")
-
-MODEL = """
-<mujoco>
-  <extension><plugin plugin="inerter.device"/></extension>
-  <worldbody><body><joint name="slide" type="slide"/><geom size="0.1" mass="1"/></body></worldbody>
-  <actuator>
-    <plugin plugin="inerter.device" joint="slide"><config key="inertance" value="2"/></plugin>
-  </actuator>
-</mujoco>"""
 
 # the plugin from another folder, as a process finds it that knows nothing of this test
 IMPORT = f"""

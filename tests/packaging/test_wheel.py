@@ -11,17 +11,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from falling_model import MODEL
 
 ROOT = Path(__file__).resolve().parents[2]
-MODEL = """
-<mujoco>
-  <extension><plugin plugin="inerter.device"/></extension>
-  <worldbody><body><joint name="slide" type="slide"/><geom size="0.1" mass="1"/></body></worldbody>
-  <actuator>
-    <plugin plugin="inerter.device" joint="slide"><config key="inertance" value="2"/></plugin>
-  </actuator>
-</mujoco>
-"""
 # 1 kg and 2 kg of inertance fall for 0.2 s
 FALLS = f"""
 import mujoco
