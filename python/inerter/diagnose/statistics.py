@@ -55,6 +55,8 @@ def gain_interval(
 ) -> Interval | None:
     """95 % interval of the share of the rms error that a model takes away, by block bootstrap.
 
+    It is a little narrow: of 48 blocks it holds the true gain in 93 % of cases.
+
     Parameters
     ----------
     before, after : ndarray (n,)

@@ -1,0 +1,112 @@
+"""How a model is read as effects, taken apart, and set against another one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from inerter import Device
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.composition import effects_of, is_distinct, without_effect
+from inerter.diagnose.rivals import BEATEN, _is_better
+from inerter.diagnose.search import FAR, FEW, Scored, Search
+from inerter.diagnose.statistics import win_shares
+from inerter.identify.coordinates import Scales, coordinate
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
+from inerter.records import Record
+from inerter.reference import NoiseLevels, hide_effect
+
+SCALES = Scales(force=50.0, displacement=0.02, velocity=0.2, acceleration=3.0, cutoff=40.0)
+BASELINE = Model("none", {"inertance": 80.0}, ("inertance",))
+
+
+def fitted(model: Model, error: float = 0.01) -> Fit:
+    """A fit whose coordinates have standard errors of a share of their values."""
+    sizes = np.array([error * abs(model.values[name]) for name in model.free])
+    return Fit(model, [], np.diag(sizes**2), 1, 1.0)
+
+
+def scored(model: Model, rms: float, spread: float = 0.05) -> Scored:
+    """A model and its errors on 48 blocks."""
+    blocks = rms**2 * (1 + spread * np.random.default_rng(int(1e3 * rms)).standard_normal(48))
+    return Scored("coulomb_friction", None, fitted(model), [], [], blocks)
+
+
+@pytest.mark.parametrize(("share", "told"), [(1.0, False), (1.4, False), (1.6, True), (5.0, True)])
+def test_a_peak_as_narrow_as_the_blur_of_a_reversal_is_none(share: float, told: bool) -> None:
+    narrowest = coordinate("stribeck_velocity", SCALES).lower
+    model = BASELINE.adding(
+        "stribeck", coulomb_force=20.0, static_excess=8.0, stribeck_velocity=share * narrowest
+    )
+    assert is_distinct("stribeck_friction", fitted(model), 3.0, SCALES) is told
+    # whatever its width, a peak of less than its standard error is none
+    assert not is_distinct("stribeck_friction", fitted(model, 2.0), 3.0, SCALES)
+
+
+def test_coulomb_friction_is_no_narrow_stribeck_peak() -> None:
+    """A case in which a narrow peak did better than sign(v) by what smoothing leaves of it."""
+    case = hide_effect(2659865627, "coulomb_friction", noise=NoiseLevels(0.0, 0.01, 1e-6))
+    records = [
+        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
+        for run in case.runs
+    ]
+    diagnosis = diagnose_bench(records, Device(**case.stated) if case.stated else None)
+    named = [finding.effect for finding in diagnosis.findings]
+    assert named == ["coulomb_friction"], diagnosis.verdict
+
+
+def test_an_inertance_that_varies_is_tried_without_each_of_its_forms() -> None:
+    along = {"inertance_gradient": 2.0, "inertance_curvature": -30.0}
+    speed = {"inertance_speed_gradient": 0.5}
+    both = BASELINE.adding(None, **along, **speed)
+    assert effects_of(both, BASELINE) == [("variable_inertance", None)]
+    simpler = without_effect(both, "variable_inertance", BASELINE)
+    assert [set(model.free) for model in simpler] == [
+        {"inertance", *along},
+        {"inertance", *speed},
+        {"inertance"},
+    ]
+    for one in (along, speed):
+        (left,) = without_effect(BASELINE.adding(None, **one), "variable_inertance", BASELINE)
+        assert set(left.free) == {"inertance"}
+
+
+def test_a_rival_is_better_with_no_more_parameters_and_causes_alone() -> None:
+    coulomb = BASELINE.adding("coulomb", coulomb_force=20.0)
+    viscous = BASELINE.adding(viscous=40.0)
+    final = scored(viscous, 2.0)
+    assert _is_better(scored(coulomb, 1.5), final, BASELINE)
+    # as good is not better, worse neither
+    assert not _is_better(scored(coulomb, 2.0), final, BASELINE)
+    assert not _is_better(scored(coulomb, 2.5), final, BASELINE)
+    # two causes, or one of more parameters, have to come in by the front door
+    two = coulomb.adding(viscous=40.0)
+    assert not _is_better(scored(two, 1.0), final, BASELINE)
+    dahl = BASELINE.adding("dahl", coulomb_force=20.0, bristle_stiffness=1e5)
+    assert not _is_better(scored(dahl, 1.0), final, BASELINE)
+
+
+@pytest.mark.parametrize(("error", "follows"), [(1.9, True), (2.1, False)])
+def test_what_stays_far_off_is_not_followed(error: float, follows: bool) -> None:
+    """After a few steps a fit goes on where it is below the limit, and else stays as it is."""
+    asked: list[int] = []
+
+    def fit(model: Model, evaluations: int = 40, tolerance: float = 0.0) -> Fit:
+        asked.append(evaluations)
+        return replace(fitted(model), residual=[np.full(9, error)], evaluations=evaluations)
+
+    problem = SimpleNamespace(fit=fit, masks=[np.ones(9, bool)])
+    Search._follow(cast("Search", SimpleNamespace(problem=problem)), BASELINE, FAR * 1.0)
+    assert asked == ([FEW, 40] if follows else [FEW])
+
+
+def test_a_model_that_is_not_scored_would_win_no_resample() -> None:
+    best = np.random.default_rng(7).gamma(2.0, 1.0, 48)
+    beside = BEATEN**2 * np.random.default_rng(8).permutation(best)
+    assert win_shares([best, beside])[1] < 0.02
+    # nearer ones do win some
+    assert win_shares([best, 1.01**2 * np.random.default_rng(8).permutation(best)])[1] > 0.02
