@@ -8,8 +8,6 @@ from typing import cast
 
 import numpy as np
 import pytest
-from inerter import Device
-from inerter.diagnose import diagnose_bench
 from inerter.diagnose.composition import effects_of, is_distinct, without_effect
 from inerter.diagnose.rivals import BEATEN, _is_better
 from inerter.diagnose.search import FAR, FEW, Scored, Search
@@ -17,8 +15,6 @@ from inerter.diagnose.statistics import win_shares
 from inerter.identify.coordinates import Scales, coordinate
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
-from inerter.records import Record
-from inerter.reference import NoiseLevels, hide_effect
 
 SCALES = Scales(force=50.0, displacement=0.02, velocity=0.2, acceleration=3.0, cutoff=40.0)
 BASELINE = Model("none", {"inertance": 80.0}, ("inertance",))
@@ -45,18 +41,6 @@ def test_a_peak_as_narrow_as_the_blur_of_a_reversal_is_none(share: float, told: 
     assert is_distinct("stribeck_friction", fitted(model), 3.0, SCALES) is told
     # whatever its width, a peak of less than its standard error is none
     assert not is_distinct("stribeck_friction", fitted(model, 2.0), 3.0, SCALES)
-
-
-def test_coulomb_friction_is_no_narrow_stribeck_peak() -> None:
-    """A case in which a narrow peak did better than sign(v) by what smoothing leaves of it."""
-    case = hide_effect(2659865627, "coulomb_friction", noise=NoiseLevels(0.0, 0.01, 1e-6))
-    records = [
-        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
-        for run in case.runs
-    ]
-    diagnosis = diagnose_bench(records, Device(**case.stated) if case.stated else None)
-    named = [finding.effect for finding in diagnosis.findings]
-    assert named == ["coulomb_friction"], diagnosis.verdict
 
 
 def test_an_inertance_that_varies_is_tried_without_each_of_its_forms() -> None:

@@ -178,7 +178,10 @@ class _Bench:
     @property
     def judge(self) -> Judge:
         """The held-out data."""
-        return Judge(self.band, self.raw, self.preparation, self.baseline)
+        learnt = self.search.problem
+        held = split(learnt.runs, self.held).holdout
+        weighed = Problem(learnt.runs, held, learnt.scales)
+        return Judge(self.band, self.raw, weighed, self.preparation, self.baseline)
 
     def _weighed_search(self, preparation: Preparation) -> Search:
         """A search in which errors count by the noise of the motion."""

@@ -28,6 +28,8 @@ class Judge:
     ----------
     band, raw : Problem
         Held-out samples in the fits' band, and at the measured rate with the force as measured.
+    weighed : Problem
+        Those of the search, whose errors count by the noise of the motion.
     preparation : Preparation
         Tells the noise.
     baseline : Model
@@ -36,6 +38,7 @@ class Judge:
 
     band: Problem
     raw: Problem
+    weighed: Problem
     preparation: Preparation
     baseline: Model
 
@@ -60,8 +63,12 @@ class Judge:
 
     def advantage(self, simple: Model, rich: Model, effect: str) -> float:
         """How surely the model with an effect is the better one, in standard errors."""
-        # what a play does is above the band
-        problem = self.raw if "backlash" in rich.free else self.band
+        # what a play does is above the band; a shaft that resonates near the band's end makes the
+        # noise of the motion larger, which is no fault of the model
+        if "backlash" in rich.free:
+            problem = self.raw
+        else:
+            problem = self.weighed if effect == "series_elasticity" else self.band
         masks = problem.masks
         before, after = (problem.residual(model) for model in (simple, rich))
         return advantage_of(before, after, masks, blocks(masks), effect)

@@ -183,7 +183,10 @@ class Search:
 
         Where the effect `until` is found the search ends with it, and nothing is pruned.
         """
-        current = self.score("baseline", None, self.problem.fit(start or self.baseline))
+        start = start or self.baseline
+        if any(effect in LOCAL for effect, _ in effects_of(start, self.baseline)):
+            self._folds = self._spread
+        current = self.score("baseline", None, self.problem.fit(start))
         while len(self.found) < MOST_EFFECTS:
             chosen = self._best_step(current)
             if chosen is None:

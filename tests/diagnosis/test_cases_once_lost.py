@@ -1,0 +1,31 @@
+"""Hidden effects that an earlier state of the search lost, each for a reason that is told."""
+
+from __future__ import annotations
+
+import pytest
+from inerter import Device
+from inerter.diagnose import diagnose_bench
+from inerter.records import Record
+from inerter.reference import NoiseLevels, hide_effect
+
+CASES = {
+    # a narrow Stribeck peak did better than sign(v) by what smoothing leaves of a reversal
+    "blur of a reversal": ("coulomb_friction", 2659865627),
+    # found, and lost in a wider band, where runs that do not reach the stop were to foretell it
+    "stop in a wider band": ("end_stop", 3779551908),
+    # a shaft that resonates near the band's end enlarges the noise of the held-out motion
+    "resonance near the band": ("series_elasticity", 1873597965),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_it_is_named_alone(case: str) -> None:
+    effect, seed = CASES[case]
+    hidden = hide_effect(seed, effect, noise=NoiseLevels(0.0, 0.01, 1e-6))
+    records = [
+        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
+        for run in hidden.runs
+    ]
+    diagnosis = diagnose_bench(records, Device(**hidden.stated) if hidden.stated else None)
+    assert [finding.effect for finding in diagnosis.findings] == [effect], diagnosis.verdict
+    assert diagnosis.extended.rmse < diagnosis.baseline.rmse
