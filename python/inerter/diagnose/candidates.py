@@ -129,19 +129,38 @@ def _hysteretic(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]
         yield Candidate(
             effect,
             "bouc_wen",
-            tuple(
-                bare.adding(
-                    "bouc_wen",
-                    bw_level=level,
-                    presliding=distance,
-                    bw_shape=shape,
-                    bw_exponent=1.2,
-                    **({} if "stiffness" in model.values else {"bw_ratio": 0.0}),
-                )
-                for distance in ((pre,) if pre else (0.01 * x, 0.1 * x, 0.5 * x))
-                for shape in (0.6, 1.0)
+            (
+                *(
+                    bare.adding(
+                        "bouc_wen",
+                        bw_level=level,
+                        presliding=distance,
+                        bw_shape=shape,
+                        bw_exponent=1.2,
+                        **({} if "stiffness" in model.values else {"bw_ratio": 0.0}),
+                    )
+                    for distance in ((pre,) if pre else (0.01 * x, 0.1 * x, 0.5 * x))
+                    for shape in (0.6, 1.0)
+                ),
+                _hardening(bare, sizes),
             ),
         )
+
+
+def _hardening(bare: Model, sizes: Scales) -> Model:
+    """Bouc-Wen hysteresis without a largest force: beta and gamma of any sign, here beta < -gamma.
+
+    Along a path away from rest it hardens, which the coordinates of a level cannot say.
+    """
+    per_distance = 0.5 / sizes.displacement
+    return bare.adding(
+        "bouc_wen",
+        bw_stiffness=0.5 * sizes.force / sizes.displacement,
+        bw_beta=per_distance,
+        bw_gamma=-1.5 * per_distance,
+        bw_exponent=1.0 + 1e-6,
+        **({} if "stiffness" in bare.values else {"bw_ratio": 0.0}),
+    )
 
 
 def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:

@@ -17,7 +17,7 @@ from inerter.identify.model import Model
 # coordinates whose being zero means that the effect is absent, where not all of them do
 _AMPLITUDES = {
     "stribeck_friction": ("static_excess",),
-    "hysteretic_friction": ("coulomb_force", "bw_level"),
+    "hysteretic_friction": ("coulomb_force", "bw_level", "bw_stiffness"),
     "inertance_error": (),
     "series_elasticity": (),
     "backlash": (),
@@ -146,7 +146,7 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
         not laws and not kept_modulations and not _stated_friction(baseline)
     ):
         # without its law, a level that varies needs Coulomb friction to act on
-        level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
+        level, _ = _level_and_distance(model)
         names.update(LAW_COORDINATES)
         if kept_modulations and baseline.friction == "none":
             bare = _restored(model.without(tuple(names), "none"), names, baseline)
@@ -168,10 +168,19 @@ def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
     return Model(bare.friction, {**bare.values, **stated}, bare.free + free)
 
 
+def _level_and_distance(model: Model) -> tuple[float, float | None]:
+    """Friction level [N] and pre-sliding distance [m], or what comes nearest to them in the law."""
+    values = model.values
+    if "bw_stiffness" in values:
+        distance = 1 / max(abs(values["bw_beta"]), abs(values["bw_gamma"]), 1e-300)
+        distance **= 1 / values.get("bw_exponent", 1.0)
+        return values["bw_stiffness"] * distance, distance
+    return values.get("coulomb_force", values.get("bw_level", 0.0)), values.get("presliding")
+
+
 def simpler_laws(model: Model) -> list[Model]:
     """The model under each friction law with fewer parameters."""
-    level = model.values.get("coulomb_force", model.values.get("bw_level", 0.0))
-    presliding = model.values.get("presliding")
+    level, presliding = _level_and_distance(model)
     bare = model.without(LAW_COORDINATES, "none")
     simpler = []
     if model.friction not in ("none", "coulomb"):

@@ -16,6 +16,9 @@ LAW_COORDINATES = (
     "bristle_damping",
     "bw_level",
     "bw_shape",
+    "bw_stiffness",
+    "bw_beta",
+    "bw_gamma",
     "bw_exponent",
     "bw_ratio",
 )
