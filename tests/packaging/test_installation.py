@@ -107,6 +107,7 @@ def test_one_mujoco_version_everywhere(project: dict[str, Any]) -> None:
     version = inerter.plugin.MUJOCO_VERSION
     assert f"mujoco-core=={version}" in project["build-system"]["requires"]
     assert f"mujoco=={version}" in project["project"]["dependencies"]
+    assert f"mujoco[sysid]=={version}" in project["project"]["optional-dependencies"]["dev"]
     assert mujoco.mj_versionString() == version
     required = importlib.metadata.requires("inerter") or []
     assert f"mujoco=={version}" in required
