@@ -126,5 +126,6 @@ wheel: $(VENV)/dev
 	@ls $(DIST)
 
 clean:
-	rm -rf build dist out $(VENV) .pytest_cache .ruff_cache .hypothesis
-	find python tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -rf build dist out $(VENV) docs/figures .pytest_cache .ruff_cache .hypothesis
+	rm -f MUJOCO_LOG.TXT
+	find python tests benchmarks docs exudyn_models -name __pycache__ -type d -prune -exec rm -rf {} +

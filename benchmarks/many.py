@@ -176,5 +176,5 @@ def picture(rows: list[Row], path: Path) -> None:
     axes.set_ylim(bottom=0)
     axes.set_xlabel("simulations of a batch")
     axes.set_ylabel("million steps per second of one core")
-    axes.legend(fontsize=7, frameon=False)
+    axes.legend(loc="best", fontsize=7, frameon=False)
     save(made, path)

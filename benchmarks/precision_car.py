@@ -8,8 +8,8 @@ f is 0 (`ideal`: linear) or LuGre friction (`lugre`):
 
 The wheel starts with 4 m/s, and little damping keeps the car swinging over the 10 s. The truth
 comes from none of the programs that are compared: of the linear car it is the matrix exponential,
-of the other SciPy's DOP853 at 1e-13 with steps of 2 ms at most; `truth_error` says how far a second
-way to each is off.
+of the other SciPy's DOP853 at 1e-13 with steps of 2 ms at most; `truth_error` says by how much half
+the step moves each.
 """
 
 from __future__ import annotations

@@ -71,7 +71,8 @@ def loops(name: str, devices: Mapping[str, Device], frequency: float, amplitude:
     left.set(xlabel="displacement [mm]", ylabel="force [N]")
     right.set(xlabel="velocity [m/s]")
     if len(devices) > 1:
-        left.legend(fontsize="small")
+        # stated, for the default warns where a busy machine takes long
+        left.legend(loc="best", fontsize="small")
     _save(figure, name)
 
 
@@ -86,7 +87,7 @@ def in_time(name: str, devices: Mapping[str, Device], motion: Sequence[Array]) -
             state = device.state_of_force(x, v, a, 0.0)
         axes.plot(motion[0], along(device, motion, state), label=label)
     axes.set(xlabel="time [s]", ylabel="force [N]")
-    axes.legend(fontsize="small")
+    axes.legend(loc="best", fontsize="small")
     _save(figure, name)
 
 

@@ -70,8 +70,9 @@ def _without_lab(missing: str) -> None:
         return
     if sys.argv[1:] == ["--version"]:
         from inerter import __version__
+        from inerter.plugin import MUJOCO_VERSION
 
-        print(f"inerter {__version__}")
+        print(f"inerter {__version__} for MuJoCo {MUJOCO_VERSION}")
         return
     print(
         f"inerter: this needs the lab, and {missing} is not installed; "

@@ -18,7 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.checked_motion import checked_motion
 from inerter.parameter_text import value_text, with_suggestion
 
-LIBRARY_FOLDER = Path(__file__).parent / "lib"
+# beside this file; where the package is installed in place, in its other folder
+_FOLDERS = [Path(place) / "lib" for place in sys.modules["inerter"].__path__]
+LIBRARY_FOLDER = next((each for each in _FOLDERS if each.is_dir()), Path(__file__).parent / "lib")
 _MESSAGE_SIZE = 512
 
 

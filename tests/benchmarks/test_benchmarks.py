@@ -224,6 +224,14 @@ def test_programs_agree_on_the_precision_car() -> None:
             assert error_of("ideal", attempt.end()) < limits.get(method, 1e-6), solver.name
 
 
+@pytest.mark.parametrize("problem", ["ideal", "lugre"])
+def test_the_truth_does_not_hang_on_its_step(problem: str) -> None:
+    from benchmarks.precision_car import truth_error
+
+    # the programs are compared down to 1e-9
+    assert truth_error(problem) < 1e-11
+
+
 def test_work_precision() -> None:
     from benchmarks import work_precision
 

@@ -8,7 +8,7 @@ import mujoco
 import pytest
 from inerter.bench.machine import busy, machine
 from inerter.bench.rows import aimed, aims, table
-from inerter.bench.timing import Spread, Timing, Work, calls_for, interleaved, once
+from inerter.bench.timing import Spread, Timing, Work, interleaved, once
 from rich.console import Console
 
 
@@ -32,8 +32,6 @@ def test_preparation_is_not_timed() -> None:
 
     work = Work(lambda: spend(3.0), units=6, prepare=lambda: spend(100.0))
     assert once(work, read) == 0.5
-    assert calls_for(Work(lambda: spend(0.25)), 2.0, read) == 8
-    assert calls_for(Work(lambda: spend(25.0)), 2.0, read) == 1
     assert interleaved({"a": work}, 2, clock=read)["a"].seconds == (0.5, 0.5)
 
 

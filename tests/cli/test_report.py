@@ -17,7 +17,7 @@ import pytest
 from inerter.diagnose.result import ParameterValue
 from inerter.report import text, thinning
 from inerter.report.figures import loop_figure
-from inerter.report.page import render_report, write_report
+from inerter.report.page import render_report
 from inerter.report.plotting import to_script
 from inerter.report.terminal import print_summary
 from made_reports import CASES, HOSTILE, TOML, XML, diagnosis, run, table_only, two_runs
@@ -173,18 +173,20 @@ def test_held_out_runs_are_pictured_first_and_the_rest_counted() -> None:
 # --- writing -----------------------------------------------------------------------------------
 
 
-def test_report_replaces_a_file(tmp_path: Path) -> None:
-    path = tmp_path / "report.html"
+def test_picture_replaces_a_file(tmp_path: Path) -> None:
+    path, other = tmp_path / "loop.png", tmp_path / "made" / "loop.png"
     path.write_text("old")
-    write_report(two_runs(), path, TOML, XML)
-    assert path.read_text(encoding="utf-8") == render_report(two_runs(), TOML, XML)
-    assert list(tmp_path.iterdir()) == [path]
+    loop_figure(two_runs(), path)
+    loop_figure(two_runs(), other)
+    assert path.read_bytes() == other.read_bytes()
+    assert sorted(tmp_path.rglob("*")) == sorted([path, other, other.parent])
 
 
-def test_missing_folder_is_named(tmp_path: Path) -> None:
-    with pytest.raises(OSError, match=r"cannot write report\.html") as caught:
-        write_report(two_runs(), tmp_path / "no" / "report.html", TOML, XML)
-    assert str(tmp_path / "no") in str(caught.value)
+def test_file_in_the_place_of_a_folder_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(NotADirectoryError, match="not a folder") as caught:
+        loop_figure(two_runs(), tmp_path / "file" / "loop.png")
+    assert str(tmp_path / "file") in str(caught.value)
 
 
 @pytest.mark.skipif(
@@ -192,24 +194,28 @@ def test_missing_folder_is_named(tmp_path: Path) -> None:
 )
 def test_unwritable_folder_is_named(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
-    with pytest.raises(PermissionError, match=r"cannot write report\.html"):
-        write_report(two_runs(), tmp_path / "report.html", TOML, XML)
+    with pytest.raises(PermissionError) as caught:
+        loop_figure(two_runs(), tmp_path / "loop.png")
     tmp_path.chmod(0o700)
+    assert str(tmp_path) in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_failed_replacement_leaves_the_old_file_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = tmp_path / "report.html"
+    path = tmp_path / "loop.png"
     path.write_text("old")
+    replace_file = os.replace
 
-    def fail(*args: object) -> None:
-        raise OSError(28, "No space left on device")
+    def fail(source: Path, target: Path) -> None:
+        if "new" in Path(source).parts:
+            raise OSError(28, "No space left on device")
+        replace_file(source, target)
 
     monkeypatch.setattr(os, "replace", fail)
     with pytest.raises(OSError, match="No space left"):
-        write_report(two_runs(), path, TOML, XML)
+        loop_figure(two_runs(), path)
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
 

@@ -4,6 +4,7 @@ import ast
 import importlib.metadata
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -62,7 +63,8 @@ def test_loading_again_does_nothing() -> None:
 def test_the_library_is_where_it_is_said_to_be() -> None:
     path = inerter.plugin_path()
     assert path.is_file()
-    assert path.is_relative_to(Path(inerter.__file__).parent)
+    # one folder, or two where it is installed in place
+    assert any(path.is_relative_to(folder) for folder in inerter.__path__)
 
 
 # ------------------------------ light imports ------------------------------
@@ -107,6 +109,7 @@ def test_one_mujoco_version_everywhere(project: dict[str, Any]) -> None:
     version = inerter.plugin.MUJOCO_VERSION
     assert f"mujoco-core=={version}" in project["build-system"]["requires"]
     assert f"mujoco=={version}" in project["project"]["dependencies"]
+    assert f"mujoco[sysid]=={version}" in project["project"]["optional-dependencies"]["dev"]
     assert mujoco.mj_versionString() == version
     required = importlib.metadata.requires("inerter") or []
     assert f"mujoco=={version}" in required
@@ -171,6 +174,33 @@ def test_every_model_of_the_checkout_is_installed() -> None:
         for file in (ROOT / "mjcf_models" / name).iterdir():
             installed = model_path(name, file.name)
             assert installed.read_bytes() == file.read_bytes(), installed
+
+
+def test_the_libraries_of_an_installation_in_place_are_found(tmp_path: Path) -> None:
+    """`pip install -e .`: the package is two folders, modules in one, libraries in the other."""
+    from inerter.core import LIBRARY_FOLDER
+
+    source, built = tmp_path / "source" / "inerter", tmp_path / "built" / "inerter"
+    left_out = shutil.ignore_patterns("lib", "data", "__pycache__")
+    shutil.copytree(Path(inerter.__file__).parent, source, ignore=left_out)
+    shutil.copytree(LIBRARY_FOLDER, built / "lib")
+    done = run(
+        "import sys\n"
+        "from importlib.util import module_from_spec, spec_from_file_location\n"
+        f"places = {[str(built), str(source)]}\n"
+        "spec = spec_from_file_location(\n"
+        "    'inerter', places[1] + '/__init__.py', submodule_search_locations=places\n"
+        ")\n"
+        "sys.modules['inerter'] = package = module_from_spec(spec)\n"
+        "spec.loader.exec_module(package)\n"
+        "assert package.__file__.startswith(places[1])\n"
+        "assert package.Device(inertance=2.0).inertance == 2.0\n"
+        "import mujoco\n"
+        "assert str(package.plugin_path()).startswith(places[0])\n",
+        "-W",
+        "error",
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_source_file_of_the_package_is_installed() -> None:

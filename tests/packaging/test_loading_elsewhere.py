@@ -187,7 +187,8 @@ def test_an_installation_that_cannot_be_written_to() -> None:
         folder = Path(name)
         package = folder / "inerter"
         shutil.copytree(source, package, ignore=shutil.ignore_patterns("__pycache__"))
-        shutil.copy(inerter.plugin_path(), package / "lib")
+        # an installation in place has its libraries elsewhere
+        shutil.copytree(inerter.plugin_path().parent, package / "lib", dirs_exist_ok=True)
         for path in (folder, *folder.rglob("*")):
             path.chmod(0o555 if path.is_dir() else 0o444)
 

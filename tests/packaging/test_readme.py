@@ -55,7 +55,7 @@ def test_exudyn_runs() -> None:
     assert names["strut"].Evaluate()["displacement"] == pytest.approx(0.1, abs=1e-12)
 
 
-def test_exudyn_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_exudyn_page_runs() -> None:
     pytest.importorskip("exudyn")
     text = (ROOT / "docs" / "exudyn.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", text, re.S)
@@ -68,7 +68,12 @@ def test_exudyn_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_links_lead_somewhere() -> None:
-    for document in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("*/README.md")]:
+    folders = ("docs", "plugin_c", "mjcf_models", "exudyn_models", "python")
+    pages = [page for folder in folders for page in (ROOT / folder).rglob("*.md")]
+    # what the page builder makes is not there in a fresh clone: see test_generated.py
+    made = ROOT / "docs" / "figures"
+    for document in [*ROOT.glob("*.md"), *(page for page in pages if made not in page.parents)]:
         text = document.read_text(encoding="utf-8")
         for target in re.findall(r"\]\(([^)#:]+)\)", text):
-            assert (document.parent / target).exists(), f"{document.name}: {target}"
+            place = document.parent / target
+            assert place.exists() or made in place.parents, f"{document.name}: {target}"

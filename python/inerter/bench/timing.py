@@ -116,9 +116,3 @@ def once(work: Work, clock: Callable[[], float] = time.perf_counter) -> float:
     start = clock()
     work.run()
     return (clock() - start) / work.units
-
-
-def calls_for(work: Work, seconds: float, clock: Callable[[], float] = time.perf_counter) -> int:
-    """How many calls of a work fill about so many seconds, at least 1."""
-    once(work, clock)
-    return max(1, round(seconds / max(once(work, clock) * work.units, 1e-9)))

@@ -10,12 +10,13 @@ import numpy as np
 
 from inerter.reference import EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
 
-GROUPS = ("single", "clean", "pairs", "triples", "unknown")
-
 
 @dataclass(frozen=True)
 class Task:
-    """One case: `effects` that are hidden, empty for "clean"; for "unknown" its `kind`."""
+    """One case: `effects` that are hidden, empty for "clean"; for "unknown" its `kind`.
+
+    group: "single", "clean", "pairs", "triples" or "unknown".
+    """
 
     group: str
     seed: int

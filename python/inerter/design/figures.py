@@ -48,7 +48,7 @@ def picture(design: Design) -> bytes:
         axes.tick_params(length=0, labelsize=9, labelcolor=LIGHT["soft"], which="both")
         axes.spines[:].set_visible(False)
         axes.margins(x=0.02)
-        axes.legend(frameon=False, fontsize=8.5, handlelength=2.4)
+        axes.legend(loc="best", frameon=False, fontsize=8.5, handlelength=2.4)
     return png(figure)
 
 

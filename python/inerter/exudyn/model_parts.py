@@ -226,7 +226,7 @@ def save_picture(name: str, run: Run, folder: str | Path = "out/exudyn_models") 
         for curve, values in curves.items():
             axes.plot(run.time, scale * values, label=curve)
         axes.set_ylabel(label)
-        axes.legend()
+        axes.legend(loc="best")
     rows[0].set_title(name)
     rows[-1].set_xlabel("time [s]")
     path = Path(folder) / f"{name}.png"

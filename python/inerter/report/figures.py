@@ -11,8 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from inerter.diagnose.result import Diagnosis, RunCurves
+from inerter.folder import write_files
 from inerter.report import text, thinning
-from inerter.report.files import write_atomic
 from inerter.report.palette import LIGHT
 from inerter.report.runs import judged, pictured
 
@@ -33,7 +33,7 @@ def loop_figure(diagnosis: Diagnosis, path_png: Path) -> None:
     diagnosis : Diagnosis
         With `curves`.
     path_png : Path
-        Replaced as a whole or not at all; 1800 pixels wide, for display at 900.
+        Replaced as a whole or not at all, its folder is made; 1800 pixels wide, for display at 900.
 
     Raises
     ------
@@ -86,7 +86,8 @@ def loop_figure(diagnosis: Diagnosis, path_png: Path) -> None:
     )
     picture = BytesIO()
     FigureCanvasAgg(figure).print_png(picture, metadata={"Software": None})
-    write_atomic(Path(path_png), picture.getvalue())
+    path = Path(path_png)
+    write_files(path.parent, {path.name: picture.getvalue()})
 
 
 def _stretch(run: RunCurves) -> slice:

@@ -22,7 +22,6 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.wording import departure
 from inerter.report import text
-from inerter.report.files import write_atomic
 from inerter.report.other_plots import cutoff_plot, table_plots
 from inerter.report.palette import DARK, LIGHT
 from inerter.report.plotting import to_script
@@ -44,30 +43,16 @@ _METHOD_WORDS = {
 ENGINES = {"mujoco": "MuJoCo", "exudyn": "Exudyn", "reference": "reference (SciPy)"}
 
 
-def write_report(diagnosis: Diagnosis, path: Path, device_toml: str, model_xml: str) -> None:
-    """Write the report of a diagnosis.
+def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str:
+    """The report as HTML text.
 
     Parameters
     ----------
     diagnosis : Diagnosis
         With `curves` (time records) or `points` (tables) where pictures are wanted.
-    path : Path
-        The HTML file; replaced as a whole or not at all.
     device_toml, model_xml : str
         The extended device, to copy from the page.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written; nothing is left behind.
     """
-    content = render_report(diagnosis, device_toml, model_xml)
-    # a lone surrogate in a file name must not cost the report
-    write_atomic(Path(path), content.encode("utf-8", "replace"))
-
-
-def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str:
-    """The report as HTML text; see `write_report`."""
     about = subject(diagnosis)
     runs = pictured(diagnosis.curves)
     table = _table(diagnosis)

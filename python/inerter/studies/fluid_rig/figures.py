@@ -42,7 +42,7 @@ def picture(of: Picture) -> bytes:
         )
     else:
         for axes_row in grid:
-            axes_row[0].legend(frameon=False, fontsize=7, handlelength=3.2)
+            axes_row[0].legend(loc="best", frameon=False, fontsize=7, handlelength=3.2)
     return png(figure)
 
 

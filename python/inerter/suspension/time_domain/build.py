@@ -7,6 +7,7 @@ from typing import Any
 
 import mujoco
 
+from inerter.core import Device
 from inerter.suspension.time_domain.cases import Case
 
 Keys = tuple[str, ...]
@@ -43,8 +44,7 @@ def configuration(laws: Laws) -> dict[str, str]:
 
 def number_of_states(laws: Laws) -> int:
     """Of the device of such a configuration."""
-    friction, keys = laws
-    return Case("", "", friction, dict.fromkeys(keys, 1.0)).nstate
+    return Device(**configuration(laws)).nstate
 
 
 def carried_by_plugin(laws: Laws) -> bool:

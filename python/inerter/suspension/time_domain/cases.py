@@ -36,8 +36,6 @@ TRANSITION_VELOCITY = 1e-3
 HALF_GAP = 5e-5
 """Half of the free play [m], see the module."""
 
-_STATES = {"dahl": 1, "lugre": 1, "bouc_wen": 1}
-
 
 @dataclass(frozen=True)
 class Case:
@@ -77,12 +75,6 @@ class Case:
             "series_stiffness",
             "series_damping",
         }
-
-    @property
-    def nstate(self) -> int:
-        """Number of the device's states."""
-        series = 2 if self.has_series else 0
-        return _STATES.get(self.friction, 0) + series + ("backlash" in self.parameters)
 
 
 @dataclass(frozen=True)
