@@ -66,6 +66,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             title_justify="left",
             box=box.SIMPLE_HEAD,
             pad_edge=False,
+            show_edge=False,
             padding=(0, 1, 0, 0),
         )
         quarter = plan.car_name == "quarter"
