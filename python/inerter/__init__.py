@@ -1,4 +1,4 @@
-"""Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong."""
+"""Inerters for MuJoCo and Exudyn, and a lab that finds what a simulation of one gets wrong."""
 
 from __future__ import annotations
 

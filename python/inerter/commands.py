@@ -63,7 +63,7 @@ def common(
         ),
     ] = False,
 ) -> None:
-    """Inerters for MuJoCo, and a lab that finds what a simulation of one gets wrong."""
+    """Inerters for MuJoCo and Exudyn, and a lab that finds what a simulation of one gets wrong."""
 
 
 @app.command("diagnose")
