@@ -25,7 +25,7 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
 .PHONY: help demo test sanitize fuzz soak bench docs lint format check wheel clean
 
 help:
-	@echo 'make demo    install with the lab, diagnose the shipped record into out/demo'
+	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
 	@echo 'make test    every test, on all cores, against the installed package'
 	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
 	@echo 'make sanitize  the C code under sanitizers and valgrind, some minutes'

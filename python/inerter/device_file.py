@@ -68,7 +68,9 @@ def read_delay(path: Path) -> float:
 def _with_unit(path: Path, key: str, text: str) -> float:
     """A text with a unit in the parameter's SI unit."""
     if key not in parameters():
-        raise DeviceError(f"{path}: {key} is not a parameter of the device")
+        raise DeviceError(
+            f"{path}: {key} is not a parameter of the device; `inerter parameters` lists them"
+        )
     unit = parameters()[key].unit
     wanted = "" if unit == "1" else unit.replace("m^-n", "dimensionless")
     number, written = split_quantity(text) or (math.nan, "")

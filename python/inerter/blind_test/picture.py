@@ -25,7 +25,7 @@ def confusion_picture(result: dict[str, Any]) -> bytes:
     cases = f"{count} case{'' if count == 1 else 's'} per effect"
     noise = f"noise {100 * result['settings']['noise']:g} %"
     if matrix["hidden"]:
-        title = f"first named; {cases}, {noise}, seed {result['seed']}"
+        title = f"first named; {cases},\n{noise}, seed {result['seed']}"
         _matrix(axes[0, 0], matrix, title)
     if laws["hidden"]:
         _matrix(axes[-1, 0], laws, "law of hysteretic friction")

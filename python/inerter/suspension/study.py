@@ -201,7 +201,9 @@ def _positive(text: str, what: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        raise StudyError(f"{what} {text.strip()!r} is not a number") from None
+        raise StudyError(
+            f"{what} {text.strip()!r} is not a number: write it in SI units, without the unit"
+        ) from None
     if not (math.isfinite(value) and value > 0.0):
         raise StudyError(f"{what} is {text.strip()}: give a positive number")
     return value

@@ -77,7 +77,9 @@ def prepare_command(
         print(json.dumps(said, indent=2, allow_nan=False))
         return
     _print(said)
-    out.print(f"Written to {out_dir}: {(len(files) - 1) // 2} records, a picture of each, {FILE}")
+    count = (len(files) - 1) // 2
+    records = "1 record, a picture of it" if count == 1 else f"{count} records, a picture of each"
+    out.print(f"Written to {out_dir}: {records}, {FILE}")
 
 
 def _delay(given: str | None) -> float | str | None:

@@ -66,6 +66,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             title_justify="left",
             box=box.SIMPLE_HEAD,
             pad_edge=False,
+            show_edge=False,
             padding=(0, 1, 0, 0),
         )
         quarter = plan.car_name == "quarter"
@@ -90,7 +91,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
                 if row.layout != "S1"
                 else "",
             )
-        console.print(table)
+        console.print(table, "", sep="\n")
     console.print(
         ("paper: table.case of Wang and Su. " if plan.car_name == "quarter" else "")
         + "exact: norm of the transfer function, where the case is "
