@@ -18,6 +18,7 @@ from inerter.diagnose.result import Diagnosis, StatedValue
 from inerter.diagnose.wording import verdict
 from inerter.mjcf import device_of_model
 from inerter.records import Record
+from inerter.records.quality import check_records
 from inerter.reference import ReferenceDevice, response, strokes, sum_of_sines
 
 TRUE = {"inertance": 80.0, "viscous": 40.0, "friction": "coulomb", "coulomb_force": 12.0}
@@ -198,3 +199,13 @@ def test_units_in_device_files(tmp_path: Path) -> None:
     path.write_text('[device]\ninertance = "0.5 tonne"\nrest_length = "30 mm"\n', encoding="utf-8")
     device = read_device(path)
     assert (device.inertance, device.rest_length) == (pytest.approx(500), pytest.approx(0.03))
+
+
+def test_a_doubtful_record_is_told_before_any_cause(records) -> None:
+    turned = [replace(record, force=-record.force) for record in records]
+    checked = check_records(turned)
+    assert any(w.code == "sign_flip" for record in checked for w in record.warnings)
+    diagnosis = diagnose_bench(checked)
+    assert diagnosis.verdict.startswith("Look at the records first: run_")
+    right = diagnose_bench(check_records(records))
+    assert right.verdict.startswith("The simulation")

@@ -150,7 +150,8 @@ def _hysteretic(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]
 def _hardening(bare: Model, sizes: Scales) -> Model:
     """Bouc-Wen hysteresis without a largest force: beta and gamma of any sign, here beta < -gamma.
 
-    Along a path away from rest it hardens, which the coordinates of a level cannot say.
+    Along a path away from rest it hardens, which the coordinates of a level cannot say; with an
+    exponent above 1 it would run away.
     """
     per_distance = 0.5 / sizes.displacement
     return bare.adding(
@@ -158,7 +159,6 @@ def _hardening(bare: Model, sizes: Scales) -> Model:
         bw_stiffness=0.5 * sizes.force / sizes.displacement,
         bw_beta=per_distance,
         bw_gamma=-1.5 * per_distance,
-        bw_exponent=1.0 + 1e-6,
         **({} if "stiffness" in bare.values else {"bw_ratio": 0.0}),
     )
 

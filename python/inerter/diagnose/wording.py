@@ -129,7 +129,23 @@ def _is_right(diagnosis: Diagnosis) -> bool:
 
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
-    return _verdict(diagnosis) + (_ONE_TONE if diagnosis.method.get("one_tone") else "")
+    tone = _ONE_TONE if diagnosis.method.get("one_tone") else ""
+    return _doubts_of_records(diagnosis) + _verdict(diagnosis) + tone
+
+
+# warnings that turn a verdict into nonsense: what they say comes first
+_GRAVE = ("sign_flip", "unit_suspect")
+
+
+def _doubts_of_records(diagnosis: Diagnosis) -> str:
+    doubts = [
+        f"{record.name}: {warning['text']}"
+        for record in diagnosis.records
+        for warning in record.warnings
+        if warning["code"] in _GRAVE
+    ]
+    more = f" (and {len(doubts) - 1} more like it)" if len(doubts) > 1 else ""
+    return f"Look at the records first: {doubts[0]}{more}. " if doubts else ""
 
 
 _ONE_TONE = (

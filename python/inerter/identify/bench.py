@@ -99,7 +99,7 @@ class Run:
 
         What is beyond `far` counts by its logarithm: the sum of the squares is the Cauchy loss.
         """
-        if np.isfinite(self.corner):
+        if np.isfinite(self.corner) and np.isfinite(values).all():
             values = weight_above(np.where(mask, values, 0.0), self.spacing, self.corner)
         if np.isfinite(self.far):
             share = values / self.far

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 # share of what the bristle holds from which on the first force tells the side of its free play
 _TELLING = 0.1
+# friction beyond this [N] is that of a state that has run away
+RUNAWAY = 1e30
 
 
 def first_state(device: Device, run: Run, place: float = 0.0) -> float | Array:
@@ -75,6 +77,9 @@ def force_along(model: Model, run: Run) -> Array:
     rest = _states_of(part, device, state)
     smooth = held(part.along(run.spacing, x, v, a, rest)["total"], run.force.size)
     found = run.at_measured_rate(device, state)
+    if not abs(found["friction"][-1]) < RUNAWAY:
+        # hysteresis that hardens without end: nothing that could be low-passed
+        return np.full(run.force.size, np.inf)
     if not model.has_jumps:
         level = 1 + values.get("friction_drift", 0.0) * run.elapsed
         total = smooth + level * run.in_band(found["friction"])
@@ -111,6 +116,8 @@ def settled(model: Model, run: Run, residual: Array, mask: NDArray[np.bool_]) ->
     """
     mask = mask if mask.any() else run.inner
     device, values = model.device(), model.values
+    if not np.isfinite(residual).all():
+        return residual
     if device.series_stiffness and not device.backlash:
         residual = without_transient(device, residual, run.spacing, mask)
     if amplitude := values.get("disturbance_amplitude", 0.0):

@@ -45,4 +45,7 @@ def role(record: RecordSummary, diagnosis: Diagnosis) -> str:
     for run in diagnosis.curves:
         if run.name == record.name:
             return part_held_out(run)
+    if diagnosis.points is not None and record.role == "fit":
+        # of a table's frequencies some are held out
+        return "partly held out"
     return _ROLES.get(record.role, record.role)

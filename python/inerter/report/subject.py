@@ -35,7 +35,7 @@ class Subject:
 _BENCH = Subject(
     "simulation against bench data",
     "rms force error",
-    "noise of the force channel, the least any model can reach",
+    "expected of the noise of force and motion",
     "Force",
     "The same device, following the measured motion anew in each engine. Figures that agree mean "
     "that the finding does not hang on one implementation.",
@@ -46,7 +46,7 @@ _BENCH = Subject(
 _MODEL = Subject(
     "a model against records of the whole system",
     "rms error of the channels, per their spread,",
-    "noise of the channels, the least any model can reach",
+    "expected of the noise of the channels",
     "Channel",
     "The extended model as written below, simulated once more. The other engines do not run MJCF.",
     "Root of the mean square of measured minus simulated channels over the held-out samples, each "

@@ -94,7 +94,7 @@ def _records(diagnosis: Diagnosis) -> Table:
             _plain(record.name),
             _plain(role(record, diagnosis)),
             text.count(record.samples),
-            text.number(record.sample_rate, 4),
+            text.number(record.sample_rate or None, 4),
             _plain(warnings, "yellow"),
         )
     return table

@@ -53,7 +53,7 @@ def summary(
         What half of the errors are below [N], where few large ones make the rms.
     """
     blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} N"
-    start = f"What remains ({raw:.3g} N rms{blows}; noise of the force channel {floor:.3g} N)"
+    start = f"What remains ({raw:.3g} N rms{blows}; noise of force and motion {floor:.3g} N)"
     if excess:
         return (
             f"{start} is far more than noise, but goes with nothing that was tested: position, "
