@@ -24,7 +24,8 @@ from inerter.simulate.run import Run, run_model
 from inerter.simulate.video import refuse_video
 from simulate_models import PULL, device, oscillator, written
 from test_diagnose_command import inerter
-from test_report import Reader, browse, needs_browser, numbers
+from test_report import Reader, numbers
+from test_report_browser import browse, needs_browser
 
 DOCUMENTATION = Path(__file__).resolve().parents[2] / "docs" / "simulate.md"
 
