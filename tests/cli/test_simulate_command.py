@@ -73,6 +73,12 @@ STIFF = oscillator(device(stiffness=1e9, name="strut"), 'integrator="RK4"', extr
 WRONG = {
     "missing": ("{f}/none.xml", [], "no such file"),
     "folder": ("{f}", [], "is a folder"),
+    "table": (
+        "{f}/table.csv",
+        [],
+        "table.csv: by its ending this is no model; give a model, .xml or .mjb",
+    ),
+    "no ending": ("{f}/table", [], "give a model, .xml or .mjb"),
     "not XML": ("{f}/text.xml", [], "text.xml: XML parse error"),
     "schema": ("{f}/schema.xml", [], "invalid keyword: 'slid'"),
     "device": ("{f}/device.xml", [], 'inertance is "-3"'),
@@ -96,6 +102,8 @@ def test_mistakes_get_one_line_status_2_and_no_files(tmp_path: Path, case: str) 
     good = oscillator(device(inertance=1), extra=PULL)
     written(tmp_path, good, "good.xml")
     written(tmp_path, "text", "text.xml")
+    written(tmp_path, "time,displacement", "table.csv")
+    written(tmp_path, "time,displacement", "table")
     written(tmp_path, good.replace('"slide"', '"slid"'), "schema.xml")
     written(tmp_path, oscillator(device(inertance=-3)), "device.xml")
     written(tmp_path, STIFF, "stiff.xml")
