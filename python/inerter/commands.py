@@ -14,7 +14,7 @@ from rich.table import Table
 import inerter
 from inerter.bench.command import bench_command
 from inerter.blind_test.command import blind_test_command
-from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing, status
+from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing, status
 from inerter.core import parameters
 from inerter.design.commands import app as design_app
 from inerter.diagnose import Diagnosis, diagnose
@@ -133,11 +133,11 @@ def _diagnose(
 def simulate_command(
     model: Annotated[Path, typer.Argument(help="A MuJoCo model: .xml or compiled .mjb.")],
     duration: Annotated[
-        float | None, typer.Option(help="Seconds; default: the control's length, else 10.")
+        float | None, number("seconds", "Seconds; default: the control's length, else 10.")
     ] = None,
     out_dir: Folder = Path("out/simulation"),
     timestep: Annotated[
-        float | None, typer.Option(help="Time step [s] in place of the model's.")
+        float | None, number("seconds", "Time step [s] in place of the model's.")
     ] = None,
     integrator: Annotated[
         str | None,
@@ -151,7 +151,8 @@ def simulate_command(
         typer.Option(help="Table with time and columns named after actuators, joints or BODY.x."),
     ] = None,
     rate: Annotated[
-        float | None, typer.Option(help="Samples per second of the records; default: at most 1000.")
+        float | None,
+        number("samples per second", "Samples per second of the records; default: at most 1000."),
     ] = None,
     video: Annotated[Path | None, typer.Option(help="Also write a video: .gif or .mp4.")] = None,
     as_json: AsJson = False,

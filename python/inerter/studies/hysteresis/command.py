@@ -7,13 +7,15 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing
+from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing
 
 
 def hysteresis_command(
-    noise: Annotated[float, typer.Option(help="White noise on the force [N, rms].")] = 10.0,
-    rate: Annotated[float, typer.Option(help="Samples per second of the tests.")] = 1000.0,
-    duration: Annotated[float, typer.Option(help="Length of a test [s].")] = 6.0,
+    noise: Annotated[float, number("newtons", "White noise on the force [N, rms].")] = 10.0,
+    rate: Annotated[
+        float, number("samples per second", "Samples per second of the tests.")
+    ] = 1000.0,
+    duration: Annotated[float, number("seconds", "Length of a test [s].")] = 6.0,
     denoise: Annotated[
         str,
         typer.Option(
