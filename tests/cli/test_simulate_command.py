@@ -14,6 +14,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from inerter.commands import app
 from inerter.models import model_path
 from inerter.records import read_records
 from inerter.simulate.errors import SimulationError
@@ -21,11 +22,13 @@ from inerter.simulate.load import load_model
 from inerter.simulate.output import write_run
 from inerter.simulate.page import render_page
 from inerter.simulate.run import Run, run_model
+from inerter.simulate.summary import summary
 from inerter.simulate.video import refuse_video
 from simulate_models import PULL, device, oscillator, written
 from test_diagnose_command import inerter
 from test_report import Reader, numbers
 from test_report_browser import browse, needs_browser
+from typer.testing import CliRunner
 
 DOCUMENTATION = Path(__file__).resolve().parents[2] / "docs" / "simulate.md"
 
@@ -59,6 +62,23 @@ def test_json_alone_on_stdout_and_four_files(finished) -> None:
     assert sorted(path.name for path in out.iterdir()) == [
         "simulation.html", "simulation.json", "strut.csv", "vehicle"
     ]  # fmt: skip
+
+
+def test_a_number_that_is_not_finite_is_null_in_the_file_and_on_stdout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def without_end(run: Run) -> dict[str, object]:
+        return {**summary(run), "duration": float("inf"), "spread": [float("nan")]}
+
+    for place in ("inerter.simulate.summary.summary", "inerter.simulate.output.summary"):
+        monkeypatch.setattr(place, without_end)
+    path = written(tmp_path, oscillator(device(inertance=1)))
+    words = ["simulate", str(path), "--duration", "0.1", "--json", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0
+    found = json.loads(done.stdout)
+    assert found == json.loads((tmp_path / "out" / "simulation.json").read_text())
+    assert (found["duration"], found["spread"]) == (None, [None])
 
 
 def test_a_model_without_device_runs_and_says_so(tmp_path: Path) -> None:
