@@ -27,7 +27,10 @@ def hysteresis_command(
     random_starts: Annotated[int, typer.Option(help="Random starts of each optimiser.")] = 20,
     seed: Annotated[int, typer.Option(help="Of the noise and of the random starts.")] = 1,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Few draws and starts: rough, several times faster.")
+        bool,
+        typer.Option(
+            "--quick", help="3 draws and 4 random starts: to look at, not to quote; faster."
+        ),
     ] = False,
     jobs: Jobs = None,
     out_dir: Folder = Path("out/hysteresis"),
@@ -35,7 +38,8 @@ def hysteresis_command(
 ) -> None:
     """Dahl, LuGre and Bouc-Wen on virtual bench tests of a ball-screw inerter, as in the paper.
 
-    Writes hysteresis.json, hysteresis.html and pictures.
+    Takes about a quarter of an hour on two processors, --quick some minutes. Writes
+    hysteresis.json, hysteresis.html and pictures.
     """
     from inerter.studies.hysteresis.output import json_text, print_study, write_study
     from inerter.studies.hysteresis.settings import Settings
