@@ -9,6 +9,12 @@ from typing import Any
 
 INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 
+# what the lab brings: a command imports it when it is run
+_LAB = (
+    "PyEMD", "jinja2", "markupsafe", "matplotlib", "pint", "plotly", "polars", "pyarrow",
+    "pydantic", "rich", "scipy", "threadpoolctl", "typer",
+)  # fmt: skip
+
 
 def main() -> None:
     """Entry point of the `inerter` command: no way out shows a traceback that a user can cause."""
@@ -53,12 +59,13 @@ def _leave(message: str, status: int) -> None:
 def _command() -> None:
     try:
         from inerter.commands import run
-    except ModuleNotFoundError as error:
-        if (error.name or "").startswith("inerter"):
-            raise
-        _without_lab(error.name or "")
-    else:
+
         run()
+    except ModuleNotFoundError as error:
+        missing = (error.name or "").partition(".")[0]
+        if missing not in _LAB:
+            raise
+        _without_lab(missing)
 
 
 def _without_lab(missing: str) -> None:

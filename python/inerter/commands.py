@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Annotated
-from warnings import catch_warnings, simplefilter
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
-from rich.table import Table
 
 import inerter
 from inerter.bench.command import bench_command
 from inerter.blind_test.command import blind_test_command
-from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing, status
-from inerter.core import parameters
+from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing, status
 from inerter.design.commands import app as design_app
-from inerter.diagnose import Diagnosis, diagnose
-from inerter.diagnose.output import write_outputs
+from inerter.folder import json_text
 from inerter.identify.command import identify_command
-from inerter.models import data_path
 from inerter.plugin import MUJOCO_VERSION, plugin_path
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
 from inerter.view.command import view_command
 
+if TYPE_CHECKING:
+    from inerter.diagnose import Diagnosis
+
+# what a command needs is imported in it: a design is not to wait for what a diagnosis loads
 app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
@@ -111,6 +108,14 @@ def _diagnose(
     mapping: tuple[list[str], list[str]] = ([], []),
 ) -> Diagnosis:
     """Without a folder nothing is written."""
+    from warnings import catch_warnings, simplefilter
+
+    import numpy as np
+
+    from inerter.diagnose import diagnose
+    from inerter.diagnose.output import write_outputs
+    from inerter.report.terminal import print_summary
+
     # a user's data that overflow are judged by what comes out, not by numpy's warnings
     with refusing(folder), np.errstate(all="ignore"), catch_warnings():
         simplefilter("ignore", RuntimeWarning)
@@ -119,10 +124,8 @@ def _diagnose(
         if folder:
             write_outputs(result, folder)
     if as_json:
-        print(json.dumps(result.json(), indent=2))
+        print(json_text(result.json()), end="")
     else:
-        from inerter.report.terminal import print_summary
-
         print_summary(result, out)
         if folder:
             out.print(f"Written to {folder}: report.html, diagnosis.json, device.toml, model.xml")
@@ -133,11 +136,11 @@ def _diagnose(
 def simulate_command(
     model: Annotated[Path, typer.Argument(help="A MuJoCo model: .xml or compiled .mjb.")],
     duration: Annotated[
-        float | None, typer.Option(help="Seconds; default: the control's length, else 10.")
+        float | None, number("seconds", "Seconds; default: the control's length, else 10.")
     ] = None,
     out_dir: Folder = Path("out/simulation"),
     timestep: Annotated[
-        float | None, typer.Option(help="Time step [s] in place of the model's.")
+        float | None, number("seconds", "Time step [s] in place of the model's.")
     ] = None,
     integrator: Annotated[
         str | None,
@@ -151,7 +154,8 @@ def simulate_command(
         typer.Option(help="Table with time and columns named after actuators, joints or BODY.x."),
     ] = None,
     rate: Annotated[
-        float | None, typer.Option(help="Samples per second of the records; default: at most 1000.")
+        float | None,
+        number("samples per second", "Samples per second of the records; default: at most 1000."),
     ] = None,
     video: Annotated[Path | None, typer.Option(help="Also write a video: .gif or .mp4.")] = None,
     as_json: AsJson = False,
@@ -185,7 +189,7 @@ def simulate_command(
             with progress_bar("rendering", as_json) as progress:
                 write_video(run.model, run.frames, video, progress)
     if as_json:
-        print(json.dumps(summary(run), indent=2))
+        print(json_text(summary(run)), end="")
     else:
         print_run(run, out)
         out.print(f"Written to {out_dir}: {', '.join(files)}")
@@ -216,7 +220,8 @@ def validate_command(
     Writes validation.json and validation.png. Exit status 1 if something misses its bound.
     """
     from inerter.validate import Selection, validate
-    from inerter.validate.output import json_text, write_validation
+    from inerter.validate.output import json_text as validation_text
+    from inerter.validate.output import write_validation
     from inerter.validate.table import print_validation
 
     with refusing(out_dir):
@@ -225,7 +230,7 @@ def validate_command(
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
         files = write_validation(result, out_dir)
     if as_json:
-        print(json_text(result), end="")
+        print(validation_text(result), end="")
     else:
         print_validation(result, out)
         out.print(f"Written to {out_dir}: {', '.join(files)}")
@@ -238,6 +243,7 @@ def demo(
     out_dir: Folder = Path("out/demo"),
 ) -> None:
     """Diagnose the two shipped records: a time record and a table of amplitudes."""
+    from inerter.models import data_path
     from inerter.report.figures import loop_figure
 
     out.print("A table measured on a ball-screw inerter at 12 frequencies:\n", style="bold")
@@ -259,6 +265,10 @@ def plugin_path_command() -> None:
 @app.command("parameters")
 def parameters_command() -> None:
     """Every parameter of a device: name, unit, default, range, meaning."""
+    from rich.table import Table
+
+    from inerter.core import parameters
+
     table = Table("name", "unit", "default", "range", "friction laws", "meaning")
     for p in parameters().values():
         lower = f"{'>' if p.lower_open else '>='} {p.lower:g}" if p.lower > -1e300 else ""

@@ -36,6 +36,25 @@ Jobs = Annotated[
 ]
 
 
+def number(unit: str, text: str, least: float | None = None, **more: Any) -> Any:
+    """An option that takes a number; `unit` as in "give a number of seconds", `text` is its help.
+
+    What is no number is told the unit, in which the number stands alone.
+    """
+
+    def read(given: str | float) -> float:
+        try:
+            value = float(given)
+        except ValueError:
+            kind = f"a number of {unit}, without a unit" if unit else "a plain number"
+            raise typer.BadParameter(f"{given!r} is not a number; give {kind}") from None
+        if least is not None and not value >= least:
+            raise typer.BadParameter(f"{given} is out of range; give at least {least:g} {unit}")
+        return value
+
+    return typer.Option(help=text, parser=read, metavar="<number>", **more)
+
+
 def refuse(message: str, status: int = UNUSABLE) -> NoReturn:
     """End with one clear line and a status."""
     print(f"inerter: {printable(' '.join(message.split()))}", file=sys.stderr)

@@ -9,6 +9,7 @@ import mujoco
 
 from inerter.core import Device, DeviceError
 from inerter.plugin import load_plugin
+from inerter.simulate.errors import engine_text
 
 
 def device_of_model(path: Path) -> Device:
@@ -25,7 +26,7 @@ def device_of_model(path: Path) -> Device:
     try:
         text = mujoco.MjSpec.from_file(str(path.absolute())).to_xml()
     except ValueError as error:
-        raise DeviceError(f"{path}: {' '.join(str(error).split())}") from None
+        raise DeviceError(f"{path}: {engine_text(error)}") from None
 
     # a device is configured in its actuator, or in an instance that its actuator names
     root = ElementTree.fromstring(text)

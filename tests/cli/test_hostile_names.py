@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -16,10 +17,12 @@ from inerter.report.page import render_report
 from inerter.report.png import png
 from inerter.simulate.page import render_page
 from inerter.simulate.run import run_model
+from made_reports import TOML, XML, diagnosis, run
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from simulate_models import device, oscillator, written
-from test_report import TOML, XML, Reader, browse, diagnosis, needs_browser, replace, run
+from test_report import Reader
+from test_report_browser import browse, needs_browser
 from typer.testing import CliRunner
 
 SCRIPT = "<script>document.title='taken'</script>"

@@ -14,6 +14,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from inerter.commands import app
 from inerter.models import model_path
 from inerter.records import read_records
 from inerter.simulate.errors import SimulationError
@@ -21,10 +22,13 @@ from inerter.simulate.load import load_model
 from inerter.simulate.output import write_run
 from inerter.simulate.page import render_page
 from inerter.simulate.run import Run, run_model
+from inerter.simulate.summary import summary
 from inerter.simulate.video import refuse_video
 from simulate_models import PULL, device, oscillator, written
 from test_diagnose_command import inerter
-from test_report import Reader, browse, needs_browser, numbers
+from test_report import Reader, numbers
+from test_report_browser import browse, needs_browser
+from typer.testing import CliRunner
 
 DOCUMENTATION = Path(__file__).resolve().parents[2] / "docs" / "simulate.md"
 
@@ -60,6 +64,23 @@ def test_json_alone_on_stdout_and_four_files(finished) -> None:
     ]  # fmt: skip
 
 
+def test_a_number_that_is_not_finite_is_null_in_the_file_and_on_stdout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def without_end(run: Run) -> dict[str, object]:
+        return {**summary(run), "duration": float("inf"), "spread": [float("nan")]}
+
+    for place in ("inerter.simulate.summary.summary", "inerter.simulate.output.summary"):
+        monkeypatch.setattr(place, without_end)
+    path = written(tmp_path, oscillator(device(inertance=1)))
+    words = ["simulate", str(path), "--duration", "0.1", "--json", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0
+    found = json.loads(done.stdout)
+    assert found == json.loads((tmp_path / "out" / "simulation.json").read_text())
+    assert (found["duration"], found["spread"]) == (None, [None])
+
+
 def test_a_model_without_device_runs_and_says_so(tmp_path: Path) -> None:
     path = written(tmp_path, oscillator("", extra=PULL))
     done = inerter("simulate", path, "--duration", "0.2", "--keyframe", "0", "--out", tmp_path)
@@ -72,6 +93,12 @@ STIFF = oscillator(device(stiffness=1e9, name="strut"), 'integrator="RK4"', extr
 WRONG = {
     "missing": ("{f}/none.xml", [], "no such file"),
     "folder": ("{f}", [], "is a folder"),
+    "table": (
+        "{f}/table.csv",
+        [],
+        "table.csv: by its ending this is no model; give a model, .xml or .mjb",
+    ),
+    "no ending": ("{f}/table", [], "give a model, .xml or .mjb"),
     "not XML": ("{f}/text.xml", [], "text.xml: XML parse error"),
     "schema": ("{f}/schema.xml", [], "invalid keyword: 'slid'"),
     "device": ("{f}/device.xml", [], 'inertance is "-3"'),
@@ -95,6 +122,8 @@ def test_mistakes_get_one_line_status_2_and_no_files(tmp_path: Path, case: str) 
     good = oscillator(device(inertance=1), extra=PULL)
     written(tmp_path, good, "good.xml")
     written(tmp_path, "text", "text.xml")
+    written(tmp_path, "time,displacement", "table.csv")
+    written(tmp_path, "time,displacement", "table")
     written(tmp_path, good.replace('"slide"', '"slid"'), "schema.xml")
     written(tmp_path, oscillator(device(inertance=-3)), "device.xml")
     written(tmp_path, STIFF, "stiff.xml")

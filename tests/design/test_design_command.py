@@ -69,6 +69,7 @@ def test_help_has_units_and_sources(kind: str) -> None:
     ("words", "message"),
     [
         (["ball-screw", "--lead", "-10 mm"], "lead is -10 mm"),
+        (["ball-screw", "--lead", "10"], 'above 1 m write the unit, "10 mm" or "10 m"'),
         (["ball-screw", "--measured", "missing.csv"], "missing.csv"),
         (["fluid", "--static-pressure", "1 kPa"], "cavitates at rest"),
         (["rack-pinion"], "pinion_radius is not given"),

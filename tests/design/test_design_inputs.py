@@ -65,6 +65,21 @@ def test_what_is_no_length(given, words: str) -> None:
     assert words in str(caught.value)
 
 
+def test_a_length_of_metres_needs_its_unit() -> None:
+    """Who writes 10 for a lead means millimetres; who writes "10 m" was asked."""
+    for given in (10, 10.0, "10", " 1.001 "):
+        with pytest.raises(DesignError, match="above 1 m write the unit") as caught:
+            LENGTH.read(given)
+        assert "without a unit, which is" in str(caught.value)
+    assert LENGTH.read("10 m") == 10
+    assert LENGTH.read("1001 mm") == pytest.approx(1.001)
+    assert LENGTH.read(1) == LENGTH.read("1") == 1
+    # of all lengths only a channel is metres long
+    long = [item.name for item in NUMBERS if item.unit == "m" and item.longest_bare > 1]
+    assert long == ["channel_length"]
+    assert read_inputs(FLUID, {"channel_length": 1.7}).number("channel_length") == 1.7
+
+
 def test_names_are_checked() -> None:
     with pytest.raises(DesignError, match="did you mean 'lead'"):
         read_inputs([LENGTH], {"leed": 1})

@@ -166,6 +166,13 @@ def test_outputs_load_and_say_the_same(records, tmp_path: Path) -> None:
     assert diagnose_bench(records, from_toml).findings == []
 
 
+def test_a_baseline_from_a_file_of_another_kind_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    path.write_text("time,displacement\n", encoding="utf-8")
+    with pytest.raises(DeviceError, match=r"run\.csv: .* give a model, \.xml$"):
+        device_of_model(path)
+
+
 def test_device_file_round_trip(tmp_path: Path) -> None:
     device = Device(inertance=113.25, friction="lugre", coulomb_force=10.0, static_force=12.0)
     path = tmp_path / "device.toml"

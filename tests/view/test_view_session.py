@@ -273,3 +273,10 @@ def test_a_file_without_a_device_is_refused(tmp_path: Path, xml: str | None, sai
         path.write_text(xml, encoding="utf-8")
     with pytest.raises(SimulationError, match=said):
         Session(path)
+
+
+def test_a_file_of_another_kind_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "README.md"
+    path.write_text("# a page", encoding="utf-8")
+    with pytest.raises(SimulationError, match=r"no model; give a model, \.xml$"):
+        Session(path)

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, notes, out, progress_bar, refuse, refusing
+from inerter.console import AsJson, Folder, notes, number, out, progress_bar, refuse, refusing
 
 _AS_COUNT = "default: as --count, none with --effects"
 
@@ -22,7 +22,7 @@ def blind_test_command(
     ] = None,
     count: Annotated[int, typer.Option(min=0, help="Cases of each effect.")] = 40,
     noise: Annotated[
-        float, typer.Option(help="White noise per force rms; 1 micrometre goes with 0.01.")
+        float, number("", "White noise per force rms; 1 micrometre goes with 0.01.")
     ] = 0.01,
     clean: Annotated[
         int | None, typer.Option(min=0, help=f"Cases with nothing hidden; {_AS_COUNT}.")

@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from inerter.design.figures import page, picture
 from inerter.design.result import Design
 from inerter.device_file import device_text
 from inerter.folder import write_files
-from inerter.rig import device_mjcf
 
 
 def design_json(design: Design) -> str:
@@ -25,6 +23,9 @@ def write_design(design: Design, folder: Path) -> list[str]:
     OSError
         The folder cannot be written.
     """
+    from inerter.design.figures import page, picture
+    from inerter.rig import device_mjcf
+
     title = f"calculated by inerter design {design.kind}"
     files: dict[str, bytes | str] = {
         "design.json": design_json(design),

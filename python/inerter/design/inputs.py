@@ -16,6 +16,9 @@ from inerter.unit_text import parse_unit, split_quantity, unit_registry
 PAPER = "printed in the ball-screw paper, Table 1"
 CHOSEN = "chosen here, not printed"
 
+# [m]; the parts of a device are shorter, a longer number is likelier millimetres
+LONGEST_BARE = 1.0
+
 
 class DesignError(ValueError):
     """An input that cannot be: names it, its value, what is allowed and what to do."""
@@ -28,7 +31,7 @@ class Input:
     `unit` is its SI unit ("" for a plain number), `default` None where the part is absent or where
     it follows from others, `source` says where the default comes from. Values lie between `lower`
     and `upper`; `open_lower`, `open_upper` exclude the bound itself. `hint` ends an error about the
-    range.
+    range. A length above `longest_bare` [m] needs its unit: without one it is likelier millimetres.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Input:
     whole: bool = False
     required: bool = False
     hint: str = ""
+    longest_bare: float = LONGEST_BARE
 
     def read(self, given: float | str) -> float:
         """The value in SI units of a number, or of a text such as "10 mm".
@@ -50,7 +54,7 @@ class Input:
         Raises
         ------
         DesignError
-            Not a number, another quantity's unit, out of range.
+            Not a number, another quantity's unit, out of range, a long length without a unit.
         """
         value = self._number(given)
         too_low = value < self.lower or (self.open_lower and value == self.lower)
@@ -58,6 +62,11 @@ class Input:
         if not math.isfinite(value) or too_low or too_high or (self.whole and value % 1):
             hint = f"; {self.hint}" if self.hint else ""
             raise DesignError(f"{self.name} is {given} ({self.meaning}): give {self.allowed}{hint}")
+        if self.unit == "m" and value > self.longest_bare and _is_bare(given):
+            raise DesignError(
+                f"{self.name} is {given} without a unit, which is {value:g} m ({self.meaning}): "
+                f'above {self.longest_bare:g} m write the unit, "{value:g} mm" or "{value:g} m"'
+            )
         return value
 
     @property
@@ -110,6 +119,12 @@ class Input:
         return f'a number in {self.unit}, or with a unit as in "3 {self.unit}"' if self.unit else (
             "a plain number"
         )  # fmt: skip
+
+
+def _is_bare(given: float | str) -> bool:
+    """Whether a number was given without a unit."""
+    found = split_quantity(given) if isinstance(given, str) else (given, "")
+    return found is not None and not found[1]
 
 
 @dataclass(frozen=True, kw_only=True)

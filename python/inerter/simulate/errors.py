@@ -10,7 +10,16 @@ class SimulationError(ValueError):
         super().__init__(" ".join(message.split()))
 
 
-def engine_text(error: Exception) -> str:
-    """What MuJoCo says, on one line; it repeats what a plugin said."""
+# how the engine begins where the file itself, and none that it names, is of no kind that it reads
+_NO_MODEL = "could not find decoder for resource"
+
+
+def engine_text(error: Exception, endings: str = ".xml") -> str:
+    """What MuJoCo says, on one line; it repeats what a plugin said.
+
+    endings: of the files to give where it was given another kind.
+    """
+    if str(error).startswith(_NO_MODEL):
+        return f"by its ending this is no model; give a model, {endings}"
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     return "; ".join(dict.fromkeys(lines)).removeprefix("Error: ").removeprefix("XML Error: ")

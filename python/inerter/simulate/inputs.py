@@ -2,9 +2,10 @@
 
 A column drives what it is named after: an actuator (its control), else a slide or hinge joint (its
 position), else a mocap body by NAME.x, NAME.y, NAME.z (position in the world). Units in brackets
-are converted to SI. The table's first instant is the start of the run; before and after the table
-its end values hold. Between samples controls and mocap positions are linear, joint motions a cubic
-spline, so that their velocity and acceleration are continuous.
+are converted to SI; one that what is driven cannot have is refused. The table's first instant is
+the start of the run; before and after the table its end values hold. Between samples controls and
+mocap positions are linear, joint motions a cubic spline, so that their velocity and acceleration
+are continuous.
 
 An imposed joint is a moving constraint. Its position and velocity are set, and a generalized force
 tau is applied such that the joint has the prescribed acceleration:
@@ -30,9 +31,10 @@ from numpy.typing import NDArray
 from inerter.records import RecordError
 from inerter.records.raw_table import RawTable
 from inerter.records.table import read_table
-from inerter.records.units import QUANTITIES, split_header
+from inerter.records.units import LENGTH, QUANTITIES, Quantity, split_header
 from inerter.simulate.errors import SimulationError
 from inerter.simulate.load import scalar_joints
+from inerter.simulate.quantities import quantity_of_control, quantity_of_joint
 from inerter.unit_text import parse_unit, unit_registry
 
 Array = NDArray[np.float64]
@@ -127,7 +129,8 @@ def read_inputs(path: Path, model: mujoco.MjModel) -> Inputs:
     ------
     SimulationError
         The file cannot be read, times do not increase, a cell is no number, a column drives
-        nothing; names the column and what there is to drive.
+        nothing or has a unit that what it drives cannot have; names the column and what there is to
+        drive, or which units there are.
     """
     try:
         table = read_table(path)
@@ -138,7 +141,7 @@ def read_inputs(path: Path, model: mujoco.MjModel) -> Inputs:
     if "time" not in [name.casefold() for name in names]:
         raise SimulationError(f"{path}: no column 'time'; it has {', '.join(names)}")
     clock = [name.casefold() for name in names].index("time")
-    times = _numbers(table, clock, headers[clock][1])
+    times = _numbers(table, clock, headers[clock][1], QUANTITIES["time"])
     if len(times) < 2 or not (np.diff(times) > 0).all():
         row = int(np.argmax(np.diff(times) <= 0)) + 1 if len(times) > 1 else 0
         raise SimulationError(f"{path}: {table.place(row)}: time does not increase; sort the rows")
@@ -163,15 +166,21 @@ def _connect(
     if name in inputs.driven:
         raise SimulationError(f"{table.path}: column {name!r} is there twice; remove one")
     if actuator >= 0 and model.actuator_ctrlnum[actuator] == 1:
-        values = _numbers(table, index, unit)
+        taken = f"the control of actuator {name!r}"
+        if joint in scalar_joints(model):
+            taken += f" (it comes before the joint {name!r}; rename one to move that)"
+        values = _numbers(table, index, unit, quantity_of_control(model, actuator), taken)
         inputs.controls[int(model.actuator_ctrladr[actuator])] = values
     elif joint in scalar_joints(model):
         from scipy.interpolate import CubicSpline
 
-        inputs.joints[joint] = CubicSpline(inputs.times, _numbers(table, index, unit))
+        quantity = quantity_of_joint(model, joint)
+        values = _numbers(table, index, unit, quantity, f"the position of joint {name!r}")
+        inputs.joints[joint] = CubicSpline(inputs.times, values)
     elif mocap >= 0 and model.body_mocapid[mocap] >= 0:
         place = int(model.body_mocapid[mocap]), _AXES.index(axis)
-        inputs.mocap[place] = _numbers(table, index, unit)
+        taken = f"the position of mocap body {body!r}"
+        inputs.mocap[place] = _numbers(table, index, unit, LENGTH, taken)
     elif name.casefold() in QUANTITIES:
         inputs.ignored.append(name)
         return
@@ -203,8 +212,10 @@ def _split(header: str) -> tuple[str, str | None]:
     return (re.sub(r"\s*[\[(][^\[(]*[\])]$", "", text) if unit else text), unit
 
 
-def _numbers(table: RawTable, index: int, unit: str | None) -> Array:
-    """A column in SI units; every cell must be a number."""
+def _numbers(
+    table: RawTable, index: int, unit: str | None, quantity: Quantity | None, driven: str = "time"
+) -> Array:
+    """A column in SI units; every cell must be a number, and the unit one of the quantity."""
     values, _ = table.numbers(index)
     header = table.header[index].strip()
     missing = np.flatnonzero(~np.isfinite(values))
@@ -216,4 +227,10 @@ def _numbers(table: RawTable, index: int, unit: str | None) -> Array:
     parsed = parse_unit(unit)
     if parsed is None:
         raise SimulationError(f"{table.path}: column {header!r}: unknown unit {unit!r}")
+    if quantity and parsed.dimensionality != parse_unit(quantity.unit).dimensionality:
+        raise SimulationError(
+            f"{table.path}: column {header!r}: {driven} is {quantity.meaning}, and {unit!r} is no "
+            f"unit of one; write for example one of: {quantity.allowed}, or leave it out for "
+            f"{quantity.unit}"
+        )
     return unit_registry().Quantity(values, parsed).to_base_units().magnitude.astype(float)

@@ -55,7 +55,7 @@ def load_model(
     try:
         model = _binary(path) if path.suffix.lower() == ".mjb" else readable_spec(path).compile()
     except (ValueError, mujoco.FatalError) as error:
-        raise SimulationError(f"{path}: {engine_text(error)}") from None
+        raise SimulationError(f"{path}: {engine_text(error, '.xml or .mjb')}") from None
     if timestep is not None:
         model.opt.timestep = timestep
     if integrator is not None:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-from inerter.folder import write_files
+from inerter.folder import json_text, write_files
 from inerter.simulate.page import render_page
 from inerter.simulate.record import device_csv, device_names, vehicle_csv
 from inerter.simulate.run import Run
@@ -32,6 +31,6 @@ def write_run(run: Run, folder: Path) -> list[str]:
              for name, device in zip(device_names(run), run.devices, strict=True)}  # fmt: skip
     if run.vehicle:
         files["vehicle/record.csv"] = vehicle_csv(run)
-    files["simulation.json"] = json.dumps(summary(run), indent=2, allow_nan=False) + "\n"
+    files["simulation.json"] = json_text(summary(run))
     files["simulation.html"] = render_page(run)
     return write_files(folder, files)

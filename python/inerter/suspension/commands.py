@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Jobs, out, progress_bar, refusing
+from inerter.console import AsJson, Jobs, number, out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
@@ -51,22 +51,22 @@ def optimize_command(
     ] = False,
     correlation: Annotated[
         float | None,
-        typer.Option(help="Full: of the left and the right road, 0 to 1.", show_default="0.5"),
+        number("", "Full: of the left and the right road, 0 to 1.", show_default="0.5"),
     ] = None,
     sprung_mass: Annotated[
         float | None,
-        typer.Option(help="Quarter: ms [kg].", show_default=f"{QUARTER_CAR.sprung_mass:g}"),
+        number("kilograms", "Quarter: ms [kg].", show_default=f"{QUARTER_CAR.sprung_mass:g}"),
     ] = None,
     unsprung_mass: Annotated[
         float | None,
-        typer.Option(help="Quarter: mu [kg].", show_default=f"{QUARTER_CAR.unsprung_mass:g}"),
+        number("kilograms", "Quarter: mu [kg].", show_default=f"{QUARTER_CAR.unsprung_mass:g}"),
     ] = None,
     tyre_stiffness: Annotated[
         float | None,
-        typer.Option(help="Quarter: kt [N/m].", show_default=f"{QUARTER_CAR.tyre_stiffness:g}"),
+        number("N/m", "Quarter: kt [N/m].", show_default=f"{QUARTER_CAR.tyre_stiffness:g}"),
     ] = None,
-    velocity: Annotated[float, typer.Option(help="V [m/s].")] = _ROAD.velocity,
-    roughness: Annotated[float, typer.Option(help="kappa [m^3/cycle].")] = _ROAD.roughness,
+    velocity: Annotated[float, number("m/s", "V [m/s].")] = _ROAD.velocity,
+    roughness: Annotated[float, number("m^3/cycle", "kappa [m^3/cycle].")] = _ROAD.roughness,
     jobs: Jobs = None,
     scheduler: Annotated[
         str | None,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from inerter.console import out, refuse
+from inerter.console import number, out, refuse
 from inerter.core import DeviceError
 
 if TYPE_CHECKING:
@@ -35,11 +35,9 @@ def view_command(
         Path | None,
         typer.Option(help="Write the scene and the loops to this .png instead; needs no display."),
     ] = None,
-    duration: Annotated[
-        float, typer.Option(min=1e-3, help="With --picture: seconds to run.")
-    ] = 5.0,
+    duration: Annotated[float, number("seconds", "With --picture: seconds to run.", 1e-3)] = 5.0,
     shown: Annotated[
-        float, typer.Option(min=1e-3, help="With --picture: last seconds of it in the loops.")
+        float, number("seconds", "With --picture: last seconds of it in the loops.", 1e-3)
     ] = 2.0,
 ) -> None:
     """Show a model and the loops of a device as they arise, with sliders for its parameters.

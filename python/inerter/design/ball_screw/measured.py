@@ -24,7 +24,7 @@ from scipy.optimize import minimize_scalar
 from inerter.design.ball_screw.losses import Losses
 from inerter.design.inputs import DesignError
 from inerter.models import data_path
-from inerter.records import BenchTable, read_records
+from inerter.records import BenchTable
 
 Array = NDArray[np.float64]
 SHIPPED = "paper"
@@ -88,6 +88,8 @@ def read_points(name: str) -> Points:
     RecordError
         The file cannot be read.
     """
+    from inerter.records import read_records
+
     path = data_path("ball_screw_table.csv") if name == SHIPPED else Path(name)
     read = read_records([str(path)])
     if len(read) != 1 or not isinstance(read[0], BenchTable):

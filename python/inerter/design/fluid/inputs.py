@@ -28,7 +28,7 @@ INPUTS: tuple[Input | Choice, ...] = (
     ),
     Input(name="channel_area", unit="m^2", meaning="area A2, in place of the diameter"),
     Input(
-        name="channel_length", unit="m", meaning="length l of the channel",
+        name="channel_length", unit="m", meaning="length l of the channel", longest_bare=100.0,
         source=f"{CHANNEL_LENGTH:g} if no helix is given: {_PAPER}",
     ),
     Input(

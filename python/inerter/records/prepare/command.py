@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
-from inerter.console import AsJson, Folder, out, refuse, refusing, status
+from inerter.console import AsJson, Folder, number, out, refuse, refusing, status
 
 
 def prepare_command(
@@ -23,10 +23,10 @@ def prepare_command(
     ] = None,
     noise: Annotated[
         float | None,
-        typer.Option(help="Rms of the channel's white noise, SI units. Default: estimated."),
+        number("SI units", "Rms of the channel's white noise, SI units. Default: estimated."),
     ] = None,
     resample: Annotated[
-        float | None, typer.Option(help="Samples per second of the result.")
+        float | None, number("samples per second", "Samples per second of the result.")
     ] = None,
     derivatives: Annotated[
         bool,
@@ -34,8 +34,9 @@ def prepare_command(
     ] = False,
     cutoff: Annotated[
         float | None,
-        typer.Option(
-            help="Cut-off [Hz] of lowpass, derivatives and delay. Default: chosen from the data."
+        number(
+            "hertz",
+            "Cut-off [Hz] of lowpass, derivatives and delay. Default: chosen from the data.",
         ),
     ] = None,
     delay: Annotated[

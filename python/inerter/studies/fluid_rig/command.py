@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing
+from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing
 
 
 def fluid_rig_command(
@@ -17,12 +17,10 @@ def fluid_rig_command(
     seeds: Annotated[
         int, typer.Option(min=1, help="Draws of noise and starting values, one fit each.")
     ] = 1,
-    duration: Annotated[float, typer.Option(help="Of every sweep [s]; 60 is the whole.")] = 60.0,
-    displacement_noise: Annotated[float, typer.Option(help="Rms [m].")] = 10e-6,
-    force_noise: Annotated[float, typer.Option(help="Rms [N].")] = 0.2,
-    factor: Annotated[
-        float, typer.Option(help="Starting values are off by up to this factor.")
-    ] = 2.0,
+    duration: Annotated[float, number("seconds", "Of every sweep [s]; 60 is the whole.")] = 60.0,
+    displacement_noise: Annotated[float, number("metres", "Rms [m].")] = 10e-6,
+    force_noise: Annotated[float, number("newtons", "Rms [N].")] = 0.2,
+    factor: Annotated[float, number("", "Starting values are off by up to this factor.")] = 2.0,
     jobs: Jobs = None,
     out_dir: Folder = Path("out/fluid_rig"),
     as_json: AsJson = False,

@@ -7,13 +7,15 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, Jobs, out, progress_bar, refusing
+from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing
 
 
 def hysteresis_command(
-    noise: Annotated[float, typer.Option(help="White noise on the force [N, rms].")] = 10.0,
-    rate: Annotated[float, typer.Option(help="Samples per second of the tests.")] = 1000.0,
-    duration: Annotated[float, typer.Option(help="Length of a test [s].")] = 6.0,
+    noise: Annotated[float, number("newtons", "White noise on the force [N, rms].")] = 10.0,
+    rate: Annotated[
+        float, number("samples per second", "Samples per second of the tests.")
+    ] = 1000.0,
+    duration: Annotated[float, number("seconds", "Length of a test [s].")] = 6.0,
     denoise: Annotated[
         str,
         typer.Option(
@@ -25,7 +27,10 @@ def hysteresis_command(
     random_starts: Annotated[int, typer.Option(help="Random starts of each optimiser.")] = 20,
     seed: Annotated[int, typer.Option(help="Of the noise and of the random starts.")] = 1,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Few draws and starts: rough, several times faster.")
+        bool,
+        typer.Option(
+            "--quick", help="3 draws and 4 random starts: to look at, not to quote; faster."
+        ),
     ] = False,
     jobs: Jobs = None,
     out_dir: Folder = Path("out/hysteresis"),
@@ -33,7 +38,8 @@ def hysteresis_command(
 ) -> None:
     """Dahl, LuGre and Bouc-Wen on virtual bench tests of a ball-screw inerter, as in the paper.
 
-    Writes hysteresis.json, hysteresis.html and pictures.
+    Takes about a quarter of an hour on two processors, --quick some minutes. Writes
+    hysteresis.json, hysteresis.html and pictures.
     """
     from inerter.studies.hysteresis.output import json_text, print_study, write_study
     from inerter.studies.hysteresis.settings import Settings

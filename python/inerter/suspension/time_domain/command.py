@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, out, progress_bar, refusing
+from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
 
 
 def evaluate_command(
@@ -36,7 +36,7 @@ def evaluate_command(
     ] = None,
     index: Annotated[str, typer.Option(help="J1, J3, J5, with commas.")] = "J1,J3,J5",
     road: Annotated[str, typer.Option(help="paper, or iso:A to iso:E.")] = "paper",
-    speed: Annotated[float, typer.Option(help="Speed [m/s].")] = 25.0,
+    speed: Annotated[float, number("m/s", "Speed [m/s].")] = 25.0,
     seeds: Annotated[int, typer.Option(help="Number of roads, each with its own phases.")] = 20,
     reoptimise: Annotated[
         bool, typer.Option("--reoptimise", help="Seek c and b anew for every nonlinear case.")
@@ -60,12 +60,12 @@ def evaluate_command(
     ] = None,
     amplitude: Annotated[
         float | None,
-        typer.Option(help="Sinusoidal load for J5 [N]; default 1000, of a half-car 2000."),
+        number("newtons", "Sinusoidal load for J5 [N]; default 1000, of a half-car 2000."),
     ] = None,
-    step: Annotated[float, typer.Option(help="Largest time step [s].")] = 1e-3,
+    step: Annotated[float, number("seconds", "Largest time step [s].")] = 1e-3,
     settle: Annotated[
         float | None,
-        typer.Option(help="Seconds before the means begin; default 4, of a half-car 10."),
+        number("seconds", "Seconds before the means begin; default 4, of a half-car 10."),
     ] = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Threads; default: one per processor.")
