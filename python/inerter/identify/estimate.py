@@ -15,9 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import Device, parameters
 from inerter.identify.bench import Run, thin, whole
 from inerter.identify.coordinates import coordinate, device_values
+from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
@@ -176,8 +177,7 @@ class _Data:
         problem, used = self._problem(), self._used
         jacobian = problem.jacobian(fit.model)
         noise = effect_of_noise(problem, fit.model, jacobian, self.preparation, self.records, used)
-        better, inflation = _allowed_for(problem, fit, jacobian, noise.bias,
-                                         noise.covariance, noise.smoothing)  # fmt: skip
+        better, inflation = allowed_for(problem, fit, jacobian, noise)
         estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
         told = identifiability(
             problem, fit.model, float(np.median(inflation)) if inflation.size else 1.0,
@@ -255,30 +255,6 @@ class _Data:
         low, high = np.quantile(np.sqrt(sums[:, 0] / sums[:, 1]), (0.025, 0.975))
         held = [r.force for r, m in zip(self.raw, self.parted.holdout, strict=True) if m.any()]
         return value, float(low), float(high), value / float(np.std(np.concatenate(held)))
-
-
-def _allowed_for(
-    problem: Problem, fit: Fit, jacobian: Array, bias: Array, spread: Array, smoothing: Array
-) -> tuple[Fit, Array]:
-    """The fit without the bias of noise, its covariance whole; variance per naive variance."""
-    units = problem.units(fit.model)
-    covariance = spread * np.outer(units, units)
-
-    # what the residuals show beyond the channels' noise counts too
-    shown, drawn = np.diag(fit.covariance), np.maximum(np.diag(covariance), 1e-300)
-    more = np.sqrt(np.maximum(1.0, shown / drawn))
-    covariance = covariance * np.outer(more, more) + np.diag((bias**2 + smoothing**2) * units**2)
-    flat = np.concatenate([r[m] for r, m in zip(fit.residual, problem.masks, strict=True)])
-    naive = np.linalg.pinv(jacobian.T @ jacobian) * float(np.mean(flat**2))
-    own = np.diag(naive) * units**2
-    # a coordinate without effect has no variance of its own to compare with
-    inflation = np.where(own > 0, np.diag(covariance) / np.where(own > 0, own, 1.0), 1.0)
-    model = problem.moved(fit.model, -bias)
-    try:
-        model.device()
-    except DeviceError:
-        model = fit.model
-    return replace(fit, model=model, covariance=covariance), inflation
 
 
 def _profile(
