@@ -34,6 +34,7 @@ from inerter.identify.preparation import (
 from inerter.identify.profile import profile_interval
 from inerter.identify.result import Estimate, Identification, Identified
 from inerter.identify.split import Split, blocks, split
+from inerter.identify.turns import needs_turns, with_turns
 from inerter.records import Record
 from inerter.records.motion import Motion as BenchMotion
 
@@ -104,10 +105,12 @@ def identify(
         progress(0.0, "smoothing")
         preparation = prepare(records)
         data = prepared(records, preparation, holdout, known)
+        bristled = prepared(records, preparation, holdout, known, turns=True)
         results = []
         for done, law in enumerate(chosen):
             progress((done + 0.1) / len(chosen), law.name)
-            results.append(data.identified(law, loss, intervals, starts))
+            suited = bristled if needs_turns(law, known) else data
+            results.append(suited.identified(law, loss, intervals, starts))
         progress(1.0, "done")
     results.sort(key=lambda result: result.rmse)
     return Identification(tuple(records), tuple(results), preparation, data.parted)
@@ -118,11 +121,14 @@ def prepared(
     preparation: Preparation,
     holdout: Sequence[str],
     fixed: Mapping[str, float | str],
+    turns: bool = False,
 ) -> _Data:
-    """Smoothed records as what a law is fitted to and judged on."""
+    """Smoothed records as what a law is fitted to and judged on, see `needs_turns`."""
     runs = [thin(motion) for motion in preparation.motions]
     raw = [whole(motion) for motion in preparation.motions]
-    return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout)
+    if turns:
+        runs, raw = [with_turns(run) for run in runs], [with_turns(run) for run in raw]
+    return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout, turns)
 
 
 @dataclass(frozen=True)
@@ -136,6 +142,7 @@ class _Data:
     raw: Sequence[Run]
     fixed: Mapping[str, float | str]
     holdout: Sequence[str]
+    turns: bool
 
     def identified(self, law: Law, loss: str, intervals: str, starts: int | None) -> Identified:
         begin = time.perf_counter()
@@ -162,7 +169,7 @@ class _Data:
         def error(motions: Sequence[BenchMotion], masks: Masks) -> float:
             # what is held out has no say
             smoothed = replace(self.preparation, motions=list(motions))
-            data = prepared(self.records, smoothed, self.holdout, self.fixed)
+            data = prepared(self.records, smoothed, self.holdout, self.fixed, self.turns)
             parts = zip(data.parted.fit, masks, data.runs, strict=True)
             return data._raw_error(model, [f & m[:: r.thinned] for f, m, r in parts])[0]
 
@@ -170,13 +177,16 @@ class _Data:
         return (
             self
             if preparation is self.preparation
-            else prepared(self.records, preparation, self.holdout, self.fixed)
+            else prepared(self.records, preparation, self.holdout, self.fixed, self.turns)
         )
 
     def _told(self, law: Law, found: Search, fit: Fit, intervals: str, begin: float) -> Identified:
         problem, used = self._problem(), self._used
         jacobian = problem.jacobian(fit.model)
-        noise = effect_of_noise(problem, fit.model, jacobian, self.preparation, self.records, used)
+        noise = effect_of_noise(
+            problem, fit.model, jacobian, self.preparation, self.records, used,
+            with_turns if self.turns else None,
+        )  # fmt: skip
         better, inflation = allowed_for(problem, fit, jacobian, noise)
         estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
         told = identifiability(
