@@ -10,6 +10,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
 from inerter.identify.model import NUISANCES, Model
 from inerter.identify.multistart import Search, search
+from inerter.identify.nested import contains, embedded
 from inerter.identify.noise import effect_of_noise
 from inerter.identify.preparation import (
     Preparation,
@@ -49,6 +51,9 @@ _RESAMPLES = 400
 # how often the cut-off is chosen anew for a fit, and how long the fit then goes on
 _CUTOFFS = 3
 _EVALUATIONS = 100
+# how many times the error of a simpler law, on the data fitted, a law may have: what is told is the
+# error of the whole force, what is minimised that in the band of the motion
+WORSE = 1.1
 
 
 def identify(
@@ -106,11 +111,15 @@ def identify(
         preparation = prepare(records)
         data = prepared(records, preparation, holdout, known)
         bristled = prepared(records, preparation, holdout, known, turns=True)
-        results = []
-        for done, law in enumerate(chosen):
-            progress((done + 0.1) / len(chosen), law.name)
+        found: list[_Fitted] = []
+        results: list[Identified] = []
+        # simple laws first: what they find is a start for others
+        for law in sorted(chosen, key=lambda each: len(each.linear) + len(each.starts)):
+            progress((len(found) + 0.1) / len(chosen), law.name)
             suited = bristled if needs_turns(law, known) else data
-            results.append(suited.identified(law, loss, intervals, starts))
+            fitted = suited.fitted(law, loss, starts, found)
+            found.append(fitted)
+            results.append(fitted.told(intervals, results if loss == "linear" else ()))
         progress(1.0, "done")
     results.sort(key=lambda result: result.rmse)
     return Identification(tuple(records), tuple(results), preparation, data.parted)
@@ -144,16 +153,27 @@ class _Data:
     holdout: Sequence[str]
     turns: bool
 
-    def identified(self, law: Law, loss: str, intervals: str, starts: int | None) -> Identified:
+    def fitted(self, law: Law, loss: str, starts: int | None, others: Sequence[_Fitted]) -> _Fitted:
+        """The best fit of a law, where `others` are laws that were fitted before."""
         begin = time.perf_counter()
-        found = search(self._problem(), law, self.fixed, loss=loss, starts=starts)
-        data, fit = self, found.best
+        simpler = [each for each in others if contains(law, each.law, limits=True)]
+        models = [each.fit.model for each in simpler]
+        found = search(self._problem(), law, self.fixed, loss=loss, starts=starts, simpler=models)
+        data, fit, converged = self, found.best, found.converged
         for _ in range(_CUTOFFS):
             again = data._smoothed_for(fit.model)
             if again is data:
                 break
             data, fit = again, again._problem().fit(fit.model, _EVALUATIONS, loss)
-        return data._told(law, found, fit, intervals, begin)
+            converged = fit.evaluations < _EVALUATIONS
+        fitted = _Fitted(law, data, found, fit, converged, begin)
+
+        # what a simpler law found at its own cut-off is the last start; robust fits are not for the
+        # smallest error
+        best = min(simpler, key=lambda each: each.error, default=None)
+        if loss == "linear" and best and best.error * WORSE < fitted.error:
+            fitted = min(fitted, fitted.from_simpler(best, loss), key=lambda each: each.error)
+        return fitted
 
     def _problem(self) -> Problem:
         """The runs that are fitted."""
@@ -180,8 +200,10 @@ class _Data:
             else prepared(self.records, preparation, self.holdout, self.fixed, self.turns)
         )
 
-    def _told(self, law: Law, found: Search, fit: Fit, intervals: str, begin: float) -> Identified:
+    def told(self, fitted: _Fitted, intervals: str) -> Identified:
+        """What there is to say of a fit to these data."""
         problem, used = self._problem(), self._used
+        law, found, fit = fitted.law, fitted.found, fitted.fit
         jacobian = problem.jacobian(fit.model)
         noise = effect_of_noise(
             problem, fit.model, jacobian, self.preparation, self.records, used,
@@ -211,7 +233,8 @@ class _Data:
             nrmse=nrmse,
             ends=found.ends,
             notes=tuple(_notes(problem, fit, found.ends)),
-            seconds=time.perf_counter() - begin,
+            converged=fitted.converged,
+            seconds=time.perf_counter() - fitted.begin,
             model=model,
             cutoff=self.preparation.cutoff,
             runs=tuple(self.raw),
@@ -265,6 +288,48 @@ class _Data:
         low, high = np.quantile(np.sqrt(sums[:, 0] / sums[:, 1]), (0.025, 0.975))
         held = [r.force for r, m in zip(self.raw, self.parted.holdout, strict=True) if m.any()]
         return value, float(low), float(high), value / float(np.std(np.concatenate(held)))
+
+
+@dataclass(frozen=True)
+class _Fitted:
+    """A law's best fit, the data as smoothed for it, and when work on it began."""
+
+    law: Law
+    data: _Data
+    found: Search
+    fit: Fit
+    converged: bool
+    begin: float
+
+    @cached_property
+    def error(self) -> float:
+        """Force error on the data fitted [N]."""
+        return self.data._raw_error(self.fit.model, self.data.parted.fit)[0]
+
+    def from_simpler(self, other: _Fitted, loss: str) -> _Fitted:
+        """A fit from what a simpler law found, at that law's cut-off."""
+        data = prepared(
+            self.data.records, other.data.preparation, self.data.holdout, self.data.fixed,
+            self.data.turns,
+        )  # fmt: skip
+        problem = data._problem()
+        starts = embedded(self.fit.model, [other.fit.model], problem.scales)
+        fits = [problem.fit(start, _EVALUATIONS, loss) for start in starts]
+        if not fits:
+            return self
+        fit = min(fits, key=lambda each: each.cost)
+        return replace(self, data=data, fit=fit, converged=fit.evaluations < _EVALUATIONS)
+
+    def told(self, intervals: str, others: Sequence[Identified]) -> Identified:
+        """What there is to say of the fit, beside those of `others`."""
+        told = self.data.told(self, intervals)
+        worse = tuple(
+            each.law
+            for each in others
+            if each.fit_rmse * WORSE < told.fit_rmse
+            and contains(self.law, law_named(each.law), limits=True)
+        )
+        return replace(told, worse_than=worse)
 
 
 def _profile(
