@@ -10,19 +10,22 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import Device, parameters
 from inerter.identify.bench import Run, thin, whole
 from inerter.identify.coordinates import coordinate, device_values
+from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
 from inerter.identify.model import NUISANCES, Model
 from inerter.identify.multistart import Search, search
+from inerter.identify.nested import contains, embedded
 from inerter.identify.noise import effect_of_noise
 from inerter.identify.preparation import (
     Preparation,
@@ -33,6 +36,7 @@ from inerter.identify.preparation import (
 from inerter.identify.profile import profile_interval
 from inerter.identify.result import Estimate, Identification, Identified
 from inerter.identify.split import Split, blocks, split
+from inerter.identify.turns import needs_turns, with_turns
 from inerter.records import Record
 from inerter.records.motion import Motion as BenchMotion
 
@@ -47,6 +51,9 @@ _RESAMPLES = 400
 # how often the cut-off is chosen anew for a fit, and how long the fit then goes on
 _CUTOFFS = 3
 _EVALUATIONS = 100
+# how many times the error of a simpler law, on the data fitted, a law may have: what is told is the
+# error of the whole force, what is minimised that in the band of the motion
+WORSE = 1.1
 
 
 def identify(
@@ -103,10 +110,16 @@ def identify(
         progress(0.0, "smoothing")
         preparation = prepare(records)
         data = prepared(records, preparation, holdout, known)
-        results = []
-        for done, law in enumerate(chosen):
-            progress((done + 0.1) / len(chosen), law.name)
-            results.append(data.identified(law, loss, intervals, starts))
+        bristled = prepared(records, preparation, holdout, known, turns=True)
+        found: list[_Fitted] = []
+        results: list[Identified] = []
+        # simple laws first: what they find is a start for others
+        for law in sorted(chosen, key=lambda each: len(each.linear) + len(each.starts)):
+            progress((len(found) + 0.1) / len(chosen), law.name)
+            suited = bristled if needs_turns(law, known) else data
+            fitted = suited.fitted(law, loss, starts, found)
+            found.append(fitted)
+            results.append(fitted.told(intervals, results if loss == "linear" else ()))
         progress(1.0, "done")
     results.sort(key=lambda result: result.rmse)
     return Identification(tuple(records), tuple(results), preparation, data.parted)
@@ -117,11 +130,14 @@ def prepared(
     preparation: Preparation,
     holdout: Sequence[str],
     fixed: Mapping[str, float | str],
+    turns: bool = False,
 ) -> _Data:
-    """Smoothed records as what a law is fitted to and judged on."""
+    """Smoothed records as what a law is fitted to and judged on, see `needs_turns`."""
     runs = [thin(motion) for motion in preparation.motions]
     raw = [whole(motion) for motion in preparation.motions]
-    return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout)
+    if turns:
+        runs, raw = [with_turns(run) for run in runs], [with_turns(run) for run in raw]
+    return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout, turns)
 
 
 @dataclass(frozen=True)
@@ -135,17 +151,29 @@ class _Data:
     raw: Sequence[Run]
     fixed: Mapping[str, float | str]
     holdout: Sequence[str]
+    turns: bool
 
-    def identified(self, law: Law, loss: str, intervals: str, starts: int | None) -> Identified:
+    def fitted(self, law: Law, loss: str, starts: int | None, others: Sequence[_Fitted]) -> _Fitted:
+        """The best fit of a law, where `others` are laws that were fitted before."""
         begin = time.perf_counter()
-        found = search(self._problem(), law, self.fixed, loss=loss, starts=starts)
-        data, fit = self, found.best
+        simpler = [each for each in others if contains(law, each.law, limits=True)]
+        models = [each.fit.model for each in simpler]
+        found = search(self._problem(), law, self.fixed, loss=loss, starts=starts, simpler=models)
+        data, fit, converged = self, found.best, found.converged
         for _ in range(_CUTOFFS):
             again = data._smoothed_for(fit.model)
             if again is data:
                 break
             data, fit = again, again._problem().fit(fit.model, _EVALUATIONS, loss)
-        return data._told(law, found, fit, intervals, begin)
+            converged = fit.evaluations < _EVALUATIONS
+        fitted = _Fitted(law, data, found, fit, converged, begin)
+
+        # what a simpler law found at its own cut-off is the last start; robust fits are not for the
+        # smallest error
+        best = min(simpler, key=lambda each: each.error, default=None)
+        if loss == "linear" and best and best.error * WORSE < fitted.error:
+            fitted = min(fitted, fitted.from_simpler(best, loss), key=lambda each: each.error)
+        return fitted
 
     def _problem(self) -> Problem:
         """The runs that are fitted."""
@@ -161,7 +189,7 @@ class _Data:
         def error(motions: Sequence[BenchMotion], masks: Masks) -> float:
             # what is held out has no say
             smoothed = replace(self.preparation, motions=list(motions))
-            data = prepared(self.records, smoothed, self.holdout, self.fixed)
+            data = prepared(self.records, smoothed, self.holdout, self.fixed, self.turns)
             parts = zip(data.parted.fit, masks, data.runs, strict=True)
             return data._raw_error(model, [f & m[:: r.thinned] for f, m, r in parts])[0]
 
@@ -169,15 +197,19 @@ class _Data:
         return (
             self
             if preparation is self.preparation
-            else prepared(self.records, preparation, self.holdout, self.fixed)
+            else prepared(self.records, preparation, self.holdout, self.fixed, self.turns)
         )
 
-    def _told(self, law: Law, found: Search, fit: Fit, intervals: str, begin: float) -> Identified:
+    def told(self, fitted: _Fitted, intervals: str) -> Identified:
+        """What there is to say of a fit to these data."""
         problem, used = self._problem(), self._used
+        law, found, fit = fitted.law, fitted.found, fitted.fit
         jacobian = problem.jacobian(fit.model)
-        noise = effect_of_noise(problem, fit.model, jacobian, self.preparation, self.records, used)
-        better, inflation = _allowed_for(problem, fit, jacobian, noise.bias,
-                                         noise.covariance, noise.smoothing)  # fmt: skip
+        noise = effect_of_noise(
+            problem, fit.model, jacobian, self.preparation, self.records, used,
+            with_turns if self.turns else None,
+        )  # fmt: skip
+        better, inflation = allowed_for(problem, fit, jacobian, noise)
         estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
         told = identifiability(
             problem, fit.model, float(np.median(inflation)) if inflation.size else 1.0,
@@ -201,7 +233,8 @@ class _Data:
             nrmse=nrmse,
             ends=found.ends,
             notes=tuple(_notes(problem, fit, found.ends)),
-            seconds=time.perf_counter() - begin,
+            converged=fitted.converged,
+            seconds=time.perf_counter() - fitted.begin,
             model=model,
             cutoff=self.preparation.cutoff,
             runs=tuple(self.raw),
@@ -257,28 +290,46 @@ class _Data:
         return value, float(low), float(high), value / float(np.std(np.concatenate(held)))
 
 
-def _allowed_for(
-    problem: Problem, fit: Fit, jacobian: Array, bias: Array, spread: Array, smoothing: Array
-) -> tuple[Fit, Array]:
-    """The fit without the bias of noise, its covariance whole; variance per naive variance."""
-    units = problem.units(fit.model)
-    covariance = spread * np.outer(units, units)
+@dataclass(frozen=True)
+class _Fitted:
+    """A law's best fit, the data as smoothed for it, and when work on it began."""
 
-    # what the residuals show beyond the channels' noise counts too
-    shown, drawn = np.diag(fit.covariance), np.maximum(np.diag(covariance), 1e-300)
-    more = np.sqrt(np.maximum(1.0, shown / drawn))
-    covariance = covariance * np.outer(more, more) + np.diag((bias**2 + smoothing**2) * units**2)
-    flat = np.concatenate([r[m] for r, m in zip(fit.residual, problem.masks, strict=True)])
-    naive = np.linalg.pinv(jacobian.T @ jacobian) * float(np.mean(flat**2))
-    own = np.diag(naive) * units**2
-    # a coordinate without effect has no variance of its own to compare with
-    inflation = np.where(own > 0, np.diag(covariance) / np.where(own > 0, own, 1.0), 1.0)
-    model = problem.moved(fit.model, -bias)
-    try:
-        model.device()
-    except DeviceError:
-        model = fit.model
-    return replace(fit, model=model, covariance=covariance), inflation
+    law: Law
+    data: _Data
+    found: Search
+    fit: Fit
+    converged: bool
+    begin: float
+
+    @cached_property
+    def error(self) -> float:
+        """Force error on the data fitted [N]."""
+        return self.data._raw_error(self.fit.model, self.data.parted.fit)[0]
+
+    def from_simpler(self, other: _Fitted, loss: str) -> _Fitted:
+        """A fit from what a simpler law found, at that law's cut-off."""
+        data = prepared(
+            self.data.records, other.data.preparation, self.data.holdout, self.data.fixed,
+            self.data.turns,
+        )  # fmt: skip
+        problem = data._problem()
+        starts = embedded(self.fit.model, [other.fit.model], problem.scales)
+        fits = [problem.fit(start, _EVALUATIONS, loss) for start in starts]
+        if not fits:
+            return self
+        fit = min(fits, key=lambda each: each.cost)
+        return replace(self, data=data, fit=fit, converged=fit.evaluations < _EVALUATIONS)
+
+    def told(self, intervals: str, others: Sequence[Identified]) -> Identified:
+        """What there is to say of the fit, beside those of `others`."""
+        told = self.data.told(self, intervals)
+        worse = tuple(
+            each.law
+            for each in others
+            if each.fit_rmse * WORSE < told.fit_rmse
+            and contains(self.law, law_named(each.law), limits=True)
+        )
+        return replace(told, worse_than=worse)
 
 
 def _profile(

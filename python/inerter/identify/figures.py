@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inerter.identify.prediction import force_along
@@ -17,6 +21,9 @@ Array = NDArray[np.float64]
 
 # samples of a run that a picture shows, and points it draws
 _POINTS = 3000
+# labels on the axis of errors, and their least distance per length of the axis
+_MOST = 5
+_GAP = 0.12
 
 
 def picture(result: Identification) -> bytes:
@@ -56,9 +63,33 @@ def _errors(axes: Axes, result: Identification) -> None:
     axes.invert_yaxis()
     axes.set_xscale("log")
     _style(axes, "force error on held-out data [N, rms]")
-    for axis_ticks in (axes.xaxis.set_major_formatter, axes.xaxis.set_minor_formatter):
-        axis_ticks("{x:g}")
-    axes.tick_params(which="both", labelsize=8, labelcolor=LIGHT["soft"])
+    low, high = axes.get_xlim()
+    ticks = log_ticks(low, high)
+    axes.set_xticks(ticks, [f"{tick:.6g}" for tick in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_xlim(low, high)
+
+
+def log_ticks(low: float, high: float) -> list[float]:
+    """Round numbers that can be read side by side on a narrow logarithmic axis: five at most."""
+    first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
+    for digits in ((1, 2, 3, 4, 5, 6, 7, 8, 9), (1, 2, 5), (1, 3), (1,)):
+        decades = range(first, last + 1)
+        ticks = [float(f"{digit}e{decade}") for decade in decades for digit in digits]
+        seen = [tick for tick in ticks if low <= tick <= high]
+        gaps = [math.log(b / a) / math.log(high / low) for a, b in itertools.pairwise(seen)]
+        if 3 <= len(seen) <= _MOST and min(gaps) > _GAP:
+            return seen
+    if last - first > _MOST:
+        return [10.0**decade for decade in range(first + 1, last, -(-(last - first) // _MOST))]
+    # within less than a decade the scale is all but even
+    for count in range(_MOST, 0, -1):
+        ticks = MaxNLocator(count, steps=[1, 2, 5, 10]).tick_values(low, high)
+        seen = [float(f"{tick:.12g}") for tick in ticks if low <= tick <= high]
+        gaps = [math.log(b / a) / math.log(high / low) for a, b in itertools.pairwise(seen)]
+        if len(seen) <= _MOST and min(gaps, default=1.0) > _GAP:
+            break
+    return seen
 
 
 def _shown(result: Identification) -> tuple:

@@ -2,8 +2,9 @@
 
 A Halton sequence covers the ranges of the coordinates that enter the force nonlinearly. With those
 held, the force is linear in the rest (inertance, damping, stiffness, friction level ...), which a
-bounded linear fit finds at once. The best few starts that differ are then fitted in full. Nothing
-is random: the same data give the same answer.
+bounded linear fit finds at once. The best few starts that differ are then fitted in full, and what
+a simpler law found, where no fit is as good (see `nested`). Nothing is random: the same data give
+the same answer.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from inerter.identify.coordinates import coordinate
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.laws import LEVEL, Law, unit_of
 from inerter.identify.model import NUISANCES, Model
+from inerter.identify.nested import embedded
 from inerter.identify.prediction import force_along
 
 Array = NDArray[np.float64]
@@ -38,10 +40,14 @@ _TRANSITION = 0.005
 
 @dataclass(frozen=True)
 class Search:
-    """`best` fit, and the rms errors [N] that the fits from the other starts ended at."""
+    """`best` fit, and the rms errors [N] that the fits from the other starts ended at.
+
+    `converged`: the best fit ended because no step lowered the error, not because it took too long.
+    """
 
     best: Fit
     ends: tuple[float, ...]
+    converged: bool = True
 
 
 def search(
@@ -51,6 +57,7 @@ def search(
     *,
     loss: str = "linear",
     starts: int | None = None,
+    simpler: Sequence[Model] = (),
 ) -> Search:
     """The best fit of a law.
 
@@ -66,6 +73,8 @@ def search(
         As in `scipy.optimize.least_squares`: "linear", or robust: "soft_l1", "huber", "cauchy".
     starts
         Points of the sequence; by default 24 per nonlinear coordinate.
+    simpler
+        What laws within this one were fitted as.
 
     Raises
     ------
@@ -75,16 +84,21 @@ def search(
     models = list(_starts(problem, law, fixed, starts))
     scored = sorted(
         ((error, model) for model in models if math.isfinite(error := _error(problem, model))),
-        key=lambda each: each[0],
+        key=_first,
     )
     if not scored:
         models[0].device()
         raise DeviceError(f"law {law.name}: no start gives a finite force; check what is fixed")
     chosen = _distinct([model for _, model in scored], law)[:_FITTED]
     fits = [problem.fit(model, _ROUGH, loss) for model in chosen]
+    reached = min(_size(fit.residual, problem) for fit in fits)
+    inside = [(_error(problem, m), m) for m in embedded(models[0], simpler, problem.scales)]
+    if inside and min(inside, key=_first)[0] < reached:
+        fits.append(problem.fit(min(inside, key=_first)[1], _ROUGH, loss))
     order = sorted(range(len(fits)), key=lambda i: fits[i].cost)
     best = problem.fit(fits[order[0]].model, _THOROUGH, loss)
-    return Search(best, tuple(fits[i].rmse(problem.masks) for i in order))
+    ends = tuple(fits[i].rmse(problem.masks) for i in order)
+    return Search(best, ends, best.evaluations < _THOROUGH)
 
 
 def _starts(
@@ -212,14 +226,22 @@ def _masked(problem: Problem, model: Model) -> Array:
 
 
 def _error(problem: Problem, model: Model) -> float:
-    """Rms error [N]; infinite where the device cannot be."""
+    """Root of the squared error [N]; infinite where the device cannot be."""
     try:
         residual = problem.residual(model)
     except DeviceError:
         return math.inf
-    squares = [float(np.sum(r[m] ** 2)) for r, m in zip(residual, problem.masks, strict=True)]
-    value = math.sqrt(sum(squares))
+    value = _size(residual, problem)
     return value if math.isfinite(value) else math.inf
+
+
+def _size(residual: Sequence[Array], problem: Problem) -> float:
+    squares = [float(np.sum(r[m] ** 2)) for r, m in zip(residual, problem.masks, strict=True)]
+    return math.sqrt(sum(squares))
+
+
+def _first(pair: tuple[float, Model]) -> float:
+    return pair[0]
 
 
 def _distinct(models: Sequence[Model], law: Law) -> list[Model]:

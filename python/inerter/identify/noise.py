@@ -12,7 +12,7 @@ Noise is taken for white, of the size that the upper third of each channel's spe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -59,6 +59,7 @@ def effect_of_noise(
     preparation: Preparation,
     records: Sequence[Record],
     used: Sequence[int],
+    changed: Callable[[Run], Run] | None = None,
     draws: int = DRAWS,
 ) -> NoiseEffect:
     """Bias and covariance of the free search variables that the channels' noise brings.
@@ -75,19 +76,23 @@ def effect_of_noise(
         Every record, as the motions of the preparation.
     used
         Which of them the runs of the problem are.
+    changed
+        What is done to a run before a model follows it.
     draws
         Made-up sets of records.
     """
     random = np.random.default_rng(SEED)
+    change = changed or (lambda run: run)
     projector = np.linalg.pinv(jacobian)
-    truths = [_truth(model, records[i], preparation) for i in used]
+    truths = [_truth(model, records[i], preparation, change) for i in used]
     steps = np.empty((draws, jacobian.shape[1]))
     for draw in range(draws):
-        runs = [truth.drawn(random, preparation) for truth in truths]
+        runs = [change(truth.drawn(random, preparation)) for truth in truths]
         steps[draw] = -projector @ _flat(problem, model, runs)
     bias = steps.mean(axis=0)
     covariance = np.cov(steps.T).reshape(bias.size, bias.size)
-    return NoiseEffect(bias, covariance, _smoothing(problem, model, preparation, records, used))
+    smoothing = _smoothing(problem, model, preparation, records, used, change)
+    return NoiseEffect(bias, covariance, smoothing)
 
 
 def _smoothing(
@@ -96,12 +101,13 @@ def _smoothing(
     preparation: Preparation,
     records: Sequence[Record],
     used: Sequence[int],
+    change: Callable[[Run], Run],
 ) -> Array:
     """How far one Gauss-Newton step goes on the records at neighbouring cut-offs, rms (p,)."""
     steps = []
     for factor in NEIGHBOURS:
         cutoff = factor * preparation.cutoff
-        runs = [thin(smooth(records[i], cutoff, preparation.channels)) for i in used]
+        runs = [change(thin(smooth(records[i], cutoff, preparation.channels))) for i in used]
         # which samples count, at the instants of these runs
         masks = [
             np.interp(new.time, old.time, mask.astype(float)) > 0.99
@@ -129,13 +135,15 @@ class _Truth:
         return thin(smooth(record, preparation.cutoff, preparation.channels))
 
 
-def _truth(model: Model, record: Record, preparation: Preparation) -> _Truth:
+def _truth(
+    model: Model, record: Record, preparation: Preparation, change: Callable[[Run], Run]
+) -> _Truth:
     """The record that the model would leave along the smoothed motion."""
     motion = smooth(record, preparation.cutoff, preparation.channels)
     # at rest the smoothed velocity is noise, and would turn friction about
     still = thin(motion).measured
     assert still is not None
-    exact = replace(whole(motion), velocity=still[1])
+    exact = change(replace(whole(motion), velocity=still[1]))
     channels = {
         "displacement": motion.displacement,
         "force": force_along(model, exact),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -53,11 +54,14 @@ def print_identification(result: Identification, out: Console) -> None:
         left = column == "law"
         laws.add_column(column, justify="left" if left else "right", overflow="fold")
     for each in result.results:
+        name = each.law if each.converged else f"{each.law} (not converged)"
         laws.add_row(
-            each.law, f"{each.rmse:.4g}", f"{each.low:.4g} ... {each.high:.4g}",
+            name, f"{each.rmse:.4g}", f"{each.low:.4g} ... {each.high:.4g}",
             f"{each.fit_rmse:.4g}", f"{each.seconds:.1f}",
         )  # fmt: skip
     out.print(laws)
+    for text in doubts(result):
+        out.print(f"Note: {text}.")
     best = result.best
     if best.motion:
         out.print(
@@ -72,7 +76,7 @@ def print_identification(result: Identification, out: Console) -> None:
         values.add_row(name, f"{each.value:.5g}", f"{each.stderr:.2g}", _interval(each), each.unit)
     out.print(values)
     for group in best.undetermined:
-        out.print(f"These data cannot tell apart: {', '.join(group)}.")
+        out.print(left_open(group, best.parameters))
     for each in best.combinations:
         out.print(
             f"  known: {each.expression} = {each.value:.5g} (+- {100 * each.relative_error:.2g} %)"
@@ -82,6 +86,39 @@ def print_identification(result: Identification, out: Console) -> None:
     for record in result.records:
         for warning in record.warnings:
             out.print(f"Warning, {record.name}: {warning.text}")
+
+
+def doubts(result: Identification) -> list[str]:
+    """Sentences on laws whose figures are not the best there could be."""
+    found = [
+        f"the fit of {each.law} has not converged: more --starts may find a better one"
+        for each in result.results
+        if not each.converged
+    ]
+    behind: dict[tuple[str, ...], list[str]] = {}
+    for each in result.results:
+        if each.worse_than:
+            behind.setdefault(each.worse_than, []).append(each.law)
+    for simpler, laws in behind.items():
+        verb = "explains" if len(laws) == 1 else "explain"
+        found.append(
+            f"{', '.join(laws)} {verb} the fitted data less well than {', '.join(simpler)}: near "
+            "as they can come, they differ at speeds near 0 or above the band that is fitted"
+        )
+    return found
+
+
+def left_open(group: Sequence[str], estimates: Mapping[str, Estimate]) -> str:
+    """That the data do not determine one parameter, or do not tell several apart."""
+    if len(group) > 1:
+        return f"These data cannot tell apart: {', '.join(group)}."
+    (name,) = group
+    each, known = estimates.get(name), ""
+    if each and each.low is None and each.high is not None:
+        known = f", only that it is below {each.high:.3g} {each.unit}"
+    if each and each.high is None and each.low is not None:
+        known = f", only that it is above {each.low:.3g} {each.unit}"
+    return f"These data do not determine {name}{known.removesuffix(' 1')}."
 
 
 def _interval(each: Estimate) -> str:

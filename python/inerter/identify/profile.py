@@ -32,6 +32,8 @@ _ROUNDS = 4
 _OPEN = 8.0
 # standard error per value from which on a positive parameter is known badly
 _BADLY = 0.15
+# the same from which on the value is as good as 0
+_NOTHING = 50.0
 # a parameter that can be this many times larger or smaller has no end there
 _FAR = 10.0
 _EVALUATIONS = 12
@@ -58,8 +60,8 @@ def profile_interval(
     unit = best / max(count - len(model.free), 1) * max(inflation, 1e-12) + 1e-300
 
     value = quantity(model)
-    # one that is known badly, and is positive, is followed in its logarithm
-    wide = value > 0 and error > _BADLY * value
+    # one that is known badly, and is positive, is followed in its logarithm, if it is not all but 0
+    wide = _BADLY * value < error < _NOTHING * value
     unit_step = error / value if wide else error
 
     def target(side: int, distance: float) -> float:
@@ -72,8 +74,10 @@ def profile_interval(
     def end(side: int) -> float | None:
         # where it costs nothing to go far, small bumps on the way are no end
         if wide:
+            # many errors away too, where the value is small beside its error
+            far = max(_FAR, 1 + _OPEN * _LEVEL * unit_step) if side > 0 else _FAR
             try:
-                if rise_at(side, math.log(_FAR), model)[1] < _LEVEL:
+                if rise_at(side, math.log(far), model)[1] < _LEVEL:
                     return None
             except (DeviceError, ValueError, np.linalg.LinAlgError):
                 pass

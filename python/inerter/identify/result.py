@@ -60,7 +60,7 @@ class Identified:
     correlation
         Of the estimates, in the order of `parameters`, shape (p, p).
     undetermined
-        Groups of parameters that the data cannot tell apart.
+        Parameters that the data do not determine, alone or in groups that they cannot tell apart.
     combinations
         What of them the data do determine.
     fit_rmse, rmse
@@ -71,6 +71,8 @@ class Identified:
         Force errors [N] at which the fits from different starts ended.
     notes
         Sentences on what a reader should know.
+    converged
+        Whether the fit ended where no step lowers the error, and not because it took too long.
     seconds
         Time the fit took.
     cutoff
@@ -80,6 +82,8 @@ class Identified:
     motion
         Displacement errors, where the fit was by simulation; the force errors are then those of
         the fit before.
+    worse_than
+        Simpler laws, within this one or its limit, that explain the data fitted better.
     """
 
     law: str
@@ -96,11 +100,13 @@ class Identified:
     nrmse: float
     ends: tuple[float, ...]
     notes: tuple[str, ...]
+    converged: bool
     seconds: float
     model: Model = field(repr=False)
     cutoff: float
     runs: tuple[Run, ...] = field(repr=False)
     motion: Motion | None = None
+    worse_than: tuple[str, ...] = ()
 
     def json(self) -> dict[str, Any]:
         """Plain data."""
@@ -132,6 +138,8 @@ class Identified:
             "nrmse": self.nrmse,
             "starts": list(self.ends),
             "notes": list(self.notes),
+            "converged": self.converged,
+            "worse_than": list(self.worse_than),
             "seconds": self.seconds,
             "cutoff": self.cutoff,
             "motion": asdict(self.motion) if self.motion else None,
