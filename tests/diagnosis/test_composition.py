@@ -94,3 +94,11 @@ def test_a_model_that_is_not_scored_would_win_no_resample() -> None:
     assert win_shares([best, beside])[1] < 0.02
     # nearer ones do win some
     assert win_shares([best, 1.01**2 * np.random.default_rng(8).permutation(best)])[1] > 0.02
+
+
+def test_a_device_without_friction_states_no_width_of_its_sign() -> None:
+    values = {"inertance": 80.0, "transition_velocity": 1e-3}
+    bare = Model("none", values, ("inertance",))
+    assert bare.stated() == {"inertance": 80.0, "friction": "none"}
+    assert bare.adding(load_friction=0.1).stated()["transition_velocity"] == 1e-3
+    assert bare.adding("coulomb", coulomb_force=5.0).stated()["transition_velocity"] == 1e-3

@@ -366,7 +366,7 @@ class _Bench:
     def _accuracy(self, model: Model) -> Accuracy:
         rmse, spread = self.judge.rmse(model), float(np.std(self.judge.force))
         channels = channel_values(model.values)
-        return Accuracy(model.device().given, rmse, rmse / (spread or 1.0), channels)
+        return Accuracy(model.stated(), rmse, rmse / (spread or 1.0), channels)
 
     def _diagnosis(self, before: Fit, final: Fit, findings: list[Finding]) -> Diagnosis:
         baseline, extended = self._accuracy(before.model), self._accuracy(final.model)

@@ -123,6 +123,10 @@ class RecordSummary:
     role: str
     warnings: list[dict[str, str]]
 
+    def json(self) -> dict[str, Any]:
+        """As in the contract; a rate without what rounding of the times adds."""
+        return {**vars(self), "sample_rate": float(f"{self.sample_rate:.10g}")}
+
 
 @dataclass(frozen=True)
 class Unexplained:
@@ -226,7 +230,7 @@ class Diagnosis:
         return _finite(
             {
                 "schema": SCHEMA,
-                "records": [vars(record) for record in self.records],
+                "records": [record.json() for record in self.records],
                 "baseline": self.baseline.json(),
                 "findings": [finding.json() for finding in self.findings],
                 "extended": self.extended.json(),

@@ -256,7 +256,7 @@ def _diagnosis(
 
     def accuracy(model: Model) -> Accuracy:
         rmse = table.rmse(model)
-        return Accuracy(model.device().given, rmse, rmse / spread)
+        return Accuracy(model.stated(), rmse, rmse / spread)
 
     extended = accuracy(fit.model)
     relative = float(np.sqrt(np.mean(fit.residual[0] ** 2)))

@@ -52,6 +52,13 @@ class Model:
         """The device these coordinates stand for."""
         return self._device
 
+    def stated(self) -> dict[str, float | str]:
+        """What a file of the device has to state: no width of sign(v) where nothing reads it."""
+        given = dict(self._device.given)
+        if self.friction == "none" and not self._device.load_friction:
+            given.pop("transition_velocity", None)
+        return given
+
     def smooth_part(self) -> Device:
         """The device's terms that are smooth in the motion: no friction, no stops, no play."""
         return self._smooth_device

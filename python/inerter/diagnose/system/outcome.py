@@ -39,4 +39,3 @@ class SystemDiagnosis(Diagnosis):
 
     model_xml: str = ""
     devices: dict[str, Device] = field(default_factory=dict)
-    error_unit: str = "of the spread"

@@ -1,0 +1,48 @@
+"""Which run is held out when nobody says so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.identify.bench import Run
+from inerter.identify.split import BEYOND, split
+
+
+def run(name: str, low: float, high: float, rate: float = 3.0) -> Run:
+    """A sine between two displacements [m]."""
+    time = np.arange(0, 5, 0.01)
+    middle, size = (low + high) / 2, (high - low) / 2
+    x = middle + size * np.sin(rate * time)
+    v, a = size * rate * np.cos(rate * time), -size * rate**2 * np.sin(rate * time)
+    return Run(name, 0.0, 0.01, x, v, a, 2 * a, np.ones(time.size, bool), 0.0, np.inf)
+
+
+def held(*runs: Run) -> str:
+    return split(runs).description
+
+
+def test_the_most_typical_run_is_held_out() -> None:
+    sizes = {"small": 0.01, "middle": 0.02, "large": 0.04}
+    assert held(*(run(name, -size, size) for name, size in sizes.items())) == "held out: middle"
+
+
+def test_a_run_that_alone_goes_somewhere_is_learnt_from() -> None:
+    """It is the median in its amplitude, and the only one that could reach a stop above."""
+    runs = [run("slow", -0.02, 0.01, 2.0), run("shifted", -0.01, 0.03), run("wide", -0.03, 0.02)]
+    assert held(*runs) == "held out: slow"
+
+
+@pytest.mark.parametrize(("share", "name"), [(0.5, "b"), (2.0, "a")])
+def test_a_little_further_is_not_alone(share: float, name: str) -> None:
+    further = 0.02 + 0.04 * share * BEYOND
+    runs = [run("a", -0.02, 0.02, 2.5), run("b", -0.02, further), run("c", -0.02, 0.02, 4.0)]
+    assert held(*runs) == f"held out: {name}"
+
+
+def test_where_every_run_goes_alone_one_is_held_out_all_the_same() -> None:
+    assert held(run("low", -0.03, 0.0), run("high", 0.0, 0.03)) == "held out: low"
+
+
+def test_who_names_a_run_is_obeyed() -> None:
+    runs = [run("a", -0.02, 0.02), run("b", -0.04, 0.04)]
+    assert split(runs, ["b"]).description == "held out: b"
