@@ -16,9 +16,6 @@ Mask = NDArray[np.bool_]
 BLOCKS = 10
 HELD_OUT_BLOCKS = (3, 6, 8)
 
-# share of the whole stroke by which a run has to go further than all others to count as alone there
-BEYOND = 0.02
-
 
 @dataclass(frozen=True)
 class Split:
@@ -91,23 +88,12 @@ def held_blocks(size: int, name: str) -> tuple[Mask, str]:
 
 
 def _most_typical(runs: Sequence[Run]) -> int:
-    """The run whose amplitudes (displacement, velocity, acceleration) are nearest to the median.
-
-    One of those that go nowhere where no other run goes, if there are such: what acts there alone,
-    such as an end stop, could not be learnt.
-    """
+    """The run whose amplitudes (displacement, velocity, acceleration) are nearest to the median."""
     channels = ("displacement", "velocity", "acceleration")
     sizes = np.log(
         [[np.std(getattr(run, channel)) + 1e-300 for channel in channels] for run in runs]
     )
-    distances = np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)
-    low, high = np.array([[np.min(run.displacement), np.max(run.displacement)] for run in runs]).T
-    margin = BEYOND * (np.max(high) - np.min(low))
-    alone = [
-        np.min(np.delete(low, i)) - low[i] > margin or high[i] - np.max(np.delete(high, i)) > margin
-        for i in range(len(runs))
-    ]
-    return int(np.argmin(np.where(alone, np.inf, distances) if not all(alone) else distances))
+    return int(np.argmin(np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)))
 
 
 def _folds(runs: Sequence[Run], fit: list[Mask]) -> list[list[Mask]]:
