@@ -8,7 +8,12 @@ from typing import cast
 
 import numpy as np
 import pytest
-from inerter.diagnose.composition import effects_of, is_distinct, without_effect
+from inerter.diagnose.composition import (
+    effects_of,
+    is_distinct,
+    simpler_laws,
+    without_effect,
+)
 from inerter.diagnose.rivals import BEATEN, _is_better
 from inerter.diagnose.search import FAR, FEW, Scored, Search
 from inerter.diagnose.statistics import win_shares
@@ -102,3 +107,25 @@ def test_a_device_without_friction_states_no_width_of_its_sign() -> None:
     assert bare.stated() == {"inertance": 80.0, "friction": "none"}
     assert bare.adding(load_friction=0.1).stated()["transition_velocity"] == 1e-3
     assert bare.adding("coulomb", coulomb_force=5.0).stated()["transition_velocity"] == 1e-3
+
+
+@pytest.mark.parametrize(
+    ("stated", "distance"),
+    [
+        ({"bw_stiffness": 2e4, "bw_beta": 400.0, "bw_gamma": 100.0}, 1 / 400),
+        # what is not stated is as the device has it by default
+        ({"bw_stiffness": 2e4, "bw_gamma": -500.0}, 1 / 500),
+        ({"bw_stiffness": 2e4}, None),
+        # nothing bends: a spring, which has neither level nor distance
+        ({"bw_stiffness": 2e4, "bw_beta": 0.0, "bw_gamma": 0.0}, None),
+    ],
+)
+def test_simpler_laws_than_a_stated_hysteresis(
+    stated: dict[str, float], distance: float | None
+) -> None:
+    values = {"inertance": 80.0, "transition_velocity": 1e-3, **stated}
+    laws = {each.friction: each for each in simpler_laws(Model("bouc_wen", values, ()))}
+    assert all(np.isfinite(value) for each in laws.values() for value in each.values.values())
+    if distance is not None:
+        assert laws["dahl"].values["presliding"] == pytest.approx(distance)
+        assert laws["dahl"].values["coulomb_force"] == pytest.approx(2e4 * distance)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.diagnose.candidates import candidates
+from inerter.diagnose.composition import simpler_laws
 from inerter.identify.bench import Run
 from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Problem
@@ -65,8 +66,6 @@ def test_a_state_that_runs_away_has_no_force_and_no_warning() -> None:
 
 
 def test_what_hardens_can_be_replaced_by_simpler_laws() -> None:
-    from inerter.diagnose.composition import simpler_laws
-
     sizes = Scales(force=50.0, displacement=1e-3, velocity=0.1, acceleration=10.0, cutoff=40.0)
     bare = Model("none", {"inertance": 2.0, "transition_velocity": 1e-3}, ("inertance",))
     (found,) = [c for c in candidates(bare, sizes) if c.law == "bouc_wen"]

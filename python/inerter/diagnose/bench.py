@@ -178,9 +178,8 @@ class _Bench:
     @property
     def judge(self) -> Judge:
         """The held-out data."""
-        learnt = self.search.problem
-        held = split(learnt.runs, self.held).holdout
-        weighed = Problem(learnt.runs, held, learnt.scales)
+        search = self.search
+        weighed = Problem(search.runs, search.split.holdout, search.problem.scales)
         return Judge(self.band, self.raw, weighed, self.preparation, self.baseline)
 
     def _weighed_search(self, preparation: Preparation) -> Search:

@@ -171,10 +171,11 @@ def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
 def _level_and_distance(model: Model) -> tuple[float, float | None]:
     """Friction level [N] and pre-sliding distance [m], or what comes nearest to them in the law."""
     values = model.values
-    if "bw_stiffness" in values:
-        distance = 1 / max(abs(values["bw_beta"]), abs(values["bw_gamma"]), 1e-300)
-        distance **= 1 / values.get("bw_exponent", 1.0)
-        return values["bw_stiffness"] * distance, distance
+    device = model.device()
+    bend = max(abs(device.bw_beta), abs(device.bw_gamma))
+    if "bw_stiffness" in values and bend > 0:
+        distance = bend ** (-1 / device.bw_exponent)
+        return device.bw_stiffness * distance, distance
     return values.get("coulomb_force", values.get("bw_level", 0.0)), values.get("presliding")
 
 

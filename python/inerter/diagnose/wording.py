@@ -157,7 +157,12 @@ _ONE_TONE = (
 def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
     if not diagnosis.findings and not _is_right(diagnosis):
-        warnings = [warning["text"] for record in diagnosis.records for warning in record.warnings]
+        warnings = [
+            warning["text"]
+            for record in diagnosis.records
+            for warning in record.warnings
+            if warning["code"] not in _GRAVE
+        ]
         hint = " Mind the warnings: " + "; ".join(warnings) + "." if warnings else ""
         return (
             f"The simulation misses the force by {before.rmse:.3g} N rms "
