@@ -9,10 +9,10 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
 from typing import Any, TypeVar
@@ -73,15 +73,17 @@ def run_all(
         source = _on_cluster(function, items, scheduler)
     else:
         source = _on_processes(function, items, min(jobs or os.cpu_count() or 1, len(items)))
-    for number, result in source:
-        found[number] = result
-        progress(len(found) / len(items))
+    # whoever interrupts the progress ends the processes too, not once the error is forgotten
+    with closing(source):
+        for number, result in source:
+            found[number] = result
+            progress(len(found) / len(items))
     return [found[number] for number in range(len(items))]
 
 
 def _on_processes(
     function: Callable[[Item], Result], items: Sequence[Item], workers: int
-) -> Iterator[tuple[int, Result]]:
+) -> Generator[tuple[int, Result]]:
     if workers == 1:
         for number, item in enumerate(items):
             yield number, function(item)
@@ -113,7 +115,7 @@ def _on_processes(
 
 def _on_cluster(
     function: Callable[[Item], Result], items: Sequence[Item], address: str
-) -> Iterator[tuple[int, Result]]:
+) -> Generator[tuple[int, Result]]:
     if find_spec("distributed") is None:
         raise WorkError(
             'scheduler: Dask is not installed; run `pip install "inerter[cluster]"` here and on '

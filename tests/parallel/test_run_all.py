@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import time
 from collections.abc import Iterator
@@ -64,6 +65,19 @@ def test_an_error_of_the_function_arrives(jobs: int) -> None:
 def test_a_process_that_dies_is_told() -> None:
     with pytest.raises(WorkError, match="a process ended without a result"):
         run_all(die, range(4), jobs=2)
+
+
+def test_an_interrupt_between_two_results_ends_the_processes() -> None:
+    before = set(multiprocessing.active_children())
+
+    def interrupt(share: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as interrupted:
+        run_all(wait, [0.0, 60.0], jobs=2, progress=interrupt)
+    # while somebody still holds the error, and with it what was under way
+    assert interrupted.tb is not None
+    assert set(multiprocessing.active_children()) <= before
 
 
 def test_no_jobs() -> None:
