@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter.records import Record
@@ -70,6 +72,23 @@ def test_ends_at_rest_are_kept_and_others_left_out() -> None:
     assert not moving.inner[0]
     assert not moving.inner[-1]
     assert moving.inner.mean() > 0.9
+
+
+@pytest.mark.parametrize("size", [7919, 7920, 7921, 8017])
+def test_any_length_is_smoothed_up_to_its_end(size: int) -> None:
+    """A stroke that ends at rest elsewhere; primes and fast lengths; all channels measured."""
+    time = np.linspace(0, 8, size)
+    s = np.clip((time - 1) / 6, 0, 1)
+    x = 0.05 * (10 * s**3 - 15 * s**4 + 6 * s**5)
+    v = 0.05 * (30 * s**2 - 60 * s**3 + 30 * s**4) / 6
+    a = 0.05 * (60 * s - 180 * s**2 + 120 * s**3) / 36
+    for channels in ({}, {"velocity": v}, {"velocity": v, "acceleration": a}):
+        measured = replace(record(x, time), **channels)
+        found = smooth(measured, 20.0, ("velocity", "acceleration"))
+        assert found.inner.all()
+        np.testing.assert_allclose(found.displacement, x, atol=1e-7)
+        np.testing.assert_allclose(found.velocity, v, atol=1e-6)
+        np.testing.assert_allclose(found.acceleration, a, atol=1e-4)
 
 
 def test_measured_velocity_lowers_the_noise() -> None:

@@ -108,6 +108,22 @@ def response(frequency: NDArray[np.floating], cutoff: float) -> Array:
     return 1 / (1 + (frequency / cutoff) ** 6)
 
 
+def _continued(values: Array, pivot: float, sign: float) -> Array:
+    """Values mirrored at their end until half a period has a length that transforms are fast for.
+
+    `pivot` plus `sign` times the mirror image: 2 x(T) and -1 for a displacement, 0 and 1 for its
+    velocity, 0 and -1 for its acceleration.
+    """
+    more = _fast_half(values.size) + 1 - values.size
+    end = 0.5 * (pivot + (1 + sign) * values[-1])
+    return np.r_[values[:-1], end, pivot + sign * values[-2 : -2 - more : -1]]
+
+
+def _fast_half(size: int) -> int:
+    """Half a period that transforms are fast for, of samples and their mirror image."""
+    return int(next_fast_len(size - 1, real=True) or size - 1)
+
+
 def _odd(values: Array) -> tuple[Array, Array]:
     """The line through both ends, and the odd periodic continuation of what is above it."""
     line = values[0] + (values[-1] - values[0]) * np.linspace(0, 1, values.size)
@@ -126,8 +142,7 @@ def lowpass(values: Array, spacing: float, cutoff: float) -> Array:
 
 def band_response(size: int, spacing: float, cutoff: float) -> Array:
     """The smoother's response for `filtered`, at a length that transforms are fast for."""
-    period = 2 * int(next_fast_len(size - 1, real=True) or size - 1)
-    return response(rfftfreq(period, spacing), cutoff)
+    return response(rfftfreq(2 * _fast_half(size), spacing), cutoff)
 
 
 def filtered(values: Array, response: Array) -> Array:
@@ -178,7 +193,8 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     Motion
     """
     spacing, channels = uniform(record)
-    line, wave = _odd(channels["displacement"])
+    n = channels["displacement"].size
+    line, wave = _odd(_continued(channels["displacement"], 2 * channels["displacement"][-1], -1))
     slope = (line[-1] - line[0]) / (spacing * (line.size - 1))
     period = wave.size
     frequency = rfftfreq(period, spacing)
@@ -187,9 +203,9 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     # each channel estimates the displacement's spectrum; weights are inverse noise powers
     measured = [(rfft(wave), np.ones_like(s))]
     if "velocity" in use and "velocity" in channels:
-        measured.append((rfft(_even(channels["velocity"] - slope)), s))
+        measured.append((rfft(_even(_continued(channels["velocity"], 0, 1) - slope)), s))
     if "acceleration" in use and "acceleration" in channels:
-        measured.append((rfft(_odd_about_zero(channels["acceleration"])), s * s))
+        measured.append((rfft(_odd_about_zero(_continued(channels["acceleration"], 0, -1))), s * s))
     band = (frequency > 1.5 * cutoff) & (frequency < 4 * cutoff)
     total = np.zeros_like(s)
     weight_sum = np.zeros(s.size)
@@ -201,8 +217,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     weight_sum[weight_sum == 0] = 1
     estimate = total / weight_sum * response(frequency, cutoff)
 
-    n = line.size
-    displacement = irfft(estimate, period)[:n] + line
+    displacement = irfft(estimate, period)[:n] + line[:n]
     velocity = irfft(s * estimate, period)[:n] + slope
     acceleration = irfft(s * s * estimate, period)[:n]
     inner = np.ones(n, bool)
