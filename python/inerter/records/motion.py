@@ -108,13 +108,14 @@ def response(frequency: NDArray[np.floating], cutoff: float) -> Array:
     return 1 / (1 + (frequency / cutoff) ** 6)
 
 
-def _continued(values: Array, pivot: float, sign: float) -> Array:
-    """Values mirrored at their end until half a period has a length that transforms are fast for.
+def _continued(values: Array, pivot: float, sign: float, least: int) -> Array:
+    """Values and `pivot` plus `sign` times their mirror image at the end.
 
-    `pivot` plus `sign` times the mirror image: 2 x(T) and -1 for a displacement, 0 and 1 for its
-    velocity, 0 and -1 for its acceleration.
+    2 x(T) and -1 for a displacement, 0 and 1 for its velocity, 0 and -1 for its acceleration. The
+    image has `least` samples or some more, for a period that transforms are fast for; so long, the
+    smoother forgets that the end was no end.
     """
-    more = _fast_half(values.size) + 1 - values.size
+    more = _fast_half(values.size + least) + 1 - values.size
     end = 0.5 * (pivot + (1 + sign) * values[-1])
     return np.r_[values[:-1], end, pivot + sign * values[-2 : -2 - more : -1]]
 
@@ -193,8 +194,10 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     Motion
     """
     spacing, channels = uniform(record)
-    n = channels["displacement"].size
-    line, wave = _odd(_continued(channels["displacement"], 2 * channels["displacement"][-1], -1))
+    x = channels["displacement"]
+    n = x.size
+    edge = int(np.ceil(EDGE_PERIODS / cutoff / spacing))
+    line, wave = _odd(_continued(x, 2 * x[-1], -1, edge))
     slope = (line[-1] - line[0]) / (spacing * (line.size - 1))
     period = wave.size
     frequency = rfftfreq(period, spacing)
@@ -203,9 +206,11 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     # each channel estimates the displacement's spectrum; weights are inverse noise powers
     measured = [(rfft(wave), np.ones_like(s))]
     if "velocity" in use and "velocity" in channels:
-        measured.append((rfft(_even(_continued(channels["velocity"], 0, 1) - slope)), s))
+        measured.append((rfft(_even(_continued(channels["velocity"], 0, 1, edge) - slope)), s))
     if "acceleration" in use and "acceleration" in channels:
-        measured.append((rfft(_odd_about_zero(_continued(channels["acceleration"], 0, -1))), s * s))
+        measured.append(
+            (rfft(_odd_about_zero(_continued(channels["acceleration"], 0, -1, edge))), s * s)
+        )
     band = (frequency > 1.5 * cutoff) & (frequency < 4 * cutoff)
     total = np.zeros_like(s)
     weight_sum = np.zeros(s.size)
@@ -221,7 +226,6 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     velocity = irfft(s * estimate, period)[:n] + slope
     acceleration = irfft(s * s * estimate, period)[:n]
     inner = np.ones(n, bool)
-    edge = int(np.ceil(EDGE_PERIODS / cutoff / spacing))
     if not _at_rest(velocity, spacing):
         inner[:edge] = False
     if not _at_rest(velocity[::-1], spacing):
@@ -242,7 +246,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         channels["force"],
         cutoff,
         inner,
-        *_derivative_noise(channels["displacement"], spacing, cutoff),
+        *_derivative_noise(x, spacing, cutoff),
     )
 
 
