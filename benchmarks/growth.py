@@ -57,12 +57,6 @@ SUBJECTS = (
     Subject("simulations of a batch", "simulations", (256, 1024, 4096, 16384), growth_models.batch),
     Subject("LuGre along a motion", "samples", (4000, 16000, 64000, 256000), growth_lab.along),
     Subject("records smoothed", "samples", (10000, 20000, 40000, 80000), growth_lab.smoothing),
-    Subject(
-        "records smoothed, lengths that transforms are fast for",
-        "samples",
-        (8193, 16385, 32769, 65537),
-        growth_lab.smoothing,
-    ),
     Subject("derivatives of a fit", "samples", (10000, 20000, 40000, 80000), growth_lab.jacobian),
     Subject("candidates of a fit", "starts", (48, 96, 192, 384), growth_lab.starts),
 )

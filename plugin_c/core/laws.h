@@ -30,10 +30,16 @@ static inline const FrictionLaw* law_of(const InerterDevice* p) {
   return inerter_friction_law[p->friction];
 }
 
+// friction laws with a state, a bit each
+enum {
+#define X(identifier, nstate, meaning) | ((nstate) > 0) << INERTER_FRICTION_##identifier
+  LAWS_WITH_BRISTLE = 0 INERTER_FRICTION_LAWS(X)
+#undef X
+};
+
 // whether the friction law has a state, z[0]
 static inline int has_bristle(const InerterDevice* p) {
-  return p->friction == INERTER_FRICTION_dahl || p->friction == INERTER_FRICTION_lugre ||
-         p->friction == INERTER_FRICTION_bouc_wen;
+  return LAWS_WITH_BRISTLE >> p->friction & 1;
 }
 
 // a law with a bristle, with or without free play before it: deflection of the bristle, rate, step

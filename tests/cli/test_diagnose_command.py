@@ -68,6 +68,8 @@ def test_contract_keys(diagnosed) -> None:
     assert {"schema", "records", "baseline", "findings", "extended", "noise", "unexplained",
             "engines", "verdict"} <= set(printed)  # fmt: skip
     assert {"name", "samples", "sample_rate", "role", "warnings"} <= set(printed["records"][0])
+    # the clock's rounding is left out
+    assert [record["sample_rate"] for record in printed["records"]] == [250.0, 250.0]
     assert {"device", "rmse", "nrmse"} <= set(printed["baseline"])
     assert {"effect", "law", "confidence", "parameters", "rmse_before", "rmse_after", "gain",
             "evidence", "rivals"} <= set(printed["findings"][0])  # fmt: skip

@@ -8,6 +8,7 @@ from typing import cast
 
 import numpy as np
 import pytest
+from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     effects_of,
     is_distinct,
@@ -46,6 +47,31 @@ def test_a_peak_as_narrow_as_the_blur_of_a_reversal_is_none(share: float, told: 
     assert is_distinct("stribeck_friction", fitted(model), 3.0, SCALES) is told
     # whatever its width, a peak of less than its standard error is none
     assert not is_distinct("stribeck_friction", fitted(model, 2.0), 3.0, SCALES)
+
+
+@pytest.mark.parametrize(("beta", "told"), [(-0.2, False), (1.0, False), (5.0, True)])
+def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
+    model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)
+    assert is_distinct("hysteretic_friction", fitted(model), 3.0, SCALES) is told
+
+
+def test_every_friction_law_may_drift_and_those_with_a_level_vary() -> None:
+    hysteresis = BASELINE.adding(
+        "bouc_wen", bw_level=20.0, presliding=1e-3, bw_shape=0.7, bw_exponent=1.5
+    )
+    tried = {each.effect: each for each in candidates(hysteresis, SCALES)}
+    assert tried["friction_drift"].starts[0].friction == "bouc_wen"
+    assert not tried.keys() & {"asymmetric_friction", "position_dependent_friction"}
+
+    drifting = BASELINE.adding(
+        "coulomb", coulomb_force=20.0, friction_drift=0.01, transition_velocity=1e-3
+    )
+    (law,) = [each for each in candidates(drifting, SCALES) if each.law == "bouc_wen"]
+    assert all("friction_drift" in start.free for start in law.starts)
+    uneven = BASELINE.adding(
+        "coulomb", coulomb_force=20.0, friction_asymmetry=0.1, transition_velocity=1e-3
+    )
+    assert not any(each.law == "bouc_wen" for each in candidates(uneven, SCALES))
 
 
 def test_an_inertance_that_varies_is_tried_without_each_of_its_forms() -> None:

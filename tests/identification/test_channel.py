@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from inerter.identify.bench import Run, on_clocks, thin
 from inerter.identify.channel import through_channel, without_tone
+from inerter.identify.coordinates import LOWEST_TONE
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
@@ -93,3 +94,34 @@ def test_a_fit_finds_what_the_channel_did(hidden: dict[str, float]) -> None:
     inner = problem.masks[0]
     before = np.std((data[0].force - force_along(without, data[0]))[inner])
     assert np.std(problem.residual(found)[0][inner]) < 0.25 * before
+
+
+@pytest.mark.parametrize("banded", [True, False])
+@pytest.mark.parametrize("backlash", [0.0, 1e-3])
+def test_a_drift_is_the_laws_and_not_the_loads(banded: bool, backlash: float) -> None:
+    (run,) = runs(record())
+    if not banded:
+        run = replace(run, cutoff=np.inf, measured=None)
+    values = {"inertance": INERTANCE, "coulomb_force": 6.0, "transition_velocity": 1e-4}
+    if backlash:
+        values |= {"backlash": backlash, "series_stiffness": 1e6, "series_damping": 5e3}
+
+    def added(**more: float) -> np.ndarray:
+        plain = Model("coulomb", {**values, **more}, ())
+        drifting = replace(plain, values={**plain.values, "friction_drift": 0.08})
+        return force_along(drifting, run) - force_along(plain, run)
+
+    assert np.max(np.abs(added())) > 2.0
+    # what the load adds jumps too, by far more
+    assert added(load_friction=0.3) == pytest.approx(added(), abs=1e-6)
+
+
+def test_a_tone_is_no_offset() -> None:
+    (run,) = runs(record())
+    shifted = replace(run, force=run.force + 5.0)
+    known = {"inertance": INERTANCE, "coulomb_force": 6.0, "transition_velocity": 1e-4}
+    tone = {"disturbance_amplitude": 1.0, "disturbance_frequency": 0.3}
+    problem = Problem([shifted], [run.inner])
+    found = problem.fit(Model("coulomb", {**known, **tone}, tuple(tone))).model
+    assert found.values["disturbance_frequency"] >= LOWEST_TONE
+    assert abs(np.mean(problem.residual(found)[0][run.inner])) > 4.0

@@ -6,7 +6,7 @@ has several starting points.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -163,12 +163,14 @@ def _hardening(bare: Model, sizes: Scales) -> Model:
     )
 
 
-def _modulated(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
+def _modulated(
+    *names: str, laws: Sequence[str] = LEVEL_LAWS
+) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
 
     def build(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
         zero = dict.fromkeys(names, 0.0)
-        if model.friction in LEVEL_LAWS and not all(name in model.free for name in names):
+        if model.friction in laws and not all(name in model.free for name in names):
             yield Candidate(effect, None, (model.adding(None, **zero),))
         elif model.friction == "none":
             zero |= {"coulomb_force": _level(model, sizes), **width(model)}
@@ -292,7 +294,7 @@ _BUILDERS: dict[str, Callable[[str, Model, Scales], Iterator[Candidate]]] = {
     "quadratic_damping": _free("quadratic_damping"),
     "variable_inertance": _variable_inertance,
     "hardening_stiffness": _free("stiffness_cubic"),
-    "friction_drift": _modulated("friction_drift"),
+    "friction_drift": _modulated("friction_drift", laws=(*LEVEL_LAWS, "bouc_wen")),
     "force_drift": _free("force_drift"),
     "series_elasticity": _series,
     "backlash": _backlash,

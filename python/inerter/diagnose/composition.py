@@ -31,6 +31,9 @@ _AMPLITUDES = {
 # a fall of the friction narrower than this many of the narrowest that is searched for is the blur
 # of a reversal, which any friction has in smoothed data
 _NARROWEST = 1.5
+# share of gamma that beta of a Bouc-Wen law has at least: without beta nothing is lost, and the law
+# is a spring with any zero, which stands in for gas and offsets
+_LOSING = 0.1
 
 
 def is_distinct(effect: str, fit: Fit, required: float, scales: Scales) -> bool:
@@ -41,6 +44,10 @@ def is_distinct(effect: str, fit: Fit, required: float, scales: Scales) -> bool:
     if effect == "stribeck_friction":
         narrowest = coordinate("stribeck_velocity", scales).lower
         if fit.model.values["stribeck_velocity"] < _NARROWEST * narrowest:
+            return False
+    if effect == "hysteretic_friction" and fit.model.friction == "bouc_wen":
+        device = fit.model.device()
+        if device.bw_beta < _LOSING * abs(device.bw_gamma):
             return False
     names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
     errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
@@ -153,7 +160,7 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
             return bare.adding("coulomb", coulomb_force=level, **width(bare))
         friction = baseline.friction
         if friction == "none":
-            names.update(LEVEL_COORDINATES)
+            names.update((*LEVEL_COORDINATES, "friction_drift"))
     return _restored(model.without(tuple(names), friction), names, baseline)
 
 

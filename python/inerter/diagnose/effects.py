@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 # laws whose levels can differ with direction and position
-LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre")
+LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre", "brown_mcphee")
 
 # coordinates that belong to a friction law and leave with it
 LAW_COORDINATES = (
@@ -22,12 +22,8 @@ LAW_COORDINATES = (
     "bw_exponent",
     "bw_ratio",
 )
-LEVEL_COORDINATES = (
-    "friction_asymmetry",
-    "friction_gradient",
-    "friction_curvature",
-    "friction_drift",
-)
+# of a level that differs with direction and position; a drift is the record's, and every law's
+LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
 
 
 @dataclass(frozen=True)

@@ -51,9 +51,13 @@ def _error(
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
-        found = along(device, from_first(run), first_state(device, run))
-        forces = {name: held(force, run.force.size) for name, force in found.items()}
-        force = with_friction_drift(values, forces, run.elapsed)
+
+        def forces(each: Device, run: Run = run) -> dict[str, Array]:
+            found = along(each, from_first(run), first_state(device, run))
+            return {name: held(force, run.force.size) for name, force in found.items()}
+
+        drift = values.get("friction_drift", 0.0)
+        force = with_friction_drift(device, drift, forces, run.elapsed)
         if not np.all(np.isfinite(force)):
             raise ValueError("the force is not finite")
         shown = through_channel(values, force, run.elapsed, run.spacing)

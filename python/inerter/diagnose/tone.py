@@ -11,12 +11,11 @@ from scipy.linalg import block_diag
 from scipy.ndimage import median_filter
 
 from inerter.identify.bench import Run
+from inerter.identify.coordinates import LOWEST_TONE
 from inerter.identify.fit import Fit, Problem
 
 Array = NDArray[np.float64]
 
-LOWEST = 0.2
-"""Lowest frequency [Hz] that counts as a tone, and not as a drift."""
 # power of a bin per local median, mean over the runs: chance exceeds it once in e^15 bins and runs
 _REQUIRED = 15.0
 # share of power in a few bins from which on the motion has the line itself; friction along it has
@@ -32,7 +31,7 @@ def strongest_line(
     runs: Sequence[Run],
     residual: Sequence[Array],
     masks: Sequence[NDArray[np.bool_]],
-    lowest: float = LOWEST,
+    lowest: float = LOWEST_TONE,
     highest: float = np.inf,
 ) -> tuple[float, float] | None:
     """Frequency [Hz] and amplitude [N] of the clearest line in what a model leaves, or None.

@@ -27,6 +27,9 @@ import numpy as np
 
 from inerter.identify.channel import UNITS
 
+LOWEST_TONE = 0.2
+"""Lowest frequency [Hz] that counts as a tone, and not as a drift or an offset."""
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -168,7 +171,7 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "force_maximum": Coordinate(force, -infinity, infinity),
         "force_minimum": Coordinate(force, -infinity, infinity),
         "disturbance_amplitude": Coordinate(0.1 * force, 0, infinity),
-        "disturbance_frequency": Coordinate(1 / scales.elapsed, 0, infinity),
+        "disturbance_frequency": Coordinate(1 / scales.elapsed, LOWEST_TONE, infinity),
     }
     return table[name]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,9 +68,13 @@ def force_along(model: Model, run: Run) -> Array:
     state = first_state(device, run, values.get("friction_place", 0.0))
     x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
     rough = model.has_jumps or device.friction != "none" or device.load_friction
+    drift = values.get("friction_drift", 0.0)
     if np.isinf(run.cutoff) or not rough:
-        found = forces_along(device, run.spacing, (x, v, a), state, run.force.size)
-        total = with_friction_drift(values, found, run.elapsed)
+
+        def along(each: Device) -> dict[str, Array]:
+            return forces_along(each, run.spacing, (x, v, a), state, run.force.size)
+
+        total = with_friction_drift(device, drift, along, run.elapsed)
         return through_channel(values, total, run.elapsed, run.spacing)
 
     part = model.smooth_part()
@@ -80,12 +84,17 @@ def force_along(model: Model, run: Run) -> Array:
     if not abs(found["friction"][-1]) < RUNAWAY:
         # hysteresis that hardens without end: nothing that could be low-passed
         return np.full(run.force.size, np.inf)
+    law = found["friction"]
+    if drift and device.load_friction:
+        law = run.at_measured_rate(_without_load(device), state)["friction"]
     if not model.has_jumps:
-        level = 1 + values.get("friction_drift", 0.0) * run.elapsed
-        total = smooth + level * run.in_band(found["friction"])
+        total = smooth + run.in_band(found["friction"])
+        if drift:
+            total = total + drift * run.elapsed * run.in_band(law)
         return through_channel(values, total, run.elapsed, run.spacing)
     times, spacing = run.fine_elapsed, run.spacing / run.thinned
-    whole = through_channel(values, with_friction_drift(values, found, times), times, spacing)
+    total = found["total"] + drift * times * law if drift else found["total"]
+    whole = through_channel(values, total, times, spacing)
     plain = without_limits(values)
     less = through_channel(plain, run.at_measured_rate(part, rest)["total"], times, spacing)
     return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(whole - less)
@@ -101,11 +110,22 @@ def _states_of(part: Device, device: Device, state: float | Array) -> float | Ar
 
 
 def with_friction_drift(
-    values: Mapping[str, float], forces: Mapping[str, Array], elapsed: Array
+    device: Device, drift: float, along: Callable[[Device], dict[str, Array]], elapsed: Array
 ) -> Array:
-    """Total force of a device whose friction level changes with time [N], shape (n,)."""
-    drift = values.get("friction_drift", 0.0)
-    return forces["total"] + drift * elapsed * forces["friction"] if drift else forces["total"]
+    """Total force of a device whose friction level changes with time [N], shape (n,).
+
+    What changes is the level of the friction law, not what the load adds; `along` gives the forces.
+    """
+    found = along(device)
+    if not drift:
+        return found["total"]
+    law = along(_without_load(device)) if device.load_friction else found
+    return found["total"] + drift * elapsed * law["friction"]
+
+
+def _without_load(device: Device) -> Device:
+    given = {name: value for name, value in device.given.items() if name != "load_friction"}
+    return Device(**given)
 
 
 def settled(model: Model, run: Run, residual: Array, mask: NDArray[np.bool_]) -> Array:
