@@ -130,13 +130,14 @@ def picture(rows: list[Row], path: Path) -> None:
         part = [row for row in rows if of_models[row["subject"]] is side]
         for k, row in enumerate(part):
             sizes, cost = np.array(row["sizes"]), np.array(row["seconds"])
-            colour = COLOURS["set"][k % len(COLOURS["set"])]
+            turn, place = divmod(k, len(COLOURS["set"]))
+            colour, marker = COLOURS["set"][place], "s^D"[turn] if row["aim"] is None else "o"
+            line = ":" if row["aim"] is None else "-"
             middle = np.exp(np.mean(np.log(cost)) - row["exponent"] * np.mean(np.log(sizes)))
-            axes.loglog(sizes, cost, "o" if row["aim"] else "s", color=colour, ms=4)
-            axes.loglog(
-                sizes, middle * sizes ** row["exponent"], "-" if row["aim"] else ":", lw=1.2,
-                color=colour, label=f"{row['subject']}: {row['exponent']:.2f}",
-            )  # fmt: skip
+            axes.loglog(sizes, cost, marker, color=colour, ms=4)
+            axes.loglog(sizes, middle * sizes ** row["exponent"], line, lw=1.2, color=colour)
+            text = f"{row['subject']}: {row['exponent']:.2f}"
+            axes.loglog([], [], line + marker, lw=1.2, ms=4, color=colour, label=text)
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_title(title, fontsize=9.5, loc="left")
         axes.set_xlabel("size")
