@@ -125,3 +125,30 @@ def test_a_tone_is_no_offset() -> None:
     found = problem.fit(Model("coulomb", {**known, **tone}, tuple(tone))).model
     assert found.values["disturbance_frequency"] >= LOWEST_TONE
     assert abs(np.mean(problem.residual(found)[0][run.inner])) > 4.0
+
+
+@pytest.mark.parametrize("delay", [0.4e-3, 3.7e-3, -1.5e-3])
+def test_a_delay_between_samples_keeps_impacts_whole(delay: float) -> None:
+    """Against the same device along the motion as it was that much earlier."""
+
+    def moved(late: float) -> Run:
+        angle = 2 * np.pi * 1.3 * (TIME - late)
+        rate = 2 * np.pi * 1.3
+        waves = np.sin(angle), rate * np.cos(angle), -(rate**2) * np.sin(angle)
+        (run,) = runs(record())
+        channels = {
+            name: 8e-3 * wave
+            for name, wave in zip(("displacement", "velocity", "acceleration"), waves, strict=True)
+        }
+        still = np.zeros(TIME.size)
+        every = {"spacing": 1e-3, "thinned": 1, "inner": still == 0, "measured": None}
+        return replace(run, **every, **channels, force=still, cutoff=np.inf, first=0)
+
+    play = {"inertance": INERTANCE, "backlash": 1e-3, "series_stiffness": 1e6,
+            "series_damping": 5e3, "transition_velocity": 1e-4}  # fmt: skip
+    expected = force_along(Model("none", play, ()), moved(delay))
+    found = force_along(Model("none", {**play, "delay": delay}, ()), moved(0.0))
+    # nothing is known of the motion beyond its ends
+    inner = slice(10, -10)
+    assert np.max(np.abs(expected)) > 100.0
+    assert found[inner] == pytest.approx(expected[inner], abs=1e-3 * np.max(np.abs(expected)))

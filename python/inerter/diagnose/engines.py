@@ -14,7 +14,12 @@ from inerter.exudyn.engine import installed
 from inerter.identify.bench import Run, from_first, held
 from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
-from inerter.identify.prediction import first_state, settled, with_friction_drift
+from inerter.identify.prediction import (
+    first_state,
+    settled,
+    with_friction_drift,
+    with_late_motion,
+)
 from inerter.reference import Motion, ReferenceDevice, response
 
 Array = NDArray[np.float64]
@@ -46,13 +51,14 @@ def _error(
     along: Along, model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
 ) -> float:
     """Rms error [N]; ValueError if a force is not finite."""
-    device, values = model.device(), model.values
+    device = model.device()
     square, count = 0.0, 0
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
+        moved, values = with_late_motion(model, run)
 
-        def forces(each: Device, run: Run = run) -> dict[str, Array]:
+        def forces(each: Device, run: Run = moved) -> dict[str, Array]:
             found = along(each, from_first(run), first_state(device, run))
             return {name: held(force, run.force.size) for name, force in found.items()}
 

@@ -71,6 +71,8 @@ _PEAKED = 10.0
 _PROMISE = 0.1
 # share of the error that a play sought for on its own has to take away
 _WORTH = 0.2
+# a delay beside a play is sought within this many periods of the band's end: the band tells others
+_LATE = 0.25
 # share of the rms force that tells a contact, and of the longest contact that is long
 _CONTACT = 0.2
 _LONG = 0.5
@@ -127,7 +129,7 @@ def forgiving(problem: Problem, model: Model, far: float = 0.0) -> Problem:
     return Problem(runs, problem.masks, problem.scales)
 
 
-def fit_play(problem: Problem, model: Model) -> Model:
+def fit_play(problem: Problem, model: Model, late: float = 0.0) -> Model:
     """The best of many fits about a model with free play, and again about that, while it gains.
 
     Parameters
@@ -136,12 +138,14 @@ def fit_play(problem: Problem, model: Model) -> Model:
         Runs at the measured rate with the force as measured.
     model
         What the band told.
+    late
+        How far from the model's the delay is sought too [s].
     """
     idle, far = 0, _FAR * rms(problem.errors(model), problem.masks)
     for seed in range(_ROUNDS):
         problem = forgiving(problem, model, far)
         before = rms(problem.residual(model), problem.masks)
-        fit = _fit_about(problem, model, seed)
+        fit = _fit_about(problem, model, seed, late=late)
         gain = 1 - fit.rmse(problem.masks) / before
         model = fit.model if gain > 0 else model
         # while much is wrong most errors are far off, and the impacts tell the way
@@ -173,6 +177,10 @@ def play_of(problem: Problem, model: Model, rigid: Sequence[Model], noise: float
     best = fit_play(problem, model) if has_play else model
     if comes_in_blows(problem, best, noise):
         plays = [play for start in rigid if (play := find_play(problem, start))]
+        if has_play and "delay" not in best.free:
+            # late impacts are out of step however the play is fitted
+            late = _LATE / problem.scales.cutoff
+            plays.append(fit_play(problem, best.adding(delay=best.delay), late))
         if plays:
             problem = forgiving(problem, plays[0])
             here, *found = (rms(problem.residual(m), problem.masks) for m in (best, *plays))
@@ -237,10 +245,17 @@ def jackknife(problem: Problem, folds: Sequence[Sequence[Mask]], model: Model) -
 
 
 def _fit_about(
-    problem: Problem, model: Model, seed: int, near: Ranges = RANGES, with_it: bool = True
+    problem: Problem,
+    model: Model,
+    seed: int,
+    near: Ranges = RANGES,
+    with_it: bool = True,
+    late: float = 0.0,
 ) -> Fit:
     here = {name: model.values[name] for name in near if name in model.free}
     ranges = {name: (at * near[name][0], at * near[name][1]) for name, at in here.items()}
+    if late:
+        ranges["delay"] = (model.delay - late, model.delay + late)
     points = _points(model, ranges, _POWER, seed)
     best = _best(problem, [model, *points] if with_it else points)
     fits = parallel(lambda start: problem.fit(start, _EVALUATIONS, tolerance=_TOLERANCE), best)
@@ -248,9 +263,12 @@ def _fit_about(
 
 
 def _points(model: Model, ranges: Ranges, power: int, seed: int) -> list[Model]:
-    """The model with its coordinates anywhere within ranges."""
-    low, high = np.log(list(ranges.values())).T
-    points = np.exp(low + (high - low) * qmc.Sobol(len(ranges), rng=seed).random_base2(power))
+    """The model with its coordinates anywhere within ranges: of sizes, by their logarithm."""
+    low, high = np.array(list(ranges.values())).T
+    shares = qmc.Sobol(len(ranges), rng=seed).random_base2(power)
+    sizes = low > 0
+    points = low + (high - low) * shares
+    points[:, sizes] = low[sizes] * (high[sizes] / low[sizes]) ** shares[:, sizes]
     moved = [dict(zip(ranges, map(float, point), strict=True)) for point in points]
     return [replace(model, values={**model.values, **values}) for values in moved]
 

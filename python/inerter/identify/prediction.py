@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.identify.bench import Run, forces_along, held
-from inerter.identify.channel import through_channel, without_limits, without_tone
+from inerter.identify.channel import delayed, through_channel, without_limits, without_tone
 from inerter.identify.model import Model
 from inerter.identify.residual import without_transient
 
@@ -64,7 +65,8 @@ def force_along(model: Model, run: Run) -> Array:
     What is not smooth in the motion has to pass the low-pass of the measured force: only what it
     adds to the smooth terms, so that these carry the same noise of the motion in every model.
     """
-    device, values = model.device(), model.values
+    device = model.device()
+    run, values = with_late_motion(model, run)
     state = first_state(device, run, values.get("friction_place", 0.0))
     x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
     rough = model.has_jumps or device.friction != "none" or device.load_friction
@@ -107,6 +109,34 @@ def _states_of(part: Device, device: Device, state: float | Array) -> float | Ar
     known = part.state_names
     kept = [name in known for name in device.state_names]
     return np.atleast_1d(state)[kept]
+
+
+def with_late_motion(model: Model, run: Run) -> tuple[Run, dict[str, float]]:
+    """A run and coordinates whose delay is in the motion, where it has to be; else as they are.
+
+    A flywheel that lands has a force between samples that none of them shows: a delayed force would
+    be read off those. The motion is smooth.
+    """
+    values = dict(model.values)
+    if not (values.get("delay") and "backlash" in values and np.isinf(run.cutoff)):
+        return run, values
+    delay, h = values.pop("delay"), run.spacing
+    more = int(abs(delay) / h) + 2
+    before, after = h * np.arange(-more, 0), h * np.arange(1, more + 1)
+    inner = slice(more, more + run.displacement.size)
+
+    def late(*derivatives: Array) -> Array:
+        # beyond the ends the motion goes on as it is there
+        first, last = (
+            sum(channel[end] * t**k / (1, 1, 2)[k] for k, channel in enumerate(derivatives))
+            for end, t in ((0, before), (-1, after))
+        )
+        return delayed(np.concatenate([first, derivatives[0], last]), delay, h)[inner]
+
+    x, v, a = run.displacement, run.velocity, run.acceleration
+    return replace(
+        run, displacement=late(x, v, a), velocity=late(v, a), acceleration=late(a)
+    ), values
 
 
 def with_friction_drift(
