@@ -177,16 +177,29 @@ def play_of(problem: Problem, model: Model, rigid: Sequence[Model], noise: float
     best = fit_play(problem, model) if has_play else model
     if comes_in_blows(problem, best, noise):
         plays = [play for start in rigid if (play := find_play(problem, start))]
-        if has_play and "delay" not in best.free:
-            # late impacts are out of step however the play is fitted
-            late = _LATE / problem.scales.cutoff
-            plays.append(fit_play(problem, best.adding(delay=best.delay), late))
         if plays:
-            problem = forgiving(problem, plays[0])
-            here, *found = (rms(problem.residual(m), problem.masks) for m in (best, *plays))
+            same = forgiving(problem, plays[0])
+            here, *found = (rms(same.residual(m), same.masks) for m in (best, *plays))
             if min(found) < (1.0 if has_play else 1 - _WORTH) * here:
-                return plays[int(np.argmin(found))]
-    return best if has_play else None
+                best = plays[int(np.argmin(found))]
+        if "backlash" in best.free and "delay" not in best.free:
+            best = _late(problem, best) or best
+    return best if "backlash" in best.free else None
+
+
+def _late(problem: Problem, model: Model) -> Model | None:
+    """The play fitted with a delay beside it: late impacts are out of step with any play.
+
+    None where one round does not promise, or all of them do not bring, a clearly smaller error.
+    """
+    late = _LATE / problem.scales.cutoff
+    problem = forgiving(problem, model, _FAR * rms(problem.errors(model), problem.masks))
+    here = rms(problem.residual(model), problem.masks)
+    first = _fit_about(problem, model.adding(delay=model.delay), 0, late=late)
+    if first.rmse(problem.masks) > (1 - _PROMISE) * here:
+        return None
+    found = fit_play(problem, first.model, late)
+    return found if rms(problem.residual(found), problem.masks) < (1 - _WORTH) * here else None
 
 
 def find_play(problem: Problem, model: Model) -> Model | None:
