@@ -53,6 +53,33 @@ def test_right_device_brings_no_finding(records) -> None:
     assert diagnosis.baseline.device["coulomb_force"] == 12.0
 
 
+def test_a_stated_friction_law_of_any_kind_may_be_uneven() -> None:
+    """The data say that friction after Brown and McPhee differs between the directions."""
+    stated = {
+        "inertance": 80.0, "friction": "brown_mcphee", "coulomb_force": 12.0,
+        "static_force": 15.0, "stribeck_velocity": 0.02,
+    }  # fmt: skip
+    truth = ReferenceDevice(**stated, friction_asymmetry=0.2)  # type: ignore[arg-type]
+    random, runs = np.random.default_rng(3), []
+    for i in range(2):
+        rates = random.uniform(0.5, 5, 5)
+        motion = sum_of_sines(0.01 / (1 + rates), rates, random.uniform(0, 6, 5))
+        found = response(truth, motion, np.arange(0, 8, 2e-3))
+        size = found.time.size
+        runs.append(
+            Record(
+                name=f"run_{i}",
+                time=found.time,
+                displacement=found.displacement + random.normal(0, 1e-6, size),
+                force=found.force + random.normal(0, 0.2, size),
+            )
+        )
+    diagnosis = diagnose_bench(runs, Device(**stated))
+    assert [each.effect for each in diagnosis.findings] == ["asymmetric_friction"]
+    value = diagnosis.findings[0].parameters["friction_asymmetry"].value
+    assert value == pytest.approx(0.2, rel=0.02)
+
+
 def test_the_rest_length_is_where_a_record_counts_from(tmp_path: Path) -> None:
     # a spring tells a displacement that is off by the rest length
     truth = response(
