@@ -14,17 +14,12 @@ from inerter.diagnose import wording
 from inerter.diagnose.candidates import has_series
 from inerter.diagnose.chain import Link, chain_of, tone_link
 from inerter.diagnose.composition import effects_of, simpler_laws, submodel
+from inerter.diagnose.doubt import doubted
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.play import fit_play, forgiving, from_contact, jackknife, play_of
-from inerter.diagnose.result import (
-    Accuracy,
-    Diagnosis,
-    Finding,
-    RecordSummary,
-    RunCurves,
-)
+from inerter.diagnose.result import Accuracy, Diagnosis, Finding, RecordSummary, RunCurves
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import gain_interval
@@ -379,6 +374,8 @@ class _Bench:
             self.whole,
             self.raw.errors(final.model),
         )
+        left = remains.structure
+        findings = [doubted(finding, left, f"{left:.2g} N") for finding in findings]
         self.progress("simulating the extended device in MuJoCo")
         engines = simulate_engines(final.model, self.whole, self.raw.masks)
         names = [r.name for r in self.records]

@@ -112,6 +112,8 @@ def unexplained(
 
     left = float(np.sqrt(power))
     excess = not depends and left > max(EXCESS * floor, EXCESS_PART * force)
+    if excess:
+        structure = float(np.sqrt(power - floor**2))
     proposal = None
     if chosen:
         lengths = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inerter.diagnose.doubt import stand_ins, warning
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival, StatedValue
 
@@ -189,6 +190,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
         f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms, "
         f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {diagnosis.unexplained.summary}"
     )
+    doubtful = stand_ins(diagnosis.findings, diagnosis.unexplained.structure)
+    text += warning([effect_in_words(finding) for finding in doubtful])
     contradicted = [
         value_in_words(_NAMES.get(name, name), value)
         for name, value in diagnosis.parameters.items()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from inerter.diagnose.acceptance import visible
+from inerter.diagnose.doubt import doubted
 from inerter.diagnose.result import Finding, RecordSummary, Rival
 from inerter.diagnose.statistics import advantage, gain_interval, win_shares
 from inerter.diagnose.system import wording
@@ -328,6 +329,9 @@ class _System:
             self.simulator, self.whole, self.held_masks, self.user.devices[0].name, final.model
         )
         remains = remainder(residuals[-1], self.held, floor, self._step_error(final.model))
+        left = remains.structure
+        size = f"{100 * left:.2g} % of the spread"
+        findings = [doubted(finding, left, size) for finding in findings]
         self.progress("simulating the extended model once more, as it is written")
         xml = self.user.xml(final.model)
         parameters = {}
@@ -342,7 +346,7 @@ class _System:
             remains,
             {"mujoco": self._written_error(xml), "exudyn": None, "reference": None},
             wording.verdict(
-                before, after, findings, places, remains.summary, self.user.parts.unknown
+                before, after, findings, places, remains.summary, self.user.parts.unknown, left
             ),
             parameters,
             self._method(),

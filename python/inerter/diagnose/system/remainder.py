@@ -41,7 +41,7 @@ def remainder(residual: Array, problem: Problem, floor: float, step_error: float
         f"What remains is not noise alone: {100 * left:.2g} % of the spread, most in "
         f"{names[0].replace('_', ' ')}, that no effect tried explains."
     )
-    return Unexplained(True, fraction, names, text)
+    return Unexplained(True, fraction, names, text, structure=float(left))
 
 
 def structure(column: Array) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inerter.diagnose.doubt import stand_ins, warning
 from inerter.diagnose.result import Finding
 from inerter.diagnose.system.named import KNOWN
 from inerter.diagnose.system.outcome import SystemAccuracy
@@ -52,8 +53,13 @@ def verdict(
     places: list[str],
     remains: str,
     unknown: list[str],
+    structure: float,
 ) -> str:
-    """One paragraph in plain words; places: of each finding, empty where there is no doubt."""
+    """One paragraph in plain words.
+
+    places: of each finding, empty where there is no doubt; remains, structure: what stays
+    unexplained, in words and as a share of the spread; unknown: what was not tried.
+    """
     error = (
         f"{100 * before.rmse:.3g} % of the channels' spread on held-out data ({_channels(before)})"
     )
@@ -73,6 +79,8 @@ def verdict(
             f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
             f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains}"
         )
+        doubtful = stand_ins(findings, structure)
+        text += warning([in_words(finding.effect, finding.law) for finding in doubtful])
     if unknown:
         text += " Not tried: " + "; ".join(unknown) + "."
     return text

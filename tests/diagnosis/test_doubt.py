@@ -1,0 +1,74 @@
+"""What is named beside a large unexplained rest is not claimed as sure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.doubt import doubted, stand_ins, trust, warning
+from inerter.diagnose.result import Finding
+from inerter.records import Record
+from inerter.reference import HiddenCase, NoiseLevels, hide_effect, hide_unknown
+
+QUIET = NoiseLevels(0.0, 0.01, 1e-6)
+# explains 3 N of 5
+THREE = Finding("viscous_friction", None, 0.98, {}, 5.0, 4.0, "c = 1.", [])
+
+
+def test_trust_is_even_at_half_and_whole_without_a_rest() -> None:
+    assert trust(THREE, 0.0) == 1.0
+    assert trust(THREE, 1.5) == pytest.approx(0.5)
+    assert trust(THREE, 3.0) == pytest.approx(0.2)
+    assert trust(THREE, 0.1) > 0.99
+
+
+def test_what_explains_nothing_is_not_trusted() -> None:
+    worse = replace(THREE, rmse_after=5.5)
+    assert trust(worse, 1.0) == 0.0
+    assert trust(worse, 0.0) == 1.0
+
+
+def test_confidence_falls_and_the_reason_is_told() -> None:
+    less = doubted(THREE, 1.5, "1.5 N")
+    assert less.confidence == pytest.approx(0.49)
+    assert less.gain == THREE.gain
+    assert less.evidence.startswith("c = 1. ")
+    assert "1.5 N" in less.evidence
+    assert doubted(THREE, 0.0, "0 N") == THREE
+
+
+def test_warning_names_only_what_may_stand_in() -> None:
+    large = replace(THREE, effect="coulomb_friction", rmse_before=50.0)
+    assert stand_ins([large, THREE], 1.5) == [THREE]
+    assert warning([]) == ""
+    assert "a, b and c explain," in warning(["a", "b", "c"])
+    assert "a explains," in warning(["a"])
+
+
+def _records(case: HiddenCase) -> list[Record]:
+    return [
+        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
+        for run in case.runs
+    ]
+
+
+def test_a_stand_in_for_an_unnamed_friction_is_doubted(effects_seed: int) -> None:
+    """Friction that grows with the logarithm of speed: viscous friction makes up for a part."""
+    case = hide_unknown(effects_seed, "logarithmic_friction", QUIET)
+    found = diagnose_bench(_records(case))
+    assert found.unexplained.significant
+    for finding in found.findings:
+        sure = trust(finding, found.unexplained.structure)
+        assert finding.confidence <= sure
+        assert (sure < 0.8) == ("may stand in" in finding.evidence)
+    doubtful = stand_ins(found.findings, found.unexplained.structure)
+    assert bool(doubtful) == ("may stand in" in found.verdict)
+
+
+def test_a_named_effect_alone_is_not_doubted(effects_seed: int) -> None:
+    case = hide_effect(effects_seed, "viscous_friction", noise=QUIET)
+    found = diagnose_bench(_records(case))
+    assert [finding.effect for finding in found.findings] == ["viscous_friction"]
+    assert found.findings[0].confidence > 0.95
+    assert "may stand in" not in found.verdict
