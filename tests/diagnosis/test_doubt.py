@@ -16,10 +16,10 @@ QUIET = NoiseLevels(0.0, 0.01, 1e-6)
 THREE = Finding("viscous_friction", None, 0.98, {}, 5.0, 4.0, "c = 1.", [])
 
 
-def test_trust_is_even_at_half_and_whole_without_a_rest() -> None:
+def test_trust_is_even_beside_an_equal_rest_and_whole_without_a_rest() -> None:
     assert trust(THREE, 0.0) == 1.0
-    assert trust(THREE, 1.5) == pytest.approx(0.5)
-    assert trust(THREE, 3.0) == pytest.approx(0.2)
+    assert trust(THREE, 3.0) == pytest.approx(0.5)
+    assert trust(THREE, 6.0) == pytest.approx(0.2)
     assert trust(THREE, 0.1) > 0.99
 
 
@@ -30,17 +30,17 @@ def test_what_explains_nothing_is_not_trusted() -> None:
 
 
 def test_confidence_falls_and_the_reason_is_told() -> None:
-    less = doubted(THREE, 1.5, "1.5 N")
+    less = doubted(THREE, 3.0, "3 N")
     assert less.confidence == pytest.approx(0.49)
     assert less.gain == THREE.gain
     assert less.evidence.startswith("c = 1. ")
-    assert "1.5 N" in less.evidence
+    assert "3 N" in less.evidence
     assert doubted(THREE, 0.0, "0 N") == THREE
 
 
 def test_warning_names_only_what_may_stand_in() -> None:
     large = replace(THREE, effect="coulomb_friction", rmse_before=50.0)
-    assert stand_ins([large, THREE], 1.5) == [THREE]
+    assert stand_ins([large, THREE], 3.0) == [THREE]
     assert warning([]) == ""
     assert "a, b and c explain," in warning(["a", "b", "c"])
     assert "a explains," in warning(["a"])
