@@ -86,6 +86,19 @@ def test_an_unseen_beginning_is_not_made_up() -> None:
     assert np.std(left - residual) < 0.1
 
 
+@pytest.mark.parametrize("damping", [0.0, 800.0, 1.4e4])
+def test_a_decay_of_any_damping_is_taken_out(damping: float) -> None:
+    """Undamped, damped, overdamped: both motions of b s^2 + c s + k = 0 leave little."""
+    device = Device(inertance=100.0, series_stiffness=4e5, series_damping=damping)
+    roots = np.roots([100.0, damping, 4e5])
+    waves = [np.exp(root * TIME).real for root in roots]
+    waves.append(np.exp(roots[0] * TIME).imag)
+    mask = (TIME > 0.01) & (np.arange(TIME.size) % 7 > 0)
+    for wave in waves:
+        left = without_transient(device, 30.0 * wave, 1e-3, mask)
+        assert np.max(np.abs(left[mask])) < 0.02 * 30.0
+
+
 def test_a_flywheel_that_turns_as_a_record_begins_is_settled(run: Run) -> None:
     values = {"inertance": 60.0, "series_stiffness": 6e4, "series_damping": 60.0}
     model = Model("none", values, ())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,26 +61,37 @@ def without_transient(
     """
     b = device.inertance
     damping = device.series_damping + device.flywheel_viscous
-    roots = np.roots([b, damping, device.series_stiffness])
-    at = np.arange(residual.size)[mask]
-    if at.size < 4 or not np.isfinite(roots).all():
+    roots = _roots(b, damping, device.series_stiffness)
+    if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
         return residual
     # what is below rounding by then has no share
     slowest = float(np.max(roots.real)) * spacing
     count = residual.size if slowest >= 0 else min(residual.size, int(_DECAYED / -slowest) + 2)
-    at, time = at[at < count], spacing * np.arange(count)
     with np.errstate(under="ignore"):
         if abs(roots[0].imag) > 0:
-            wave = np.exp(roots[0] * time)
-            basis = np.column_stack([wave.real, wave.imag])
+            wave = _decay(roots[0] * spacing, count)
+            basis = np.array([wave.real, wave.imag])
         else:
-            basis = np.column_stack([np.exp(root.real * time) for root in roots])
-    basis /= np.max(np.abs(basis), axis=0) + 1e-300
+            basis = np.array([_decay(root * spacing, count).real for root in roots])
+    basis /= np.max(np.abs(basis), axis=1, keepdims=True) + 1e-300
     if not np.isfinite(basis).all():
         return residual
     # normal equations do: what holds the size back keeps them well conditioned
-    seen = basis[at]
-    share = np.linalg.solve(seen.T @ seen + TIMID * np.eye(basis.shape[1]), seen.T @ residual[at])
+    seen = basis * mask[:count]
+    share = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen @ residual[:count])
     rest = residual.copy()
-    rest[:count] -= basis @ share
+    rest[:count] -= share @ basis
     return rest
+
+
+def _roots(b: float, damping: float, stiffness: float) -> NDArray[np.complex128]:
+    """Both roots of b s^2 + damping s + stiffness; of damping >= 0, without cancellation."""
+    far = -0.5 * (damping + np.emath.sqrt(damping**2 - 4 * b * stiffness))
+    return np.array([far / b, stiffness / far], dtype=np.complex128)
+
+
+def _decay(step: complex, count: int) -> NDArray[np.complex128]:
+    """exp(step k) for k = 0 ... count - 1, as products of coarse and fine powers."""
+    fine = math.isqrt(count) + 1
+    coarse = np.exp(step * fine * np.arange(count // fine + 1))
+    return np.multiply.outer(coarse, np.exp(step * np.arange(fine))).ravel()[:count]

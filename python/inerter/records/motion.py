@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.fft import irfft, rfft, rfftfreq
@@ -172,8 +173,15 @@ def weight_above(values: Array, spacing: float, corner: float) -> Array:
     size = values.shape[-1]
     least = size + round(1 / (corner * spacing))
     length = int(next_fast_len(least, real=True) or least)
-    weight = 1 / np.sqrt(1 + (rfftfreq(length, spacing) / corner) ** 4)
+    weight = _weight(length, spacing, corner)
     return irfft(rfft(values, length) * weight, length)[..., :size]
+
+
+@lru_cache(maxsize=64)
+def _weight(length: int, spacing: float, corner: float) -> Array:
+    weight = 1 / np.sqrt(1 + (rfftfreq(length, spacing) / corner) ** 4)
+    weight.flags.writeable = False
+    return weight
 
 
 def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) -> Motion:
