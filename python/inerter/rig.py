@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from xml.etree import ElementTree
 
 import mujoco
@@ -53,6 +55,17 @@ def _only(root: ElementTree.Element, path: str) -> ElementTree.Element:
     if found is None:
         raise ValueError(f"the shipped test rig has no {path}; reinstall inerter")
     return found
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep the engine from printing warnings and leaving a MUJOCO_LOG.TXT where it runs."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda text: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 def simulate_along(

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from inerter.diagnose.bench import baseline_model
+from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.result import Unexplained
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.bench import Run, scales, thin, whole
@@ -172,7 +172,7 @@ def remaining(
     full = [whole(motion) for motion in preparation.motions]
     parts = split(runs)
     sizes = scales(runs)
-    start = baseline_model(None, sizes)
+    start = baseline_of(None, sizes)
     if model is not None:
         start = model(runs)
     else:
@@ -207,7 +207,7 @@ def with_stated(case: HiddenCase) -> Callable[[list[Run]], Model]:
     )
 
     def model(runs: list[Run]) -> Model:
-        start = baseline_model(device, scales(runs))
+        start = baseline_of(device, scales(runs))
         free = tuple(name for name in start.values if name != "transition_velocity")
         if start.friction in ("coulomb", "stribeck"):
             free += ("transition_velocity",)

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 from inerter.model_parameters import FLUID_INERTER
+from inerter.rig import quiet
 from inerter.studies.fluid_rig.identify import Held, identify
 from inerter.studies.fluid_rig.least_squares import polish, search
 from inerter.studies.fluid_rig.objective import Measured, SpectralObjective, TimeObjective
-from inerter.studies.fluid_rig.rig import Configuration, quiet
+from inerter.studies.fluid_rig.rig import Configuration
 from inerter.studies.fluid_rig.signals import Noise, Signals
 from inerter.studies.fluid_rig.sweeps import COMPLETE, DRY, Sweep
 from inerter.studies.fluid_rig.truth import experiment, true_signals

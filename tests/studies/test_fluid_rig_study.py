@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.commands import app
+from inerter.rig import quiet
 from inerter.studies.fluid_rig.identify import Held, Identified
 from inerter.studies.fluid_rig.output import write_study
-from inerter.studies.fluid_rig.rig import Configuration, Rig, quiet
+from inerter.studies.fluid_rig.rig import Configuration, Rig
 from inerter.studies.fluid_rig.settings import Settings, StudyError
 from inerter.studies.fluid_rig.signals import Noise, Signals
 from inerter.studies.fluid_rig.statements import statements

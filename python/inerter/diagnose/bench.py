@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from inerter.core import Device, parameters
+from inerter.core import Device
 from inerter.diagnose import wording
+from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import has_series
 from inerter.diagnose.chain import Link, chain_of, tone_link
 from inerter.diagnose.composition import effects_of, simpler_laws, submodel
@@ -28,9 +29,8 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
 from inerter.identify.channel import channel_values
-from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Fit, Masks, Problem, rms
-from inerter.identify.model import Model, stated_values
+from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.preparation import (
     Preparation,
@@ -41,6 +41,7 @@ from inerter.identify.preparation import (
 )
 from inerter.identify.split import Split, split
 from inerter.records import Record
+from inerter.records.duplicates import repeats_another
 from inerter.records.motion import Motion
 
 Array = NDArray[np.float64]
@@ -48,8 +49,6 @@ Progress = Callable[[str], None]
 
 # share of the cut-off from which on tones are looked for at the measured rate
 TONES_FROM = 0.7
-# width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
-TRANSITION = 0.005
 # bands in which the search goes on, each wider than the one before, at most
 MORE_BANDS = 2
 # share of the error that a wider band has to take away
@@ -92,26 +91,6 @@ def diagnose_bench(
         return _Bench(records, device, holdout, progress, delay).run()
 
 
-def baseline_model(device: Device | None, sizes: Scales) -> Model:
-    """The model to start from: ideal inerter with free inertance, or the device as stated."""
-    transition = max(parameters()["transition_velocity"].initial, TRANSITION * sizes.velocity)
-    if device is None:
-        start = sizes.force / sizes.acceleration
-        return Model(
-            "none", {"inertance": start, "transition_velocity": transition}, ("inertance",)
-        )
-    values, texts = stated_values(device)
-    values.setdefault("transition_velocity", transition)
-    level = values.get("coulomb_force", 0.0)
-    if "static_force" in values:
-        values["static_excess"] = values.pop("static_force") - level
-    if "bristle_stiffness" in values:
-        values["presliding"] = level / values.pop("bristle_stiffness")
-    free = () if "inertance" in values else ("inertance",)
-    values.setdefault("inertance", sizes.force / sizes.acceleration)
-    return Model(device.friction, values, free, texts)
-
-
 def _refuse_too_little(split: Split, band: Problem, raw: Problem) -> None:
     """Where gaps and ends leave nothing to learn from or to judge on, there is no diagnosis."""
     learnt = band.with_masks(split.fit).masks
@@ -139,9 +118,7 @@ class _Bench:
         delay: float,
     ) -> None:
         self.all_records = list(records)
-        self.records = [
-            r for r in records if not any(w.code == "duplicate_record" for w in r.warnings)
-        ]
+        self.records = [record for record in records if not repeats_another(record)]
         self.progress = progress
         for record in records:
             if record.name in holdout and record not in self.records:
@@ -152,7 +129,7 @@ class _Bench:
         self._take(prepare(self.records))
         _refuse_too_little(self.split, self.band, self.raw)
         self.device = device
-        self.baseline = baseline_model(device, self.band.scales)
+        self.baseline = baseline_of(device, self.band.scales)
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
@@ -364,7 +341,7 @@ class _Bench:
 
     def _diagnosis(self, before: Fit, final: Fit, findings: list[Finding]) -> Diagnosis:
         baseline, extended = self._accuracy(before.model), self._accuracy(final.model)
-        floor = self.judge.noise_floor(final.model)
+        floor = self.judge.noise_left(final.model)
         remains = unexplained(
             self.runs,
             self.split,

@@ -63,6 +63,7 @@ def width(model: Model) -> dict[str, float]:
 _LAW_EFFECT = {
     "coulomb": "coulomb_friction",
     "stribeck": "stribeck_friction",
+    "brown_mcphee": "stribeck_friction",
     "dahl": "hysteretic_friction",
     "lugre": "hysteretic_friction",
     "bouc_wen": "hysteretic_friction",
@@ -172,7 +173,7 @@ def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
     """Put back what the baseline states of the names that were taken out."""
     stated = {name: baseline.values[name] for name in names if name in baseline.values}
     free = tuple(name for name in baseline.free if name in names and name not in bare.free)
-    return Model(bare.friction, {**bare.values, **stated}, bare.free + free)
+    return Model(bare.friction, {**bare.values, **stated}, bare.free + free, bare.texts)
 
 
 def _level_and_distance(model: Model) -> tuple[float, float | None]:

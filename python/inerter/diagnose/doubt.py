@@ -39,6 +39,11 @@ def explained(finding: Finding) -> float:
     return float(np.sqrt(max(finding.rmse_before**2 - finding.rmse_after**2, 0.0)))
 
 
+def by_weight(findings: Sequence[Finding]) -> list[Finding]:
+    """What explains most first; the share that an effect takes away depends on what went before."""
+    return sorted(findings, key=explained, reverse=True)
+
+
 def doubted(finding: Finding, structure: float, size: str) -> Finding:
     """A finding with what remains unexplained considered; size: that in words, as "2.1 N"."""
     sure = trust(finding, structure)

@@ -37,7 +37,8 @@ def simulate_engines(
     None: Exudyn is not installed, or Exudyn or the reference cannot follow this device along this
     motion (a bristle too stiff for the samples, a friction level that reaches zero).
     """
-    found: dict[str, float | None] = {"mujoco": _error(_mujoco, model, runs, masks)}
+    with rig.quiet():
+        found: dict[str, float | None] = {"mujoco": _error(_mujoco, model, runs, masks)}
     others = {"exudyn": _exudyn if installed() else None, "reference": _reference}
     for name, along in others.items():
         try:

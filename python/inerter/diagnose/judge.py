@@ -16,6 +16,7 @@ from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.preparation import Preparation
 from inerter.identify.split import blocks
+from inerter.records.motion import white_noise
 
 Array = NDArray[np.float64]
 
@@ -93,7 +94,18 @@ class Judge:
 
     def noise_floor(self, model: Model) -> float:
         """Noise of the force, and of the acceleration times the inertance, rms [N]."""
-        force = self.preparation.noise_floor
+        return self._noise(self.preparation.noise_floor, model)
+
+    def noise_left(self, model: Model) -> float:
+        """The same, read off what a good model leaves.
+
+        At a few hundred samples per second friction reaches the band that white noise is read
+        from: the force itself seems noisier than it is.
+        """
+        noise = [white_noise(error) ** 2 for error in self.raw.errors(model)]
+        return self._noise(min(self.preparation.noise_floor, float(np.sqrt(np.mean(noise)))), model)
+
+    def _noise(self, force: float, model: Model) -> float:
         if self.preparation.channels:
             # the noise of a fused acceleration is not known
             return force

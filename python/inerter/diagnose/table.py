@@ -16,6 +16,7 @@ from scipy.optimize import least_squares
 
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
+from inerter.diagnose.baseline import baseline_model
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.effects import EFFECTS
@@ -33,9 +34,10 @@ from inerter.diagnose.statistics import win_shares
 from inerter.diagnose.values import parameter_values
 from inerter.identify.coordinates import Scales, coordinate
 from inerter.identify.fit import Fit
-from inerter.identify.model import NUISANCES, Model, stated_values
+from inerter.identify.model import NUISANCES, Model
 from inerter.records import BenchTable
-from inerter.rig import simulate_along
+from inerter.records.duplicates import repeats_another
+from inerter.rig import quiet, simulate_along
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -50,20 +52,36 @@ TRIED = (
     "load_dependent_friction",
 )
 SAMPLES_PER_PERIOD = 400
+# a state forgets how it began: until two periods in a row differ by no more than this share
+FEWEST_PERIODS, MOST_PERIODS = 3, 768
+SETTLED = 1e-4
 # log-likelihood ratio (left-out errors) that a richer model needs: about one false alarm in 1000
 REQUIRED_EVIDENCE = 10.0
 HELD_OUT_EVERY = 4
+# points that a fit needs beyond its parameters: with fewer, leaving one out tells nothing
+SPARE = 2
 
 
 def amplitude(device: Device, frequency: float, acceleration: float) -> float:
     """Amplitude of the force's fundamental [N] at a frequency [Hz] and acceleration [m/s^2]."""
-    wave = _sine(frequency, acceleration)
-    return _fundamental(device.along(*wave)["total"])
+    return _fundamental(_steady(device, frequency, acceleration)[1])
 
 
-def _sine(frequency: float, acceleration: float) -> tuple[float, Array, Array, Array]:
+def _steady(device: Device, frequency: float, acceleration: float) -> tuple[int, Array]:
+    """Periods until the force repeats, and the force along them; at most `MOST_PERIODS`."""
+    periods = FEWEST_PERIODS
+    while True:
+        force = device.along(*_sine(frequency, acceleration, periods))["total"]
+        last = _fundamental(force)
+        change = abs(last - _fundamental(force[:-SAMPLES_PER_PERIOD]))
+        if change <= SETTLED * last or periods >= MOST_PERIODS or not np.isfinite(last):
+            return periods, force
+        periods *= 2
+
+
+def _sine(frequency: float, acceleration: float, periods: int) -> tuple[float, Array, Array, Array]:
     omega = 2 * np.pi * frequency
-    phase = 2 * np.pi * np.arange(3 * SAMPLES_PER_PERIOD) / SAMPLES_PER_PERIOD
+    phase = 2 * np.pi * np.arange(periods * SAMPLES_PER_PERIOD) / SAMPLES_PER_PERIOD
     size = acceleration / omega**2
     return (
         1 / (frequency * SAMPLES_PER_PERIOD),
@@ -94,7 +112,7 @@ class _Table:
             )
         omega = 2 * np.pi * self.frequency
         self.scales = Scales(
-            float(np.std(self.force)) or float(self.force[0]),
+            float(np.sqrt(np.mean(self.force**2) / 2)),
             float(np.sqrt(np.mean((self.acceleration / omega**2) ** 2) / 2)),
             float(np.sqrt(np.mean((self.acceleration / omega) ** 2) / 2)),
             float(np.sqrt(np.mean(self.acceleration**2) / 2)),
@@ -174,23 +192,11 @@ def diagnose_table(
     ValueError
         Amplitudes or frequencies that are not above zero.
     """
-    table = _Table(tables)
+    table = _Table([each for each in tables if not repeats_another(each)])
     fit_mask = ~table.holdout
     start = float(np.mean(table.force / table.acceleration))
     transition = parameters()["transition_velocity"].initial
-    if device is None:
-        baseline = Model(
-            "none", {"inertance": start, "transition_velocity": transition}, ("inertance",)
-        )
-    else:
-        values, texts = stated_values(device)
-        free = () if "inertance" in values else ("inertance",)
-        baseline = Model(
-            device.friction,
-            {"inertance": start, "transition_velocity": transition, **values},
-            free,
-            texts,
-        )
+    baseline = baseline_model(device, start, transition)
     before = table.fit(baseline, fit_mask)
     fit, squares = before, table.left_out(before.model)
     findings: list[Finding] = []
@@ -229,7 +235,8 @@ def _best(
     good = [
         one
         for one in tried
-        if squares.size * np.log(squares.sum() / one[2].sum()) > REQUIRED_EVIDENCE
+        if squares.size >= len(one[1].model.free) + SPARE
+        and squares.size * np.log(squares.sum() / one[2].sum()) > REQUIRED_EVIDENCE
     ]
     if not good:
         return None
@@ -252,7 +259,7 @@ def _diagnosis(
     findings: list[Finding],
     values: dict[str, ParameterValue],
 ) -> Diagnosis:
-    spread = float(np.std(table.force)) or 1.0
+    spread = float(np.sqrt(np.mean(table.force**2)))
 
     def accuracy(model: Model) -> Accuracy:
         rmse = table.rmse(model)
@@ -260,22 +267,29 @@ def _diagnosis(
 
     extended = accuracy(fit.model)
     relative = float(np.sqrt(np.mean(fit.residual[0] ** 2)))
-    remains = Unexplained(
-        False,
-        0.0,
-        [],
+    text = (
         f"The amplitudes scatter by {100 * relative:.1f} % about the model; a table cannot tell "
-        "noise from structure further, a time record can.",
+        "noise from structure further, a time record can."
     )
+    points, needed = int((~table.holdout).sum()), len(before.model.free) + 1 + SPARE
+    if points < needed:
+        text += (
+            f" Of {points} fitted points no effect can be tried; {needed} are needed, and every "
+            f"{HELD_OUT_EVERY}th more is held out."
+        )
+    remains = Unexplained(False, 0.0, [], text)
     device = fit.model.device()
-    engine = np.array(
-        [
-            _fundamental(simulate_along(device, *_sine(f, a))["total"])
-            for f, a in zip(table.frequency, table.acceleration, strict=True)
-        ]
-    )
+    with quiet():
+        engine = np.array(
+            [
+                _fundamental(
+                    simulate_along(device, *_sine(f, a, _steady(device, f, a)[0]))["total"]
+                )
+                for f, a in zip(table.frequency, table.acceleration, strict=True)
+            ]
+        )
     mujoco = float(np.sqrt(np.mean((table.force - engine)[table.holdout] ** 2)))
-    points = TablePoints(
+    shown = TablePoints(
         table.frequency,
         table.acceleration,
         table.force,
@@ -286,7 +300,13 @@ def _diagnosis(
     held = ", ".join(f"{f:g}" for f in table.frequency[table.holdout])
     diagnosis = Diagnosis(
         [
-            RecordSummary(t.name, t.samples, 0.0, "fit", [vars(w) for w in t.warnings])
+            RecordSummary(
+                t.name,
+                t.samples,
+                0.0,
+                "unused" if repeats_another(t) else "fit",
+                [vars(w) for w in t.warnings],
+            )
             for t in tables
         ],
         accuracy(before.model),
@@ -302,6 +322,6 @@ def _diagnosis(
             "held_out_samples": int(table.holdout.sum()),
         },
         [],
-        points,
+        shown,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))

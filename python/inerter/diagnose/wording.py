@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
-from inerter.diagnose.doubt import stand_ins, warning
+from collections.abc import Sequence
+
+from inerter.diagnose.doubt import by_weight, stand_ins, warning
 from inerter.diagnose.effects import EFFECTS
-from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival, StatedValue
+from inerter.diagnose.result import (
+    Diagnosis,
+    Finding,
+    ParameterValue,
+    RecordSummary,
+    Rival,
+    StatedValue,
+)
 
 _NAMES = {
     "coulomb_force": "sliding level f_c",
@@ -74,7 +83,10 @@ def departure(value: ParameterValue) -> str:
         return ""
     unit = "" if value.unit == "1" else f" {value.unit}"
     text = f"stated {value.stated:.4g}, {value.difference:+.3g}{unit}"
-    return text + (f", {100 * value.difference / value.stated:+.2g} %" if value.stated else "")
+    if not value.stated:
+        return text
+    percent = 100 * value.difference / value.stated
+    return f"{text}, {percent:{'+.0f' if abs(percent) >= 10 else '+.2g'}} %"
 
 
 def _contradicts(value: ParameterValue) -> bool:
@@ -92,6 +104,16 @@ def effect_in_words(finding: Finding) -> str:
 def _rival_in_words(rival: Rival) -> str:
     law = f" ({_LAWS[rival.law]})" if rival.law in _LAWS else ""
     return EFFECTS[rival.effect].plain + law
+
+
+def _told_apart(effect: str, rival: Rival) -> str:
+    """The experiment that tells two effects apart, in brackets, where one is known."""
+    for one, other in ((effect, rival.effect), (rival.effect, effect)):
+        mistaken, _, experiment = EFFECTS[one].taken_for.partition(": ")
+        word = EFFECTS[other].plain if other.startswith("force") else other.split("_")[0]
+        if experiment and word.lower() in mistaken.lower():
+            return f" ({experiment})"
+    return ""
 
 
 def evidence(finding: Finding) -> str:
@@ -119,7 +141,7 @@ def evidence(finding: Finding) -> str:
 RIGHT = 0.1
 
 
-def _is_right(diagnosis: Diagnosis) -> bool:
+def is_right(diagnosis: Diagnosis) -> bool:
     """Whether nothing speaks against the simulation, noise apart."""
     # the floor of a table is its own scatter, which says nothing for the model
     noise = 0.0 if diagnosis.points else 2 * diagnosis.noise_floor
@@ -131,17 +153,18 @@ def _is_right(diagnosis: Diagnosis) -> bool:
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
     tone = _ONE_TONE if diagnosis.method.get("one_tone") else ""
-    return _doubts_of_records(diagnosis) + _verdict(diagnosis) + tone
+    return doubts_of_records(diagnosis.records) + _verdict(diagnosis) + tone
 
 
 # warnings that turn a verdict into nonsense: what they say comes first
 _GRAVE = ("sign_flip", "unit_suspect")
 
 
-def _doubts_of_records(diagnosis: Diagnosis) -> str:
+def doubts_of_records(records: Sequence[RecordSummary]) -> str:
+    """What has to be looked at before anything else; empty where there is nothing."""
     doubts = [
         f"{record.name}: {warning['text']}"
-        for record in diagnosis.records
+        for record in records
         for warning in record.warnings
         if warning["code"] in _GRAVE
     ]
@@ -157,9 +180,9 @@ _ONE_TONE = (
 
 def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
-    if not diagnosis.findings and not _is_right(diagnosis):
+    if not diagnosis.findings and not is_right(diagnosis):
         warnings = [
-            warning["text"]
+            f"{record.name}: {warning['text']}".rstrip(".?!")
             for record in diagnosis.records
             for warning in record.warnings
             if warning["code"] not in _GRAVE
@@ -176,8 +199,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
             f"{before.rmse:.3g} N rms ({100 * before.nrmse:.1f} % of its variation) on held-out "
             f"data, and no effect tried improves that. {diagnosis.unexplained.summary}"
         )
-    first = diagnosis.findings[0]
-    others = [effect_in_words(finding) for finding in diagnosis.findings[1:]]
+    first, *rest = by_weight(diagnosis.findings)
+    others = [effect_in_words(finding) for finding in rest]
     text = (
         f"The simulation misses the measured force by {before.rmse:.3g} N rms "
         f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause is "
@@ -201,8 +224,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
         text += f" The data contradict what is stated: {'; '.join(contradicted)}."
     doubts = [
         f"{effect_in_words(finding)} can hardly be told from "
-        f"{_rival_in_words(finding.rivals[0])} "
-        f"({EFFECTS[finding.effect].taken_for})"
+        f"{_rival_in_words(finding.rivals[0])}" + _told_apart(finding.effect, finding.rivals[0])
         for finding in diagnosis.findings
         if finding.rivals
         and finding.rivals[0].confidence >= 0.05

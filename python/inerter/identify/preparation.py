@@ -24,6 +24,8 @@ HIGHEST = 200.0
 # cut-off leaves
 SMALLEST = 50
 KEPT = 0.5
+# rms displacement of a run that moves, per noise
+MOVES = 10.0
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,9 @@ def prepare(records: Sequence[Record]) -> Preparation:
     noise of the displacement is needed, and coloured noise does no harm.
     """
     rate = min(record.sample_rate for record in records)
-    lowest = max(4 * _dominant_frequency(record) for record in records)
+    # of a run at rest, the dominant frequency is that of its noise
+    moving = [r for r in records if np.std(r.displacement) > MOVES * white_noise(r.displacement)]
+    lowest = max(4 * _dominant_frequency(record) for record in moving or records)
     highest = min(0.2 * rate, HIGHEST)
     lowest = min(0.5 * lowest, highest / 2)
     count = int(np.ceil(np.log(highest / lowest) / np.log(STEP))) + 1

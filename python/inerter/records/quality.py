@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, label, median_filter
 
+from .duplicates import find_duplicate_records
 from .record import Array, Columns, Record, TimeRecord
 
 R = TypeVar("R", bound=Columns)
@@ -410,41 +411,3 @@ def _fit(force: Array, *columns: Array) -> tuple[float, Array]:
     weights, *_ = np.linalg.lstsq(matrix, force, rcond=1e-6)
     rest = float(np.sum((force - matrix @ weights) ** 2) / np.sum(force**2))
     return rest, weights / scale
-
-
-# --- records against each other ----------------------------------------------------------------
-
-
-def find_duplicate_records(records: Sequence[R]) -> list[R]:
-    """`duplicate_record` on every bench run that repeats an earlier one; the caller drops it.
-
-    The same number of samples and equal displacement and force, to 1e-6 of their ranges; the
-    times may differ. A channel that is constant in both does not count as equal by itself.
-    """
-    earlier: dict[int, list[Record]] = {}
-    checked = list(records)
-    for index, record in enumerate(checked):
-        if not isinstance(record, Record):
-            continue
-        rivals = earlier.setdefault(record.samples, [])
-        twin = next((r for r in rivals if _equal(r, record)), None)
-        if twin is None:
-            rivals.append(record)
-        else:
-            text = f"the same displacement and force as {twin.name!r}: leave one of them out"
-            checked[index] = cast(R, record.warn("duplicate_record", text))
-    return checked
-
-
-def _equal(one: Record, other: Record) -> bool:
-    """Whether two runs of one length hold the same displacement and force."""
-    for name in ("displacement", "force"):
-        first, second = getattr(one, name), getattr(other, name)
-        allowed = 1e-6 * np.ptp(first)
-        # a few samples tell most pairs apart
-        few = slice(None, None, max(1, len(first) // 16))
-        if np.any(np.abs(first[few] - second[few]) > allowed):
-            return False
-        if np.any(np.abs(first - second) > allowed):
-            return False
-    return bool(np.ptp(one.force) > 0.0 or np.ptp(one.displacement) > 0.0)

@@ -20,7 +20,7 @@ from inerter.diagnose.result import (
     RunCurves,
     TablePoints,
 )
-from inerter.diagnose.wording import departure
+from inerter.diagnose.wording import departure, is_right
 from inerter.report import text
 from inerter.report.other_plots import cutoff_plot, table_plots
 from inerter.report.palette import DARK, LIGHT
@@ -103,6 +103,8 @@ def headline(diagnosis: Diagnosis) -> str:
     """The outcome in one sentence."""
     if not diagnosis.findings and diagnosis.unexplained.significant:
         return "The simulation lacks something that no known effect explains"
+    if not diagnosis.findings and not is_right(diagnosis):
+        return "The simulation misses the force, and no known effect explains it"
     if not diagnosis.findings:
         return "No lack of the simulation is to be seen in these data"
     names = [text.finding_name(finding) for finding in diagnosis.findings]

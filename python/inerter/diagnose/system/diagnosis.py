@@ -36,7 +36,10 @@ from inerter.diagnose.system.sensor_units import unit_of
 from inerter.diagnose.system.simulate import Simulator
 from inerter.diagnose.system.split import split_drives
 from inerter.diagnose.system.values import parameter_values
+from inerter.diagnose.wording import doubts_of_records
+from inerter.records.duplicates import repeats_another
 from inerter.records.record import RecordWarning, TimeRecord
+from inerter.rig import quiet
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -79,14 +82,9 @@ def diagnose_system(
     ValueError
         Runs that cannot be split or simulated.
     """
-    before = mujoco.get_mju_user_warning()
-    # trials go beyond what a step resolves; the engine would print that and write a log
-    mujoco.set_mju_user_warning(lambda text: None)
-    try:
-        with threadpool_limits(limits=1, user_api="blas"):
-            return _System(records, user, channels, holdout, progress, threads).run()
-    finally:
-        mujoco.set_mju_user_warning(before)
+    # trials go beyond what a step resolves, which the engine would tell each time
+    with quiet(), threadpool_limits(limits=1, user_api="blas"):
+        return _System(records, user, channels, holdout, progress, threads).run()
 
 
 class _System:
@@ -101,12 +99,17 @@ class _System:
         progress: Progress,
         threads: int,
     ) -> None:
-        self.records, self.user, self.channels = list(records), user, channels
+        self.all_records = list(records)
+        self.records = [record for record in records if not repeats_another(record)]
+        for record in records:
+            if record.name in holdout and record not in self.records:
+                raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
+        self.user, self.channels = user, channels
         self.progress = progress
         user.with_roads([user.model.actuator(name).id for name in channels.inputs.values()])
         self.simulator = Simulator(user, channels, threads)
         step = float(user.model.opt.timestep)
-        drives = [make_drive(record, channels, step) for record in records]
+        drives = [make_drive(record, channels, step) for record in self.records]
         progress("simulating the model along the recorded inputs")
         self.warnings: dict[str, list[RecordWarning]] = {r.name: list(r.warnings) for r in records}
         self.notes: list[str] = []
@@ -181,13 +184,14 @@ class _System:
         return found
 
     def _scales(self) -> dict[str, Scale]:
-        drive = self.drives[0]
-        motion = self.simulator.device_motion(SystemModel(), drive)
-        step = drive.step
+        motions = [self.simulator.device_motion(SystemModel(), drive) for drive in self.drives]
+        step = self.drives[0].step
         explicit = self.user.model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4
         found = {}
-        for name, (x, v) in motion.items():
-            a = np.gradient(v, step)
+        for name in motions[0]:
+            parts = [motion[name] for motion in motions]
+            x, v = (np.concatenate(channel) for channel in zip(*parts, strict=True))
+            a = np.concatenate([np.gradient(part[1], step) for part in parts])
             device = self.user.device(name).device
             force = np.std(device.inertance * a + device.viscous * v)
             force = force or np.std(device.stiffness * x)
@@ -345,7 +349,8 @@ class _System:
             floor,
             remains,
             {"mujoco": self._written_error(xml), "exudyn": None, "reference": None},
-            wording.verdict(
+            doubts_of_records(self._summaries())
+            + wording.verdict(
                 before, after, findings, places, remains.summary, self.user.parts.unknown, left
             ),
             parameters,
@@ -385,11 +390,16 @@ class _System:
                 record.name,
                 record.samples,
                 record.sample_rate,
-                "holdout" if record.name in held else "fit",
+                self._role(record, held),
                 [vars(w) for w in self.warnings[record.name]],
             )
-            for record in self.records
+            for record in self.all_records
         ]
+
+    def _role(self, record: TimeRecord, held: set[str]) -> str:
+        if record not in self.records:
+            return "unused"
+        return "holdout" if record.name in held else "fit"
 
     def _written_error(self, xml: str) -> float | None:
         """Held-out error of the model as written, read back from its text."""

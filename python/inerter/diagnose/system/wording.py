@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from inerter.diagnose.doubt import stand_ins, warning
+from inerter.diagnose.doubt import by_weight, stand_ins, warning
 from inerter.diagnose.result import Finding
 from inerter.diagnose.system.named import KNOWN
 from inerter.diagnose.system.outcome import SystemAccuracy
@@ -69,10 +69,11 @@ def verdict(
             start = "No effect that was tried explains what the simulation misses"
         text = f"{start}: its error is {error}. {remains}"
     else:
-        names = [
-            in_words(f.effect, f.law) + (f" in {place}" if place else "")
+        where = {
+            id(f): f" in {place}" if place else ""
             for f, place in zip(findings, places, strict=True)
-        ]
+        }
+        names = [in_words(f.effect, f.law) + where[id(f)] for f in by_weight(findings)]
         others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
         text = (
             f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "

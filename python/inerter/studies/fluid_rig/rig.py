@@ -10,8 +10,7 @@ force by its own laws:
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -38,17 +37,6 @@ _DRY_KEYS = ("friction", "coulomb_force", "static_force", "stribeck_velocity", "
 # simulations in one call: what bounds the memory
 _AT_ONCE = 64
 _CHUNK = 2.0
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Keep the engine from writing a warning for every trial that leaves the law of the air."""
-    before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda text: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 @dataclass(frozen=True)

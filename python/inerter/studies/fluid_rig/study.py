@@ -10,9 +10,10 @@ import numpy as np
 
 from inerter.model_parameters import FLUID_INERTER
 from inerter.parallel import run_all
+from inerter.rig import quiet
 from inerter.studies.fluid_rig.identify import Held, Identified, identify
 from inerter.studies.fluid_rig.objective import Measured
-from inerter.studies.fluid_rig.rig import Configuration, Rig, quiet
+from inerter.studies.fluid_rig.rig import Configuration, Rig
 from inerter.studies.fluid_rig.settings import Settings
 from inerter.studies.fluid_rig.signals import Signals
 from inerter.studies.fluid_rig.statements import Statement, statements
