@@ -13,6 +13,8 @@ from inerter import Device
 from inerter.core import DeviceError
 from inerter.device_file import device_text, read_device
 from inerter.diagnose import diagnose, diagnose_bench
+from inerter.diagnose.baseline import baseline_model
+from inerter.diagnose.composition import submodel
 from inerter.diagnose.output import write_outputs
 from inerter.diagnose.result import Diagnosis, StatedValue
 from inerter.diagnose.wording import verdict
@@ -243,3 +245,81 @@ def test_a_doubtful_record_is_told_before_any_cause(records) -> None:
     assert diagnosis.verdict.startswith("Look at the records first: run_")
     right = diagnose_bench(check_records(records))
     assert right.verdict.startswith("The simulation")
+
+
+TRAIN = {"inertance": 80.0, "series_stiffness": 7.1e5, "series_damping": 800.0}
+CYLINDER = {
+    "inertance": 80.0, "gas_pressure": 2e5, "gas_area": 1e-3, "gas_volume": 1e-4,
+    "gas_exponent": 1.3,
+}  # fmt: skip
+SLIDE = {
+    "inertance": 80.0, "friction": "lugre", "coulomb_force": 12.0, "static_force": 16.0,
+    "stribeck_velocity": 0.02, "bristle_stiffness": 2e4, "bristle_damping": 60.0,
+}  # fmt: skip
+GREASED = {
+    "inertance": 80.0, "friction": "brown_mcphee", "coulomb_force": 12.0, "static_force": 16.0,
+    "stribeck_velocity": 0.03,
+}  # fmt: skip
+WIRE = {
+    "inertance": 80.0, "friction": "bouc_wen", "bw_stiffness": 3e4, "bw_alpha": 0.9,
+    "bw_beta": 1500.0, "bw_gamma": 500.0, "bw_exponent": 1.0, "bw_ratio": 0.05,
+}  # fmt: skip
+
+
+def _measured(true: dict, seconds: float = 7.0) -> list[Record]:
+    """Two runs of a device, 0.2 N and 1 micrometre of noise."""
+    random, runs = np.random.default_rng(5), []
+    motions = [
+        sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [0.0, 1.0, 2.0]),
+        sum_of_sines([0.015, 0.002, 0.0007], [0.5, 2.3, 5.1], [0.0, 0.5, 1.0]),
+    ]
+    for i, motion in enumerate(motions):
+        found = response(ReferenceDevice(**true), motion, np.arange(0, seconds, 2e-3))
+        size = found.time.size
+        runs.append(
+            Record(
+                name=f"run_{i}",
+                time=found.time,
+                displacement=found.displacement + random.normal(0, 1e-6, size),
+                force=found.force + random.normal(0, 0.2, size),
+            )
+        )
+    return runs
+
+
+@pytest.mark.parametrize(
+    ("true", "wrong", "effect"),
+    [
+        (SLIDE, {"bristle_stiffness": 6e4}, "hysteretic_friction"),
+        (GREASED, {"coulomb_force": 8.0, "static_force": 12.0}, "stribeck_friction"),
+        (TRAIN, {"series_stiffness": 1.4e6}, "series_elasticity"),
+        (CYLINDER, {"gas_pressure": 3e5}, "gas_spring"),
+        (WIRE, {"bw_stiffness": 5e4}, "hysteretic_friction"),
+    ],
+)
+def test_any_stated_parameter_can_be_contradicted(true: dict, wrong: dict, effect: str) -> None:
+    diagnosis = diagnose_bench(_measured(true), Device(**{**true, **wrong}))
+    assert [finding.effect for finding in diagnosis.findings] == [effect]
+    assert diagnosis.gain > 0.8
+    for name, value in wrong.items():
+        found = diagnosis.parameters[name]
+        assert isinstance(found, StatedValue)
+        assert found.stated == value
+        assert found.value == pytest.approx(true[name], rel=0.06)
+    assert "contradict what is stated" in diagnosis.verdict
+
+
+@pytest.mark.parametrize("true", [GREASED, TRAIN, CYLINDER])
+def test_what_is_stated_right_is_held(true: dict) -> None:
+    diagnosis = diagnose_bench(_measured(true, 5.0), Device(**true))
+    assert diagnosis.findings == []
+    for name, value in true.items():
+        assert diagnosis.extended.device[name] == value
+
+
+def test_a_stated_law_in_words_outlasts_a_finding() -> None:
+    """A finding that is dropped or added does not change how the gas is stated to behave."""
+    stated = Device(**{**CYLINDER, "gas_law": "expanded"})
+    model = baseline_model(stated, 80.0, 1e-3)
+    assert model.texts == {"gas_law": "expanded"}
+    assert submodel(model.adding(None, viscous=20.0), [], model).texts == model.texts

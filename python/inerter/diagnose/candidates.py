@@ -7,38 +7,22 @@ has several starting points.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import width
 from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS
+from inerter.diagnose.stated import stated_candidates
 from inerter.identify.coordinates import Scales
 from inerter.identify.model import Model
 
 
-@dataclass(frozen=True)
-class Candidate:
-    """A model to try for an effect, with the starting points of its fit.
-
-    `law` tells the forms of one effect apart: friction laws, a stop above or below.
-    """
-
-    effect: str
-    law: str | None
-    starts: tuple[Model, ...]
-
-    @property
-    def key(self) -> tuple[object, ...]:
-        """What tells it from every other candidate for the same model."""
-        start = self.starts[0]
-        return self.effect, self.law, start.friction, frozenset(start.free)
-
-
 def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
-    """Every candidate that adds something to a model."""
+    """Every candidate that adds something to a model, or sets free what it states."""
     for name, build in _BUILDERS.items():
         yield from build(name, model, sizes)
+    yield from stated_candidates(model)
 
 
 def _free(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:

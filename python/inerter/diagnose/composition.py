@@ -60,13 +60,18 @@ def width(model: Model) -> dict[str, float]:
     return {"transition_velocity": model.values["transition_velocity"]}
 
 
-_LAW_EFFECT = {
+LAW_EFFECT = {
     "coulomb": "coulomb_friction",
     "stribeck": "stribeck_friction",
     "brown_mcphee": "stribeck_friction",
     "dahl": "hysteretic_friction",
     "lugre": "hysteretic_friction",
     "bouc_wen": "hysteretic_friction",
+}
+# parameters that a user states for what is searched for in other coordinates
+STATED_AS = {
+    "series_elasticity": ("series_stiffness", "series_damping"),
+    "gas_spring": ("gas_pressure", "gas_volume"),
 }
 _MODULATIONS = ("asymmetric_friction", "position_dependent_friction", "friction_drift")
 _SIMPLE = (
@@ -97,8 +102,8 @@ def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
         name for name in _MODULATIONS if any(c in added for c in EFFECTS[name].coordinates)
     ]
     law_touched = model.friction != baseline.friction or any(c in added for c in LAW_COORDINATES)
-    if law_touched and model.friction in _LAW_EFFECT:
-        effect = _LAW_EFFECT[model.friction]
+    if law_touched and model.friction in LAW_EFFECT:
+        effect = LAW_EFFECT[model.friction]
         if not (effect == "coulomb_friction" and modulations):
             found.append((effect, model.friction if effect == "hysteretic_friction" else None))
     found += [(name, None) for name in modulations]
@@ -144,10 +149,11 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
     """The model reduced to the baseline and some of its effects."""
     present = dict(effects_of(model, baseline))
     dropped = [name for name in present if name not in effects]
-    laws = [name for name in present if name in _LAW_EFFECT.values()]
+    laws = [name for name in present if name in LAW_EFFECT.values()]
     names: set[str] = set()
     for name in dropped:
         names.update(EFFECTS[name].coordinates if name not in laws else LAW_COORDINATES)
+        names.update(STATED_AS.get(name, ()))
     friction = model.friction
     kept_modulations = [name for name in _MODULATIONS if name in effects and name in present]
     if (laws and laws[0] in dropped) or (

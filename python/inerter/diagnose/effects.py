@@ -7,6 +7,8 @@ from dataclasses import dataclass
 # laws whose levels can differ with direction and position
 LEVEL_LAWS = ("coulomb", "stribeck", "dahl", "lugre", "brown_mcphee")
 
+# what a user may state of a friction law and no fit changes
+LAW_CONSTANTS = ("stribeck_exponent", "bw_alpha", "friction_backlash")
 # coordinates that belong to a friction law and leave with it
 LAW_COORDINATES = (
     "coulomb_force",
@@ -21,6 +23,7 @@ LAW_COORDINATES = (
     "bw_gamma",
     "bw_exponent",
     "bw_ratio",
+    *LAW_CONSTANTS,
 )
 # of a level that differs with direction and position; a drift is the record's, and every law's
 LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")

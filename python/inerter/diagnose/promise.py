@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.diagnose.candidates import Candidate
+from inerter.diagnose.candidate import Candidate
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.diagnose.candidates import Candidate, candidates
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     effects_of,
     is_distinct,

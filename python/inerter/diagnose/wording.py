@@ -96,9 +96,16 @@ def _contradicts(value: ParameterValue) -> bool:
 
 
 def effect_in_words(finding: Finding) -> str:
-    """Such as "friction with memory (Dahl)"."""
+    """Such as "friction with memory (Dahl)", "viscous friction other than stated"."""
     law = f" ({_LAWS[finding.law]})" if finding.law in _LAWS else ""
-    return EFFECTS[finding.effect].plain + law
+    other = finding.effect != "inertance_error" and _is_stated(finding)
+    return EFFECTS[finding.effect].plain + law + (" other than stated" if other else "")
+
+
+def _is_stated(finding: Finding) -> bool:
+    """Whether the user states all that a finding says."""
+    values = finding.parameters.values()
+    return bool(values) and all(isinstance(v, StatedValue) and v.stated for v in values)
 
 
 def _rival_in_words(rival: Rival) -> str:

@@ -1,0 +1,25 @@
+"""A model to try."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from inerter.identify.model import Model
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model to try for an effect, with the starting points of its fit.
+
+    `law` tells the forms of one effect apart: friction laws, a stop above or below.
+    """
+
+    effect: str
+    law: str | None
+    starts: tuple[Model, ...]
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What tells it from every other candidate for the same model."""
+        start = self.starts[0]
+        return self.effect, self.law, start.friction, frozenset(start.free)

@@ -1,0 +1,72 @@
+"""What a user's device states, set free: the models by which the data can contradict it.
+
+Inertance, damping, stiffness, levels and their variations are coordinates that `candidates` sets
+free itself. A law's other parameters, a shaft, stops and a gas are set free here, each as a whole.
+A stated free play is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.composition import LAW_EFFECT, STATED_AS, width
+from inerter.diagnose.effects import EFFECTS, LAW_CONSTANTS, LAW_COORDINATES
+from inerter.identify.model import Model
+
+# least share of the critical damping from which a stated shaft's is searched
+_LOSS = 1e-3
+
+
+def stated_candidates(model: Model) -> Iterator[Candidate]:
+    """Each part that a model states and holds, set free from its stated values."""
+    yield from _law(model)
+    yield from _shaft(model)
+    yield from _gas(model)
+    stops = {name: model.values[name] for name in _held(model, EFFECTS["end_stop"].coordinates)}
+    if stops:
+        yield Candidate("end_stop", None, (model.adding(None, **stops),))
+
+
+def _held(model: Model, names: tuple[str, ...]) -> list[str]:
+    return [name for name in names if name in model.values and name not in model.free]
+
+
+def _law(model: Model) -> Iterator[Candidate]:
+    # of Coulomb friction the level is all, and a candidate already
+    held = [name for name in _held(model, LAW_COORDINATES) if name not in LAW_CONSTANTS]
+    if model.friction not in LAW_EFFECT or model.friction == "coulomb" or not held:
+        return
+    effect = LAW_EFFECT[model.friction]
+    values = {name: model.values[name] for name in held}
+    law = model.friction if effect == "hysteretic_friction" else None
+    yield Candidate(effect, law, (model.adding(None, **values, **width(model)),))
+
+
+def _shaft(model: Model) -> Iterator[Candidate]:
+    device = model.device()
+    if "series_frequency" in model.values or not device.series_stiffness:
+        return
+    inertance, stiffness = device.inertance, device.series_stiffness
+    loss = device.series_damping / (2 * np.sqrt(stiffness * inertance))
+    start = model.without(STATED_AS["series_elasticity"]).adding(
+        None,
+        series_frequency=float(np.sqrt(stiffness / inertance) / (2 * np.pi)),
+        series_loss=max(float(loss), _LOSS),
+    )
+    yield Candidate("series_elasticity", None, (start,))
+
+
+def _gas(model: Model) -> Iterator[Candidate]:
+    device = model.device()
+    if "gas_push" in model.values or not device.gas_pressure:
+        return
+    start = model.without(STATED_AS["gas_spring"]).adding(
+        None,
+        gas_push=device.gas_pressure * device.gas_area,
+        gas_reach=device.gas_volume / device.gas_area,
+        gas_exponent=device.gas_exponent,
+    )
+    yield Candidate("gas_spring", None, (start,))
