@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from inerter.records import Record, check_records, read_records
+from inerter.records import Record, VehicleRecord, check_records, read_records
 from inerter.records.quality import outlier_rows
 
 RATE = 1000.0
@@ -293,6 +293,16 @@ def test_duplicate_records() -> None:
         [], [], ["duplicate_record"], [], ["duplicate_record"],
     ]  # fmt: skip
     assert "'bench'" in checked[2].warnings[0].text
+
+
+def test_copies_of_vehicle_records_are_told() -> None:
+    random = np.random.default_rng(4)
+    time, road, body = np.arange(500) / 100.0, *random.standard_normal((2, 500))
+    drive = VehicleRecord(name="drive", time=time, road=road, body_acceleration=body)
+    copy = dataclasses.replace(drive, name="copy")
+    other = dataclasses.replace(drive, name="other", body_acceleration=-body)
+    found = [[w.code for w in r.warnings] for r in check_records([drive, copy, other])]
+    assert found == [[], ["duplicate_record"], []]
 
 
 def test_repeated_motion_with_another_force_is_no_duplicate() -> None:

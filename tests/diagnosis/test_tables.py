@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter import Device
@@ -9,6 +11,8 @@ from inerter.diagnose import diagnose, diagnose_table
 from inerter.diagnose.table import amplitude
 from inerter.models import data_path
 from inerter.records import BenchTable
+from inerter.records.quality import check_records
+from inerter.report.page import headline
 
 FREQUENCY = np.linspace(0.5, 12, 16)
 
@@ -60,3 +64,61 @@ def test_measured_table_of_the_ball_screw_paper() -> None:
     """F / a is level from 3 Hz on: 40 kg, as the paper's own table and the line 40.04 a + 0.32."""
     diagnosis = diagnose([data_path("ball_screw_table.csv")])
     assert diagnosis.parameters["inertance"].value == pytest.approx(40.04, rel=0.03)
+
+
+def _swept(frequency: np.ndarray, seed: int, noise: float = 0.005) -> BenchTable:
+    """An ideal inerter of 113 kg at 10 m/s^2 throughout."""
+    random = np.random.default_rng(seed)
+    return BenchTable(
+        name="sweep",
+        frequency=frequency,
+        force_amplitude=1130.0 * (1 + noise * random.normal(size=frequency.size)),
+        acceleration_amplitude=np.full(frequency.size, 10.0),
+    )
+
+
+def test_a_sweep_at_one_acceleration_is_judged_by_its_force() -> None:
+    """All amplitudes are alike: their spread is noise, and no measure of what is missed."""
+    diagnosis = diagnose_table([_swept(np.linspace(1, 12, 12), 1)])
+    assert diagnosis.findings == []
+    assert diagnosis.baseline.nrmse < 0.01
+    assert diagnosis.verdict.startswith("The simulation is right")
+    assert headline(diagnosis).startswith("No lack")
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_three_rows_name_nothing(seed: int) -> None:
+    diagnosis = diagnose_table([_swept(np.array([2.0, 5.0, 9.0]), seed)])
+    assert diagnosis.findings == []
+    assert "no effect can be tried" in diagnosis.unexplained.summary
+
+
+@pytest.mark.parametrize("frequency", [5.0, 10.0])
+def test_amplitude_of_a_lightly_damped_shaft_is_its_steady_one(frequency: float) -> None:
+    """Against the impedance; the resonance at 12 Hz takes many periods to die out."""
+    b, damping = 100.0, 5.0
+    stiffness = b * (2 * np.pi * 12.0) ** 2
+    device = Device(inertance=b, series_stiffness=stiffness, series_damping=damping)
+    s = 2j * np.pi * frequency
+    shaft = stiffness + damping * s
+    expected = abs(b * shaft / (b * s**2 + shaft)) * 10.0
+    assert amplitude(device, frequency, 10.0) == pytest.approx(expected, rel=0.02)
+
+
+def test_a_stated_breakaway_does_not_stand_in_the_way() -> None:
+    """The sliding level found is above the breakaway level stated."""
+    stated = Device(
+        inertance=40.0, friction="stribeck", coulomb_force=10.0, static_force=14.0,
+        stribeck_velocity=0.005,
+    )  # fmt: skip
+    diagnosis = diagnose_table([table(0.01, coulomb=30.0)], stated)
+    assert diagnosis.extended.rmse < diagnosis.baseline.rmse
+
+
+def test_a_copy_of_a_table_is_left_out() -> None:
+    one = table(0.01, viscous=900.0)
+    copied = check_records([one, replace(one, name="copy")])
+    assert [w.code for w in copied[1].warnings] == ["duplicate_record"]
+    both, alone = diagnose_table(copied), diagnose_table([one])
+    assert both.extended == alone.extended
+    assert [record.role for record in both.records] == ["fit", "unused"]

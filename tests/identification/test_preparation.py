@@ -79,3 +79,18 @@ def test_the_corner_is_where_the_noises_are_equal() -> None:
     assert preparation.corner == pytest.approx(np.sqrt(0.1 / (40 * 4e-6)) / (2 * np.pi), rel=0.1)
     fused = replace(preparation, channels=("velocity",))
     assert weighed([record], fused) is fused
+
+
+def test_a_run_at_rest_chooses_no_cutoff() -> None:
+    """It tells the noise; its own "dominant frequency" is that of noise."""
+    records = [moving(4.0, seed=0), moving(4.0, seed=1)]
+    random, time = np.random.default_rng(9), np.arange(0, 3, 1 / RATE)
+    rest = Record(
+        name="rest",
+        time=time,
+        displacement=1e-6 * random.standard_normal(time.size),
+        force=0.1 * random.standard_normal(time.size),
+    )
+    without, beside = prepare(records), prepare([*records, rest])
+    assert beside.cutoffs[0] == pytest.approx(without.cutoffs[0])
+    assert beside.cutoff == pytest.approx(without.cutoff, rel=0.5)

@@ -52,7 +52,7 @@ TRIED = (
     "load_dependent_friction",
 )
 SAMPLES_PER_PERIOD = 400
-# a state forgets how it began: until two periods in a row differ by no more than this share
+# a state forgets how it began: until periods in a row differ by no more than this share
 FEWEST_PERIODS, MOST_PERIODS = 3, 768
 SETTLED = 1e-4
 # log-likelihood ratio (left-out errors) that a richer model needs: about one false alarm in 1000
@@ -71,12 +71,36 @@ def _steady(device: Device, frequency: float, acceleration: float) -> tuple[int,
     """Periods until the force repeats, and the force along them; at most `MOST_PERIODS`."""
     periods = FEWEST_PERIODS
     while True:
-        force = device.along(*_sine(frequency, acceleration, periods))["total"]
-        last = _fundamental(force)
-        change = abs(last - _fundamental(force[:-SAMPLES_PER_PERIOD]))
-        if change <= SETTLED * last or periods >= MOST_PERIODS or not np.isfinite(last):
+        motion = _sine(frequency, acceleration, periods)
+        force = device.along(*motion, _first_state(device, frequency, acceleration))["total"]
+        # of a quarter of the periods, for a swing that dies out comes and goes
+        last = force.reshape(periods, -1)[-max(2, periods // 4) :]
+        waves = np.fft.rfft(last, axis=1)[:, 1]
+        change = np.max(np.abs(waves - waves[-1]))
+        if not change > SETTLED * np.abs(waves[-1]) or periods >= MOST_PERIODS:
             return periods, force
         periods *= 2
+
+
+def _first_state(device: Device, frequency: float, acceleration: float) -> Array:
+    """States in which a shaft that is linear swings steadily already, others at zero."""
+    state = np.zeros(device.nstate)
+    if device.series_stiffness:
+        s = 2j * np.pi * frequency
+        shaft = device.series_stiffness + device.series_damping * s
+        flywheel = device.inertance * s**2 + device.flywheel_viscous * s
+        terminal = acceleration / abs(s) ** 2
+        turned = terminal * shaft / (shaft + flywheel)
+        # a sine is the imaginary part
+        state[-2:] = -turned.imag, (s * turned).imag
+    return state
+
+
+def _engine(device: Device, frequency: float, acceleration: float) -> Array:
+    """The same force from MuJoCo."""
+    periods, _ = _steady(device, frequency, acceleration)
+    state = _first_state(device, frequency, acceleration)
+    return simulate_along(device, *_sine(frequency, acceleration, periods), state)["total"]
 
 
 def _sine(frequency: float, acceleration: float, periods: int) -> tuple[float, Array, Array, Array]:
@@ -282,9 +306,7 @@ def _diagnosis(
     with quiet():
         engine = np.array(
             [
-                _fundamental(
-                    simulate_along(device, *_sine(f, a, _steady(device, f, a)[0]))["total"]
-                )
+                _fundamental(_engine(device, f, a))
                 for f, a in zip(table.frequency, table.acceleration, strict=True)
             ]
         )

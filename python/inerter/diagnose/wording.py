@@ -220,6 +220,12 @@ def _verdict(diagnosis: Diagnosis) -> str:
         f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms, "
         f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {diagnosis.unexplained.summary}"
     )
+    unseen = [effect_in_words(finding) for finding in diagnosis.findings if finding.seen_in_blocks]
+    if unseen:
+        text += (
+            f" What is held out does not reach {' and '.join(unseen)}, which shows in the other "
+            "data alone: see its evidence."
+        )
     doubtful = stand_ins(diagnosis.findings, diagnosis.unexplained.structure)
     text += warning([effect_in_words(finding) for finding in doubtful])
     contradicted = [

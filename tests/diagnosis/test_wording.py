@@ -1,0 +1,96 @@
+"""The sentences of a diagnosis."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inerter import Device
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.doubt import by_weight
+from inerter.diagnose.result import Diagnosis, Finding, Rival, StatedValue
+from inerter.diagnose.wording import departure, effect_in_words, verdict
+from inerter.records import Record
+from inerter.reference import ReferenceDevice, response, sum_of_sines
+
+
+@pytest.mark.parametrize(
+    ("value", "stated", "text"),
+    [
+        (25.0, 10.0, "stated 10, +15 N, +150 %"),
+        (0.0, 100.0, "stated 100, -100 N, -100 %"),
+        (92.3, 100.0, "stated 100, -7.7 N, -7.7 %"),
+        (3.0, 0.0, "stated 0, +3 N"),
+    ],
+)
+def test_departures_are_readable(value: float, stated: float, text: str) -> None:
+    assert departure(StatedValue(value, 0.1, "N", stated)) == text
+
+
+def test_what_is_stated_and_other_is_called_so() -> None:
+    value = StatedValue(60.0, 0.1, "N*s/m", 40.0)
+    finding = Finding("viscous_friction", None, 1.0, {"viscous": value}, 5.0, 1.0, "", [])
+    assert effect_in_words(finding) == "viscous friction other than stated"
+    unstated = replace(finding, parameters={"viscous": replace(value, stated=None)})
+    assert effect_in_words(unstated) == "viscous friction"
+
+
+def _run(device: ReferenceDevice, phase: float, rate: float) -> Record:
+    random = np.random.default_rng(int(10 * phase))
+    motion = sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [phase, 1.0, 2.0])
+    found = response(device, motion, np.arange(0, 8, 1 / rate))
+    return Record(
+        name=f"run {phase:g}",
+        time=found.time,
+        displacement=found.displacement + random.normal(0, 1e-6, found.time.size),
+        force=found.force + random.normal(0, 0.1, found.time.size),
+    )
+
+
+@pytest.fixture(scope="module")
+def spring_and_damper() -> Diagnosis:
+    """A stiffness explains more than the damping that is added last, and takes a smaller share."""
+    device = ReferenceDevice(inertance=50.0, viscous=60.0, stiffness=900.0)
+    return diagnose_bench([_run(device, p, 250.0) for p in (0.0, 0.7)], Device(inertance=50.0))
+
+
+def test_the_main_cause_is_what_explains_most(spring_and_damper: Diagnosis) -> None:
+    findings = spring_and_damper.findings
+    assert {f.effect for f in findings} == {"viscous_friction", "parallel_stiffness"}
+    assert [f.gain for f in findings] == sorted((f.gain for f in findings), reverse=True)
+    main = by_weight(findings)[0]
+    assert f"The main cause is {effect_in_words(main)}" in spring_and_damper.verdict
+
+
+def test_an_experiment_is_named_only_where_it_tells_the_two_apart(
+    spring_and_damper: Diagnosis,
+) -> None:
+    def text(effect: str, rival: str) -> str:
+        finding = replace(
+            spring_and_damper.findings[0],
+            effect=effect, law=None, parameters={}, rivals=[Rival(rival, 0.3)],
+        )  # fmt: skip
+        return verdict(replace(spring_and_damper, findings=[finding]))
+
+    assert "(dwell at mid-stroke" in text("coulomb_friction", "hysteretic_friction")
+    # the rival's own experiment
+    assert "(dwell at mid-stroke" in text("hysteretic_friction", "coulomb_friction")
+    other = text("coulomb_friction", "quadratic_damping")
+    assert "can hardly be told from" in other
+    assert "dwell" not in other
+
+
+def test_friction_at_a_low_rate_is_no_noise(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture
+) -> None:
+    """And what the engines think of a stiff bristle is neither printed nor logged."""
+    monkeypatch.chdir(tmp_path)
+    device = ReferenceDevice(
+        inertance=50.0, friction="dahl", coulomb_force=10.0, bristle_stiffness=3e5
+    )
+    found = diagnose_bench([_run(device, p, 250.0) for p in (0.0, 0.7)])
+    assert found.noise_floor < 0.25
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr().err == ""
