@@ -29,7 +29,7 @@ TARGETS = (1e-3, 1e-6, 1e-9)
 FLOOR = 1e-12
 
 
-def run(quick: bool = False, only: Sequence[str] = ()) -> list[Row]:
+def run(quick: bool = False, only: Sequence[str] = (), longest: float | None = None) -> list[Row]:
     """Measure every program on every problem.
 
     Parameters
@@ -38,6 +38,9 @@ def run(quick: bool = False, only: Sequence[str] = ()) -> list[Row]:
         Coarse settings and one round.
     only
         Parts of the names of the programs to take; all if empty.
+    longest
+        Processor time of a run [s] from which on a program is not refined further; by default as
+        `quick` says.
 
     Returns
     -------
@@ -47,7 +50,8 @@ def run(quick: bool = False, only: Sequence[str] = ()) -> list[Row]:
         the interpolated milliseconds of each solver and their ratio to the quickest one's, and how
         far the quickest of ours is ahead of the quickest of the others.
     """
-    longest, rounds = (0.04, 1) if quick else (0.4, 5)
+    usual, rounds = (0.04, 1) if quick else (0.4, 5)
+    longest = usual if longest is None else longest
     chosen = [s for s in solvers() if not only or any(part in s.name for part in only)]
     rows: list[Row] = []
     with ExitStack() as stack:
