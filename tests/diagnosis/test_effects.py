@@ -24,7 +24,8 @@ def rows() -> dict[str, list[str]]:
 def test_docs_say_what_the_catalogue_says(name: str) -> None:
     effect, row = EFFECTS[name], rows()[name]
     assert effect.cause in row
-    assert effect.taken_for in row
+    assert f"{effect.taken_for}: {effect.experiment}" in row
+    assert set(effect.rivals) <= EFFECTS.keys() - {name}
 
 
 def test_an_effect_in_one_place_is_judged_there() -> None:

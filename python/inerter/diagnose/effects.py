@@ -43,8 +43,10 @@ class Effect:
         The effect in running text.
     meaning, cause : str
         What it adds to F = b a, and what makes it in a real device.
-    taken_for : str
+    taken_for, experiment : str
         What it is easily taken for, and the experiment that tells them apart.
+    rivals : tuple of str
+        Effects among those that it is taken for.
     """
 
     name: str
@@ -54,6 +56,8 @@ class Effect:
     meaning: str
     cause: str
     taken_for: str
+    experiment: str
+    rivals: tuple[str, ...] = ()
 
 
 EFFECTS = {
@@ -66,7 +70,8 @@ EFFECTS = {
             "an inertance other than stated",
             "b differs from what is stated",
             "flywheel inertia, lead or gear ratio other than in the data sheet",
-            "a wrong force or displacement calibration: check both against a known mass",
+            "a wrong force or displacement calibration",
+            "check both against a known mass",
         ),
         Effect(
             "viscous_friction",
@@ -75,8 +80,10 @@ EFFECTS = {
             "viscous friction",
             "c v",
             "lubricant shear in bearings, screw and seals",
-            "sensor delay: repeat the stroke at twice the frequency, c v doubles and "
-            "a delay's force grows eightfold",
+            "sensor delay",
+            "repeat the stroke at twice the frequency, c v doubles and a delay's "
+            "force grows eightfold",
+            ("sensor_delay",),
         ),
         Effect(
             "coulomb_friction",
@@ -85,7 +92,9 @@ EFFECTS = {
             "Coulomb friction",
             "f_c sign(v)",
             "dry sliding in seals, guides and preloaded screws",
-            "hysteretic friction: dwell at mid-stroke and watch whether the force stays",
+            "hysteretic friction",
+            "dwell at mid-stroke and watch whether the force stays",
+            ("hysteretic_friction",),
         ),
         Effect(
             "stribeck_friction",
@@ -94,7 +103,9 @@ EFFECTS = {
             "Stribeck friction",
             "[f_c + (f_s - f_c) exp(-(v/v_s)^2)] sign(v)",
             "lubricated contacts that lift off their asperities as the speed grows",
-            "Coulomb with viscous friction: run slow strokes below the Stribeck velocity",
+            "Coulomb with viscous friction",
+            "run slow strokes below the Stribeck velocity",
+            ("coulomb_friction", "viscous_friction"),
         ),
         Effect(
             "hysteretic_friction",
@@ -114,8 +125,9 @@ EFFECTS = {
             "friction with memory",
             "friction with memory: it builds up over a pre-sliding distance and stays at rest",
             "elastic asperities, seals and preloaded balls that bend before they slide",
-            "parallel stiffness or backlash: repeat with strokes shorter than the pre-sliding "
-            "distance",
+            "parallel stiffness or backlash",
+            "repeat with strokes shorter than the pre-sliding distance",
+            ("parallel_stiffness", "backlash"),
         ),
         Effect(
             "asymmetric_friction",
@@ -124,7 +136,9 @@ EFFECTS = {
             "friction that differs between the two directions",
             "friction level differs between the two directions",
             "one-sided preload, a lip seal, a helical gear's thrust",
-            "a constant force: repeat with the device turned round",
+            "a constant force",
+            "repeat with the device turned round",
+            ("force_offset",),
         ),
         Effect(
             "position_dependent_friction",
@@ -133,8 +147,10 @@ EFFECTS = {
             "friction that changes along the stroke",
             "friction level changes along the stroke",
             "a bent screw, tight guides, wear at mid-stroke",
-            "parallel stiffness: look at slow strokes both ways, a spring's force "
-            "does not change sign with the direction",
+            "parallel stiffness",
+            "look at slow strokes both ways, a spring's force does not change "
+            "sign with the direction",
+            ("parallel_stiffness",),
         ),
         Effect(
             "load_dependent_friction",
@@ -143,7 +159,9 @@ EFFECTS = {
             "friction that grows with the transmitted force",
             "mu |b a| sign(v)",
             "the flywheel's force pressed through screw threads or gear teeth",
-            "Coulomb friction: repeat with another flywheel",
+            "Coulomb friction",
+            "repeat with another flywheel",
+            ("coulomb_friction",),
         ),
         Effect(
             "parallel_stiffness",
@@ -152,7 +170,9 @@ EFFECTS = {
             "a parallel stiffness",
             "k x",
             "a centring spring, a rubber mount, trapped air",
-            "a wrong inertance at one frequency: use at least two frequencies",
+            "a wrong inertance at one frequency",
+            "use at least two frequencies",
+            ("inertance_error",),
         ),
         Effect(
             "force_offset",
@@ -161,7 +181,9 @@ EFFECTS = {
             "a constant force",
             "a constant force",
             "weight of the flywheel, preload, a load cell that was not zeroed",
-            "asymmetric friction: a dwell shows the constant force alone",
+            "asymmetric friction",
+            "a dwell shows the constant force alone",
+            ("asymmetric_friction",),
         ),
         Effect(
             "sensor_delay",
@@ -170,8 +192,9 @@ EFFECTS = {
             "a delay between the force and the displacement channel",
             "the force channel is late by a constant time",
             "filters or clocks that differ between the channels",
-            "series elasticity and viscous friction: they change with amplitude or with "
-            "frequency, a delay does not",
+            "series elasticity and viscous friction",
+            "they change with amplitude or with frequency, a delay does not",
+            ("series_elasticity", "viscous_friction"),
         ),
         Effect(
             "variable_inertance",
@@ -185,7 +208,9 @@ EFFECTS = {
             "an inertance that is not constant",
             "b depends on displacement, b(x) a + b'(x) v^2 / 2, or on speed",
             "a ratio that varies along the stroke: rack and pinion, eccentric gear, moving fluid",
-            "parallel stiffness: repeat at twice the frequency, the inertance force grows fourfold",
+            "parallel stiffness",
+            "repeat at twice the frequency, the inertance force grows fourfold",
+            ("parallel_stiffness",),
         ),
         Effect(
             "quadratic_damping",
@@ -194,7 +219,9 @@ EFFECTS = {
             "quadratic damping",
             "c2 v |v|",
             "turbulent flow, windage of the flywheel",
-            "viscous friction: repeat at twice the amplitude",
+            "viscous friction",
+            "repeat at twice the amplitude",
+            ("viscous_friction",),
         ),
         Effect(
             "friction_drift",
@@ -203,7 +230,9 @@ EFFECTS = {
             "a friction level that changes with time",
             "friction level times 1 + friction_drift t",
             "lubricant that warms up, seals that run in, wear",
-            "load-dependent friction, where the motion grows in time: repeat the first run last",
+            "load-dependent friction, where the motion grows in time",
+            "repeat the first run last",
+            ("load_dependent_friction",),
         ),
         Effect(
             "backlash",
@@ -212,7 +241,9 @@ EFFECTS = {
             "free play before the inertance is engaged",
             "free play of half-width eps in series with the inertance",
             "worn screw or gear flanks, loose pins",
-            "hysteretic friction: repeat with strokes within the suspected play",
+            "hysteretic friction",
+            "repeat with strokes within the suspected play",
+            ("hysteretic_friction",),
         ),
         Effect(
             "series_elasticity",
@@ -221,7 +252,9 @@ EFFECTS = {
             "elasticity in series with the inertance",
             "spring k_s and damper c_s between the terminal and the inertance",
             "shaft twist, bearing and mount flexibility, fluid compressibility",
-            "inertance or delay: repeat at higher frequency, where the inertance resonates on it",
+            "inertance or delay",
+            "repeat at higher frequency, where the inertance resonates on it",
+            ("inertance_error", "sensor_delay"),
         ),
         Effect(
             "hardening_stiffness",
@@ -230,7 +263,9 @@ EFFECTS = {
             "a stiffness that grows with the stroke",
             "k3 x^3",
             "rubber, guides that bind, a spring that stacks",
-            "an end stop: repeat with half the stroke, k3 x^3 falls to an eighth",
+            "an end stop",
+            "repeat with half the stroke, k3 x^3 falls to an eighth",
+            ("end_stop",),
         ),
         Effect(
             "gas_spring",
@@ -239,7 +274,9 @@ EFFECTS = {
             "a gas spring",
             "p0 A (1 - (1 + A x / V0)^-gamma)",
             "trapped air, an accumulator",
-            "a parallel stiffness: repeat with more compression, a gas stiffens on one side only",
+            "a parallel stiffness",
+            "repeat with more compression, a gas stiffens on one side only",
+            ("parallel_stiffness",),
         ),
         Effect(
             "end_stop",
@@ -248,7 +285,9 @@ EFFECTS = {
             "an end stop",
             "k_e (x - x_stop) beyond the stop",
             "a bump stop, a nut that reaches its end",
-            "hardening stiffness: repeat with strokes that end just before the stop",
+            "hardening stiffness",
+            "repeat with strokes that end just before the stop",
+            ("hardening_stiffness",),
         ),
         Effect(
             "force_drift",
@@ -257,7 +296,9 @@ EFFECTS = {
             "a force offset that grows in time",
             "an offset that grows steadily",
             "a load cell that warms up, a charge amplifier that leaks",
-            "friction drift: that one changes sign with the velocity",
+            "friction drift",
+            "that one changes sign with the velocity",
+            ("friction_drift",),
         ),
         Effect(
             "sensor_saturation",
@@ -266,7 +307,8 @@ EFFECTS = {
             "a force channel that clips",
             "force beyond a limit is cut off",
             "an amplifier or converter at the end of its range",
-            "less inertance in large motion: repeat with half the amplitude",
+            "less inertance in large motion",
+            "repeat with half the amplitude",
         ),
         Effect(
             "periodic_disturbance",
@@ -275,7 +317,8 @@ EFFECTS = {
             "a tone that the motion does not contain",
             "a sine of constant frequency",
             "mains hum, a pump, a machine next door",
-            "a resonance of the rig: record with the device at rest",
+            "a resonance of the rig",
+            "record with the device at rest",
         ),
     )
 }

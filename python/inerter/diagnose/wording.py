@@ -116,10 +116,8 @@ def _rival_in_words(rival: Rival) -> str:
 def _told_apart(effect: str, rival: Rival) -> str:
     """The experiment that tells two effects apart, in brackets, where one is known."""
     for one, other in ((effect, rival.effect), (rival.effect, effect)):
-        mistaken, _, experiment = EFFECTS[one].taken_for.partition(": ")
-        word = EFFECTS[other].plain if other.startswith("force") else other.split("_")[0]
-        if experiment and word.lower() in mistaken.lower():
-            return f" ({experiment})"
+        if other in EFFECTS[one].rivals:
+            return f" ({EFFECTS[one].experiment})"
     return ""
 
 

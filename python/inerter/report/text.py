@@ -111,12 +111,11 @@ def effect_notes(effect: str) -> dict[str, str]:
     known = KNOWN.get(effect)
     if known is None:
         return {}
-    rival, _, experiment = known.taken_for.partition(": ")
     return {
         "meaning": known.meaning,
         "cause": known.cause,
-        "rival": rival,
-        "experiment": experiment,
+        "rival": known.taken_for,
+        "experiment": known.experiment,
     }
 
 
