@@ -41,7 +41,7 @@ from inerter.identify.preparation import (
 )
 from inerter.identify.split import Split, split
 from inerter.records import Record
-from inerter.records.duplicates import repeats_another
+from inerter.records.duplicates import repeats_another, without_copies
 from inerter.records.motion import Motion
 
 Array = NDArray[np.float64]
@@ -118,11 +118,8 @@ class _Bench:
         delay: float,
     ) -> None:
         self.all_records = list(records)
-        self.records = [record for record in records if not repeats_another(record)]
+        self.records = without_copies(records, holdout)
         self.progress = progress
-        for record in records:
-            if record.name in holdout and record not in self.records:
-                raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
         refuse_unusable(self.records)
         progress("smoothing: choosing the cut-off")
         self.holdout = holdout
@@ -361,7 +358,7 @@ class _Bench:
                 record.name,
                 record.samples,
                 record.sample_rate,
-                self.split.role(names.index(record.name)) if record in self.records else "unused",
+                "unused" if repeats_another(record) else self.split.role(names.index(record.name)),
                 [vars(w) for w in record.warnings],
             )
             for record in self.all_records

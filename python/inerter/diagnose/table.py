@@ -36,7 +36,7 @@ from inerter.identify.coordinates import Scales, coordinate
 from inerter.identify.fit import Fit
 from inerter.identify.model import NUISANCES, Model
 from inerter.records import BenchTable
-from inerter.records.duplicates import repeats_another
+from inerter.records.duplicates import repeats_another, without_copies
 from inerter.rig import quiet, simulate_along
 
 Array = NDArray[np.float64]
@@ -216,7 +216,7 @@ def diagnose_table(
     ValueError
         Amplitudes or frequencies that are not above zero.
     """
-    table = _Table([each for each in tables if not repeats_another(each)])
+    table = _Table(without_copies(tables))
     fit_mask = ~table.holdout
     start = float(np.mean(table.force / table.acceleration))
     transition = parameters()["transition_velocity"].initial

@@ -58,3 +58,17 @@ def _equal(one: dict[str, Array], other: dict[str, Array]) -> bool:
 def repeats_another(record: Columns) -> bool:
     """Whether a record was found to be a copy of an earlier one."""
     return any(warning.code == "duplicate_record" for warning in record.warnings)
+
+
+def without_copies(records: Sequence[R], held_out: Sequence[str] = ()) -> list[R]:
+    """The records that repeat no earlier one.
+
+    Raises
+    ------
+    ValueError
+        A record that is to be held out is a copy.
+    """
+    for record in records:
+        if record.name in held_out and repeats_another(record):
+            raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
+    return [record for record in records if not repeats_another(record)]

@@ -37,7 +37,7 @@ from inerter.diagnose.system.simulate import Simulator
 from inerter.diagnose.system.split import split_drives
 from inerter.diagnose.system.values import parameter_values
 from inerter.diagnose.wording import doubts_of_records
-from inerter.records.duplicates import repeats_another
+from inerter.records.duplicates import repeats_another, without_copies
 from inerter.records.record import RecordWarning, TimeRecord
 from inerter.rig import quiet
 
@@ -100,10 +100,7 @@ class _System:
         threads: int,
     ) -> None:
         self.all_records = list(records)
-        self.records = [record for record in records if not repeats_another(record)]
-        for record in records:
-            if record.name in holdout and record not in self.records:
-                raise ValueError(f"--holdout {record.name}: {record.warnings[-1].text}")
+        self.records = without_copies(records, holdout)
         self.user, self.channels = user, channels
         self.progress = progress
         user.with_roads([user.model.actuator(name).id for name in channels.inputs.values()])
@@ -397,7 +394,7 @@ class _System:
         ]
 
     def _role(self, record: TimeRecord, held: set[str]) -> str:
-        if record not in self.records:
+        if repeats_another(record):
             return "unused"
         return "holdout" if record.name in held else "fit"
 

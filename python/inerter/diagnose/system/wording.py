@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from inerter.diagnose.doubt import by_weight, stand_ins, warning
+from inerter.diagnose.doubt import explained, stand_ins, warning
 from inerter.diagnose.result import Finding
 from inerter.diagnose.system.named import KNOWN
 from inerter.diagnose.system.outcome import SystemAccuracy
@@ -69,11 +69,12 @@ def verdict(
             start = "No effect that was tried explains what the simulation misses"
         text = f"{start}: its error is {error}. {remains}"
     else:
-        where = {
-            id(f): f" in {place}" if place else ""
-            for f, place in zip(findings, places, strict=True)
-        }
-        names = [in_words(f.effect, f.law) + where[id(f)] for f in by_weight(findings)]
+        weighed = sorted(
+            zip(findings, places, strict=True), key=lambda pair: explained(pair[0]), reverse=True
+        )
+        names = [
+            in_words(f.effect, f.law) + (f" in {place}" if place else "") for f, place in weighed
+        ]
         others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
         text = (
             f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "
