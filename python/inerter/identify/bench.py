@@ -5,13 +5,22 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.identify.coordinates import Scales
-from inerter.records.motion import Motion, band_response, filtered, lowpass, response, weight_above
+from inerter.records.motion import (
+    Motion,
+    apply_weight,
+    band_response,
+    filtered,
+    lowpass,
+    response,
+    weight_above,
+)
 
 Array = NDArray[np.float64]
 
@@ -100,11 +109,15 @@ class Run:
         What is beyond `far` counts by its logarithm: the sum of the squares is the Cauchy loss.
         """
         if np.isfinite(self.corner) and np.isfinite(values).all():
-            values = weight_above(np.where(mask, values, 0.0), self.spacing, self.corner)
+            values = apply_weight(np.where(mask, values, 0.0), self._weight)
         if np.isfinite(self.far):
             share = values / self.far
             values = self.far * np.sign(share) * np.sqrt(np.log1p(share**2))
         return values
+
+    @cached_property
+    def _weight(self) -> Array:
+        return weight_above(self.force.size, self.spacing, self.corner)
 
     def gain(self, frequency: float) -> float:
         """What the low-pass leaves of a tone."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.records import Record
-from inerter.records.motion import Motion, lowpass, smooth, weight_above, white_noise
+from inerter.records.motion import Motion, apply_weight, lowpass, smooth, weight_above, white_noise
 
 Array = NDArray[np.float64]
 Masks = Sequence[NDArray[np.bool_]]
@@ -221,7 +221,9 @@ def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf
                 friction="dahl", coulomb_force=1.0, bristle_stiffness=float(1 / (share * x_rms))
             )
             rows.append(bristle.along(motion.spacing, x, v, a)["friction"])
-        table = weight_above(np.array([*rows, motion.force]), motion.spacing, corner)
+        table = np.array([*rows, motion.force])
+        if np.isfinite(corner):
+            table = apply_weight(table, weight_above(x.size, motion.spacing, corner))
         columns.append(table[:-1].T[mask])
         forces.append(table[-1][mask])
     matrix, force = np.vstack(columns), np.concatenate(forces)

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.fft import irfft, rfft, rfftfreq
@@ -162,26 +161,21 @@ def filtered(values: Array, response: Array) -> Array:
     return line + irfft(rfft(wave) * response, wave.size)[:n]
 
 
-def weight_above(values: Array, spacing: float, corner: float) -> Array:
-    """Channels (..., n) times (1 + (f / corner)^4)^(-1/2), without a shift; zero beyond the ends.
+def weight_above(size: int, spacing: float, corner: float) -> Array:
+    """(1 + (f / corner)^4)^(-1/2) for channels of a size, see `apply_weight`; corner in Hz.
 
-    The inverse of a noise that is white below the corner [Hz] and grows with the square of the
-    frequency above.
+    The inverse of a noise that is white below the corner and grows with the square of the frequency
+    above.
     """
-    if np.isinf(corner):
-        return values
-    size = values.shape[-1]
-    least = size + round(1 / (corner * spacing))
-    length = int(next_fast_len(least, real=True) or least)
-    weight = _weight(length, spacing, corner)
-    return irfft(rfft(values, length) * weight, length)[..., :size]
+    least = (size + round(1 / (corner * spacing)) + 1) // 2
+    length = 2 * int(next_fast_len(least, real=True) or least)
+    return 1 / np.sqrt(1 + (rfftfreq(length, spacing) / corner) ** 4)
 
 
-@lru_cache(maxsize=64)
-def _weight(length: int, spacing: float, corner: float) -> Array:
-    weight = 1 / np.sqrt(1 + (rfftfreq(length, spacing) / corner) ** 4)
-    weight.flags.writeable = False
-    return weight
+def apply_weight(values: Array, weight: Array) -> Array:
+    """Channels (..., n) times a weight at their frequencies, no shift; zero beyond the ends."""
+    length = 2 * weight.size - 2
+    return irfft(rfft(values, length) * weight, length)[..., : values.shape[-1]]
 
 
 def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) -> Motion:
