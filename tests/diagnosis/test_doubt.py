@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import doubted, stand_ins, trust, warning
 from inerter.diagnose.result import Finding
-from inerter.records import Record
-from inerter.reference import HiddenCase, NoiseLevels, hide_effect, hide_unknown
+from inerter.reference import NoiseLevels, hide_effect, hide_unknown
 
 QUIET = NoiseLevels(0.0, 0.01, 1e-6)
 # explains 3 N of 5
@@ -46,29 +46,21 @@ def test_warning_names_only_what_may_stand_in() -> None:
     assert "a explains," in warning(["a"])
 
 
-def _records(case: HiddenCase) -> list[Record]:
-    return [
-        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
-        for run in case.runs
-    ]
-
-
-def test_a_stand_in_for_an_unnamed_friction_is_doubted(effects_seed: int) -> None:
-    """Friction that grows with the logarithm of speed: viscous friction makes up for a part."""
-    case = hide_unknown(effects_seed, "logarithmic_friction", QUIET)
-    found = diagnose_bench(_records(case))
+def test_a_stand_in_for_an_unnamed_friction_is_doubted() -> None:
+    """Friction that waxes and wanes along the stroke: Coulomb friction is its mean."""
+    case = hide_unknown(20261121, "periodic_friction", QUIET)
+    found = diagnose_bench(records_of(case))
     assert found.unexplained.significant
-    for finding in found.findings:
-        sure = trust(finding, found.unexplained.structure)
-        assert finding.confidence <= sure
-        assert (sure < 0.8) == ("may stand in" in finding.evidence)
-    doubtful = stand_ins(found.findings, found.unexplained.structure)
-    assert bool(doubtful) == ("may stand in" in found.verdict)
+    stand_in = next(each for each in found.findings if each.effect == "coulomb_friction")
+    # of 1 + sin the mean is sqrt(2) times the rms of the rest
+    assert stand_in.confidence == pytest.approx(2 / 3, abs=0.1)
+    assert "may stand in" in stand_in.evidence
+    assert "explains, what stays unexplained is large: it may stand in" in found.verdict
 
 
 def test_a_named_effect_alone_is_not_doubted(effects_seed: int) -> None:
     case = hide_effect(effects_seed, "viscous_friction", noise=QUIET)
-    found = diagnose_bench(_records(case))
+    found = diagnose_bench(records_of(case))
     assert [finding.effect for finding in found.findings] == ["viscous_friction"]
     assert found.findings[0].confidence > 0.95
     assert "may stand in" not in found.verdict

@@ -128,20 +128,25 @@ def noisy(values: Array, share: float, random: np.random.Generator) -> Array:
 
 
 def reference_records(
-    car: QuarterCar, runs: int = 3, duration: float = 4.0, seed: int = 11, noise: float = 0.01
+    car: QuarterCar,
+    runs: int = 3,
+    duration: float = 4.0,
+    seed: int = 11,
+    noise: float = 0.01,
+    **road: float,
 ) -> list[VehicleRecord]:
     """Drives of the reference quarter-car, noise on the accelerometers."""
     found = []
     for i in range(runs):
-        road = Road(seed + i, duration)
+        height = Road(seed + i, duration, **road)
         times = np.arange(0.0, duration, 0.004)
-        run = car.simulate(road, times, rtol=1e-6, atol=1e-8, max_step=0.01)
+        run = car.simulate(height, times, rtol=1e-6, atol=1e-8, max_step=0.01)
         random = np.random.default_rng(2000 + seed + i)
         found.append(
             VehicleRecord(
                 name=f"run{i + 1}",
                 time=times,
-                road=np.array([road(t) for t in times]),
+                road=np.array([height(t) for t in times]),
                 body_acceleration=noisy(run.body_acceleration, noise, random),
                 wheel_acceleration=noisy(run.wheel_acceleration, noise, random),
                 suspension_travel=run.suspension_travel,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -40,3 +41,14 @@ def test_effect_of_the_device_is_named(effect: str) -> None:
     assert found.extended.rmse < 1.2 * found.noise_floor < 0.014
     assert found.extended.rmse < 0.5 * found.baseline.rmse
     assert found.devices["strut"].given == found.extended.device
+
+
+def test_a_first_drive_that_hardly_moves_hides_nothing() -> None:
+    """Starting points come from the motion of all drives: from the first's none leads to a stop."""
+    values, parameters = HIDDEN["end_stop"]
+    car = QuarterCar(device=ReferenceDevice(inertance=S2.inertance, **values))
+    idle = replace(reference_records(car, runs=1, seed=99, amplitude=1e-4)[0], name="idle")
+    found = diagnose([idle, *reference_records(car)])
+    assert [finding.effect for finding in found.findings] == ["end_stop"]
+    for name, (true, share) in parameters.items():
+        assert found.findings[0].parameters[name].value == pytest.approx(true, rel=share)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from hidden_vehicles import Car, diagnose, records
 from inerter.diagnose.result import StatedValue
 from inerter.records import VehicleRecord
+from inerter.records.quality import check_records
 
 # effect: the car it is hidden in, the road, parameter -> (true value, allowed relative error)
 HIDDEN = {
@@ -124,3 +126,20 @@ def test_other_sign_of_the_tyre_force_is_no_effect() -> None:
     found = diagnose(turned)
     assert found.findings == []
     assert found.method["signs"] == ["tyre_force counted with the other sign"]
+
+
+def test_an_accelerometer_turned_round_is_told_before_any_cause() -> None:
+    turned = []
+    for run in records(Car(), runs=2):
+        channels: dict[str, Any] = run.channels()
+        channels["body_acceleration"] = -channels["body_acceleration"]
+        turned.append(VehicleRecord(name=run.name, time=run.time, **channels))
+    verdict = diagnose(turned).verdict
+    assert verdict.startswith("Look at the records first: run1: 'body_acceleration' runs against")
+
+
+def test_a_copy_of_a_drive_is_left_out() -> None:
+    runs = records(Car(sprung_mass=200.0), runs=2)
+    alone, beside = diagnose(runs), diagnose(check_records([*runs, replace(runs[0], name="copy")]))
+    assert [(each.name, each.role) for each in beside.records][2:] == [("copy", "unused")]
+    assert beside.extended == alone.extended
