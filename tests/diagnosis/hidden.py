@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cache
 
 from inerter import Device
+from inerter.blind_test.case import records_of
 from inerter.diagnose import Diagnosis, diagnose_bench
-from inerter.records import Record
 from inerter.reference import HiddenCase, hide_effect
 
 
@@ -14,8 +14,4 @@ from inerter.reference import HiddenCase, hide_effect
 def solve(seed: int, effect: str, law: str | None = None) -> tuple[HiddenCase, Diagnosis]:
     """Hide an effect by the reference, diagnose the noisy records."""
     case = hide_effect(seed, effect, law=law)
-    records = [
-        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
-        for run in case.runs
-    ]
-    return case, diagnose_bench(records, Device(**case.stated) if case.stated else None)
+    return case, diagnose_bench(records_of(case), Device(**case.stated) if case.stated else None)

@@ -9,6 +9,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from bench_runs import measured
 from inerter import Device
 from inerter.core import DeviceError
 from inerter.device_file import device_text, read_device
@@ -29,24 +30,11 @@ TRUE = {"inertance": 80.0, "viscous": 40.0, "friction": "coulomb", "coulomb_forc
 @pytest.fixture(scope="module")
 def records() -> list[Record]:
     """Two short runs of a device with viscous and Coulomb friction."""
-    random = np.random.default_rng(5)
-    device = ReferenceDevice(**TRUE)  # type: ignore[arg-type]
     motions = [
         sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [0.0, 1.0, 2.0]),
         strokes([0.0, 0.03, 0.0, 0.02, 0.0], [1.0, 3.0, 5.0, 7.0], [0.6, 0.8, 0.5, 0.9]),
     ]
-    runs = []
-    for i, motion in enumerate(motions):
-        truth = response(device, motion, np.arange(0, 9, 2e-3))
-        runs.append(
-            Record(
-                name=f"run_{i}",
-                time=truth.time,
-                displacement=truth.displacement + random.normal(0, 1e-6, truth.time.size),
-                force=truth.force + random.normal(0, 0.2, truth.time.size),
-            )
-        )
-    return runs
+    return measured(ReferenceDevice(**TRUE), motions, np.arange(0, 9, 2e-3))  # type: ignore[arg-type]
 
 
 def test_right_device_brings_no_finding(records) -> None:
@@ -62,20 +50,10 @@ def test_a_stated_friction_law_of_any_kind_may_be_uneven() -> None:
         "static_force": 15.0, "stribeck_velocity": 0.02,
     }  # fmt: skip
     truth = ReferenceDevice(**stated, friction_asymmetry=0.2)  # type: ignore[arg-type]
-    random, runs = np.random.default_rng(3), []
-    for i in range(2):
-        rates = random.uniform(0.5, 5, 5)
-        motion = sum_of_sines(0.01 / (1 + rates), rates, random.uniform(0, 6, 5))
-        found = response(truth, motion, np.arange(0, 8, 2e-3))
-        size = found.time.size
-        runs.append(
-            Record(
-                name=f"run_{i}",
-                time=found.time,
-                displacement=found.displacement + random.normal(0, 1e-6, size),
-                force=found.force + random.normal(0, 0.2, size),
-            )
-        )
+    random = np.random.default_rng(3)
+    rates, phases = random.uniform(0.5, 5, (2, 5)), random.uniform(0, 6, (2, 5))
+    motions = [sum_of_sines(0.01 / (1 + r), r, p) for r, p in zip(rates, phases, strict=True)]
+    runs = measured(truth, motions, np.arange(0, 8, 2e-3))
     diagnosis = diagnose_bench(runs, Device(**stated))
     assert [each.effect for each in diagnosis.findings] == ["asymmetric_friction"]
     value = diagnosis.findings[0].parameters["friction_asymmetry"].value
@@ -266,25 +244,12 @@ WIRE = {
 }  # fmt: skip
 
 
-def _measured(true: dict, seconds: float = 7.0) -> list[Record]:
-    """Two runs of a device, 0.2 N and 1 micrometre of noise."""
-    random, runs = np.random.default_rng(5), []
+def two_runs(true: dict, seconds: float = 7.0) -> list[Record]:
     motions = [
         sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [0.0, 1.0, 2.0]),
         sum_of_sines([0.015, 0.002, 0.0007], [0.5, 2.3, 5.1], [0.0, 0.5, 1.0]),
     ]
-    for i, motion in enumerate(motions):
-        found = response(ReferenceDevice(**true), motion, np.arange(0, seconds, 2e-3))
-        size = found.time.size
-        runs.append(
-            Record(
-                name=f"run_{i}",
-                time=found.time,
-                displacement=found.displacement + random.normal(0, 1e-6, size),
-                force=found.force + random.normal(0, 0.2, size),
-            )
-        )
-    return runs
+    return measured(ReferenceDevice(**true), motions, np.arange(0, seconds, 2e-3))
 
 
 @pytest.mark.parametrize(
@@ -298,7 +263,7 @@ def _measured(true: dict, seconds: float = 7.0) -> list[Record]:
     ],
 )
 def test_any_stated_parameter_can_be_contradicted(true: dict, wrong: dict, effect: str) -> None:
-    diagnosis = diagnose_bench(_measured(true), Device(**{**true, **wrong}))
+    diagnosis = diagnose_bench(two_runs(true), Device(**{**true, **wrong}))
     assert [finding.effect for finding in diagnosis.findings] == [effect]
     assert diagnosis.gain > 0.8
     for name, value in wrong.items():
@@ -311,7 +276,7 @@ def test_any_stated_parameter_can_be_contradicted(true: dict, wrong: dict, effec
 
 @pytest.mark.parametrize("true", [GREASED, TRAIN, CYLINDER])
 def test_what_is_stated_right_is_held(true: dict) -> None:
-    diagnosis = diagnose_bench(_measured(true, 5.0), Device(**true))
+    diagnosis = diagnose_bench(two_runs(true, 5.0), Device(**true))
     assert diagnosis.findings == []
     for name, value in true.items():
         assert diagnosis.extended.device[name] == value

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 from inerter import Device
+from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
-from inerter.records import Record
 from inerter.reference import NoiseLevels, hide_effect
 
 CASES: dict[str, tuple[tuple[str, ...], int]] = {
@@ -28,11 +28,8 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
 def test_it_is_named_alone(case: str) -> None:
     (effect, *more), seed = CASES[case]
     hidden = hide_effect(seed, effect, noise=NoiseLevels(0.0, 0.01, 1e-6), also=more)
-    records = [
-        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
-        for run in hidden.runs
-    ]
-    diagnosis = diagnose_bench(records, Device(**hidden.stated) if hidden.stated else None)
+    stated = Device(**hidden.stated) if hidden.stated else None
+    diagnosis = diagnose_bench(records_of(hidden), stated)
     named = sorted(finding.effect for finding in diagnosis.findings)
     assert named == sorted((effect, *more)), diagnosis.verdict
     assert diagnosis.extended.rmse < diagnosis.baseline.rmse

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bench_runs import measured
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws
@@ -11,8 +12,7 @@ from inerter.identify.bench import Run
 from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
-from inerter.records import Record
-from inerter.reference import ReferenceDevice, response, sum_of_sines
+from inerter.reference import ReferenceDevice, sum_of_sines
 
 # alpha is the spring of the hysteresis, beta + gamma < 0: it hardens away from rest
 TRUE = {"friction": "bouc_wen", "inertance": 20.0, "stiffness": 5e4, "bw_stiffness": 5e4,
@@ -23,17 +23,10 @@ TRUE = {"friction": "bouc_wen", "inertance": 20.0, "stiffness": 5e4, "bw_stiffne
 def diagnosis() -> Diagnosis:
     random = np.random.default_rng(11)
     device = ReferenceDevice(**TRUE)  # type: ignore[arg-type]
-    records = []
-    for index in range(2):
-        rates = random.uniform(1.0, 12.0, 6)
-        motion = sum_of_sines(1e-3 / (1 + rates / 5), rates, random.uniform(0, 6.28, 6))
-        truth = response(device, motion, np.arange(0, 3, 2e-3))
-        force = truth.force + random.normal(0, 0.2, truth.time.size)
-        moved = truth.displacement + random.normal(0, 1e-7, truth.time.size)
-        records.append(
-            Record(name=f"run_{index}", time=truth.time, displacement=moved, force=force)
-        )
-    return diagnose_bench(records)
+    rates, phases = random.uniform(1.0, 12.0, (2, 6)), random.uniform(0, 6.28, (2, 6))
+    motions = [sum_of_sines(1e-3 / (1 + r / 5), r, p) for r, p in zip(rates, phases, strict=True)]
+    runs = measured(device, motions, np.arange(0, 3, 2e-3), displacement_noise=1e-7)
+    return diagnose_bench(runs)
 
 
 def test_it_is_one_cause(diagnosis: Diagnosis) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from inerter.blind_test.case import records_of
 from inerter.diagnose.remainder import columns
 from inerter.diagnose.remainder.learning import chance
 from inerter.diagnose.remainder.library import unit_of
@@ -20,7 +21,6 @@ from unknown_forces import (
     coupling,
     dead_band_records,
     fading,
-    known_records,
     log_speed,
     motions,
     periodic_friction,
@@ -86,7 +86,7 @@ def test_noise_about_a_right_model_is_nothing(
     levels = NoiseLevels(0.0, noise, 1e-6 * noise / 0.01)
     seed = effects_seed + round(1e3 * noise)
     case = hide_effect(seed, effect, law=law, noise=levels)
-    found = remaining(known_records(case), with_stated(case))
+    found = remaining(records_of(case), with_stated(case))
     assert not found.significant, f"seed {seed}: {found.summary}"
     assert found.depends_on == []
     assert found.proposal is None

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench_runs import measured
 from inerter import Device
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import by_weight
 from inerter.diagnose.result import Diagnosis, Finding, Rival, StatedValue
 from inerter.diagnose.wording import departure, effect_in_words, verdict
 from inerter.records import Record
-from inerter.reference import ReferenceDevice, response, sum_of_sines
+from inerter.reference import ReferenceDevice, sum_of_sines
 
 
 @pytest.mark.parametrize(
@@ -37,23 +38,20 @@ def test_what_is_stated_and_other_is_called_so() -> None:
     assert effect_in_words(unstated) == "viscous friction"
 
 
-def _run(device: ReferenceDevice, phase: float, rate: float) -> Record:
-    random = np.random.default_rng(int(10 * phase))
-    motion = sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [phase, 1.0, 2.0])
-    found = response(device, motion, np.arange(0, 8, 1 / rate))
-    return Record(
-        name=f"run {phase:g}",
-        time=found.time,
-        displacement=found.displacement + random.normal(0, 1e-6, found.time.size),
-        force=found.force + random.normal(0, 0.1, found.time.size),
-    )
+def slow_sampled(device: ReferenceDevice) -> list[Record]:
+    """Two runs at 250 Hz."""
+    motions = [
+        sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [phase, 1.0, 2.0])
+        for phase in (0.0, 0.7)
+    ]
+    return measured(device, motions, np.arange(0, 8, 4e-3), force_noise=0.1)
 
 
 @pytest.fixture(scope="module")
 def spring_and_damper() -> Diagnosis:
     """A stiffness explains more than the damping that is added last, and takes a smaller share."""
     device = ReferenceDevice(inertance=50.0, viscous=60.0, stiffness=900.0)
-    return diagnose_bench([_run(device, p, 250.0) for p in (0.0, 0.7)], Device(inertance=50.0))
+    return diagnose_bench(slow_sampled(device), Device(inertance=50.0))
 
 
 def test_the_main_cause_is_what_explains_most(spring_and_damper: Diagnosis) -> None:
@@ -90,7 +88,7 @@ def test_friction_at_a_low_rate_is_no_noise(
     device = ReferenceDevice(
         inertance=50.0, friction="dahl", coulomb_force=10.0, bristle_stiffness=3e5
     )
-    found = diagnose_bench([_run(device, p, 250.0) for p in (0.0, 0.7)])
+    found = diagnose_bench(slow_sampled(device))
     assert found.noise_floor < 0.25
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr().err == ""

@@ -134,14 +134,6 @@ def dead_band_records(seed: int, share: float, noise: float = 0.01) -> list[Reco
     return _noisy(seed, along, [f - np.clip(f, -limit, limit) for f in forces], noise)
 
 
-def known_records(case: HiddenCase) -> list[Record]:
-    """A case of the generator as records."""
-    return [
-        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
-        for run in case.runs
-    ]
-
-
 def _rms(parts: list[Array]) -> float:
     return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
 

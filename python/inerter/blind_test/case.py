@@ -117,16 +117,21 @@ def hide(task: Task) -> HiddenCase:
     return hide_effect(task.seed, first, law=task.law, noise=task.levels, also=also)
 
 
+def records_of(case: HiddenCase) -> list[Record]:
+    """What a bench would have measured of a case."""
+    return [
+        Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
+        for run in case.runs
+    ]
+
+
 def solve(task: Task) -> Outcome:
     """Hide, diagnose, compare; whatever goes wrong is told in the outcome."""
     case = None
     start = time.perf_counter(), time.process_time()
     try:
         case = hide(task)
-        records = [
-            Record(name=run.name, time=run.time, displacement=run.displacement, force=run.force)
-            for run in case.runs
-        ]
+        records = records_of(case)
         device = None if case.stated is None else Device(**case.stated)
         start = time.perf_counter(), time.process_time()
         with np.errstate(all="ignore"), catch_warnings():
