@@ -348,8 +348,7 @@ class _Bench:
             self.whole,
             self.raw.errors(final.model),
         )
-        left = remains.structure
-        findings = [doubted(finding, left, f"{left:.2g} N") for finding in findings]
+        findings = [doubted(finding, remains.structure) for finding in findings]
         self.progress("simulating the extended device in MuJoCo")
         engines = simulate_engines(final.model, self.whole, self.raw.masks)
         names = [r.name for r in self.records]

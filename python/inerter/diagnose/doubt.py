@@ -44,17 +44,22 @@ def by_weight(findings: Sequence[Finding]) -> list[Finding]:
     return sorted(findings, key=explained, reverse=True)
 
 
-def doubted(finding: Finding, structure: float, size: str) -> Finding:
-    """A finding with what remains unexplained considered; size: that in words, as "2.1 N"."""
-    sure = trust(finding, structure)
-    evidence = finding.evidence
-    if sure < TOLD:
-        share = explained(finding) / structure
-        evidence += (
-            f" What stays unexplained ({size}) is large beside it: it explains {share:.2g} times "
-            "as much, and may stand in for another cause."
-        )
-    return replace(finding, confidence=sure * finding.confidence, evidence=evidence)
+def reason(finding: Finding, structure: float) -> str:
+    """Why an effect may stand in for something else, in a sentence; empty where it hardly may."""
+    if trust(finding, structure) >= TOLD:
+        return ""
+    share = explained(finding) / structure
+    return (
+        f"It explains {share:.1f} times what stays unexplained, and may stand in for a cause that "
+        "is not on the list."
+    )
+
+
+def doubted(finding: Finding, structure: float) -> Finding:
+    """A finding with what remains unexplained considered."""
+    confidence = trust(finding, structure) * finding.confidence
+    evidence = f"{finding.evidence} {reason(finding, structure)}".strip()
+    return replace(finding, confidence=confidence, evidence=evidence)
 
 
 def stand_ins(findings: Sequence[Finding], structure: float) -> list[Finding]:

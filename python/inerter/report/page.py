@@ -11,6 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
+from inerter.diagnose.doubt import reason
 from inerter.diagnose.remainder.words import WORDS
 from inerter.diagnose.result import (
     Diagnosis,
@@ -66,7 +67,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         subject=about,
         split_figure=lambda value, digits=3: about.figure(value, digits).rsplit(" ", 1),
         headline=headline(diagnosis),
-        findings=[_finding(finding, diagnosis.baseline.rmse) for finding in diagnosis.findings],
+        findings=[_finding(finding, diagnosis) for finding in diagnosis.findings],
         runs=[_run_label(run) for run in runs],
         unpictured=len(diagnosis.curves) - len(runs),
         partly=any(run.holdout.any() and not run.holdout.all() for run in runs),
@@ -135,10 +136,10 @@ def _table(diagnosis: Diagnosis) -> TablePoints | None:
     return diagnosis.points if diagnosis.points and len(diagnosis.points.frequency) else None
 
 
-def _finding(finding: Finding, scale: float) -> dict[str, Any]:
+def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
     def width(value: float) -> float:
         # bars of all findings share the scale of the error before the first
-        full = max(scale, finding.rmse_before)
+        full = max(diagnosis.baseline.rmse, finding.rmse_before)
         return round(min(100.0, max(0.0, 100 * value / full)), 2) if full > 0 else 0.0
 
     return {
@@ -160,6 +161,7 @@ def _finding(finding: Finding, scale: float) -> dict[str, Any]:
             for r in finding.rivals
         ],
         "notes": _notes(finding),
+        "doubt": reason(finding, diagnosis.unexplained.structure),
         "evidence": finding.evidence,
     }
 

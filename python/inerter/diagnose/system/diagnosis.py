@@ -330,9 +330,7 @@ class _System:
             self.simulator, self.whole, self.held_masks, self.user.devices[0].name, final.model
         )
         remains = remainder(residuals[-1], self.held, floor, self._step_error(final.model))
-        left = remains.structure
-        size = f"{100 * left:.2g} % of the spread"
-        findings = [doubted(finding, left, size) for finding in findings]
+        findings = [doubted(finding, remains.structure) for finding in findings]
         self.progress("simulating the extended model once more, as it is written")
         xml = self.user.xml(final.model)
         parameters = {}
@@ -347,9 +345,7 @@ class _System:
             remains,
             {"mujoco": self._written_error(xml), "exudyn": None, "reference": None},
             doubts_of_records(self._summaries())
-            + wording.verdict(
-                before, after, findings, places, remains.summary, self.user.parts.unknown, left
-            ),
+            + wording.verdict(before, after, findings, places, remains, self.user.parts.unknown),
             parameters,
             self._method(),
             curves,

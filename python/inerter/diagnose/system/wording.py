@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from inerter.diagnose.doubt import explained, stand_ins, warning
-from inerter.diagnose.result import Finding
+from inerter.diagnose.result import Finding, Unexplained
 from inerter.diagnose.system.named import KNOWN
 from inerter.diagnose.system.outcome import SystemAccuracy
 from inerter.diagnose.wording import value_in_words
@@ -51,14 +51,12 @@ def verdict(
     after: SystemAccuracy,
     findings: list[Finding],
     places: list[str],
-    remains: str,
+    remains: Unexplained,
     unknown: list[str],
-    structure: float,
 ) -> str:
     """One paragraph in plain words.
 
-    places: of each finding, empty where there is no doubt; remains, structure: what stays
-    unexplained, in words and as a share of the spread; unknown: what was not tried.
+    places: of each finding, empty where there is no doubt; unknown: what was not tried.
     """
     error = (
         f"{100 * before.rmse:.3g} % of the channels' spread on held-out data ({_channels(before)})"
@@ -67,7 +65,7 @@ def verdict(
         start = "The simulation is right as far as these records can tell"
         if before.rmse > 0.1:
             start = "No effect that was tried explains what the simulation misses"
-        text = f"{start}: its error is {error}. {remains}"
+        text = f"{start}: its error is {error}. {remains.summary}"
     else:
         weighed = sorted(
             zip(findings, places, strict=True), key=lambda pair: explained(pair[0]), reverse=True
@@ -79,9 +77,9 @@ def verdict(
         text = (
             f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "
             f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
-            f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains}"
+            f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains.summary}"
         )
-        doubtful = stand_ins(findings, structure)
+        doubtful = stand_ins(findings, remains.structure)
         text += warning([in_words(finding.effect, finding.law) for finding in doubtful])
     if unknown:
         text += " Not tried: " + "; ".join(unknown) + "."
