@@ -21,8 +21,11 @@ def checked_motion(h: float, x: NDArray, v: NDArray, a: NDArray) -> list[NDArray
     if len(shape) != 1 or any(array.shape != shape for array in arrays):
         shapes = ", ".join(str(array.shape) for array in arrays)
         raise ValueError(f"x, v, a must be arrays of one length; their shapes are {shapes}")
-    for name, array in zip("xva", arrays, strict=True):
-        if not np.isfinite(array).all():
+    with np.errstate(over="ignore", invalid="ignore"):
+        sums = [array.sum() for array in arrays]
+    for name, array, total in zip("xva", arrays, sums, strict=True):
+        # of finite numbers too, a sum may overflow
+        if not np.isfinite(total) and not np.isfinite(array).all():
             i = int(np.argmin(np.isfinite(array)))
             raise ValueError(f"{name} is {array[i]} at sample {i}; give finite numbers")
     return arrays

@@ -115,7 +115,8 @@ def test_what_stays_far_off_is_not_followed(error: float, follows: bool) -> None
         return replace(fitted(model), residual=[np.full(9, error)], evaluations=evaluations)
 
     problem = SimpleNamespace(fit=fit, masks=[np.ones(9, bool)])
-    Search._follow(cast("Search", SimpleNamespace(problem=problem)), BASELINE, FAR * 1.0)
+    rough = fit(BASELINE, FEW)
+    Search._followed(cast("Search", SimpleNamespace(problem=problem)), [rough], FAR * 1.0)
     assert asked == ([FEW, 40] if follows else [FEW])
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from inerter import Device
 from inerter.identify.bench import Run
-from inerter.identify.fit import Problem, delayed, parameter_errors
+from inerter.identify.fit import Problem, delayed, parameter_errors, rms
 from inerter.identify.model import Model
 
 H, N = 2e-3, 6000
@@ -55,6 +55,35 @@ def test_bristles_are_recovered(law: str) -> None:
     for name, value in truth.items():
         if name != "friction":
             assert found[name] == pytest.approx(value, rel=0.03), name
+
+
+def test_a_fit_is_given_up_when_told_so() -> None:
+    """After a step, with the evaluations so far and the error; what it has found stays."""
+    truth = {"inertance": 50.0, "friction": "dahl", "coulomb_force": 20.0, "bristle_stiffness": 1e4}
+    start = Model("dahl", {"inertance": 40.0, "coulomb_force": 10.0, "presliding": 1e-3},
+                  ("inertance", "coulomb_force", "presliding"))  # fmt: skip
+    given, asked = problem(run(Device(**truth), 0.05)), []
+
+    def give_up(evaluations: int, error: float) -> bool:
+        asked.append((evaluations, error))
+        return evaluations >= 3
+
+    fit = given.fit(start, give_up=give_up)
+    assert asked[-1] == (fit.evaluations, pytest.approx(fit.rmse(given.masks), rel=1e-9))
+    assert fit.evaluations == 3
+    assert fit.rmse(given.masks) < 0.5 * rms(given.residual(start), given.masks)
+
+
+@pytest.mark.parametrize("loss", ["linear", "soft_l1"])
+def test_the_covariance_is_that_of_the_end_of_a_search(loss: str) -> None:
+    """And not of the step before: a search that begins at that end has the same."""
+    truth = {"inertance": 50.0, "friction": "dahl", "coulomb_force": 20.0, "bristle_stiffness": 1e4}
+    values = {"inertance": 40.0, "coulomb_force": 10.0, "presliding": 1e-3}
+    given = problem(run(Device(**truth), 0.5))
+    fit = given.fit(Model("dahl", values, tuple(values)), loss=loss)
+    again = given.fit(fit.model, evaluations=1, loss=loss)
+    assert fit.evaluations > 3
+    assert again.covariance == pytest.approx(fit.covariance, rel=1e-6)
 
 
 def test_delay_is_found() -> None:

@@ -11,7 +11,6 @@ from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import (
-    FAR,
     REQUIRED_DISTINCTION,
     RICH_LAWS,
     TOLERATED_ADVANTAGE,
@@ -89,7 +88,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     error = final.fit.rmse(masks)
     trials = [
         (candidate, fit)
-        for candidate, fit in search.fit_all(others, without.fit, FAR * error)
+        for candidate, fit in search.fit_all(others, without.fit, final.fit)
         if fit.rmse(masks) < BEATEN * error
         and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, problem.scales)
     ]

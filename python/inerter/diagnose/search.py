@@ -64,8 +64,10 @@ HOPELESS = 0.002
 LIKELY = 0.7 * REQUIRED_GAIN
 FEW = 8
 NEAR = 1.1
-# how far above what it has to reach a candidate may be after these to be followed
+# how far above what it has to reach, or the best, a candidate may be after these to be followed
 FAR = 2.0
+# evaluations on part of the data after which that is asked first
+FEWEST = 5
 # starting points of a free play that are tried, and how far above what it has to beat a fit to part
 # of the data may be to be followed
 NEAREST = 3
@@ -91,6 +93,8 @@ RICH_LAWS = ("lugre", "bouc_wen")
 
 Progress = Callable[[str], None]
 Folds = list[tuple[Problem, list[Mask]]]
+# errors [N] of all fit data and of the part that starting points are compared on
+Limits = tuple[float, float]
 
 
 def advantage_of(
@@ -223,13 +227,17 @@ class Search:
         """Errors of a fitted model on blocks of every run, left out of its refits."""
         return self.score("", None, fit, self._spread)
 
-    def fit(self, candidate: Candidate, limits: tuple[float, float] = (np.inf, np.inf)) -> Fit:
+    def fit(self, candidate: Candidate, limits: Limits = (np.inf, np.inf)) -> Fit:
         """Best fit over a candidate's starting points, which are compared on part of the data.
 
         What after a few steps from each of them is not below the first of the `limits` [N], or on
         that part anywhere near the second, is not followed further.
         """
-        starts, masks = candidate.starts, self.problem.masks
+        return self._followed(self._rough(candidate, limits), limits[0])
+
+    def _rough(self, candidate: Candidate, limits: Limits) -> list[Fit]:
+        """A few steps from the best starting points."""
+        starts = candidate.starts
         limit, limit_of_part = limits
         if candidate.effect == "backlash":
             starts = self._nearest(starts)
@@ -237,50 +245,72 @@ class Search:
             # states take time to follow; what has none is compared wherever it may show
             fast = all(not start.device().nstate for start in starts)
             part, evaluations = (self.problem, 6) if fast else (self._part, 10)
-            trials = [part.fit(start, evaluations, tolerance=1e-3) for start in starts]
+
+            def hopeless(done: int, error: float) -> bool:
+                return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
+
+            trials = [
+                part.fit(start, evaluations, tolerance=1e-3, give_up=hopeless) for start in starts
+            ]
             trials.sort(key=lambda fit: fit.rmse(part.masks))
             best = trials[0].rmse(part.masks)
             if best > (limit if fast else AT_LEAST * limit_of_part):
-                return replace(trials[0], residual=self.problem.residual(trials[0].model))
+                residual = self.problem.residual(trials[0].model)
+                return [replace(trials[0], residual=residual, evaluations=1)]
             near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
             starts = tuple(trial.model for trial in near or trials[:1])
-        return min((self._follow(start, limit) for start in starts), key=lambda f: f.rmse(masks))
+        return [self.problem.fit(start, FEW, tolerance=ROUGH) for start in starts]
+
+    def _followed(self, rough: Sequence[Fit], limit: float) -> Fit:
+        """The best of them; those below a limit [N] are followed to their end first."""
+        masks = self.problem.masks
+        fits = [
+            self.problem.fit(fit.model, tolerance=ROUGH)
+            if fit.evaluations >= FEW and fit.rmse(masks) < limit
+            else fit
+            for fit in rough
+        ]
+        return min(fits, key=lambda fit: fit.rmse(masks))
 
     def _nearest(self, starts: Sequence[Model]) -> list[Model]:
         """The starting points whose errors are least as they are."""
         errors = [rms(self._part.residual(start), self._part.masks) for start in starts]
         return [starts[i] for i in np.argsort(errors)[:NEAREST]]
 
-    def _follow(self, start: Model, limit: float) -> Fit:
-        fit = self.problem.fit(start, FEW, tolerance=ROUGH)
-        hopeful = fit.evaluations >= FEW and fit.rmse(self.problem.masks) < limit
-        return self.problem.fit(fit.model, tolerance=ROUGH) if hopeful else fit
-
     def fit_all(
-        self, trials: Sequence[Candidate], current: Fit, aim: float = np.inf
+        self, trials: Sequence[Candidate], current: Fit, aim: Fit | None = None
     ) -> list[tuple[Candidate, Fit]]:
-        """Fits of candidates, the best first; those that stay above the `aim` [N] are rough.
+        """Fits of candidates, the best first; rough of what stays far above the best or the `aim`.
 
         The laws with many parameters are tried where the simple law with memory, Dahl's, does
         better than friction without memory, or is in the model already.
         """
         masks = self.problem.masks
-        here = self._part.residual(current.model)
-        limits = (
-            min((1 - HOPELESS) * current.rmse(masks), aim),
-            (1 - HOPELESS) * rms(here, self._part.masks),
-        )
+        limits = self._limits(current, 1 - HOPELESS)
+        likely = (1 - LIKELY) * current.rmse(masks)
+        if aim:
+            far = self._limits(aim, FAR)
+            limits = min(limits[0], far[0]), min(limits[1], far[1])
+            likely = min(likely, far[0])
         known = self._fitted_before(current)
-        promise = Promise(self.problem, current, (1 - LIKELY) * current.rmse(masks))
+        promise = Promise(self.problem, current, likely)
         rich = [t for t in trials if t.law in RICH_LAWS]
         plain = [t for t in trials if t.law not in RICH_LAWS]
 
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
             new = [t for t in some if t.key not in known and promise.holds(t)]
             old = [(t, known[t.key]) for t in some if t.key in known]
-            return [*zip(new, parallel(lambda t: self.fit(t, limits), new), strict=True), *old]
+            rough = parallel(lambda t: self._rough(t, limits), new)
+            known_errors = [fit.rmse(masks) for _, fit in [*fitted, *old]]
+            best = min([*known_errors, *(fit.rmse(masks) for each in rough for fit in each)])
+            limit = min(limits[0], FAR * best)
+            return [
+                *zip(new, parallel(lambda r: self._followed(r, limit), rough), strict=True),
+                *old,
+            ]
 
-        fitted = fits(plain)
+        fitted: list[tuple[Candidate, Fit]] = []
+        fitted += fits(plain)
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
         memory = error.get(("hysteretic_friction", "dahl"))
         memoryless = ("coulomb_friction", "stribeck_friction")
@@ -289,6 +319,11 @@ class Search:
             fitted += fits(rich)
         self._rounds.append((current, fitted))
         return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
+
+    def _limits(self, fit: Fit, share: float) -> Limits:
+        """A share of a fit's errors."""
+        part = rms(self._part.residual(fit.model), self._part.masks)
+        return share * fit.rmse(self.problem.masks), share * part
 
     def _fitted_before(self, current: Fit) -> dict[object, Fit]:
         """What was fitted on top of the same model before, by candidate."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from inerter.identify.bench import Run, scales
 from inerter.identify.channel import (
@@ -182,12 +182,18 @@ class Problem:
         return replace(model, values={**model.values, **values})
 
     def fit(
-        self, model: Model, evaluations: int = 40, loss: str = "linear", tolerance: float = 1e-9
+        self,
+        model: Model,
+        evaluations: int = 40,
+        loss: str = "linear",
+        tolerance: float = 1e-9,
+        give_up: Callable[[int, float], bool] | None = None,
     ) -> Fit:
         """Bounded least squares over the model's free coordinates, from its present values.
 
         A robust `loss` (see `scipy.optimize.least_squares`) lets samples far off count less. The
-        search ends where a step lowers the cost by less than `tolerance` of it.
+        search ends where a step lowers the cost by less than `tolerance` of it, or where `give_up`
+        says so of the evaluations so far and the rms of the masked residual [N].
         """
         how = [coordinate(name, self.scales) for name in model.free]
         start = self.variables(model)
@@ -214,6 +220,11 @@ class Problem:
                 / size
             )
 
+        def watch(intermediate_result: OptimizeResult) -> None:
+            error = size * float(np.sqrt(np.mean(intermediate_result.fun**2)))
+            if give_up and give_up(intermediate_result.nfev, error):
+                raise StopIteration
+
         # strictly inside the bounds, as the trust region needs
         inside = np.clip(
             start,
@@ -231,12 +242,15 @@ class Problem:
             ftol=tolerance,
             gtol=1e-10,
             max_nfev=evaluations,
+            callback=watch if give_up else None,
         )
         fitted = self._decode(model, solution.x)
         residual = at(solution.x)
         flat = self._masked(residual)
         weight = robust_weight(flat, typical(residual, self.masks), loss)
-        covariance = self._covariance(fitted, jacobian(solution.x) * size, flat, weight)
+        # a robust loss scales the derivatives
+        columns = solution.jac if loss == "linear" else jacobian(solution.x)
+        covariance = self._covariance(fitted, columns * size, flat, weight)
         return Fit(fitted, residual, covariance, int(solution.nfev), float(solution.cost))
 
     def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
