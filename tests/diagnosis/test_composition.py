@@ -16,8 +16,9 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.rivals import BEATEN, _is_better
-from inerter.diagnose.search import FAR, FEW, Scored, Search
+from inerter.diagnose.search import Scored
 from inerter.diagnose.statistics import win_shares
+from inerter.diagnose.trials import FAR, FEW, Trials
 from inerter.identify.coordinates import Scales, coordinate
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
@@ -116,7 +117,7 @@ def test_what_stays_far_off_is_not_followed(error: float, follows: bool) -> None
 
     problem = SimpleNamespace(fit=fit, masks=[np.ones(9, bool)])
     rough = fit(BASELINE, FEW)
-    Search._followed(cast("Search", SimpleNamespace(problem=problem)), [rough], FAR * 1.0)
+    Trials._followed(cast("Trials", SimpleNamespace(problem=problem)), [rough], FAR * 1.0)
     assert asked == ([FEW, 40] if follows else [FEW])
 
 

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from inerter.diagnose.candidates import Candidate, candidates
 from inerter.diagnose.promise import FAR, Promise
-from inerter.diagnose.search import FEW, Search
+from inerter.diagnose.trials import FEW, Trials
 from inerter.identify.bench import Run
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
-from inerter.identify.split import Split
 
 RATE = 500.0
 IDEAL = Model("none", {"inertance": 60.0, "transition_velocity": 1e-4}, ("inertance",))
@@ -73,10 +72,8 @@ def test_of_a_linear_term_the_step_tells_what_the_fit_gains() -> None:
 
 def test_only_what_comes_near_the_best_is_followed_to_its_end() -> None:
     given = problem("viscous")
-    halves = [np.arange(given.masks[0].size) < given.masks[0].size // 2]
-    parts = Split(given.masks, [~given.masks[0]], [halves, [~halves[0]]], "none held out")
     fit, trials = fitted(given)
-    found = Search(given.runs, parts, IDEAL).fit_all(trials, fit)
+    found = Trials(given, 0.01).fit_all(trials, fit)
     errors = [each.rmse(given.masks) for _, each in found]
     # what is near: damping, and what can be damping; the others stay as a few steps left them
     assert found[0][0].effect in ("viscous_friction", "coulomb_friction", "stribeck_friction")
@@ -86,5 +83,5 @@ def test_only_what_comes_near_the_best_is_followed_to_its_end() -> None:
     # a rival that stays far above what it has to reach is rough as well
     aim = found[0][1]
     better = replace(aim, residual=[0.1 * each for each in aim.residual])
-    rivals = Search(given.runs, parts, IDEAL).fit_all(trials, fit, better)
+    rivals = Trials(given, 0.01).fit_all(trials, fit, better)
     assert all(each.evaluations <= FEW for _, each in rivals)

@@ -12,12 +12,12 @@ from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import (
     REQUIRED_DISTINCTION,
-    RICH_LAWS,
     TOLERATED_ADVANTAGE,
     Scored,
     Search,
 )
 from inerter.diagnose.statistics import advantage, win_shares
+from inerter.diagnose.trials import RICH_LAWS
 from inerter.identify.model import Model
 
 # where the data cannot tell two effects apart, the earlier one here is named
@@ -88,7 +88,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     error = final.fit.rmse(masks)
     trials = [
         (candidate, fit)
-        for candidate, fit in search.fit_all(others, without.fit, final.fit)
+        for candidate, fit in search.trials.fit_all(others, without.fit, final.fit)
         if fit.rmse(masks) < BEATEN * error
         and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, problem.scales)
     ]

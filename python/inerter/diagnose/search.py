@@ -22,7 +22,6 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.promise import Promise
 from inerter.diagnose.statistics import (
     Array,
     advantage,
@@ -30,8 +29,9 @@ from inerter.diagnose.statistics import (
     where_apart,
 )
 from inerter.diagnose.tone import strongest_line
-from inerter.identify.bench import Run, head, head_size
-from inerter.identify.fit import Fit, Problem, rms
+from inerter.diagnose.trials import FAR, ROUGH, Trials
+from inerter.identify.bench import Run
+from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.split import Mask, Split, blocks, spread_folds
 
@@ -53,31 +53,10 @@ KEEPING_ADVANTAGE = 2.0
 MOST_EFFECTS = 8
 # candidates that are worth cross-validating in one round
 SHORTLIST = 5
-# share of the cost below which a step of a fit that is only compared changes nothing
-ROUGH = 1e-5
 # effects that may show in few stretches, or in one run alone
 LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
-# share of the error that a candidate must have taken away after a few evaluations to be followed,
-# and must be foretold to take away to be tried; and how near the second best start must come to the
-# best to be followed too
-HOPELESS = 0.002
-LIKELY = 0.7 * REQUIRED_GAIN
-FEW = 8
-NEAR = 1.1
-# how far above what it has to reach, or the best, a candidate may be after these to be followed
-FAR = 2.0
-# evaluations on part of the data after which that is asked first
-FEWEST = 5
-# starting points of a free play that are tried, and how far above what it has to beat a fit to part
-# of the data may be to be followed
-NEAREST = 3
-AT_LEAST = 1.5
-# errors this near belong to the same fit
-SAME = 1e-5
 # share of the rms error that these must take away where they show
 LOCAL_GAIN = 0.5
-# share of every run on which the starting points of a fit are compared
-STARTING_SHARE = 0.3
 # effects that a friction law cannot stand in for
 UNLIKE_FRICTION = (
     *LOCAL,
@@ -88,13 +67,9 @@ UNLIKE_FRICTION = (
     "variable_inertance",
     "force_drift",
 )
-# laws that are tried only where memory is to be seen
-RICH_LAWS = ("lugre", "bouc_wen")
 
 Progress = Callable[[str], None]
 Folds = list[tuple[Problem, list[Mask]]]
-# errors [N] of all fit data and of the part that starting points are compared on
-Limits = tuple[float, float]
 
 
 def advantage_of(
@@ -157,15 +132,7 @@ class Search:
     def __post_init__(self) -> None:
         self.problem = Problem(self.runs, self.split.fit)
         self.blocks = blocks(self.problem.masks)
-        self._part = Problem(
-            [head(run, STARTING_SHARE) for run in self.runs],
-            [
-                m[: head_size(run, STARTING_SHARE)]
-                for m, run in zip(self.split.fit, self.runs, strict=True)
-            ],
-            self.problem.scales,
-        )
-        self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
+        self.trials = Trials(self.problem, REQUIRED_GAIN)
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
 
@@ -227,122 +194,12 @@ class Search:
         """Errors of a fitted model on blocks of every run, left out of its refits."""
         return self.score("", None, fit, self._spread)
 
-    def fit(self, candidate: Candidate, limits: Limits = (np.inf, np.inf)) -> Fit:
-        """Best fit over a candidate's starting points, which are compared on part of the data.
-
-        What after a few steps from each of them is not below the first of the `limits` [N], or on
-        that part anywhere near the second, is not followed further.
-        """
-        return self._followed(self._rough(candidate, limits), limits[0])
-
-    def _rough(self, candidate: Candidate, limits: Limits) -> list[Fit]:
-        """A few steps from the best starting points."""
-        starts = candidate.starts
-        limit, limit_of_part = limits
-        if candidate.effect == "backlash":
-            starts = self._nearest(starts)
-        if len(starts) > 1:
-            # states take time to follow; what has none is compared wherever it may show
-            fast = all(not start.device().nstate for start in starts)
-            part, evaluations = (self.problem, 6) if fast else (self._part, 10)
-
-            def hopeless(done: int, error: float) -> bool:
-                return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
-
-            trials = [
-                part.fit(start, evaluations, tolerance=1e-3, give_up=hopeless) for start in starts
-            ]
-            trials.sort(key=lambda fit: fit.rmse(part.masks))
-            best = trials[0].rmse(part.masks)
-            if best > (limit if fast else AT_LEAST * limit_of_part):
-                residual = self.problem.residual(trials[0].model)
-                return [replace(trials[0], residual=residual, evaluations=1)]
-            near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
-            starts = tuple(trial.model for trial in near or trials[:1])
-        return [self.problem.fit(start, FEW, tolerance=ROUGH) for start in starts]
-
-    def _followed(self, rough: Sequence[Fit], limit: float) -> Fit:
-        """The best of them; those below a limit [N] are followed to their end first."""
-        masks = self.problem.masks
-        fits = [
-            self.problem.fit(fit.model, tolerance=ROUGH)
-            if fit.evaluations >= FEW and fit.rmse(masks) < limit
-            else fit
-            for fit in rough
-        ]
-        return min(fits, key=lambda fit: fit.rmse(masks))
-
-    def _nearest(self, starts: Sequence[Model]) -> list[Model]:
-        """The starting points whose errors are least as they are."""
-        errors = [rms(self._part.residual(start), self._part.masks) for start in starts]
-        return [starts[i] for i in np.argsort(errors)[:NEAREST]]
-
-    def fit_all(
-        self, trials: Sequence[Candidate], current: Fit, aim: Fit | None = None
-    ) -> list[tuple[Candidate, Fit]]:
-        """Fits of candidates, the best first; rough of what stays far above the best or the `aim`.
-
-        The laws with many parameters are tried where the simple law with memory, Dahl's, does
-        better than friction without memory, or is in the model already.
-        """
-        masks = self.problem.masks
-        limits = self._limits(current, 1 - HOPELESS)
-        likely = (1 - LIKELY) * current.rmse(masks)
-        if aim:
-            far = self._limits(aim, FAR)
-            limits = min(limits[0], far[0]), min(limits[1], far[1])
-            likely = min(likely, far[0])
-        known = self._fitted_before(current)
-        promise = Promise(self.problem, current, likely)
-        rich = [t for t in trials if t.law in RICH_LAWS]
-        plain = [t for t in trials if t.law not in RICH_LAWS]
-
-        def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
-            new = [t for t in some if t.key not in known and promise.holds(t)]
-            old = [(t, known[t.key]) for t in some if t.key in known]
-            rough = parallel(lambda t: self._rough(t, limits), new)
-            known_errors = [fit.rmse(masks) for _, fit in [*fitted, *old]]
-            best = min([*known_errors, *(fit.rmse(masks) for each in rough for fit in each)])
-            limit = min(limits[0], FAR * best)
-            return [
-                *zip(new, parallel(lambda r: self._followed(r, limit), rough), strict=True),
-                *old,
-            ]
-
-        fitted: list[tuple[Candidate, Fit]] = []
-        fitted += fits(plain)
-        error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
-        memory = error.get(("hysteretic_friction", "dahl"))
-        memoryless = ("coulomb_friction", "stribeck_friction")
-        others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in memoryless)]
-        if memory is None or memory < (1 - REQUIRED_GAIN) * min(others):
-            fitted += fits(rich)
-        self._rounds.append((current, fitted))
-        return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
-
-    def _limits(self, fit: Fit, share: float) -> Limits:
-        """A share of a fit's errors."""
-        part = rms(self._part.residual(fit.model), self._part.masks)
-        return share * fit.rmse(self.problem.masks), share * part
-
-    def _fitted_before(self, current: Fit) -> dict[object, Fit]:
-        """What was fitted on top of the same model before, by candidate."""
-        masks = self.problem.masks
-        for base, fitted in self._rounds:
-            same = (base.model.friction, set(base.model.free)) == (
-                current.model.friction,
-                set(current.model.free),
-            )
-            if same and abs(base.rmse(masks) - current.rmse(masks)) < SAME * current.rmse(masks):
-                return {candidate.key: fit for candidate, fit in fitted}
-        return {}
-
     def _best_step(self, current: Scored) -> Scored | None:
         """The effect to add next, or None."""
         masks = self.problem.masks
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
         trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
-        fitted = self.fit_all(trials, current.fit)
+        fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None
         floor = fitted[0][1].rmse(masks)
@@ -430,7 +287,7 @@ class Search:
         trials = [trial for trial in trials if trial.starts[0].complexity < spare]
         limit = current.fit.rmse(masks) * (1 + TOLERATED_LOSS)
         fits = sorted(
-            parallel(lambda trial: self.fit(trial, (FAR * limit, np.inf)), trials),
+            parallel(lambda trial: self.trials.fit(trial, (FAR * limit, np.inf)), trials),
             key=lambda fit: fit.rmse(masks),
         )
         near = [fit for fit in fits if fit.rmse(masks) < limit][:2]

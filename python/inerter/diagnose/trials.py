@@ -1,0 +1,173 @@
+"""Fits of candidates on top of a model: many are tried, few are followed to their end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.parallel import parallel
+from inerter.diagnose.promise import Promise
+from inerter.identify.bench import head, head_size
+from inerter.identify.fit import Fit, Problem, rms
+from inerter.identify.model import Model
+
+# share of the cost below which a step of a fit that is only compared changes nothing
+ROUGH = 1e-5
+# share of what is required that a candidate must be foretold to take away to be tried
+LIKELY = 0.7
+# share of the error that it must have taken away after a few evaluations to be followed, and how
+# near the second best start must come to the best to be followed too
+HOPELESS = 0.002
+FEW = 8
+NEAR = 1.1
+# how far above what it has to reach, or the best, a candidate may be after these to be followed
+FAR = 2.0
+# evaluations on part of the data after which that is asked first
+FEWEST = 5
+# starting points of a free play that are tried, and how far above what it has to beat a fit to part
+# of the data may be to be followed
+NEAREST = 3
+AT_LEAST = 1.5
+# errors this near belong to the same fit
+SAME = 1e-5
+# share of every run on which the starting points of a fit are compared
+STARTING_SHARE = 0.3
+# laws that are tried only where memory is to be seen
+RICH_LAWS = ("lugre", "bouc_wen")
+
+# errors [N] of all fit data and of the part that starting points are compared on
+Limits = tuple[float, float]
+
+
+class Trials:
+    """The candidates of a search fitted to its data; what was fitted before is remembered.
+
+    required: the share of the error that one has to take away in the end.
+    """
+
+    def __init__(self, problem: Problem, required: float) -> None:
+        self.problem, self.required = problem, required
+        self._part = Problem(
+            [head(run, STARTING_SHARE) for run in problem.runs],
+            [
+                mask[: head_size(run, STARTING_SHARE)]
+                for mask, run in zip(problem.masks, problem.runs, strict=True)
+            ],
+            problem.scales,
+        )
+        self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
+
+    def fit(self, candidate: Candidate, limits: Limits = (np.inf, np.inf)) -> Fit:
+        """Best fit over a candidate's starting points, which are compared on part of the data.
+
+        What after a few steps from each of them is not below the first of the `limits` [N], or on
+        that part anywhere near the second, is not followed further.
+        """
+        return self._followed(self._rough(candidate, limits), limits[0])
+
+    def _rough(self, candidate: Candidate, limits: Limits) -> list[Fit]:
+        """A few steps from the best starting points."""
+        starts = candidate.starts
+        limit, limit_of_part = limits
+        if candidate.effect == "backlash":
+            starts = self._nearest(starts)
+        if len(starts) > 1:
+            # states take time to follow; what has none is compared wherever it may show
+            fast = all(not start.device().nstate for start in starts)
+            part, evaluations = (self.problem, 6) if fast else (self._part, 10)
+
+            def hopeless(done: int, error: float) -> bool:
+                return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
+
+            trials = [
+                part.fit(start, evaluations, tolerance=1e-3, give_up=hopeless) for start in starts
+            ]
+            trials.sort(key=lambda fit: fit.rmse(part.masks))
+            best = trials[0].rmse(part.masks)
+            if best > (limit if fast else AT_LEAST * limit_of_part):
+                residual = self.problem.residual(trials[0].model)
+                return [replace(trials[0], residual=residual, evaluations=1)]
+            near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
+            starts = tuple(trial.model for trial in near or trials[:1])
+        return [self.problem.fit(start, FEW, tolerance=ROUGH) for start in starts]
+
+    def _followed(self, rough: Sequence[Fit], limit: float) -> Fit:
+        """The best of them; those below a limit [N] are followed to their end first."""
+        masks = self.problem.masks
+        fits = [
+            self.problem.fit(fit.model, tolerance=ROUGH)
+            if fit.evaluations >= FEW and fit.rmse(masks) < limit
+            else fit
+            for fit in rough
+        ]
+        return min(fits, key=lambda fit: fit.rmse(masks))
+
+    def _nearest(self, starts: Sequence[Model]) -> list[Model]:
+        """The starting points whose errors are least as they are."""
+        errors = [rms(self._part.residual(start), self._part.masks) for start in starts]
+        return [starts[i] for i in np.argsort(errors)[:NEAREST]]
+
+    def fit_all(
+        self, candidates: Sequence[Candidate], current: Fit, aim: Fit | None = None
+    ) -> list[tuple[Candidate, Fit]]:
+        """Fits of candidates, the best first; rough of what stays far above the best or the `aim`.
+
+        The laws with many parameters are tried where the simple law with memory, Dahl's, does
+        better than friction without memory, or is in the model already.
+        """
+        masks = self.problem.masks
+        limits = self._limits(current, 1 - HOPELESS)
+        likely = (1 - LIKELY * self.required) * current.rmse(masks)
+        if aim:
+            far = self._limits(aim, FAR)
+            limits = min(limits[0], far[0]), min(limits[1], far[1])
+            likely = min(likely, far[0])
+        known = self._fitted_before(current)
+        promise = Promise(self.problem, current, likely)
+        rich = [t for t in candidates if t.law in RICH_LAWS]
+        plain = [t for t in candidates if t.law not in RICH_LAWS]
+
+        def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
+            new = [t for t in some if t.key not in known and promise.holds(t)]
+            old = [(t, known[t.key]) for t in some if t.key in known]
+            rough = parallel(lambda t: self._rough(t, limits), new)
+            known_errors = [fit.rmse(masks) for _, fit in [*fitted, *old]]
+            best = min(
+                [*known_errors, *(f.rmse(masks) for each in rough for f in each)], default=np.inf
+            )
+            limit = min(limits[0], FAR * best)
+            return [
+                *zip(new, parallel(lambda r: self._followed(r, limit), rough), strict=True),
+                *old,
+            ]
+
+        fitted: list[tuple[Candidate, Fit]] = []
+        fitted += fits(plain)
+        error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
+        memory = error.get(("hysteretic_friction", "dahl"))
+        memoryless = ("coulomb_friction", "stribeck_friction")
+        others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in memoryless)]
+        if memory is None or memory < (1 - self.required) * min(others):
+            fitted += fits(rich)
+        self._rounds.append((current, fitted))
+        return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
+
+    def _limits(self, fit: Fit, share: float) -> Limits:
+        """A share of a fit's errors."""
+        part = rms(self._part.residual(fit.model), self._part.masks)
+        return share * fit.rmse(self.problem.masks), share * part
+
+    def _fitted_before(self, current: Fit) -> dict[object, Fit]:
+        """What was fitted on top of the same model before, by candidate."""
+        masks = self.problem.masks
+        for base, fitted in self._rounds:
+            same = (base.model.friction, set(base.model.free)) == (
+                current.model.friction,
+                set(current.model.free),
+            )
+            if same and abs(base.rmse(masks) - current.rmse(masks)) < SAME * current.rmse(masks):
+                return {candidate.key: fit for candidate, fit in fitted}
+        return {}
