@@ -134,11 +134,8 @@ class Trials:
             new = [t for t in some if t.key not in known and promise.holds(t)]
             old = [(t, known[t.key]) for t in some if t.key in known]
             rough = parallel(lambda t: self._rough(t, limits), new)
-            known_errors = [fit.rmse(masks) for _, fit in [*fitted, *old]]
-            best = min(
-                [*known_errors, *(f.rmse(masks) for each in rough for f in each)], default=np.inf
-            )
-            limit = min(limits[0], FAR * best)
+            so_far = [fit for _, fit in [*fitted, *old]] + [fit for each in rough for fit in each]
+            limit = min([limits[0], *(FAR * fit.rmse(masks) for fit in so_far)])
             return [
                 *zip(new, parallel(lambda r: self._followed(r, limit), rough), strict=True),
                 *old,
