@@ -13,6 +13,7 @@ import numpy as np
 from inerter.blind_test.plan import Task
 from inerter.core import Device
 from inerter.diagnose import Diagnosis, diagnose_bench
+from inerter.diagnose.parallel import serial
 from inerter.records import Record
 from inerter.reference import HiddenCase, hide_effect, hide_unknown
 
@@ -134,7 +135,7 @@ def solve(task: Task) -> Outcome:
         records = records_of(case)
         device = None if case.stated is None else Device(**case.stated)
         start = time.perf_counter(), time.process_time()
-        with np.errstate(all="ignore"), catch_warnings():
+        with np.errstate(all="ignore"), catch_warnings(), serial():
             simplefilter("ignore", RuntimeWarning)
             diagnosis = diagnose_bench(records, device)
         outcome = compare(task, case, diagnosis)
