@@ -28,23 +28,18 @@ _AMPLITUDES = {
 }
 
 
-# a fall of the friction narrower than this many of the narrowest that is searched for is the blur
-# of a reversal, which any friction has in smoothed data
+# a fall of the friction narrower than this many of the narrowest that is searched for may be the
+# blur of a reversal, which any friction has in smoothed data: that explains up to 1.5 % of what
+# the friction does, a peak at the same width 11 %
 _NARROWEST = 1.5
+_BLUR = 0.04
 # share of gamma that beta of a Bouc-Wen law has at least: without beta nothing is lost, and the law
 # is a spring with any zero, which stands in for gas and offsets
 _LOSING = 0.1
 
 
-def is_distinct(effect: str, fit: Fit, required: float, scales: Scales) -> bool:
-    """Whether a fitted effect differs from none by some standard errors of its coordinates.
-
-    What lies at the edge of what smoothed data resolve is not told from none either.
-    """
-    if effect == "stribeck_friction":
-        narrowest = coordinate("stribeck_velocity", scales).lower
-        if fit.model.values["stribeck_velocity"] < _NARROWEST * narrowest:
-            return False
+def is_distinct(effect: str, fit: Fit, required: float) -> bool:
+    """Whether a fitted effect differs from none by some standard errors of its coordinates."""
     if effect == "hysteretic_friction" and fit.model.friction == "bouc_wen":
         device = fit.model.device()
         if device.bw_beta < _LOSING * abs(device.bw_gamma):
@@ -53,6 +48,20 @@ def is_distinct(effect: str, fit: Fit, required: float, scales: Scales) -> bool:
     errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
     known = [name for name in names if name in errors]
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def is_blur(model: Model, scales: Scales, without: float, plain: float, error: float) -> bool:
+    """Whether a peak of friction is no more than smoothed data make of any reversal.
+
+    The rms errors [N] are those of the model without friction, with friction that does not fall
+    with speed, and with the peak. Without such friction to compare with, what is narrow is blur.
+    """
+    if model.friction not in ("stribeck", "brown_mcphee"):
+        return False
+    narrowest = _NARROWEST * coordinate("stribeck_velocity", scales).lower
+    if model.values["stribeck_velocity"] >= narrowest:
+        return False
+    return plain >= without or plain**2 - error**2 < _BLUR**2 * (without**2 - error**2)
 
 
 def width(model: Model) -> dict[str, float]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.parallel import parallel
@@ -86,11 +87,14 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     ]
     masks = problem.masks
     error = final.fit.rmse(masks)
+    fitted = search.trials.fit_all(others, without.fit, final.fit)
+    known = [*fitted, (Candidate(effect, law, ()), final.fit)]
     trials = [
         (candidate, fit)
-        for candidate, fit in search.trials.fit_all(others, without.fit, final.fit)
+        for candidate, fit in fitted
         if fit.rmse(masks) < BEATEN * error
-        and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, problem.scales)
+        and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION)
+        and not search.is_blur(fit, without.fit, known)
     ]
     scored = parallel(
         lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), trials[:SHORTLIST]

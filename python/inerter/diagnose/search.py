@@ -17,6 +17,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     effects_of,
+    is_blur,
     is_distinct,
     simpler_laws,
     without_effect,
@@ -228,7 +229,8 @@ class Search:
             s
             for s in scored
             if self._better(current, s)
-            and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.problem.scales)
+            and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION)
+            and not self.is_blur(s.fit, current.fit, fitted)
         ]
         if not good:
             return None
@@ -240,6 +242,13 @@ class Search:
         elif folds is not self._folds:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
         return replace(chosen, fit=self.problem.fit(chosen.model))
+
+    def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
+        """Whether a fit's peak of friction does little more than friction without one."""
+        masks = self.problem.masks
+        error, most = fit.rmse(masks), without.rmse(masks)
+        plain = [each.rmse(masks) for trial, each in fitted if trial.effect == "coulomb_friction"]
+        return is_blur(fit.model, self.problem.scales, most, min(plain, default=most), error)
 
     def _tones(self, current: Fit) -> list[Candidate]:
         """The tone that a residual shows, if any."""
