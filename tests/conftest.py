@@ -4,8 +4,8 @@ Tests that hide an effect and look for it draw it from one seed, so that a failu
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
 one. The seed of a session stands at the end of pytest's output.
 
-With pytest-xdist (`make test`) all workers hide effects by the same seed and compute with one
-thread each. What shares an expensive fixture stays in one worker.
+With pytest-xdist (`make test`) all workers hide effects by the same seed and compute in one
+process and with one thread each. What shares an expensive fixture stays in one worker.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import pytest
 
 # before NumPy is imported: one thread for each worker, not one for each core in each of them
 if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.setdefault("LOKY_MAX_CPU_COUNT", "1")
     for _library in ("OPENBLAS", "OMP", "MKL"):
         os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 

@@ -11,7 +11,7 @@ INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 
 # what the lab brings: a command imports it when it is run
 _LAB = (
-    "PyEMD", "jinja2", "markupsafe", "matplotlib", "pint", "plotly", "polars", "pyarrow",
+    "PyEMD", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotly", "polars", "pyarrow",
     "pydantic", "rich", "scipy", "threadpoolctl", "typer",
 )  # fmt: skip
 

@@ -88,13 +88,13 @@ def _on_processes(
         for number, item in enumerate(items):
             yield number, function(item)
         return
-    with _environment(_THREADS):
+    with environment(_THREADS):
         # a fresh interpreter each: engines do not outlive a fork
         context = multiprocessing.get_context("spawn")
         others = set(multiprocessing.active_children())
         with ProcessPoolExecutor(workers, mp_context=context) as pool:
             try:
-                with _deaf_children():
+                with deaf_children():
                     waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
                 while waiting:
                     # a wait without end would not hear Ctrl-C where another thread gets it
@@ -172,13 +172,16 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
 
 
 @contextmanager
-def _deaf_children() -> Iterator[None]:
-    """Processes begun here do not hear the Ctrl-C of a terminal: this one ends them."""
+def deaf_children(tracker: Any = resource_tracker) -> Iterator[None]:
+    """Processes begun here do not hear the Ctrl-C of a terminal: this one ends them.
+
+    The `tracker` is the module of what begins them that cleans up after them.
+    """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
     # begun before, as its beginning lets the signal through again
-    resource_tracker.ensure_running()
+    tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -187,7 +190,8 @@ def _deaf_children() -> Iterator[None]:
 
 
 @contextmanager
-def _environment(values: dict[str, str]) -> Iterator[None]:
+def environment(values: dict[str, str]) -> Iterator[None]:
+    """Environment variables for the processes that are begun within."""
     before = {name: os.environ.get(name) for name in values}
     os.environ.update(values)
     try:

@@ -19,6 +19,7 @@ from inerter.diagnose.doubt import doubted
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
+from inerter.diagnose.parallel import helped
 from inerter.diagnose.play import fit_play, forgiving, from_contact, jackknife, play_of
 from inerter.diagnose.result import Accuracy, Diagnosis, Finding, RecordSummary, RunCurves
 from inerter.diagnose.rivals import Standing, standing
@@ -87,7 +88,7 @@ def diagnose_bench(
     ValueError
         Runs that cannot be split or do not move.
     """
-    with threadpool_limits(limits=1, user_api="blas"):
+    with helped(), threadpool_limits(limits=1, user_api="blas"):
         return _Bench(records, device, holdout, progress, delay).run()
 
 

@@ -1,37 +1,167 @@
-"""Work on all processors, or on one where others are at work already."""
+"""A step of a diagnosis on all processors, or on one where others are at work already.
+
+Long tasks that know nothing of each other are run by `inerter.parallel`; here it is closures over
+the data, for tenths of a second, many times in a row.
+"""
 
 from __future__ import annotations
 
 import os
+import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from typing import TypeVar
+from dataclasses import dataclass
+from threading import Thread
+from typing import Generic, TypeVar
+
+from loky import ProcessPoolExecutor, cpu_count
+from loky.backend import resource_tracker
+
+from inerter.parallel import deaf_children, environment
 
 S = TypeVar("S")
 T = TypeVar("T")
 
-_serial: ContextVar[bool] = ContextVar("serial", default=False)
+# processors that are used at most: more save less than the memory of a process is worth
+MOST = 8
+# parts of the work of each, so that none waits long for the last
+PARTS = 8
+# the libraries' own threads would only wait for each other
+ALONE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+
+@dataclass(frozen=True)
+class _Helpers:
+    count: int
+    pool: ProcessPoolExecutor | None = None
+
+
+# none: no helpers unless asked for; a count of 0: none, whoever asks
+_helpers: ContextVar[_Helpers | None] = ContextVar("helpers", default=None)
 
 
 def parallel(function: Callable[[S], T], items: Iterable[S]) -> list[T]:
-    """Results in order, worked out on all processors: the core and the transforms run unlocked."""
-    if _serial.get():
-        return [function(item) for item in items]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(function, items))
+    """Results in order; within `helped` worked out on all processors.
+
+    Much of the work is in Python, where threads would wait for each other. So other processes take
+    items from the beginning and this one from the end: it need not wait for them to start. The
+    function may be a closure; what it holds is copied, and what it changes of that may be lost.
+    """
+    several = list(items)
+    helpers = _helpers.get()
+    if helpers is None or helpers.pool is None or len(several) < 2:
+        return _each(function, several)
+    size = max(1, len(several) // (PARTS * (helpers.count + 1)))
+    parts = [several[i : i + size] for i in range(0, len(several), size)]
+    with serial():
+        found = _Shared(function, parts).worked_out(helpers.pool, helpers.count)
+    return [result for part in found for result in part]
+
+
+@contextmanager
+def helped() -> Iterator[None]:
+    """Within it, `parallel` has the help of other processes, which end with it.
+
+    There are as many as processors but this one's, LOKY_MAX_CPU_COUNT at most.
+    """
+    count = min(cpu_count(), MOST) - 1
+    if _helpers.get() or not count:
+        yield
+        return
+    with environment({"PYTHONWARNINGS": _without_tracker()}), deaf_children(resource_tracker):
+        pool = ProcessPoolExecutor(count, env=ALONE, initializer=_watch, initargs=(os.getpid(),))
+        # importing this module will have imported what the work needs
+        pool.submit(_each, abs, [])
+    token = _helpers.set(_Helpers(count, pool))
+    try:
+        yield
+    finally:
+        _helpers.reset(token)
+        pool.shutdown(kill_workers=True)
 
 
 @contextmanager
 def serial() -> Iterator[None]:
-    """Within it, `parallel` takes one item after another.
+    """Within it, `parallel` takes one item after another, in this process.
 
-    For what runs in several processes: threads that wait for each other cost a quarter more
-    processor time than they save where every processor is busy.
+    For what runs in several processes already.
     """
-    token = _serial.set(True)
+    token = _helpers.set(_Helpers(0))
     try:
         yield
     finally:
-        _serial.reset(token)
+        _helpers.reset(token)
+
+
+def _without_tracker() -> str:
+    """Warnings as they are set; none of what the tracker cleans up after a Ctrl-C."""
+    set_already = os.environ.get("PYTHONWARNINGS")
+    return ",".join(filter(None, (set_already, "ignore:resource_tracker")))
+
+
+def _watch(parent: int) -> None:
+    """Let this process end with its parent, whatever ends that one; `kill -9` tells nobody."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
+
+
+class _Shared(Generic[S, T]):
+    """Parts of some work, each done by whoever is free."""
+
+    def __init__(self, function: Callable[[S], T], parts: list[list[S]]) -> None:
+        self.function, self.parts = function, parts
+        self.waiting = deque(range(len(parts)))
+        self.results: list[Future[list[T]]] = [Future() for _ in parts]
+
+    def worked_out(self, pool: ProcessPoolExecutor, helpers: int) -> list[list[T]]:
+        """Results of every part."""
+        for _ in range(helpers):
+            self._hand_out(pool)
+        try:
+            while (i := self._taken(self.waiting.pop)) is not None:
+                self.results[i].set_result(_each(self.function, self.parts[i]))
+            return [self._result(i) for i in range(len(self.parts))]
+        finally:
+            self.waiting.clear()
+
+    def _result(self, i: int) -> list[T]:
+        try:
+            return self.results[i].result()
+        except BrokenProcessPool:
+            # the system ended a process, for its memory perhaps
+            return _each(self.function, self.parts[i])
+
+    def _taken(self, take: Callable[[], int]) -> int | None:
+        with suppress(IndexError):
+            return take()
+
+    def _hand_out(self, pool: ProcessPoolExecutor) -> None:
+        """Give a helper the first part that waits; another one when it has done it."""
+        i = self._taken(self.waiting.popleft)
+        if i is None:
+            return
+
+        def received(future: Future[list[T]]) -> None:
+            self._hand_out(pool)
+            if error := future.exception():
+                self.results[i].set_exception(error)
+            else:
+                self.results[i].set_result(future.result())
+
+        try:
+            pool.submit(_each, self.function, self.parts[i]).add_done_callback(received)
+        except Exception as error:
+            self.results[i].set_exception(error)
+
+
+def _each(function: Callable[[S], T], items: list[S]) -> list[T]:
+    return [function(item) for item in items]

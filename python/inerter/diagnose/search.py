@@ -120,6 +120,10 @@ class Scored:
         return self.fit.model
 
 
+def _silent(text: str) -> None:
+    """Tell nobody."""
+
+
 @dataclass
 class Search:
     """A search over the fit data of a split."""
@@ -127,7 +131,7 @@ class Search:
     runs: Sequence[Run]
     split: Split
     baseline: Model
-    progress: Progress = lambda text: None
+    progress: Progress = _silent
     found: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -136,6 +140,10 @@ class Search:
         self.trials = Trials(self.problem, REQUIRED_GAIN)
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
+
+    def __getstate__(self) -> dict[str, object]:
+        """What another process is told: it has nobody to report to."""
+        return {**self.__dict__, "progress": _silent}
 
     def _problems(self, folds: Sequence[list[Mask]]) -> Folds:
         """The fit data without each fold, and the fold."""

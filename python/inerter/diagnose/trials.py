@@ -60,6 +60,10 @@ class Trials:
         )
         self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
 
+    def __getstate__(self) -> dict[str, object]:
+        """What another process is told: it looks nothing up."""
+        return {**self.__dict__, "_rounds": []}
+
     def fit(self, candidate: Candidate, limits: Limits = (np.inf, np.inf)) -> Fit:
         """Best fit over a candidate's starting points, which are compared on part of the data.
 

@@ -48,6 +48,10 @@ class Model:
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
 
+    def __reduce__(self) -> tuple[type[Model], tuple[object, ...]]:
+        """What another process is told: no view of a mapping, nothing worked out."""
+        return Model, (self.friction, dict(self.values), self.free, dict(self.texts))
+
     def device(self) -> Device:
         """The device these coordinates stand for."""
         return self._device
