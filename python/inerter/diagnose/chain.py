@@ -8,6 +8,7 @@ import numpy as np
 
 from inerter.diagnose.composition import effects_of, submodel
 from inerter.diagnose.judge import Judge
+from inerter.diagnose.parallel import parallel
 from inerter.diagnose.search import LOCAL, Search
 from inerter.diagnose.statistics import (
     Interval,
@@ -62,11 +63,9 @@ def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
     taken: list[str] = []
     chain = []
     while left:
-        trials = []
-        for effect, law in left:
-            trial = search.problem.fit(submodel(model, [*taken, effect], search.baseline))
-            trials.append((trial.rmse(masks), effect, law, trial))
-        _, effect, law, after = min(trials, key=lambda trial: trial[0])
+        models = [submodel(model, [*taken, effect], search.baseline) for effect, _ in left]
+        trials = zip(left, parallel(search.problem.fit, models), strict=True)
+        (effect, law), after = min(trials, key=lambda trial: trial[1].rmse(masks))
         chain.append(_link(search, judge, effect, law, fit, after))
         left = [pair for pair in left if pair[0] != effect]
         taken.append(effect)

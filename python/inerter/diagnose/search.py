@@ -183,11 +183,13 @@ class Search:
         if not fit.model.free:
             return self._scored(effect, law, fit, self.problem.errors(fit.model))
         left_out = [np.zeros(run.force.size) for run in self.runs]
-        for problem, fold in folds or self._folds:
-            refitted = problem.fit(fit.model, evaluations=12, tolerance=ROUGH)
-            for target, values, mask in zip(
-                left_out, problem.errors(refitted.model), fold, strict=True
-            ):
+
+        def errors(problem: Problem) -> list[Array]:
+            return problem.errors(problem.fit(fit.model, evaluations=12, tolerance=ROUGH).model)
+
+        problems, masks = zip(*(folds or self._folds), strict=True)
+        for fold, found in zip(masks, parallel(errors, problems), strict=True):
+            for target, values, mask in zip(left_out, found, fold, strict=True):
                 target[mask] = values[mask]
         return self._scored(effect, law, fit, left_out)
 
