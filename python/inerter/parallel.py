@@ -9,12 +9,14 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
+from threading import Thread
 from typing import Any, TypeVar
 from uuid import uuid4
 
@@ -92,7 +94,8 @@ def _on_processes(
         # a fresh interpreter each: engines do not outlive a fork
         context = multiprocessing.get_context("spawn")
         others = set(multiprocessing.active_children())
-        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        watched = {"initializer": end_with, "initargs": (os.getpid(),)}
+        with ProcessPoolExecutor(workers, context, **watched) as pool:
             try:
                 with deaf_children():
                     waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
@@ -187,6 +190,20 @@ def deaf_children(tracker: Any = resource_tracker) -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def end_with(parent: int) -> None:
+    """Let this process end with the one that began it, whatever ends that: `kill -9` tells nobody.
+
+    Where a process without a parent keeps its number (Windows) it does nothing.
+    """
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
 
 
 @contextmanager

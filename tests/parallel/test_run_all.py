@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -148,3 +150,29 @@ def test_whoever_interrupts_does_not_wait() -> None:
     with pytest.raises(KeyboardInterrupt):
         run_all(wait, [0.0, 60.0, 60.0], jobs=2, progress=interrupt)
     assert time.perf_counter() - began < 30.0
+
+
+SLEEPERS = """
+import os, sys, time
+from pathlib import Path
+from inerter.parallel import run_all
+def piece(folder):
+    Path(folder, str(os.getpid())).touch()
+    time.sleep(600)
+if __name__ == "__main__":
+    run_all(piece, [sys.argv[1]] * 2, jobs=2)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there a process has a parent for ever")
+def test_processes_end_with_the_one_that_began_them(tmp_path: Path) -> None:
+    script, marks = tmp_path / "sleepers.py", tmp_path / "marks"
+    script.write_text(SLEEPERS)
+    marks.mkdir()
+    began = subprocess.Popen([sys.executable, script, marks], stdout=subprocess.PIPE)
+    while len(list(marks.iterdir())) < 2:
+        assert began.poll() is None
+        time.sleep(0.05)
+    began.kill()
+    # the pipe is open as long as one of them has it
+    began.communicate(timeout=60)

@@ -7,7 +7,6 @@ the data, for tenths of a second, many times in a row.
 from __future__ import annotations
 
 import os
-import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
@@ -15,13 +14,12 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
-from threading import Thread
 from typing import Generic, TypeVar
 
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
-from inerter.parallel import deaf_children, environment
+from inerter.parallel import deaf_children, end_with, environment
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -73,7 +71,7 @@ def helped() -> Iterator[None]:
         yield
         return
     with environment({"PYTHONWARNINGS": _without_tracker()}), deaf_children(resource_tracker):
-        pool = ProcessPoolExecutor(count, env=ALONE, initializer=_watch, initargs=(os.getpid(),))
+        pool = ProcessPoolExecutor(count, env=ALONE, initializer=end_with, initargs=(os.getpid(),))
         # importing this module will have imported what the work needs
         pool.submit(_each, abs, [])
     token = _helpers.set(_Helpers(count, pool))
@@ -101,17 +99,6 @@ def _without_tracker() -> str:
     """Warnings as they are set; none of what the tracker cleans up after a Ctrl-C."""
     set_already = os.environ.get("PYTHONWARNINGS")
     return ",".join(filter(None, (set_already, "ignore:resource_tracker")))
-
-
-def _watch(parent: int) -> None:
-    """Let this process end with its parent, whatever ends that one; `kill -9` tells nobody."""
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(0.5)
-        os._exit(1)
-
-    Thread(target=watch, daemon=True).start()
 
 
 class _Shared(Generic[S, T]):
