@@ -11,6 +11,8 @@ from inerter.reference import NoiseLevels, hide_effect
 CASES: dict[str, tuple[tuple[str, ...], int]] = {
     # a narrow Stribeck peak did better than sign(v) by what smoothing leaves of a reversal
     "blur of a reversal": (("coulomb_friction",), 2659865627),
+    # the same, twice as wide as the narrowest peak that is searched for
+    "wider blur of a reversal": (("coulomb_friction",), 37417865),
     # a peak as narrow as that blur, of which it explains ten times as much, was refused
     "a peak and no blur": (("stribeck_friction",), 2032449776),
     # found, and lost in a wider band, where runs that do not reach the stop were to foretell it

@@ -254,11 +254,14 @@ class Search:
         return replace(chosen, fit=self.problem.fit(chosen.model))
 
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
-        """Whether a fit's peak of friction does little more than friction without one."""
+        """Whether a fit's peak of friction does little more than friction without one.
+
+        That is among the fitted, or there has been such before.
+        """
         masks = self.problem.masks
-        error, most = fit.rmse(masks), without.rmse(masks)
         plain = [each.rmse(masks) for trial, each in fitted if trial.effect == "coulomb_friction"]
-        return is_blur(fit.model, self.problem.scales, most, min(plain, default=most), error)
+        plainest = min(plain, default=without.rmse(masks))
+        return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 
     def _tones(self, current: Fit) -> list[Candidate]:
         """The tone that a residual shows, if any."""
