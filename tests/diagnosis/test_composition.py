@@ -63,6 +63,25 @@ def test_a_peak_of_less_than_three_standard_errors_is_none(error: float, told: b
     assert is_distinct("stribeck_friction", fitted(model, error), 3.0) is told
 
 
+def test_a_gas_is_told_though_its_exponent_is_not() -> None:
+    """Along a shallow compression push n / h and push n (n + 1) / (2 h^2) are known, n is not."""
+    model = BASELINE.adding(gas_push=20.0, gas_reach=0.02, gas_exponent=1.3)
+    push, reach, exponent = 20.0, 0.02, 1.3
+    # derivatives of the two coefficients in shares, by the logarithms of push and height, and by n
+    slopes = np.array([[1, -1, 1 / exponent], [1, -2, 1 / exponent + 1 / (exponent + 1)]])
+
+    def told(error: float) -> bool:
+        precision = slopes.T @ slopes / error**2 + np.diag([1e-6, 1e-6, 1e-2])
+        covariance = np.zeros((4, 4))
+        sizes = np.diag([push, reach, 1.0])
+        covariance[1:, 1:] = sizes @ np.linalg.inv(precision) @ sizes
+        assert np.sqrt(covariance[1, 1]) > 3 * push
+        return is_distinct("gas_spring", Fit(model, [], covariance, 1, 1.0), 3.0)
+
+    assert told(0.02)
+    assert not told(0.3)
+
+
 @pytest.mark.parametrize(("beta", "told"), [(-0.2, False), (1.0, False), (5.0, True)])
 def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
     model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)

@@ -28,6 +28,9 @@ _AMPLITUDES = {
 }
 
 
+# how well a coordinate is known before any data: the exponent of a gas lies between 1 and 1.7.
+# A shallow compression does not tell exponent, force and height of a gas apart
+_KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
 # a fall of the friction narrower than this many of the narrowest that is searched for may be the
 # blur of a reversal, which any friction has in smoothed data: in 43 cases of plain friction it was
 # up to 3.1 wide and explained up to 1.4 % of the friction (rms), the peaks of 43 others 13 to 31 %
@@ -45,9 +48,21 @@ def is_distinct(effect: str, fit: Fit, required: float) -> bool:
         if device.bw_beta < _LOSING * abs(device.bw_gamma):
             return False
     names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
-    errors = dict(zip(fit.model.free, np.sqrt(np.maximum(np.diag(fit.covariance), 0)), strict=True))
+    errors = _errors(fit)
     known = [name for name in names if name in errors]
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def _errors(fit: Fit) -> dict[str, float]:
+    """Standard errors of a fit's free coordinates, with what is known of some beforehand."""
+    covariance = fit.covariance
+    for name, spread in _KNOWN.items():
+        if name in fit.model.free:
+            j = fit.model.free.index(name)
+            along = covariance[:, j]
+            covariance = covariance - np.outer(along, along) / (along[j] + spread**2)
+    sizes = np.sqrt(np.maximum(np.diag(covariance), 0))
+    return dict(zip(fit.model.free, sizes, strict=True))
 
 
 def is_blur(model: Model, scales: Scales, plain: float, error: float) -> bool:
