@@ -15,6 +15,10 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     "wider blur of a reversal": (("coulomb_friction",), 37417865),
     # a peak as narrow as that blur, of which it explains ten times as much, was refused
     "a peak and no blur": (("stribeck_friction",), 2032449776),
+    # along a shallow compression the exponent is unknown, and with it was the force of the gas
+    "shallow gas": (("gas_spring",), 416305877),
+    # a stiffness, which left out 69 % more, counted as good as stops that did not halve its error
+    "gas and stop": (("gas_spring", "end_stop"), 3512033755),
     # found, and lost in a wider band, where runs that do not reach the stop were to foretell it
     "stop in a wider band": (("end_stop",), 3779551908),
     # a shaft that resonates near the band's end enlarges the noise of the held-out motion

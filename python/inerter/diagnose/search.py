@@ -49,6 +49,8 @@ REQUIRED_DISTINCTION = 3.0
 TOLERATED_ADVANTAGE = 3.0
 LARGE_TOLERATED_ADVANTAGE = 6.0
 TOLERATED_LOSS = 0.01
+# a loss that is never small, though the best may show in few places
+TOO_MUCH = 0.25
 # removing an effect that is worth less than this many standard errors
 KEEPING_ADVANTAGE = 2.0
 MOST_EFFECTS = 8
@@ -79,16 +81,17 @@ def advantage_of(
     masks: Sequence[Mask],
     stretches: Sequence[tuple[int, NDArray]],
     effect: str,
+    least: float = LOCAL_GAIN,
 ) -> float:
     """`statistics.advantage` of residuals, over the stretches where the effect may show.
 
-    What shows in few places has to explain most of what is missed there: peaks, where such effects
-    lie, are where a slightly wrong model errs most.
+    What shows in few places has to take away at least a share of what is missed there: peaks, where
+    such effects lie, are where a slightly wrong model errs most.
     """
     if effect in LOCAL:
         stretches = where_apart(simple, rich, masks)
     before, after = block_squares(simple, stretches), block_squares(rich, stretches)
-    if effect in LOCAL and after.sum() > (1 - LOCAL_GAIN) ** 2 * before.sum():
+    if effect in LOCAL and after.sum() > (1 - least) ** 2 * before.sum():
         return 0.0
     return advantage(before, after)
 
@@ -285,10 +288,11 @@ class Search:
     def _as_good(self, simple: Scored, best: Scored) -> bool:
         """Whether a candidate loses so little against the best that fewer parameters decide."""
         loss = np.sqrt(simple.squares.sum() / best.squares.sum()) - 1
+        masks, least = self.problem.masks, LOCAL_GAIN if loss < TOO_MUCH else 0.0
+        won = advantage_of(simple.residual, best.residual, masks, self.blocks, best.effect, least)
         return bool(
             simple.model.complexity < best.model.complexity
-            and self.advantage(simple, best, best.effect)
-            < (LARGE_TOLERATED_ADVANTAGE if loss < TOLERATED_LOSS else TOLERATED_ADVANTAGE)
+            and won < (LARGE_TOLERATED_ADVANTAGE if loss < TOLERATED_LOSS else TOLERATED_ADVANTAGE)
         )
 
     def _exchange(self, current: Scored) -> Scored:
