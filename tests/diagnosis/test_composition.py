@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
+    as_one,
     effects_of,
     is_blur,
     is_distinct,
@@ -86,6 +87,23 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
 def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
     model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)
     assert is_distinct("hysteretic_friction", fitted(model), 3.0) is told
+
+
+def test_a_level_and_a_constant_force_may_be_friction_that_differs_between_directions() -> None:
+    both = BASELINE.adding("coulomb", coulomb_force=20.0, force_offset=-4.0, stiffness=1e3)
+    (one,) = as_one(both)
+    assert one.values["friction_asymmetry"] == -0.2
+    assert one.values["coulomb_force"] == 20.0
+    assert one.values["stiffness"] == 1e3
+    assert "force_offset" not in one.values
+    assert one.complexity == both.complexity
+    assert [name for name, _ in effects_of(one, BASELINE)] == [
+        "asymmetric_friction",
+        "parallel_stiffness",
+    ]
+    # there has to be a level, and a constant force that is not stated
+    assert as_one(BASELINE.adding(force_offset=-4.0)) == []
+    assert as_one(one) == []
 
 
 def test_every_friction_law_may_drift_and_those_with_a_level_vary() -> None:

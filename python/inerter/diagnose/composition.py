@@ -73,8 +73,12 @@ def is_blur(model: Model, scales: Scales, plain: float, error: float) -> bool:
     if model.friction not in ("stribeck", "brown_mcphee"):
         return False
     narrow = _NARROW * coordinate("stribeck_velocity", scales).lower
-    little = _BLUR * model.values["coulomb_force"]
-    return model.values["stribeck_velocity"] < narrow and plain**2 - error**2 < little**2
+    return model.values["stribeck_velocity"] < narrow and within_blur(model, plain, error)
+
+
+def within_blur(model: Model, one: float, other: float) -> bool:
+    """Whether an error [N] is above another by no more than the blur of reversals can make."""
+    return one**2 - other**2 < (_BLUR * model.values["coulomb_force"]) ** 2
 
 
 def width(model: Model) -> dict[str, float]:
@@ -213,6 +217,19 @@ def _level_and_distance(model: Model) -> tuple[float, float | None]:
         distance = bend ** (-1 / device.bw_exponent)
         return device.bw_stiffness * distance, distance
     return values.get("coulomb_force", values.get("bw_level", 0.0)), values.get("presliding")
+
+
+def as_one(model: Model) -> list[Model]:
+    """The model with one cause in the place of two that do the same.
+
+    Friction that differs between the directions is a level and a constant force, but at rest.
+    """
+    level = model.values.get("coulomb_force", 0.0)
+    uneven = "friction_asymmetry" in model.values
+    if model.friction != "coulomb" or "force_offset" not in model.free or uneven or level <= 0:
+        return []
+    share = float(np.clip(model.values["force_offset"] / level, -0.9, 0.9))
+    return [model.without(("force_offset",)).adding(friction_asymmetry=share)]
 
 
 def simpler_laws(model: Model) -> list[Model]:

@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
+    as_one,
     effects_of,
     is_blur,
     is_distinct,
     simpler_laws,
+    within_blur,
     without_effect,
 )
 from inerter.diagnose.parallel import parallel
@@ -301,13 +303,15 @@ class Search:
         The law that is best on its own need not be the one that is best beside the effects found
         since: a rich law stands in for a simple one with, say, viscous friction.
         """
-        masks = self.problem.masks
+        masks, free = self.problem.masks, current.model.free
         trials = []
         for model in simpler_laws(current.model):
             trials.append(Candidate("exchange", None, (model,)))
             for candidate in candidates(model, self.problem.scales):
                 same = candidate.starts[0].friction == model.friction
-                if same and candidate.effect not in UNLIKE_FRICTION:
+                # a Bouc-Wen law has a stiffness of its own
+                stiffens = candidate.effect == "parallel_stiffness" and "bw_ratio" in free
+                if same and (stiffens or candidate.effect not in UNLIKE_FRICTION):
                     trials.append(candidate)
         spare = current.model.complexity
         trials = [trial for trial in trials if trial.starts[0].complexity < spare]
@@ -321,6 +325,10 @@ class Search:
             loss = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
             if loss < TOLERATED_LOSS / 2:
                 return self._exchange(scored)
+        for model in as_one(current.model):
+            fit = self.problem.fit(model)
+            if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):
+                return self.score("exchange", None, fit)
         return current
 
     def _prune(self, current: Scored) -> Scored:
