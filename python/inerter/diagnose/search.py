@@ -333,6 +333,7 @@ class Search:
 
     def _prune(self, current: Scored) -> Scored:
         """Take away what the others have made unnecessary, the least important first."""
+        masks = self.problem.masks
         while True:
             self.progress("checking that every effect is still needed")
             models = [
@@ -346,7 +347,9 @@ class Search:
             ):
                 lost = self.advantage(scored, current, scored.effect)
                 ratio = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
-                if lost < KEEPING_ADVANTAGE or ratio < REQUIRED_GAIN / 2:
+                # a refit may go astray on one fold: nothing is sure of the errors there
+                needed = scored.fit.rmse(masks) > (1 + TOO_MUCH) * current.fit.rmse(masks)
+                if (lost < KEEPING_ADVANTAGE and not needed) or ratio < REQUIRED_GAIN / 2:
                     simpler.append((ratio, scored))
             if not simpler:
                 return current
