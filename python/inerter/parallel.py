@@ -25,7 +25,7 @@ Result = TypeVar("Result")
 Progress = Callable[[float], None]
 
 # libraries' own threads would fight the processes for the processors
-_THREADS = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 _ATTEMPTS = 5
 _PATIENCE = 20.0
 
@@ -90,7 +90,7 @@ def _on_processes(
         for number, item in enumerate(items):
             yield number, function(item)
         return
-    with environment(_THREADS):
+    with environment(ONE_THREAD):
         # a fresh interpreter each: engines do not outlive a fork
         context = multiprocessing.get_context("spawn")
         others = set(multiprocessing.active_children())

@@ -19,7 +19,7 @@ from typing import Generic, TypeVar
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
-from inerter.parallel import deaf_children, end_with, environment
+from inerter.parallel import ONE_THREAD, deaf_children, end_with, environment
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -28,8 +28,6 @@ T = TypeVar("T")
 MOST = 8
 # parts of the work of each, so that none waits long for the last
 PARTS = 8
-# the libraries' own threads would only wait for each other
-ALONE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 @dataclass(frozen=True)
@@ -71,7 +69,7 @@ def helped() -> Iterator[None]:
         yield
         return
     with environment({"PYTHONWARNINGS": _without_tracker()}), deaf_children(resource_tracker):
-        pool = ProcessPoolExecutor(count, env=ALONE, initializer=end_with, initargs=(os.getpid(),))
+        pool = ProcessPoolExecutor(count, env=ONE_THREAD, initializer=end_with, initargs=(os.getpid(),))
         # importing this module will have imported what the work needs
         pool.submit(_each, abs, [])
     token = _helpers.set(_Helpers(count, pool))
