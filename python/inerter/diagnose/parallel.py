@@ -69,7 +69,9 @@ def helped() -> Iterator[None]:
         yield
         return
     with environment({"PYTHONWARNINGS": _without_tracker()}), deaf_children(resource_tracker):
-        pool = ProcessPoolExecutor(count, env=ONE_THREAD, initializer=end_with, initargs=(os.getpid(),))
+        pool = ProcessPoolExecutor(
+            count, env=ONE_THREAD, initializer=end_with, initargs=(os.getpid(),)
+        )
         # importing this module will have imported what the work needs
         pool.submit(_each, abs, [])
     token = _helpers.set(_Helpers(count, pool))
