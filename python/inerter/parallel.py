@@ -9,14 +9,15 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from importlib.util import find_spec
 from multiprocessing import resource_tracker
-from threading import Thread
+from types import FrameType
 from typing import Any, TypeVar
 from uuid import uuid4
 
@@ -90,15 +91,16 @@ def _on_processes(
         for number, item in enumerate(items):
             yield number, function(item)
         return
-    with environment(ONE_THREAD):
-        # a fresh interpreter each: engines do not outlive a fork
-        context = multiprocessing.get_context("spawn")
-        others = set(multiprocessing.active_children())
-        watched = {"initializer": end_with, "initargs": (os.getpid(),)}
+    # a fresh interpreter each: engines do not outlive a fork
+    context = multiprocessing.get_context("spawn")
+    others = set(multiprocessing.active_children())
+    watched = {"initializer": end_with, "initargs": (os.getpid(),)}
+    with environment(ONE_THREAD), ExitStack() as start:
+        start.enter_context(deaf_children())
         with ProcessPoolExecutor(workers, context, **watched) as pool:
             try:
-                with deaf_children():
-                    waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
+                waiting = {pool.submit(function, item): n for n, item in enumerate(items)}
+                start.close()
                 while waiting:
                     # a wait without end would not hear Ctrl-C where another thread gets it
                     done, _ = wait(waiting, timeout=0.2, return_when=FIRST_COMPLETED)
@@ -178,18 +180,37 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
 def deaf_children(tracker: Any = resource_tracker) -> Iterator[None]:
     """Processes begun here do not hear the Ctrl-C of a terminal: this one ends them.
 
-    The `tracker` is the module of what begins them that cleans up after them.
+    It hears it when they have begun; one begun by halves would complain. The `tracker` is the
+    module of what begins them that cleans up after them.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
     # begun before, as its beginning lets the signal through again
     tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    with _interrupts_held():
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """A Ctrl-C waits until the end of this: where one thread is deaf, another one hears it."""
+    handler = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(handler):
+        yield
+        return
+    heard: list[tuple[int, FrameType | None]] = []
+    signal.signal(signal.SIGINT, lambda *call: heard.append(call))
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, handler)
+        if heard:
+            handler(*heard[0])
 
 
 def end_with(parent: int) -> None:
@@ -203,7 +224,7 @@ def end_with(parent: int) -> None:
             time.sleep(0.5)
         os._exit(1)
 
-    Thread(target=watch, daemon=True).start()
+    threading.Thread(target=watch, daemon=True).start()
 
 
 @contextmanager

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from inerter.parallel import WorkError, run_all
+from inerter.parallel import WorkError, deaf_children, run_all
 
 COUNT = 24
 
@@ -150,6 +152,32 @@ def test_whoever_interrupts_does_not_wait() -> None:
     with pytest.raises(KeyboardInterrupt):
         run_all(wait, [0.0, 60.0, 60.0], jobs=2, progress=interrupt)
     assert time.perf_counter() - began < 30.0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there no thread is deaf to it")
+def test_an_interrupt_waits_until_the_processes_have_begun() -> None:
+    """Where the thread that begins them is deaf to Ctrl-C, the system gives it to another one."""
+    asked, sent = threading.Event(), threading.Event()
+
+    def interrupt() -> None:
+        asked.wait()
+        signal.raise_signal(signal.SIGINT)
+        sent.set()
+
+    begun = False
+
+    def begin() -> None:
+        nonlocal begun
+        with deaf_children():
+            asked.set()
+            sent.wait()
+            begun = True
+
+    threading.Thread(target=interrupt).start()
+    with pytest.raises(KeyboardInterrupt):
+        begin()
+    assert begun
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 SLEEPERS = """

@@ -215,10 +215,13 @@ LONG = {
 def test_ctrl_c_ends_in_order(command: str, after: float, tmp_path: Path) -> None:
     """A terminal sends it to every process of a command: one line, status 130, no results."""
     out = tmp_path / "out"
+    # with a display, `import mujoco` has pyGLFW ask another Python for its version, which hears
+    # Ctrl-C too and says so by a traceback
+    without_display = {**os.environ, "MUJOCO_GL": "disabled"}
     run = subprocess.Popen(
         [sys.executable, "-m", "inerter", *LONG[command], "--out", str(out)],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
-        cwd=tmp_path,
+        cwd=tmp_path, env=without_display,
     )  # fmt: skip
     time.sleep(after)
     os.killpg(run.pid, signal.SIGINT)

@@ -18,7 +18,7 @@ from pathlib import Path
 import inerter
 from inerter.blind_test.case import Outcome, solve
 from inerter.blind_test.plan import Task
-from inerter.parallel import WorkError, run_all
+from inerter.parallel import WorkError, deaf_children, run_all
 
 Solve = Callable[[Task], Outcome]
 Piece = tuple[Solve, Task, Path]
@@ -122,8 +122,12 @@ def _solve_piece(piece: Piece) -> None:
 
 def _solve_alone(piece: Piece) -> None:
     process = multiprocessing.get_context("spawn").Process(target=_solve_piece, args=(piece,))
-    process.start()
-    process.join()
+    with deaf_children():
+        process.start()
+    try:
+        process.join()
+    finally:
+        process.terminate()
     if _found(piece) is None:
         text = f"the process ended without a result (exit status {process.exitcode})"
         _keep(piece, Outcome(piece[1], piece[1].law, error=text))
