@@ -55,7 +55,8 @@ SAMPLES_PER_PERIOD = 400
 # a state forgets how it began: until periods in a row differ by no more than this share
 FEWEST_PERIODS, MOST_PERIODS = 3, 768
 SETTLED = 1e-4
-# log-likelihood ratio (left-out errors) that a richer model needs: about one false alarm in 1000
+# twice the log-likelihood ratio (left-out errors) that a richer model needs: about one false alarm
+# in 600
 REQUIRED_EVIDENCE = 10.0
 HELD_OUT_EVERY = 4
 # points that a fit needs beyond its parameters: with fewer, leaving one out tells nothing
