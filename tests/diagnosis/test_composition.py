@@ -61,7 +61,7 @@ def test_a_peak_of_less_than_three_standard_errors_is_none(error: float, told: b
     model = BASELINE.adding(
         "stribeck", coulomb_force=20.0, static_excess=8.0, stribeck_velocity=0.05
     )
-    assert is_distinct("stribeck_friction", fitted(model, error), 3.0) is told
+    assert is_distinct("stribeck_friction", fitted(model, error), 3.0, BASELINE) is told
 
 
 def test_a_gas_is_told_though_its_exponent_is_not() -> None:
@@ -77,7 +77,7 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
         sizes = np.diag([push, reach, 1.0])
         covariance[1:, 1:] = sizes @ np.linalg.inv(precision) @ sizes
         assert np.sqrt(covariance[1, 1]) > 3 * push
-        return is_distinct("gas_spring", Fit(model, [], covariance, 1, 1.0), 3.0)
+        return is_distinct("gas_spring", Fit(model, [], covariance, 1, 1.0), 3.0, BASELINE)
 
     assert told(0.02)
     assert not told(0.3)
@@ -86,7 +86,7 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
 @pytest.mark.parametrize(("beta", "told"), [(-0.2, False), (1.0, False), (5.0, True)])
 def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
     model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)
-    assert is_distinct("hysteretic_friction", fitted(model), 3.0) is told
+    assert is_distinct("hysteretic_friction", fitted(model), 3.0, BASELINE) is told
 
 
 def test_a_level_and_a_constant_force_may_be_friction_that_differs_between_directions() -> None:

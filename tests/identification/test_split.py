@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from inerter.identify.bench import Run
 from inerter.identify.split import split
 
 
-def run(name: str, low: float, high: float, rate: float = 3.0) -> Run:
+def run(name: str, low: float, high: float, rate: float = 3.0, seconds: float = 5.0) -> Run:
     """A sine between two displacements [m]."""
-    time = np.arange(0, 5, 0.01)
+    time = np.arange(0, seconds, 0.01)
     middle, size = (low + high) / 2, (high - low) / 2
     x = middle + size * np.sin(rate * time)
     v, a = size * rate * np.cos(rate * time), -size * rate**2 * np.sin(rate * time)
@@ -28,3 +29,13 @@ def test_the_most_typical_run_is_held_out() -> None:
 def test_who_names_a_run_is_obeyed() -> None:
     runs = [run("a", -0.02, 0.02), run("b", -0.04, 0.04)]
     assert split(runs, ["b"]).description == "held out: b"
+
+
+@pytest.mark.parametrize(
+    ("lengths", "held"),
+    [([300.0, 3.0, 20.0], 2), ([300.0, 6.1], 1), ([300.0, 3.0, 3.0], 1)],
+)
+def test_a_run_of_nearly_all_data_is_not_held_out(lengths: list[float], held: int) -> None:
+    runs = [run(str(i), -0.02, 0.02, seconds=seconds) for i, seconds in enumerate(lengths)]
+    found = split(runs)
+    assert [found.role(i) for i in range(len(runs))].index("holdout") == held

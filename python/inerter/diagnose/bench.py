@@ -12,16 +12,22 @@ from threadpoolctl import threadpool_limits
 from inerter.core import Device
 from inerter.diagnose import wording
 from inerter.diagnose.baseline import baseline_of
-from inerter.diagnose.candidates import has_series
 from inerter.diagnose.chain import Link, chain_of, tone_link
-from inerter.diagnose.composition import effects_of, simpler_laws, submodel
+from inerter.diagnose.composition import effects_of, has_series, simpler_laws, submodel
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.parallel import helped
 from inerter.diagnose.play import fit_play, forgiving, from_contact, jackknife, play_of
-from inerter.diagnose.result import Accuracy, Diagnosis, Finding, RecordSummary, RunCurves
+from inerter.diagnose.result import (
+    Accuracy,
+    Diagnosis,
+    Finding,
+    ParameterValue,
+    RecordSummary,
+    RunCurves,
+)
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import gain_interval
@@ -58,6 +64,8 @@ WORTH_A_BAND = 0.1
 SERIES = ("backlash", "series_elasticity")
 # samples without which there is nothing to learn from or to judge on
 FEWEST = 8
+# rivals that may take the place of an effect, one after another
+EXCHANGES = 3
 
 
 def diagnose_bench(
@@ -126,12 +134,15 @@ class _Bench:
         self.holdout = holdout
         self._take(prepare(self.records))
         _refuse_too_little(self.split, self.band, self.raw)
+        # what is held out is so from now on, and has no say in the smoothing either
+        self.holdout = self.held
+        self._take(prepare(self.records, self.full.fit))
         self.device = device
         self.baseline = baseline_of(device, self.band.scales)
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
-        self.weighed = weighed(self.records, self.preparation)
+        self.weighed = weighed(self.records, self.preparation, self.full.fit)
         self.search = self._weighed_search(self.weighed)
 
     def _take(self, preparation: Preparation) -> None:
@@ -163,7 +174,7 @@ class _Bench:
     def run(self) -> Diagnosis:
         """The whole procedure."""
         final = self._plainest_law(self._searched())
-        before = self.search.problem.fit(self.baseline)
+        before = self.search.baseline_fit()
         final, standings = self._settle(final)
         self.progress("measuring the gain of each effect")
         chain = chain_of(self.search, self.judge, final.model)
@@ -291,19 +302,16 @@ class _Bench:
                 return self.search.score("", None, fit)
         return final
 
-    def _settle(self, final: Scored) -> tuple[Scored, dict[str, Standing]]:
+    def _settle(
+        self, final: Scored, exchanges: int = EXCHANGES
+    ) -> tuple[Scored, dict[str, Standing]]:
         """Compare every effect with its rivals; where they are equal, name the usual one."""
-        for _ in range(3):
-            standings = {}
-            swap = None
-            for effect, _ in effects_of(final.model, self.baseline):
-                standings[effect] = standing(self.search, final, effect)
-                swap = standings[effect].better
-                if swap is not None:
-                    break
-            if swap is None:
-                return final, standings
-            final = swap
+        standings: dict[str, Standing] = {}
+        for effect, _ in effects_of(final.model, self.baseline):
+            standings[effect] = standing(self.search, final, effect)
+            better = standings[effect].better
+            if exchanges and better is not None:
+                return self._settle(better, exchanges - 1)
         return final, standings
 
     def _findings(
@@ -312,7 +320,7 @@ class _Bench:
         chain: list[Link],
         standings: dict[str, Standing],
     ) -> list[Finding]:
-        values = parameter_values(final, self.device)
+        values = self._values(final)
         findings = []
         for link in chain:
             known = standings.get(link.effect)
@@ -331,6 +339,9 @@ class _Bench:
             )
             findings.append(replace(finding, evidence=wording.evidence(finding)))
         return sorted(findings, key=lambda finding: -finding.gain)
+
+    def _values(self, fit: Fit) -> dict[str, ParameterValue]:
+        return parameter_values(fit, self.device, self.baseline.values.get("delay", 0.0))
 
     def _accuracy(self, model: Model) -> Accuracy:
         rmse, spread = self.judge.rmse(model), float(np.std(self.judge.force))
@@ -372,7 +383,7 @@ class _Bench:
             remains,
             engines,
             "",
-            parameter_values(final, self.device),
+            self._values(final),
             self._method(),
             self._curves(before.model, final.model),
             gain_interval=gain_interval(

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.composition import width
+from inerter.diagnose.composition import has_series, width
 from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS
 from inerter.diagnose.stated import stated_candidates
 from inerter.identify.coordinates import Scales
@@ -188,12 +188,6 @@ def _backlash(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
         for contact in contacts
     )
     yield Candidate(effect, None, starts)
-
-
-def has_series(model: Model) -> bool:
-    """Whether a model has a series element."""
-    names = ("series_frequency", "series_stiffness", "series_damping")
-    return any(name in model.values for name in names)
 
 
 def _end_stop(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:

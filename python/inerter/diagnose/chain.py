@@ -58,7 +58,7 @@ def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
     it adds to all others.
     """
     left = effects_of(model, search.baseline)
-    fit = search.problem.fit(search.baseline)
+    fit = search.baseline_fit()
     masks = search.problem.masks
     taken: list[str] = []
     chain = []

@@ -11,7 +11,7 @@ import numpy as np
 
 from inerter.diagnose.effects import EFFECTS, LAW_COORDINATES, LEVEL_COORDINATES
 from inerter.identify.coordinates import Scales, coordinate
-from inerter.identify.fit import Fit
+from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 
 # coordinates whose being zero means that the effect is absent, where not all of them do
@@ -41,16 +41,41 @@ _BLUR = 0.04
 _LOSING = 0.1
 
 
-def is_distinct(effect: str, fit: Fit, required: float) -> bool:
-    """Whether a fitted effect differs from none by some standard errors of its coordinates."""
+def has_series(model: Model) -> bool:
+    """Whether a model has a series element."""
+    names = ("series_frequency", "series_stiffness", "series_damping")
+    return any(name in model.values for name in names)
+
+
+def is_distinct(effect: str, fit: Fit, required: float, baseline: Model) -> bool:
+    """Whether a fitted effect differs from none by some standard errors of its coordinates.
+
+    What the baseline states and a fit sets free is distinct as it is: it may be that there is none.
+    """
+    if _contradicts(effect, fit.model, baseline):
+        return True
     if effect == "hysteretic_friction" and fit.model.friction == "bouc_wen":
         device = fit.model.device()
         if device.bw_beta < _LOSING * abs(device.bw_gamma):
             return False
+    if effect == "series_elasticity":
+        # known through its resonance; without an inertance there is none, and no stiffness
+        stiffness, error = parameter_errors(fit).get("series_stiffness", (1.0, 0.0))
+        return stiffness > required * error
     names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
     errors = _errors(fit)
     known = [name for name in names if name in errors]
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def _contradicts(effect: str, model: Model, baseline: Model) -> bool:
+    """Whether an effect is one that the baseline states, with values of its own."""
+    if effect in LAW_EFFECT.values() and model.friction != baseline.friction:
+        return False
+    if effect == "series_elasticity":
+        return has_series(baseline)
+    names = (*EFFECTS[effect].coordinates, *STATED_AS.get(effect, ()))
+    return any(name in baseline.values and name not in baseline.free for name in names)
 
 
 def _errors(fit: Fit) -> dict[str, float]:

@@ -16,7 +16,7 @@ from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.preparation import Preparation
 from inerter.identify.split import blocks
-from inerter.records.motion import white_noise
+from inerter.records.motion import NOISE_SEGMENT, white_noise
 
 Array = NDArray[np.float64]
 
@@ -102,8 +102,11 @@ class Judge:
         At a few hundred samples per second friction reaches the band that white noise is read
         from: the force itself seems noisier than it is.
         """
-        noise = [white_noise(error) ** 2 for error in self.raw.errors(model)]
-        return self._noise(min(self.preparation.noise_floor, float(np.sqrt(np.mean(noise)))), model)
+        pairs = zip(self.raw.errors(model), self.raw.runs, strict=True)
+        inner = [error[run.inner] for error, run in pairs]
+        noise = [white_noise(error) ** 2 for error in inner if error.size >= NOISE_SEGMENT]
+        least = float(np.sqrt(np.mean(noise))) if noise else np.inf
+        return self._noise(min(self.preparation.noise_floor, least), model)
 
     def _noise(self, force: float, model: Model) -> float:
         if self.preparation.channels:

@@ -93,7 +93,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         (candidate, fit)
         for candidate, fit in fitted
         if fit.rmse(masks) < BEATEN * error
-        and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION)
+        and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, baseline)
         and not search.is_blur(fit, without.fit, known)
     ]
     scored = parallel(

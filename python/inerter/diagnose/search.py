@@ -183,6 +183,14 @@ class Search:
             current = self._exchange(chosen)
         return self._prune(current)
 
+    def baseline_fit(self) -> Fit:
+        """The baseline fitted by least squares, also where a play lets what is far off count less.
+
+        That loss is made for what a model with the play leaves.
+        """
+        runs = [replace(run, far=np.inf) for run in self.runs]
+        return Problem(runs, self.split.fit, self.problem.scales).fit(self.baseline)
+
     def score(self, effect: str, law: str | None, fit: Fit, folds: Folds | None = None) -> Scored:
         """Squared errors of a fitted model on folds left out of its refits."""
         if not fit.model.free:
@@ -244,7 +252,7 @@ class Search:
             s
             for s in scored
             if self._better(current, s)
-            and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION)
+            and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
         ]
         if not good:

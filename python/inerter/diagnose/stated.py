@@ -18,6 +18,8 @@ from inerter.identify.model import Model
 
 # least share of the critical damping from which a stated shaft's is searched
 _LOSS = 1e-3
+# share of a stated stiffness from which on one that is not there is sought
+_NOTHING = 1e-3
 
 
 def stated_candidates(model: Model) -> Iterator[Candidate]:
@@ -27,11 +29,19 @@ def stated_candidates(model: Model) -> Iterator[Candidate]:
     yield from _gas(model)
     stops = {name: model.values[name] for name in _held(model, EFFECTS["end_stop"].coordinates)}
     if stops:
-        yield Candidate("end_stop", None, (model.adding(None, **stops),))
+        yield Candidate("end_stop", None, _starts(model, stops, "stop_stiffness"))
 
 
 def _held(model: Model, names: tuple[str, ...]) -> list[str]:
     return [name for name in names if name in model.values and name not in model.free]
+
+
+def _starts(model: Model, values: dict[str, float], size: str) -> tuple[Model, ...]:
+    """From what is stated, and from next to nothing: it may not be there at all."""
+    stated = model.adding(None, **values)
+    if size not in values:
+        return (stated,)
+    return stated, model.adding(None, **{**values, size: _NOTHING * values[size]})
 
 
 def _law(model: Model) -> Iterator[Candidate]:
@@ -42,7 +52,8 @@ def _law(model: Model) -> Iterator[Candidate]:
     effect = LAW_EFFECT[model.friction]
     values = {name: model.values[name] for name in held}
     law = model.friction if effect == "hysteretic_friction" else None
-    yield Candidate(effect, law, (model.adding(None, **values, **width(model)),))
+    starts = _starts(model, {**values, **width(model)}, "bw_stiffness")
+    yield Candidate(effect, law, starts)
 
 
 def _shaft(model: Model) -> Iterator[Candidate]:

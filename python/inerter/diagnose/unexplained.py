@@ -102,7 +102,7 @@ def unexplained(
         louder = bursts(whole, rest, _held_at(whole, runs, split), remainder.sizes)
         tests.append(_row("bursts", louder.share, louder.share_held_out, louder.size, louder.p))
         if _loud(louder, floor, force):
-            shares["bursts"] = louder.share
+            shares["bursts"] = min((louder.size / raw) ** 2, 1.0)
             details["bursts"] = _burst_words(louder)
             structure = float(np.hypot(structure, louder.size))
     depends = ["harmonics" if n == "frequency" and outcome.lines.multiple else n for n in shares]

@@ -8,16 +8,21 @@ from inerter.identify.channel import UNITS
 from inerter.identify.fit import Fit, parameter_errors
 
 
-def parameter_values(fit: Fit, device: Device | None) -> dict[str, ParameterValue]:
+def parameter_values(
+    fit: Fit, device: Device | None, delay: float = 0.0
+) -> dict[str, ParameterValue]:
     """Every parameter that a fit decided, by name.
 
-    device: the user's own, if any; what it states stands beside what was found.
+    device: the user's own, if any; what it states stands beside what was found, and so does the
+    delay of the force channel that is stated with it [s].
     """
     units = {name: entry.unit for name, entry in parameters().items()} | dict(UNITS)
     found = parameter_errors(fit)
     if device is None:
         return {n: ParameterValue(value, error, units[n]) for n, (value, error) in found.items()}
     stated = {n: value for n, value in device.given.items() if not isinstance(value, str)}
+    if delay:
+        stated["delay"] = delay
     return {
         n: StatedValue(value, error, units[n], stated.get(n)) for n, (value, error) in found.items()
     }

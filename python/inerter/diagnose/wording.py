@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from inerter.diagnose.doubt import by_weight, stand_ins, warning
@@ -61,10 +62,20 @@ _NAMES = {
 _LAWS = {"dahl": "Dahl", "lugre": "LuGre", "bouc_wen": "Bouc-Wen"}
 
 
-def quantity(value: ParameterValue, digits: int = 3) -> str:
-    """Such as "113 ± 0.2 kg"."""
+def quantity(value: ParameterValue) -> str:
+    """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells."""
     unit = "" if value.unit == "1" else f" {value.unit}"
-    return f"{value.value:.{digits}g} ± {value.stderr:.1g}{unit}"
+    number, error = value.value, value.stderr
+    if not (number and math.isfinite(number) and math.isfinite(error) and error > 0):
+        return f"{number:.3g} ± {error:.1g}{unit}"
+    top, last = (math.floor(math.log10(size)) for size in (max(abs(number), error), error))
+    digits = min(max(top - last + 1, 3), 6)
+    if not -4 < top < 6:
+        return f"{number:.{digits}g} ± {error:.1g}{unit}"
+    decimals = digits - 1 - top
+    seen = round(error, decimals)
+    text = f"{seen:.{max(decimals, 0)}f}" if seen else f"{error:.1g}"
+    return f"{round(number, decimals):.{max(decimals, 0)}f} ± {text}{unit}"
 
 
 # standard errors by which a stated value is contradicted
@@ -108,6 +119,13 @@ def _is_stated(finding: Finding) -> bool:
     return bool(values) and all(isinstance(v, StatedValue) and v.stated for v in values)
 
 
+def is_missing(finding: Finding) -> bool:
+    """Whether the data show nothing of what is stated: no value that they leave can be told."""
+    values = [v for v in finding.parameters.values() if isinstance(v, StatedValue)]
+    unknown = [v for v in values if v.stated and v.stderr > max(abs(v.value), abs(v.stated))]
+    return bool(unknown) and not any(_contradicts(v) for v in values)
+
+
 def _rival_in_words(rival: Rival) -> str:
     law = f" ({_LAWS[rival.law]})" if rival.law in _LAWS else ""
     return EFFECTS[rival.effect].plain + law
@@ -126,6 +144,8 @@ def evidence(finding: Finding) -> str:
     values = ", ".join(
         value_in_words(_NAMES.get(name, name), value) for name, value in finding.parameters.items()
     )
+    if is_missing(finding):
+        values = f"{EFFECTS[finding.effect].plain} as stated is not in these data"
     where = (
         "blocks left out of the fit (what is held out does not reach it)"
         if finding.seen_in_blocks
@@ -183,6 +203,12 @@ _ONE_TONE = (
 )
 
 
+def _less(before: float, after: float) -> str:
+    """What is gained, where it is more than nothing."""
+    percent = 100 * (1 - after / before)
+    return f", {percent:.0f} % less" if percent >= 0.5 else ""
+
+
 def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
     if not diagnosis.findings and not is_right(diagnosis):
@@ -215,8 +241,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
         text += "; it also lacks " + ", ".join(others[:-1])
         text += (" and " if others[:-1] else "") + others[-1]
     text += (
-        f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms, "
-        f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {diagnosis.unexplained.summary}"
+        f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms"
+        f"{_less(before.rmse, after.rmse)}. {diagnosis.unexplained.summary}"
     )
     unseen = [effect_in_words(finding) for finding in diagnosis.findings if finding.seen_in_blocks]
     if unseen:
@@ -231,6 +257,14 @@ def _verdict(diagnosis: Diagnosis) -> str:
         for name, value in diagnosis.parameters.items()
         if name != "transition_velocity" and _contradicts(value)
     ]
+    contradicted += [
+        f"{EFFECTS[finding.effect].plain}, of which they show nothing"
+        for finding in diagnosis.findings
+        if is_missing(finding)
+    ]
+    laws = [str(each.device.get("friction", "none")) for each in (before, after)]
+    if laws[0] not in ("none", laws[1]):
+        contradicted.append(f"friction = {laws[0]} (found: {laws[1]})")
     if contradicted:
         text += f" The data contradict what is stated: {'; '.join(contradicted)}."
     doubts = [

@@ -249,8 +249,9 @@ def scales(runs: Sequence[Run]) -> Scales:
     """Typical sizes of the channels over all runs."""
 
     def size(channel: str) -> float:
-        values = np.concatenate([getattr(run, channel) for run in runs])
-        return float(np.std(values)) or 1.0
+        # across a gap the motion is a guess, and may swing far out
+        values = np.concatenate([getattr(run, channel)[run.inner] for run in runs])
+        return float(np.std(values)) or 1.0 if values.size else 1.0
 
     x, a = (
         np.concatenate([getattr(run, name)[run.inner] for run in runs])

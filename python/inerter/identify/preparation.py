@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,17 @@ Masks = Sequence[NDArray[np.bool_]]
 
 # the lowest cut-off that predicts the force this nearly as well as the best one is taken
 TOLERANCE = 0.005
-# ratio of neighbouring cut-offs tried, and the highest one [Hz]
+# ratio of neighbouring cut-offs tried, the highest one [Hz], and that of faster motions per their
+# dominant frequency
 STEP = 1.3
 HIGHEST = 200.0
+WIDEST = 8.0
 # samples that every run must keep away from its ends: so many, and this share of what the highest
 # cut-off leaves
 SMALLEST = 50
 KEPT = 0.5
+# warnings of a measured velocity or acceleration with which it is left out
+WRONG = ("sign_flip", "unit_suspect", "constant_channel")
 # rms displacement of a run that moves, per noise
 MOVES = 10.0
 
@@ -53,8 +58,11 @@ class Preparation:
     corner: float = np.inf
 
 
-def prepare(records: Sequence[Record]) -> Preparation:
+def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparation:
     """Smooth every record at one cut-off, chosen so that the motion predicts the force best.
+
+    Only samples of `learnt`, a mask per record, tell how well it does; all where these are too few,
+    and by default.
 
     Too low a cut-off takes acceleration away, too high a one lets noise in; both make the force
     error grow. The force is an independent witness of the acceleration, so no assumption about the
@@ -63,21 +71,21 @@ def prepare(records: Sequence[Record]) -> Preparation:
     rate = min(record.sample_rate for record in records)
     # of a run at rest, the dominant frequency is that of its noise
     moving = [r for r in records if np.std(r.displacement) > MOVES * white_noise(r.displacement)]
-    lowest = max(4 * _dominant_frequency(record) for record in moving or records)
-    highest = min(0.2 * rate, HIGHEST)
-    lowest = min(0.5 * lowest, highest / 2)
+    dominant = max(_dominant_frequency(record) for record in moving or records)
+    highest = min(0.2 * rate, max(HIGHEST, WIDEST * dominant))
+    lowest = min(2 * dominant, highest / 2)
     count = int(np.ceil(np.log(highest / lowest) / np.log(STEP))) + 1
     cutoffs = np.geomspace(lowest, highest, count)
-    choices: list[tuple[str, ...]] = [()]
-    measured = tuple(
-        name
-        for name in ("velocity", "acceleration")
-        if all(getattr(record, name) is not None for record in records)
-    )
-    if measured:
-        choices.append(measured)
-    errors = np.array([_errors(records, cutoffs, use, _force_error) for use in choices])
+    measured = [name for name in ("velocity", "acceleration") if _usable(name, records)]
+    choices = [use for count in range(len(measured) + 1) for use in combinations(measured, count)]
+
+    def error(motions: Sequence[Motion], masks: Masks) -> float:
+        return _force_error(motions, _both(masks, learnt))
+
+    errors = np.array([_errors(records, cutoffs, use, error) for use in choices])
     if not np.isfinite(errors).any():
+        if learnt is not None:
+            return prepare(records)
         shortest = min(records, key=lambda record: record.duration)
         raise ValueError(
             f"{shortest.name}: {shortest.samples} samples over {shortest.duration:.3g} s are too "
@@ -97,8 +105,17 @@ def prepare(records: Sequence[Record]) -> Preparation:
     )
 
 
-def weighed(records: Sequence[Record], preparation: Preparation) -> Preparation:
+def _both(masks: Masks, learnt: Masks | None) -> Masks:
+    """Samples of both."""
+    return masks if learnt is None else [m & n for m, n in zip(masks, learnt, strict=True)]
+
+
+def weighed(
+    records: Sequence[Record], preparation: Preparation, learnt: Masks | None = None
+) -> Preparation:
     """The records smoothed at the cut-off that is best where errors count by the motion's noise.
+
+    Only samples of `learnt`, a mask per record, tell; by default all.
 
     White noise of the displacement is one of b a that grows with the square of the frequency.
     Residuals that count less from the corner on, where it outweighs the force's own noise, bear a
@@ -107,10 +124,10 @@ def weighed(records: Sequence[Record], preparation: Preparation) -> Preparation:
     """
     if preparation.channels:
         return preparation
-    a = np.concatenate([m.acceleration[m.inner] for m in preparation.motions])
-    force = np.concatenate(
-        [lowpass(m.force, m.spacing, m.cutoff)[m.inner] for m in preparation.motions]
-    )
+    motions = preparation.motions
+    pairs = list(zip(motions, _both([m.inner for m in motions], learnt), strict=True))
+    a = np.concatenate([m.acceleration[mask] for m, mask in pairs])
+    force = np.concatenate([lowpass(m.force, m.spacing, m.cutoff)[mask] for m, mask in pairs])
     inertance = abs(float(a @ force)) / float(a @ a)
     noise = inertance * np.sqrt(np.mean([white_noise(r.displacement) ** 2 for r in records]))
     if not noise > 0:
@@ -119,7 +136,7 @@ def weighed(records: Sequence[Record], preparation: Preparation) -> Preparation:
     corner = float(max(corner, preparation.cutoffs[0]))
 
     def error(motions: Sequence[Motion], masks: Masks) -> float:
-        return _force_error(motions, masks, corner)
+        return _force_error(motions, _both(masks, learnt), corner)
 
     return replace(prepare_again(records, preparation, error), corner=corner)
 
@@ -163,6 +180,15 @@ def prepare_again(
         return preparation
     motions = [smooth(record, cutoff, use) for record in records]
     return replace(preparation, motions=motions, cutoff=cutoff, errors=errors)
+
+
+def _usable(name: str, records: Sequence[Record]) -> bool:
+    """Whether every record has a channel, and in none it was found to be dead or wrong."""
+    return all(
+        getattr(record, name) is not None
+        and not any(w.code in WRONG and f"{name!r}" in w.text for w in record.warnings)
+        for record in records
+    )
 
 
 def _dominant_frequency(record: Record) -> float:
@@ -210,8 +236,10 @@ def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf
 
     Above a `corner` [Hz] errors count less, see `weight_above`.
     """
-    x_rms = np.std(np.concatenate([motion.displacement for motion in motions]))
-    v_rms = np.std(np.concatenate([motion.velocity for motion in motions]))
+    x_rms, v_rms = (
+        np.std(np.concatenate([getattr(m, name)[m.inner] for m in motions]))
+        for name in ("displacement", "velocity")
+    )
     columns, forces = [], []
     for motion, mask in zip(motions, masks, strict=True):
         x, v, a = motion.displacement, motion.velocity, motion.acceleration

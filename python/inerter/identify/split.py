@@ -15,6 +15,9 @@ Mask = NDArray[np.bool_]
 # a single record is cut into this many blocks, of which these are held out
 BLOCKS = 10
 HELD_OUT_BLOCKS = (3, 6, 8)
+# share of all data that a run held out by itself has at most, and at least
+MOST_HELD = 0.6
+LEAST_HELD = 0.02
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ def split(runs: Sequence[Run], holdout: Sequence[str] = ()) -> Split:
         text = "held out: " + ", ".join(names[i] for i in sorted(held))
         return Split(fit, out, _folds(runs, fit), text)
 
-    out, text = held_blocks(runs[0].force.size, names[0])
+    out, text = held_blocks(_known(runs[0]), names[0])
     return Split([~out], [out], _folds(runs, [~out]), text)
 
 
@@ -77,23 +80,42 @@ def held_runs(names: Sequence[str], holdout: Sequence[str]) -> set[int]:
     return {names.index(name) for name in holdout}
 
 
-def held_blocks(size: int, name: str) -> tuple[Mask, str]:
-    """Blocks spread over a single run (size,), and in words what they are."""
-    edges = np.linspace(0, size, BLOCKS + 1).astype(int)
-    out = np.zeros(size, bool)
+def held_blocks(known: Mask, name: str) -> tuple[Mask, str]:
+    """Blocks spread over what is known of a single run (n,), and in words what they are."""
+    index = np.flatnonzero(known)
+    edges = np.linspace(0, index.size, BLOCKS + 1).astype(int)
+    out = np.zeros(known.size, bool)
     for block in HELD_OUT_BLOCKS:
-        out[edges[block] : edges[block + 1]] = True
+        out[index[edges[block] : edges[block + 1]]] = True
     numbers = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
     return out, f"held out: blocks {numbers} of {BLOCKS} of {name}"
 
 
+def _known(run: Run) -> Mask:
+    """Where a run has data: not in its gaps (n,). Its ends count as known."""
+    known = run.inner.copy()
+    if known.any():
+        known[: int(np.argmax(known))] = True
+        known[known.size - int(np.argmax(known[::-1])) :] = True
+    return known
+
+
+def may_be_held(sizes: Sequence[int]) -> NDArray[np.intp]:
+    """Numbers of the runs of some sizes that leave enough to learn from."""
+    share = np.array(sizes) / max(sum(sizes), 1)
+    enough = np.flatnonzero((share <= MOST_HELD) & (share >= LEAST_HELD))
+    return enough if enough.size else np.array([int(np.argmin(np.abs(share - LEAST_HELD)))])
+
+
 def _most_typical(runs: Sequence[Run]) -> int:
     """The run whose amplitudes (displacement, velocity, acceleration) are nearest to the median."""
+    able = may_be_held([int(run.inner.sum()) for run in runs])
     channels = ("displacement", "velocity", "acceleration")
     sizes = np.log(
         [[np.std(getattr(run, channel)) + 1e-300 for channel in channels] for run in runs]
     )
-    return int(np.argmin(np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)))
+    distance = np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)
+    return int(able[np.argmin(distance[able])])
 
 
 def _folds(runs: Sequence[Run], fit: list[Mask]) -> list[list[Mask]]:

@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 
 # samples within this many periods of the cut-off from an end are not used
 EDGE_PERIODS = 2.5
+# samples of the segments that white noise is read from
+NOISE_SEGMENT = 64
 
 
 @dataclass(frozen=True)
@@ -259,7 +261,7 @@ def white_noise(values: Array) -> float:
     reversal of friction, do not count. A channel that was filtered before it was stored has no
     noise there: then this is too low.
     """
-    length, quantile = 64, 0.2
+    length, quantile = NOISE_SEGMENT, 0.2
     usable = values.size // length * length
     if not usable:
         return 0.0

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 # length of a cell [s], and classes of each quantity
 CELL = 0.02
 CLASSES = 5
+# cells without which loudness cannot be judged
+FEWEST = 16
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,9 @@ def bursts(
         masks.append(cells(run.inner.astype(float)).all(axis=1))
         out.append(cells(mask.astype(float)).any(axis=1))
         steps.append(length * run.spacing)
+    if sum(int(mask.sum()) for mask in masks) < FEWEST:
+        # short and fast runs
+        return Bursts(0.0, 0.0, 1.0, 0.0, 0.0, False)
     mean = float(np.mean(np.concatenate([q[m] for q, m in zip(loud, masks, strict=True)])))
     data = gather([q - mean for q in loud], masks, out, steps, [1 / s for s in steps])
     clocks = _classes(data.flat(since), np.array(c.SINCE))

@@ -69,8 +69,11 @@ def summary(
         detail = f", {details[name]}" if name in details else ""
         part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
         parts.append(WORDS[name] + detail + part)
+    # of bursts it is known when they come, not what they are
+    only = list(depends) == ["bursts"]
+    told = "come and go as the other data tell" if only else "can be predicted from the other data"
     text = (
-        f"{start} is not noise: {structure:.3g} N rms can be predicted from the other data. It "
+        f"{start} is not noise: {structure:.3g} N rms {told}. It "
         f"goes with {'; and with '.join(parts)}. No effect that is known here explains it."
     )
     if proposal:

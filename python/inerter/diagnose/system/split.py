@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from inerter.diagnose.system.drive import Drive
-from inerter.identify.split import Mask, held_blocks, held_runs
+from inerter.identify.split import Mask, held_blocks, held_runs, may_be_held
 
 
 def split_drives(
@@ -31,11 +31,13 @@ def split_drives(
         fit = [~m if i in held else m for i, m in enumerate(whole)]
         out = [m if i in held else ~m for i, m in enumerate(whole)]
         return fit, out, "held out: " + ", ".join(names[i] for i in sorted(held))
-    mask, text = held_blocks(drives[0].time.size, names[0])
+    mask, text = held_blocks(whole[0], names[0])
     return [~mask], [mask], text
 
 
 def _most_typical(drives: Sequence[Drive]) -> int:
     """The run whose channels' sizes are nearest to the median."""
+    able = may_be_held([drive.time.size for drive in drives])
     sizes = np.log([np.std(drive.measured, axis=0) + 1e-300 for drive in drives])
-    return int(np.argmin(np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)))
+    distance = np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)
+    return int(able[np.argmin(distance[able])])
