@@ -68,7 +68,7 @@
   X(static_force, "N", NAN, 0, INFINITY, CLOSED, "stribeck lugre brown_mcphee",                    \
     "breakaway level, f_s >= f_c; unset: f_c")                                                     \
   X(stribeck_velocity, "m/s", 1e-2, 0, INFINITY, OPEN, "stribeck lugre brown_mcphee",              \
-    "speed, v_s, at which 1/e of f_s - f_c is left; brown_mcphee: of the peak")                                                          \
+    "speed, v_s, at which 1/e of f_s - f_c is left; brown_mcphee: of the peak")                    \
   X(stribeck_exponent, "1", 2, 0, 10, OPEN, "stribeck lugre", "shape of the fall from f_s to f_c") \
   X(transition_velocity, "m/s", 1e-4, 0, INFINITY, OPEN, "", "width of sign(v) = tanh(v / width)") \
   X(friction_asymmetry, "1", 0, -0.999, 0.999, CLOSED, "coulomb stribeck dahl lugre brown_mcphee", \

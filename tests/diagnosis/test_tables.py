@@ -122,3 +122,22 @@ def test_a_copy_of_a_table_is_left_out() -> None:
     both, alone = diagnose_table(copied), diagnose_table([one])
     assert both.extended == alone.extended
     assert [record.role for record in both.records] == ["fit", "unused"]
+
+
+@pytest.mark.parametrize(
+    ("effect", "stated"),
+    [
+        ("parallel_stiffness", {"stiffness": 3000.0}),
+        ("coulomb_friction", {"friction": "coulomb", "coulomb_force": 5.0}),
+    ],
+)
+def test_what_is_stated_and_not_there(effect: str, stated: dict[str, float | str]) -> None:
+    random, frequency = np.random.default_rng(0), np.linspace(1, 12, 14)
+    a = 3e-3 * (2 * np.pi * frequency) ** 2
+    force = 50.0 * a * (1 + 0.003 * random.standard_normal(a.size))
+    points = BenchTable(
+        name="table", frequency=frequency, force_amplitude=force, acceleration_amplitude=a
+    )
+    diagnosis = diagnose_table([points], Device(inertance=50.0, **stated))
+    assert [finding.effect for finding in diagnosis.findings] == [effect]
+    assert "The data contradict what is stated" in diagnosis.verdict

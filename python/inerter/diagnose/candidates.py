@@ -30,8 +30,10 @@ def _free(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
 
     def build(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
         if not all(name in model.free for name in names):
-            start = {name: model.values.get(name, _small(name, sizes)) for name in names}
-            yield Candidate(effect, None, (model.adding(None, **start),))
+            none = {name: _small(name, sizes) for name in names}
+            stated = {name: model.values.get(name, value) for name, value in none.items()}
+            starts = [stated] if stated == none else [stated, none]
+            yield Candidate(effect, None, tuple(model.adding(None, **each) for each in starts))
 
     return build
 

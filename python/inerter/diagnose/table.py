@@ -188,7 +188,7 @@ class _Table:
             * np.outer(size, size)
         )
         best = at(solution.x)
-        return Fit(best, [self.error(best)], covariance, int(solution.nfev))
+        return Fit(best, [self.error(best)], covariance, int(solution.nfev), float(solution.cost))
 
     def left_out(self, model: Model) -> Array:
         """Squared relative errors of every fit point when it is left out, shape (points,)."""
@@ -253,9 +253,11 @@ def _best(
     for candidate in candidates(fit.model, table.scales):
         present = [name for name, _ in effects_of(fit.model, baseline)]
         if candidate.effect in TRIED and candidate.effect not in present:
-            start = candidate.starts[0]
-            free = tuple(name for name in start.free if name not in NUISANCES)
-            after = table.fit(replace(start, free=free), ~table.holdout)
+            fits = []
+            for start in candidate.starts:
+                free = tuple(name for name in start.free if name not in NUISANCES)
+                fits.append(table.fit(replace(start, free=free), ~table.holdout))
+            after = min(fits, key=lambda each: each.cost)
             tried.append((candidate.effect, after, table.left_out(after.model)))
     good = [
         one
