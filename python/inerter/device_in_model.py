@@ -18,6 +18,8 @@ from inerter.core import Device, DeviceError, parameters
 PLUGIN = "inerter.device"
 # what the compiled model calls it: the second name where no sensor reads the device
 _COMPILED = (PLUGIN.encode(), f"{PLUGIN}.quiet".encode())
+# what states the inertance of a fluid in its channel
+_CHANNEL = {"piston_area", "channel_area", "channel_length", "fluid_density"}
 
 
 @dataclass(frozen=True)
@@ -76,15 +78,22 @@ class DeviceInModel:
         Raises
         ------
         DeviceError
-            The values cannot be.
+            The values cannot be; an armature that is edited where a channel states the inertance
+            is among them, as no channel has that inertance and these losses.
         """
-        held: dict[str, float] = {}
-        if model.actuator_armature[self.actuator] != 0:
+        live = {key: float(model.numeric_data[place]) for key, place in self.live.items()}
+        return self.device.replace(**{**self._edited(model), **live, "rest_length": 0.0})
+
+    def _edited(self, model: mujoco.MjModel) -> dict[str, float]:
+        """What the engine integrates, where it is not what is configured."""
+        # the plugin's own mark (placement.c); behind a series element the flywheel is a state
+        if model.actuator_gainprm[self.actuator, -1] <= 0:
+            return {}
+        held = {"viscous": float(model.actuator_damping[self.actuator])}
+        series = self.device.series_stiffness > 0 or self.device.series_damping > 0
+        if not (series or _CHANNEL & self.live.keys()):
             held["inertance"] = float(model.actuator_armature[self.actuator])
-        if model.actuator_damping[self.actuator] != 0:
-            held["viscous"] = float(model.actuator_damping[self.actuator])
-        held |= {key: float(model.numeric_data[place]) for key, place in self.live.items()}
-        return self.device.replace(**{**held, "rest_length": 0.0})
+        return {key: value for key, value in held.items() if value != getattr(self.device, key)}
 
     def stated(self, model: mujoco.MjModel) -> dict[str, float | str]:
         """What configuration and live parameters state, by name, SI units."""

@@ -23,6 +23,14 @@ COMMANDS = {
 }  # fmt: skip
 
 
+# what a design may leave to its defaults, without gas and without a shaft
+PLAIN = {
+    "screw": ["ball-screw", "--lead", "10 mm", "--inertia", "1.1e-4"],
+    "rack": ["rack-pinion", "--pinion-radius", "12 mm", "--stage", "ratio=4,inertia=1e-4"],
+    "channel": ["fluid", "--channel-length", "1.7"],
+}
+
+
 def run(*words: str):
     return CliRunner().invoke(app, ["design", *words])
 
@@ -47,6 +55,19 @@ def test_json_files_and_device(kind: str, tmp_path: Path) -> None:
     page = (folder / "design.html").read_text()
     assert "plotly" in page
     assert "<script src=" not in page
+
+
+@pytest.mark.parametrize(
+    "words", [*([kind, *words] for kind, words in COMMANDS.items()), *PLAIN.values()]
+)
+def test_a_designed_model_runs(words: list[str], tmp_path: Path) -> None:
+    """Whatever is designed, `inerter simulate` moves it and writes its forces."""
+    folder, moved = tmp_path / "design", tmp_path / "run"
+    assert run(*words, "--out", str(folder)).exit_code == 0
+    model = str(folder / "model.xml")
+    done = CliRunner().invoke(app, ["simulate", model, "--duration", "0.02", "--out", str(moved)])
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert any(path.suffix == ".csv" for path in moved.iterdir())
 
 
 @pytest.mark.parametrize("kind", list(COMMANDS))
