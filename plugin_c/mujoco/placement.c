@@ -22,9 +22,10 @@
 #include "mujoco/instance.h"
 
 // Slot of actuator_gainprm, unused by plugin actuators, that says where they are. It goes with the
-// model through copies and MJB files, so that later edits of actuator_armature count.
+// model through copies and MJB files, so that later edits of actuator_armature count. Its sign is
+// what says it: gains may be scaled as a whole.
 static const int kPlacedSlot = mjNGAIN - 1;
-enum { PLACED_NATIVE = 1, PLACED_PLUGIN = 2 };
+enum { PLACED_NATIVE = 1, PLACED_PLUGIN = -1 };
 
 // relative, of a number with six digits
 static const mjtNum kXmlRounding = 5e-6;
@@ -132,7 +133,7 @@ static void derive(mjModel* m) {
 int placement_decide(const mjModel* m, int actuator, const InerterDevice* device, int* native,
                      char message[INERTER_MESSAGE_SIZE]) {
   mjtNum mark = m->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot];
-  *native = mark == PLACED_NATIVE;
+  *native = mark > 0;
   if (mark != 0) {
     return 0;
   }
@@ -177,7 +178,7 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
 
 void placement_finish(const mjModel* m) {
   for (int i = 0; i < m->nactuator; i++) {
-    if (m->actuator_gainprm[mjNGAIN * i + kPlacedSlot] == PLACED_NATIVE &&
+    if (m->actuator_gainprm[mjNGAIN * i + kPlacedSlot] > 0 &&
         (m->actuator_armature[i] != 0 || m->actuator_damping[i] != 0)) {
       derive((mjModel*)m);
       return;

@@ -10,6 +10,7 @@ import mujoco
 import mujoco.batch
 import numpy as np
 import pytest
+from inerter.device_in_model import device_of
 from plugin_models import FRICTION, INERTANCE, INTEGRATORS, instance_actuator, quarter_car_xml
 
 
@@ -108,6 +109,14 @@ def test_edits_of_a_compiled_model_count() -> None:
         mujoco.mj_forward(model, data)
         assert model.actuator_armature[0] == inertance
         assert data.sensordata[1] == pytest.approx(inertance * data.qacc[1])
+        assert device_of(model, "strut").now(model).inertance == inertance
+
+
+def test_gains_may_be_scaled_as_a_whole() -> None:
+    model = car()
+    whole = run(model, started(model), 20)
+    model.actuator_gainprm *= 1.1
+    assert np.array_equal(run(model, started(model), 20), whole)
 
 
 def test_a_batch_is_a_loop() -> None:
