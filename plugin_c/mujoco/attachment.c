@@ -21,19 +21,20 @@ int attachment_wrapped_geom(const mjModel* m, int tendon) {
 }
 
 // refuse a transmission that is not a single distance or angle
-static int check_transmission(const mjModel* m, int actuator, const InerterDevice* device,
+static int check_transmission(const mjModel* m, int actuator, const InerterDevice* device, int live,
                               char message[INERTER_MESSAGE_SIZE]) {
   int target = m->actuator_trnid[2 * actuator], geom;
   switch (m->actuator_trntype[actuator]) {
     case mjTRN_TENDON:
       geom = attachment_wrapped_geom(m, target);
-      if (geom >= 0 && device->inertance > 0 && !instance_has_series(device)) {
-        snprintf(message, INERTER_MESSAGE_SIZE,
-                 "inertance is %g kg, but tendon \"%.40s\" wraps around geom \"%.40s\": the engine "
-                 "does not know how such a tendon accelerates; route it through sites and pulleys, "
-                 "or state the elasticity (series_stiffness) that a wrapping tendon has",
-                 device->inertance, attachment_name(m, mjOBJ_TENDON, target),
-                 attachment_name(m, mjOBJ_GEOM, geom));
+      if (geom >= 0 && (device->inertance > 0 || live) && !instance_has_series(device)) {
+        snprintf(
+            message, INERTER_MESSAGE_SIZE,
+            "inertance is %g kg%s, but tendon \"%.40s\" wraps around geom \"%.40s\": the engine "
+            "does not know how such a tendon accelerates; route it through sites and pulleys, "
+            "or state the elasticity (series_stiffness) that a wrapping tendon has",
+            device->inertance, live ? " and live" : "", attachment_name(m, mjOBJ_TENDON, target),
+            attachment_name(m, mjOBJ_GEOM, geom));
         return -1;
       }
       return 0;
@@ -127,7 +128,7 @@ static void states_text(const InerterDevice* device, char text[160]) {
   }
 }
 
-int attachment_check(const mjModel* m, int actuator, const InerterDevice* device,
+int attachment_check(const mjModel* m, int actuator, const InerterDevice* device, int live,
                      char message[INERTER_MESSAGE_SIZE]) {
   if (m->actuator_dyntype[actuator] != mjDYN_NONE) {
     snprintf(message, INERTER_MESSAGE_SIZE,
@@ -146,8 +147,8 @@ int attachment_check(const mjModel* m, int actuator, const InerterDevice* device
              states, nstate ? "write" : "remove it or write", nstate);
     return -1;
   }
-  return check_transmission(m, actuator, device, message) || check_moves(m, actuator, message) ||
-                 check_sleep(m, actuator, message)
+  return check_transmission(m, actuator, device, live, message) ||
+                 check_moves(m, actuator, message) || check_sleep(m, actuator, message)
              ? -1
              : 0;
 }

@@ -8,8 +8,9 @@
 #include "core/device.h"
 
 // Check what the device is attached to (a tendon or a slide or hinge joint that moves, trees that
-// stay awake) and the number of its states. Return 0, or -1 with a message.
-int attachment_check(const mjModel* m, int actuator, const InerterDevice* device,
+// stay awake) and the number of its states. live: the inertance may become another. Return 0, or -1
+// with a message.
+int attachment_check(const mjModel* m, int actuator, const InerterDevice* device, int live,
                      char message[INERTER_MESSAGE_SIZE]);
 
 // Check that no limit cuts an inertance that is a force of the actuator: not native (or

@@ -69,19 +69,17 @@ static void draw_line(Coupled* c) {
 
 int coupled_needed(const mjModel* m, const Instance* self) {
   const InerterDevice* share = &self->share;
-  int series = instance_has_series(share);
+  int series = instance_has_series(share), inertance = share->inertance > 0 || self->replaced > 0;
   if (m->opt.integrator == mjINT_RK4) {
-    return !series && (share->inertance > 0 || share->load_friction > 0);
+    return !series && (inertance || share->load_friction > 0);
   }
-  return !self->native || series || share->inertance > 0 || share->load_friction > 0 ||
+  return !self->native || series || inertance || share->load_friction > 0 ||
          instance_has_stop(share) || instance_has_sharp_friction(share);
 }
 
 // a device at the last evaluation, its mobility not known yet
 static Coupled at_present(const mjModel* m, Instance* self) {
-  Coupled c = {.self = self};
-  int whole = self->share.inertance > 0 && !instance_has_series(&self->share);
-  c.constant = whole ? self->armature : 0;
+  Coupled c = {.self = self, .constant = self->replaced};
   c.h = m->opt.integrator == mjINT_RK4 ? 0 : m->opt.timestep;
   if (c.h == 0) {
     c.inertance = inerter_inertance(&self->share, self->x, self->v, &c.rest);

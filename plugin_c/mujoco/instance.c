@@ -66,6 +66,15 @@ int instance_is_live(const Instance* self, int parameter) {
   return 0;
 }
 
+int instance_has_live_inertance(const Instance* self) {
+  int channel = instance_is_live(self, INERTER_INDEX_piston_area) ||
+                instance_is_live(self, INERTER_INDEX_channel_area) ||
+                instance_is_live(self, INERTER_INDEX_channel_length) ||
+                instance_is_live(self, INERTER_INDEX_fluid_density);
+  return instance_is_live(self, INERTER_INDEX_inertance) ||
+         (channel && self->stated.channel_length > 0);
+}
+
 static int is_nothing(const InerterDevice* share) {
   return share->friction == INERTER_FRICTION_none && !share->parts && share->inertance == 0 &&
          share->load_friction == 0 && share->viscous == 0 && share->quadratic_damping == 0 &&
@@ -94,8 +103,8 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   self->armature = armature;
   self->damping = damping;
   InerterDevice* device = &self->device;
-  int series = instance_has_series(device);
-  if (self->native && !series && !instance_is_live(self, INERTER_INDEX_inertance)) {
+  int series = instance_has_series(device), live = instance_has_live_inertance(self);
+  if (self->native && !series && !live) {
     device->inertance = armature;
   }
   if (self->native && !instance_is_live(self, INERTER_INDEX_viscous)) {
@@ -103,14 +112,19 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   } else {
     device->viscous = undamped ? 0 : self->viscous;
   }
+
+  // an inertance that is not the engine's constant is the plugin's as a whole, be it 0 at present
   self->share = *device;
+  self->replaced = 0;
   if (self->native) {
     self->share.viscous -= damping;
-    int whole =
-        series || instance_varies(device) || instance_is_live(self, INERTER_INDEX_inertance);
-    self->share.inertance = whole ? device->inertance : 0;
+    if (live || instance_varies(device)) {
+      self->replaced = series ? 0 : armature;
+    } else if (!series) {
+      self->share.inertance = 0;
+    }
   }
-  self->forceless = is_nothing(&self->share);
+  self->forceless = is_nothing(&self->share) && self->replaced == 0;
 }
 
 //------------------------------ motion ------------------------------------------------------------

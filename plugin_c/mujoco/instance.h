@@ -30,6 +30,7 @@ typedef struct Instance_ {
   InerterDevice share;   // the device without that: what the plugin's force is made of
   mjtNum armature;       // what of the model these were made for (instance_refresh)
   mjtNum damping;
+  mjtNum replaced;  // inertance of the engine's that the plugin's share stands in for [kg]
   int undamped;
   mjtNum viscous;      // as stated or live, whoever integrates it
   mjtNum rest_length;  // actuator length at which the displacement is 0
@@ -116,8 +117,10 @@ static inline int instance_varies(const InerterDevice* device) {
          device->inertance_curvature != 0 || device->inertance_speed_gradient != 0;
 }
 
-// Whether a numeric of the model holds a parameter of the device.
+// Whether a numeric of the model holds a parameter of the device; one that the inertance comes
+// from: its own, or the channel's where this is what states it.
 int instance_is_live(const Instance* self, int parameter);
+int instance_has_live_inertance(const Instance* self);
 
 // Make device and share anew if the model's armature or damping, or `force`, says so.
 void instance_refresh(const mjModel* m, Instance* self, int force);

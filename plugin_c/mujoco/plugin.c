@@ -72,13 +72,15 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     return -1;
   }
   int compiling = placement_is_new(m, self->actuator);
-  if (attachment_check(m, self->actuator, &device, message) ||
-      placement_decide(m, self->actuator, &device, &self->native, message) ||
-      live_find(m, self, message) || live_derive(m, self, message)) {
+  if (live_find(m, self, message)) {
     return -1;
   }
-
-  int live = instance_is_live(self, INERTER_INDEX_inertance);
+  int live = instance_has_live_inertance(self);
+  if (attachment_check(m, self->actuator, &device, live, message) ||
+      placement_decide(m, self->actuator, &device, &self->native, message) ||
+      live_derive(m, self, message)) {
+    return -1;
+  }
   if (attachment_check_force(m, self->actuator, &self->device, self->native && !live, message)) {
     return -1;
   }

@@ -27,11 +27,9 @@ InerterForce sensor_force(const mjModel* m, const mjData* d, const Instance* sel
 
   // found together with the acceleration: what was applied, and what the engine adds
   force = coupled_force(m, self);
-  if (self->native && !instance_has_series(&self->share) && self->share.inertance == 0) {
-    force.inertance += held;
-    force.total += held;
-  }
-  force.total += self->damping * v;
+  held -= self->replaced * a;
+  force.inertance += held;
+  force.total += held + self->damping * v;
   return force;
 }
 

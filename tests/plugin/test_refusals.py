@@ -148,6 +148,14 @@ def test_a_transmission_that_cannot_carry_inertance_is_refused(
         assert word in text
 
 
+def test_a_live_inertance_on_a_wrapping_tendon_is_refused() -> None:
+    numeric = '<custom><numeric name="strut.inertance" data="5"/></custom></mujoco>'
+    device = plugin_actuator({"viscous": 2}, 'tendon="round"')
+    text = refusal(space(device).replace("</mujoco>", numeric))
+    for word in ['actuator "strut"', "inertance is 0 kg and live", 'tendon "round"']:
+        assert word in text
+
+
 @pytest.mark.parametrize("target", ["siblings", "cousins", "two", "free", "round"])
 def test_without_inertance_or_with_elasticity_any_tendon_will_do(target: str) -> None:
     elastic = {"inertance": 2, "series_stiffness": 1e4, "series_damping": 10}
