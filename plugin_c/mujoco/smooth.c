@@ -11,8 +11,10 @@ static int stands(const mjModel* m, const mjData* d) {
     return 0;
   }
   for (int i = 0; i < m->nactuator; i++) {
+    // cogging and friction of a motor are added after the plugins
+    int motor = m->actuator_biastype[i] == mjBIAS_DCMOTOR;
     int other = m->actuator_plugin[i] >= 0 && !instance_is_device(m, m->actuator_plugin[i]);
-    if (other || m->actuator_forcelimited[i]) {
+    if (motor || other || m->actuator_forcelimited[i]) {
       return 0;
     }
   }

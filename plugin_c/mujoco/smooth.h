@@ -3,8 +3,8 @@
 //   f = passive - bias + applied + sum_k J_k' F_k,   H a = f
 //
 // F_k the forces of all actuators but those sought. Where nothing can change them any more (no
-// limits, no other plugins, no forces on bodies) f is added up here; else the engine is asked for
-// its forward pass once more.
+// limits, no DC motors, no other plugins, no forces on bodies) f is added up here; else the engine
+// is asked for its forward pass once more.
 
 #ifndef INERTER_MUJOCO_SMOOTH_H_
 #define INERTER_MUJOCO_SMOOTH_H_

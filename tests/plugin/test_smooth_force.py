@@ -38,7 +38,7 @@ MODEL = """
   <actuator>
     <position joint="slide" kp="50" {limit}/>
     <general tendon="bc" dyntype="filter" dynprm="0.05" gainprm="4"/>
-    <dcmotor joint="arm" motorconst="0.3 0.3" resistance="0.5"/>
+    {motor}
     <plugin plugin="inerter.device" tendon="ab">
       <config key="inertance" value="4"/><config key="quadratic_damping" value="3"/>
     </plugin>
@@ -50,10 +50,21 @@ MODEL = """
 </mujoco>
 """
 
+# what a motor adds after the plugins have been asked
+MOTORS = {
+    "no motor": None,
+    "motor": "",
+    "cogging": 'cogging="5 3 1"',
+    "friction": 'lugre="1e4 100 5 6 0.01"',
+}
 
-def moved(integrator: str, limit: str) -> np.ndarray:
+
+def moved(integrator: str, motor: str | None, limit: str) -> np.ndarray:
     """Positions and velocities under controls and forces of all kinds."""
-    model = mujoco.MjModel.from_xml_string(MODEL.format(integrator=integrator, limit=limit))
+    if motor is not None:
+        motor = f'<dcmotor joint="arm" motorconst="0.3 0.3" resistance="0.5" {motor}/>'
+    xml = MODEL.format(integrator=integrator, motor=motor or "", limit=limit)
+    model = mujoco.MjModel.from_xml_string(xml)
     assert model.actuator_forcelimited.any() == bool(limit)
     data, rng, path = mujoco.MjData(model), np.random.default_rng(1), []
     for k in range(40):
@@ -67,9 +78,10 @@ def moved(integrator: str, limit: str) -> np.ndarray:
     return np.array(path)
 
 
+@pytest.mark.parametrize("motor", MOTORS.values(), ids=MOTORS)
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_the_smooth_force_is_the_engine_s(integrator: str) -> None:
-    own = moved(integrator, "")
-    engine = moved(integrator, 'forcelimited="true" forcerange="-1e6 1e6"')
+def test_the_smooth_force_is_the_engine_s(integrator: str, motor: str | None) -> None:
+    own = moved(integrator, motor, "")
+    engine = moved(integrator, motor, 'forcelimited="true" forcerange="-1e6 1e6"')
     assert np.abs(own - engine).max() < 1e-10 * np.abs(engine).max()
     assert np.ptp(own, axis=0).max() > 0.1
