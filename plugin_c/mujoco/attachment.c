@@ -56,15 +56,17 @@ static int check_transmission(const mjModel* m, int actuator, const InerterDevic
   }
 }
 
-// whether a tendon goes over joints, or over sites of bodies that move against each other
+// whether a tendon goes over joints, or over points of bodies that move against each other
 static int joins_two(const mjModel* m, int tendon) {
   int first = m->tendon_adr[tendon], body = -1;
   for (int k = first; k < first + m->tendon_num[tendon]; k++) {
-    if (m->wrap_type[k] == mjWRAP_JOINT) {
+    int type = m->wrap_type[k], object = m->wrap_objid[k];
+    int geom = type == mjWRAP_SPHERE || type == mjWRAP_CYLINDER;
+    if (type == mjWRAP_JOINT) {
       return 1;
     }
-    if (m->wrap_type[k] == mjWRAP_SITE) {
-      int here = m->body_weldid[m->site_bodyid[m->wrap_objid[k]]];
+    if (type == mjWRAP_SITE || geom) {
+      int here = m->body_weldid[geom ? m->geom_bodyid[object] : m->site_bodyid[object]];
       if (body >= 0 && here != body) {
         return 1;
       }

@@ -92,14 +92,15 @@ SPACE = """
 <mujoco>
   <extension><plugin plugin="inerter.device">{instance}</plugin></extension>
   <worldbody>
-    <site name="world"/>
+    <site name="world"/><site name="west" pos="-1 0 2"/><site name="east" pos="1 0 2"/>
     <geom name="drum" type="cylinder" size="0.1 0.1" pos="1 0 0"/>
     <site name="side" pos="1 0.2 0"/>
     <body name="wheel" pos="0 0 1">
       <joint name="wheel" type="slide"/><geom size="0.1"/><site name="wheel"/>
     </body>
     <body name="body" pos="0 0 2">
-      <joint name="body" type="slide"/><geom size="0.1"/><site name="body"/>
+      <joint name="body" type="slide"/><geom name="roll" size="0.1"/><site name="body"/>
+      <site name="top" pos="0 0 0.2"/>
     </body>
     <body name="base" pos="0 0 3">
       <joint name="base" axis="0 1 0"/><geom size="0.1"/>
@@ -120,6 +121,8 @@ SPACE = """
     <spatial name="cousins"><site site="left"/><site site="right"/></spatial>
     <spatial name="free"><site site="world"/><site site="ball"/></spatial>
     <fixed name="two"><joint joint="wheel" coef="1"/><joint joint="body" coef="-1"/></fixed>
+    <spatial name="loop"><site site="west"/><geom geom="roll" sidesite="top"/>
+      <site site="east"/></spatial>
     <spatial name="round"><site site="world"/><geom geom="drum" sidesite="side"/>
       <site site="wheel"/></spatial>
   </tendon>
@@ -156,7 +159,7 @@ def test_a_live_inertance_on_a_wrapping_tendon_is_refused() -> None:
         assert word in text
 
 
-@pytest.mark.parametrize("target", ["siblings", "cousins", "two", "free", "round"])
+@pytest.mark.parametrize("target", ["siblings", "cousins", "two", "free", "round", "loop"])
 def test_without_inertance_or_with_elasticity_any_tendon_will_do(target: str) -> None:
     elastic = {"inertance": 2, "series_stiffness": 1e4, "series_damping": 10}
     for keys, actdim in (({"viscous": 2, **LUGRE}, 1), (elastic, 2)):
