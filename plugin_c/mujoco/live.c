@@ -9,6 +9,19 @@ static double* value_of(InerterDevice* device, int parameter) {
   return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
 }
 
+// whether a name continues an actuator's name of this length to that of another actuator: "car" to
+// "car.front" in "car.front.inertance"
+static int names_longer(const mjModel* m, const char* name, size_t length) {
+  char other[256];
+  size_t end = (size_t)(strrchr(name, '.') - name);
+  if (end <= length || end >= sizeof(other)) {
+    return 0;
+  }
+  memcpy(other, name, end);
+  other[end] = 0;
+  return mj_name2id(m, mjOBJ_ACTUATOR, other) >= 0;
+}
+
 int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZE]) {
   const char* actuator = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
   self->nlive = 0;
@@ -34,11 +47,12 @@ int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZ
     live->value = m->numeric_data[live->address];
   }
 
-  // a numeric named after the actuator, but after no parameter, is a slip
+  // a numeric named after this actuator alone, but after no parameter, is a slip
   size_t length = strlen(actuator);
   for (int i = 0; i < m->nnumeric; i++) {
     const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
-    int ours = name && !strncmp(name, actuator, length) && name[length] == '.';
+    int ours = name && !strncmp(name, actuator, length) && name[length] == '.' &&
+               !names_longer(m, name, length);
     for (int k = 0; ours && k < INERTER_NPARAMETER; k++) {
       ours = strcmp(name + length + 1, inerter_parameter(k)->name) != 0;
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import mujoco
+import numpy as np
 import pytest
 from inerter.device_in_model import device_of
 from plugin_models import INTEGRATORS, instance_actuator
@@ -53,3 +54,26 @@ def test_a_channel_changes_its_inertance(key: str, integrator: str) -> None:
         expected = 4 * float(factor) ** power
         assert pulled(model, data) == pytest.approx((expected, expected), rel=1e-12)
         assert device_of(model, "strut").now(model).inertance == pytest.approx(expected, rel=1e-12)
+
+
+def test_names_with_dots_do_not_meet() -> None:
+    devices = "".join(
+        f'<plugin name="{name}" plugin="inerter.device" joint="{name}">'
+        '<config key="inertance" value="1"/></plugin>'
+        for name in ("car", "car.front")
+    )
+    bodies = "".join(
+        f'<body><joint name="{name}" type="slide"/><geom size="0.1" mass="{MASS}"/></body>'
+        for name in ("car", "car.front")
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
+        <option gravity="0 0 0"><flag contact="disable"/></option>
+        <worldbody>{bodies}</worldbody><actuator>{devices}</actuator>
+        <custom><numeric name="car.inertance" data="2"/>
+        <numeric name="car.front.inertance" data="4"/></custom></mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    data.qfrc_applied[:] = FORCE
+    mujoco.mj_forward(model, data)
+    np.testing.assert_allclose(FORCE / data.qacc - MASS, [2, 4], rtol=1e-12)
