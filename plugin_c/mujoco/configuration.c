@@ -30,5 +30,10 @@ uint64_t configuration_print(const mjModel* m, int instance) {
   for (int i = m->plugin_attradr[instance]; i < end; i++) {
     print = (print ^ (unsigned char)m->plugin_attr[i]) * UINT64_C(1099511628211);
   }
+  const uint64_t sizes[] = {(uint64_t)m->nnumeric, (uint64_t)m->nnumericdata, (uint64_t)m->nnames,
+                            (uint64_t)m->nactuator, (uint64_t)m->nsensor};
+  for (size_t i = 0; i < sizeof(sizes) / sizeof(*sizes); i++) {
+    print = (print ^ sizes[i]) * UINT64_C(1099511628211);
+  }
   return print;
 }

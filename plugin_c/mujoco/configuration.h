@@ -14,7 +14,7 @@ extern const char* const kAttributes[NATTRIBUTE];
 int configuration_read(const mjModel* m, int instance, InerterDevice* device,
                        char message[INERTER_MESSAGE_SIZE]);
 
-// A number that tells configurations of an instance apart.
+// A number that tells configurations of an instance apart, and models by their sizes.
 uint64_t configuration_print(const mjModel* m, int instance);
 
 #endif  // INERTER_MUJOCO_CONFIGURATION_H_

@@ -111,25 +111,26 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   return 0;
 }
 
-// another model than the configuration was read from: does it state another device?
+// perhaps another model than the configuration was read from: what it states, and where it is
 static void follow_other(const mjModel* m, int instance, Instance* self) {
-  self->model = m;
   uint64_t print = configuration_print(m, instance);
-  if (print == self->print) {
+  if (m == self->model && print == self->print) {
     return;
   }
   char message[INERTER_MESSAGE_SIZE];
-  self->print = print;
+  self->model = NULL;
   if (prepare(m, instance, self, message)) {
     const char* name = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
     mju_error("inerter.device, actuator \"%.60s\", in a model that the data was not made for: %s",
               name ? name : "", message);
   }
+  self->model = m;
+  self->print = print;
 }
 
 // An mjData may be stepped with another model than it was made for: rollouts over a list of models
-// do so. What is configured there counts. Looked at where the model is another one or time has gone
-// back, which costs nothing in between.
+// do so. What is configured there counts. Looked at where the model is another one, or time has
+// gone back, as another one may lie where the first was; it costs nothing in between.
 static inline void follow_model(const mjModel* m, const mjData* d, int instance, Instance* self) {
   int same = m == self->model && d->time >= self->time;
   self->time = d->time;

@@ -12,9 +12,13 @@ KEYS = {"inertance": 5, "viscous": 3, "friction": "lugre", "coulomb_force": 4,
         "bristle_stiffness": 2e3}  # fmt: skip
 
 
-def model(**changed: float | str) -> mujoco.MjModel:
-    """Two masses, the device between them, a force on one."""
+def model(custom: str = "", swapped: bool = False, **changed: float | str) -> mujoco.MjModel:
+    """Two masses, the device between them, a force on one; numerics; the actuators' order."""
     config = "".join(f'<config key="{k}" value="{v}"/>' for k, v in (KEYS | changed).items())
+    actuators = [
+        '<motor joint="left"/>',
+        f'<plugin name="strut" plugin="inerter.device" tendon="strut" actdim="1">{config}</plugin>',
+    ]
     return mujoco.MjModel.from_xml_string(
         f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
         <option integrator="RK4" timestep="0.002" gravity="0 0 0"/>
@@ -25,9 +29,8 @@ def model(**changed: float | str) -> mujoco.MjModel:
         </worldbody>
         <tendon><fixed name="strut"><joint joint="left" coef="-1"/><joint joint="right" coef="1"/>
         </fixed></tendon>
-        <actuator><motor joint="left"/>
-          <plugin name="strut" plugin="inerter.device" tendon="strut" actdim="1">{config}</plugin>
-        </actuator></mujoco>"""
+        <actuator>{"".join(actuators[::-1] if swapped else actuators)}</actuator>
+        <custom>{custom}</custom></mujoco>"""
     )
 
 
@@ -58,6 +61,28 @@ def test_a_rollout_over_models_has_each_ones_device(count: int) -> None:
 
 def test_data_that_are_handed_to_another_model_follow_it() -> None:
     first, second = model(), model(coulomb_force=20)
+    data = mujoco.MjData(first)
+    mujoco.mj_step(first, data, 5)
+    mujoco.mj_resetData(second, data)
+    for control in CONTROL:
+        data.ctrl[:] = control
+        mujoco.mj_step(second, data)
+    np.testing.assert_array_equal(data.qpos, alone(second)[-1])
+
+
+LIVE = '<numeric name="{}" data="{}"/>'
+PLACES = {
+    "where": {"custom": LIVE.format("other", 3) + LIVE.format("strut.coulomb_force", 7)},
+    "none": {},
+    "actuators": {"swapped": True},
+    "both": {"swapped": True, "custom": LIVE.format("strut.viscous", 30)},
+}
+
+
+@pytest.mark.parametrize("changed", PLACES.values(), ids=PLACES)
+def test_the_same_device_may_be_elsewhere_in_another_model(changed: dict) -> None:
+    """Its configuration is the same; its actuator and what holds its live parameters is not."""
+    first, second = model(LIVE.format("strut.coulomb_force", 10)), model(**changed)
     data = mujoco.MjData(first)
     mujoco.mj_step(first, data, 5)
     mujoco.mj_resetData(second, data)
