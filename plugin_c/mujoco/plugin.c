@@ -163,6 +163,7 @@ static void destroy(mjData* d, int instance) {
 static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance) {
   (void)m;
   *instance_of(dest, instance) = *instance_of(src, instance);
+  instance_of(dest, instance)->probing = 0;
 }
 
 static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int instance) {
@@ -170,6 +171,7 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
   mju_zero(plugin_state, m->plugin_statenum[instance]);
   mju_zero(self->power, MAXSTAGE);
   mju_zero(self->state, INERTER_MAXSTATE);
+  self->probing = 0;  // a callback may have ended the pass by an error
 }
 
 //------------------------------ forward pass ------------------------------------------------------
@@ -265,7 +267,11 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
   }
   follow_model(m, d, instance, self);
   compute_force(m, d, self);
-  if (!self->last || self->probing) {
+  if (!self->last) {
+    return;
+  }
+  if (self->probing) {
+    self->probing = 0;
     return;
   }
   coupled_solve(m, d, instance);
