@@ -148,6 +148,19 @@ int instance_idle(const mjModel* m, const mjData* d, const Instance* self) {
   return asleep;
 }
 
+int instance_sees_falling_asleep(const mjModel* m, const mjData* d) {
+  if (!(m->opt.enableflags & mjENBL_SLEEP)) {
+    return 0;
+  }
+  // the list of those awake follows after it
+  for (int i = 0; i < m->ntree; i++) {
+    if (d->tree_asleep[i] >= 0 && d->tree_awake[i]) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
 mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* self) {
   return d->actuator_length[m->actuator_outadr[self->actuator]] - self->rest_length;
 }

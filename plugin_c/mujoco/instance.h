@@ -22,8 +22,8 @@ typedef struct LiveParameter_ {
 // What an mjData keeps of an instance between the callbacks of one step. Everything that has to
 // survive a step is in mjData.act and mjData.plugin_state.
 typedef struct Instance_ {
-  const mjModel* model;  // whose configuration this is, seen at this time (plugin.c)
-  mjtNum time;
+  const mjModel* model;  // whose configuration this is (plugin.c)
+  mjtNum time;           // of the last evaluation
   uint64_t print;
   InerterDevice stated;  // as configured, nothing derived yet
   InerterDevice device;  // as it is now, with what the engine integrates of it; rest_length: 0
@@ -128,6 +128,10 @@ void instance_refresh(const mjModel* m, Instance* self, int force);
 // Whether the actuator does nothing now: its group or all actuation is disabled, or all that it
 // moves sleeps.
 int instance_idle(const mjModel* m, const mjData* d, const Instance* self);
+
+// Whether this evaluation is the engine's second look in the middle of a step, because trees have
+// just fallen asleep: activations are those of the end of the step already.
+int instance_sees_falling_asleep(const mjModel* m, const mjData* d);
 
 // Displacement of the device: length of the actuator less the rest length. Every force law sees
 // this one.

@@ -132,11 +132,16 @@ static void follow_other(const mjModel* m, int instance, Instance* self) {
 // do so. What is configured there counts. Looked at where the model is another one, or time has
 // gone back, as another one may lie where the first was; it costs nothing in between.
 static inline void follow_model(const mjModel* m, const mjData* d, int instance, Instance* self) {
-  int same = m == self->model && d->time >= self->time;
-  self->time = d->time;
-  if (!same) {
+  if (m == self->model && d->time == self->time) {
+    return;
+  }
+  if (instance_sees_falling_asleep(m, d)) {
+    return;
+  }
+  if (m != self->model || d->time < self->time) {
     follow_other(m, instance, self);
   }
+  self->time = d->time;
 }
 
 static int init(const mjModel* m, mjData* d, int instance) {
@@ -233,8 +238,11 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   if (self->forceless) {
     return;
   }
+  // the states of the start of the step
   int nstate = inerter_nstate(&self->device);
-  mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
+  if (!instance_sees_falling_asleep(m, d)) {
+    mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
+  }
   self->solved = coupled_needed(m, self);
   if (self->solved) {
     self->bias = instance_bias_acceleration(m, d, self);
@@ -281,7 +289,7 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
     }
     Instance* each = instance_of(d, k);
     watch_force(m, each, d->actuator_force[m->actuator_outadr[each->actuator]]);
-    if (each->sensed) {
+    if (each->sensed && !instance_sees_falling_asleep(m, d)) {
       remember_power(m, d, each);
     }
   }
@@ -308,8 +316,10 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   int nstate = inerter_nstate(&self->device);
   mjtNum* state = d->act + (nstate ? instance_act(m, self) : 0);
   watch_validity(m, self, state);
-  // RK4 has integrated the states; the last four evaluations were its stages
-  if (m->opt.integrator == mjINT_RK4) {
+  // RK4 has integrated the states; the last four evaluations were its stages, the newest at the end
+  // of the step. In mj_step2 there is but one, since the engine takes a step of Euler there.
+  int rk4 = m->opt.integrator == mjINT_RK4;
+  if (rk4 && d->time == self->time) {
     keep_gap(&self->device, nstate, state);
     if (heat) {
       *heat += h / 6 * (power[0] + 2 * power[1] + 2 * power[2] + power[3]);
