@@ -10,6 +10,7 @@
 // at the release. The max keeps a stop from holding what leaves it.
 // Source: Hunt & Crossley 1975, with exponent 1. For small losses the coefficient of restitution is
 // 1 - 2/3 e v at impact speed v.
+// Implicit steps lose more: over_step.c.
 // Not modelled: adhesion, the mass of the stop, plastic deformation.
 
 #include "laws.h"

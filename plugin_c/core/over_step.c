@@ -11,6 +11,8 @@
 // Why: an explicit force is unstable where h^2 k m > 4 or h c m > 2, and forces at the end of the
 // step make a = a0 - mobility F(a) an equation with one solution, since F does not fall with a.
 // The share is the least that is stable: it adds no damping where h resolves the spring.
+// End stops are backward in full: they may take energy at an impact, never give it. Where h
+// resolves one without damping, a mass m comes back with exp(-pi h sqrt(k_e / m) / 2) of its speed.
 // Falls with a where friction falls with speed (Stribeck, asymmetry above 1/2): the solution is
 // then unique for h mobility |slope| < 1. Order: 1. For h -> 0 it is inerter_force. Source:
 // Newmark's beta method in its semi-implicit form. Not modelled: springs between the terminals

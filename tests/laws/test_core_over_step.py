@@ -318,6 +318,16 @@ def test_stops_of_any_stiffness_bring_a_mass_back(stiffness: float, damping: flo
     assert np.all(np.diff(energy) < 1e-9)
 
 
+@pytest.mark.parametrize("h", [2e-3, 1e-3, 5e-4, 1e-4])
+def test_a_stop_without_damping_takes_what_a_backward_step_does(h: float) -> None:
+    # half a period of an oscillator of omega, whose amplitude falls by sqrt(1 + (omega h)^2) a step
+    mass = Mass(Device(inertance=1.0, stop_upper=0.0, stop_stiffness=1e5), 2.0, v=1.0, x=-1e-9)
+    while mass.v > 0.0 or mass.x > 0.0:
+        mass.step(h)
+    omega = np.sqrt(1e5 / 3.0)
+    assert -mass.v == pytest.approx(np.exp(-np.pi * omega * h / 2.0), abs=0.03)
+
+
 def test_thin_channels_and_quick_flywheels_stay_put() -> None:
     # flywheel damping of any size, beside the inertance and behind a spring
     for series in ({}, {"series_stiffness": 1e4}, {"series_damping": 1e6}):
