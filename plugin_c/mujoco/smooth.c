@@ -89,7 +89,7 @@ static void pass_without(const mjModel* m, mjData* d, Instance* self) {
   self->probing = 1;
   mj_forwardSkip(m, d, mjSTAGE_VEL, 1);
   get_input(m, d, now);
-  if (memcmp(now, input, sizeof(mjtNum) * (size_t)size)) {
+  if (memcmp(now, input, sizeof(mjtNum) * (size_t)size) != 0) {
     set_input(m, d, input);
     actuate_without(m, d, self);
   }
