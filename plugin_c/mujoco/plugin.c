@@ -318,8 +318,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   watch_validity(m, self, state);
   // RK4 has integrated the states; the last four evaluations were its stages, the newest at the end
   // of the step. In mj_step2 there is but one, since the engine takes a step of Euler there.
-  int rk4 = m->opt.integrator == mjINT_RK4;
-  if (rk4 && d->time == self->time) {
+  if (m->opt.integrator == mjINT_RK4 && d->time == self->time) {
     keep_gap(&self->device, nstate, state);
     if (heat) {
       *heat += h / 6 * (power[0] + 2 * power[1] + 2 * power[2] + power[3]);

@@ -5,6 +5,7 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 import pytest
+from inerter.core import DeviceError
 from inerter.device_in_model import device_of
 from plugin_models import INTEGRATORS, instance_actuator
 
@@ -54,6 +55,18 @@ def test_a_channel_changes_its_inertance(key: str, integrator: str) -> None:
         expected = 4 * float(factor) ** power
         assert pulled(model, data) == pytest.approx((expected, expected), rel=1e-12)
         assert device_of(model, "strut").now(model).inertance == pytest.approx(expected, rel=1e-12)
+
+
+def test_an_edited_armature_is_no_channel() -> None:
+    model = slide(CHANNEL, {})
+    place = device_of(model, "strut")
+    assert place.now(model).inertance == pytest.approx(4, rel=1e-12)
+    model.actuator_armature[0] = 5
+    with pytest.raises(DeviceError, match="inertance is 5 kg, but the channel gives 4 kg"):
+        place.now(model)
+    data = mujoco.MjData(model)
+    mujoco.mj_setConst(model, data)
+    assert pulled(model, data) == pytest.approx((5, 5), rel=1e-12)
 
 
 def test_names_with_dots_do_not_meet() -> None:

@@ -85,3 +85,25 @@ def test_the_smooth_force_is_the_engine_s(integrator: str, motor: str | None) ->
     engine = moved(integrator, motor, 'forcelimited="true" forcerange="-1e6 1e6"')
     assert np.abs(own - engine).max() < 1e-10 * np.abs(engine).max()
     assert np.ptp(own, axis=0).max() > 0.1
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicit", "implicitfast", "discrete"])
+def test_friction_holds_a_motor_that_cogs(integrator: str) -> None:
+    """20 N of friction against 5 N of cogging, the inertance being the engine's."""
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
+        <option integrator="{integrator}" gravity="0 0 0"/>
+        <worldbody><body><joint name="x" type="slide"/><geom size="0.1" mass="1"/></body>
+        </worldbody>
+        <actuator>
+          <dcmotor joint="x" motorconst="1 1" resistance="1" cogging="5 3 1"/>
+          <plugin plugin="inerter.device" joint="x"><config key="inertance" value="3"/>
+            <config key="friction" value="coulomb"/><config key="coulomb_force" value="20"/>
+          </plugin>
+        </actuator></mujoco>"""
+    )
+    assert model.actuator_armature[1] == 3
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 500)
+    # what is left is the creep of tanh(v / transition_velocity)
+    assert 0 < data.qvel[0] < 1e-4
