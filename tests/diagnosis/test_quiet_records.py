@@ -79,8 +79,17 @@ def test_a_simulated_fifth_of_a_second_gives_files_that_load(tmp_path: Path) -> 
     assert (tmp_path / "out" / "report.html").stat().st_size > 0
 
 
-def test_nothing_left_to_judge_on_is_said(tmp_path: Path) -> None:
+@pytest.mark.parametrize("end", [0.3, 2.5])
+def test_it_is_judged_on_what_was_measured(tmp_path: Path, end: float) -> None:
+    """Most of a record is a gap."""
     time = np.arange(0, 10, 2e-3)
-    time = time[(time < 2.5) | (time > 9.3)]
-    with pytest.raises(ValueError, match="gaps and ends leave no motion to judge on"):
-        diagnose([written(tmp_path / "gaps.csv", time)])
+    time = time[(time < end) | (time > 9.3)]
+    diagnosis = diagnose([written(tmp_path / "gaps.csv", time)])
+    assert 0.2 * time.size < diagnosis.method["held_out_samples"] < 0.4 * time.size
+    assert diagnosis.extended.device["inertance"] == pytest.approx(IDEAL["inertance"], rel=0.05)
+
+
+def test_nothing_left_to_judge_on_is_said(tmp_path: Path) -> None:
+    time = np.arange(0, 0.15, 2e-3)
+    with pytest.raises(ValueError, match=r"75 samples over 0\.148 s are too few"):
+        diagnose([written(tmp_path / "short.csv", time)])

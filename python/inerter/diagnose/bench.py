@@ -62,8 +62,6 @@ MORE_BANDS = 2
 WORTH_A_BAND = 0.1
 # effects that take away the rigid drive of the flywheel
 SERIES = ("backlash", "series_elasticity")
-# samples without which there is nothing to learn from or to judge on
-FEWEST = 8
 # rivals that may take the place of an effect, one after another
 EXCHANGES = 3
 
@@ -100,21 +98,6 @@ def diagnose_bench(
         return _Bench(records, device, holdout, progress, delay).run()
 
 
-def _refuse_too_little(split: Split, band: Problem, raw: Problem) -> None:
-    """Where gaps and ends leave nothing to learn from or to judge on, there is no diagnosis."""
-    learnt = band.with_masks(split.fit).masks
-    for masks, purpose in (
-        (learnt, "learn from"),
-        (raw.masks, "judge on"),
-        (band.masks, "judge on"),
-    ):
-        if sum(int(mask.sum()) for mask in masks) < FEWEST:
-            raise ValueError(
-                f"{split.description}: gaps and ends leave no motion to {purpose}; record "
-                "longer or without gaps"
-            )
-
-
 class _Bench:
     """One diagnosis, step by step."""
 
@@ -133,16 +116,16 @@ class _Bench:
         progress("smoothing: choosing the cut-off")
         self.holdout = holdout
         self._take(prepare(self.records))
-        _refuse_too_little(self.split, self.band, self.raw)
-        # what is held out is so from now on, and has no say in the smoothing either
+        # what is held out is so from now on, and has no say in the smoothing of what is fitted:
+        # its own motion may be faster, and is smoothed as the force that it makes tells
         self.holdout = self.held
-        self._take(prepare(self.records, self.full.fit))
+        self.plain = prepare(self.records, self.full.fit)
         self.device = device
         self.baseline = baseline_of(device, self.band.scales)
         if delay:
             stated = {**self.baseline.values, "delay": delay}
             self.baseline = replace(self.baseline, values=stated)
-        self.weighed = weighed(self.records, self.preparation, self.full.fit)
+        self.weighed = weighed(self.records, self.plain, self.full.fit)
         self.search = self._weighed_search(self.weighed)
 
     def _take(self, preparation: Preparation) -> None:
@@ -205,6 +188,8 @@ class _Bench:
                 break
             self.weighed, self.search = wider, self._weighed_search(wider)
             final = self.search.run(final.model, until="backlash")
+        if calmer := self._calmer(final.model):
+            final = self.search.run(calmer, until="backlash")
         if "backlash" in final.model.free:
             self.progress("free play: fitting it to the force as measured")
         elif raw := self._wider(self.preparation, final.model):
@@ -269,6 +254,25 @@ class _Bench:
         )
         wider = again.cutoff > preparation.cutoff and there < (1 - WORTH_A_BAND) * here
         return again if wider else None
+
+    def _calmer(self, model: Model) -> Model | None:
+        """A plainer friction law that predicts the fit data better in the band of the plain fits.
+
+        In a wider band the noise of a slow motion turns its velocity about, and a law with memory
+        serves as a filter of it. The search is taken back to the narrower band where there is one.
+        """
+        if model.friction == self.baseline.friction or self.weighed.cutoff <= self.plain.cutoff:
+            return None
+        narrow = replace(self.plain, corner=self.weighed.corner)
+        search = self._weighed_search(narrow)
+        masks = search.split.fit
+        laws = [search.problem.fit(law) for law in simpler_laws(model)]
+        best = min(laws, key=lambda fit: fit.rmse(masks), default=None)
+        limit = (1 - WORTH_A_BAND) * search.problem.fit(model).rmse(masks)
+        if best is None or best.rmse(masks) > limit:
+            return None
+        self.weighed, self.search = narrow, search
+        return best.model
 
     def _learnt(self) -> Problem:
         """The fit data at the measured rate with the force as measured."""

@@ -13,7 +13,7 @@ import numpy as np
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import has_series, width
 from inerter.diagnose.effects import LAW_COORDINATES, LEVEL_COORDINATES, LEVEL_LAWS
-from inerter.diagnose.stated import stated_candidates
+from inerter.diagnose.stated import shafts, stated_candidates
 from inerter.identify.coordinates import Scales
 from inerter.identify.model import Model
 
@@ -22,7 +22,7 @@ def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Every candidate that adds something to a model, or sets free what it states."""
     for name, build in _BUILDERS.items():
         yield from build(name, model, sizes)
-    yield from stated_candidates(model)
+    yield from stated_candidates(model, sizes)
 
 
 def _free(*names: str) -> Callable[[str, Model, Scales], Iterator[Candidate]]:
@@ -168,13 +168,7 @@ def _modulated(
 def _series(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if has_series(model):
         return
-    slow = sizes.frequency
-    fast = max(2 * sizes.cutoff, 4 * slow) if np.isfinite(sizes.cutoff) else 20 * slow
-    starts = tuple(
-        model.adding(series_frequency=float(f), series_loss=0.1)
-        for f in np.geomspace(1.5 * slow, fast, 4)
-    )
-    yield Candidate(effect, None, starts)
+    yield Candidate(effect, None, tuple(model.adding(None, **shaft) for shaft in shafts(sizes)))
 
 
 def _backlash(effect: str, model: Model, sizes: Scales) -> Iterator[Candidate]:

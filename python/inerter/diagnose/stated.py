@@ -14,6 +14,7 @@ import numpy as np
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import LAW_EFFECT, STATED_AS, width
 from inerter.diagnose.effects import EFFECTS, LAW_CONSTANTS, LAW_COORDINATES
+from inerter.identify.coordinates import Scales
 from inerter.identify.model import Model
 
 # least share of the critical damping from which a stated shaft's is searched
@@ -22,10 +23,10 @@ _LOSS = 1e-3
 _NOTHING = 1e-3
 
 
-def stated_candidates(model: Model) -> Iterator[Candidate]:
+def stated_candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Each part that a model states and holds, set free from its stated values."""
     yield from _law(model)
-    yield from _shaft(model)
+    yield from _shaft(model, sizes)
     yield from _gas(model)
     stops = {name: model.values[name] for name in _held(model, EFFECTS["end_stop"].coordinates)}
     if stops:
@@ -56,18 +57,30 @@ def _law(model: Model) -> Iterator[Candidate]:
     yield Candidate(effect, law, starts)
 
 
-def _shaft(model: Model) -> Iterator[Candidate]:
+def shafts(sizes: Scales) -> list[dict[str, float]]:
+    """Coordinates of shafts of which one lies near enough to any that the data can show.
+
+    A fit does not find its way from one side of a resonance to the other.
+    """
+    slow = sizes.frequency
+    fast = max(2 * sizes.cutoff, 4 * slow) if np.isfinite(sizes.cutoff) else 20 * slow
+    resonances = np.geomspace(1.5 * slow, fast, 4)
+    return [{"series_frequency": float(f), "series_loss": 0.1} for f in resonances]
+
+
+def _shaft(model: Model, sizes: Scales) -> Iterator[Candidate]:
     device = model.device()
     if "series_frequency" in model.values or not device.series_stiffness:
         return
     inertance, stiffness = device.inertance, device.series_stiffness
     loss = device.series_damping / (2 * np.sqrt(stiffness * inertance))
-    start = model.without(STATED_AS["series_elasticity"]).adding(
-        None,
-        series_frequency=float(np.sqrt(stiffness / inertance) / (2 * np.pi)),
-        series_loss=max(float(loss), _LOSS),
-    )
-    yield Candidate("series_elasticity", None, (start,))
+    stated = {
+        "series_frequency": float(np.sqrt(stiffness / inertance) / (2 * np.pi)),
+        "series_loss": max(float(loss), _LOSS),
+    }
+    rigid = model.without(STATED_AS["series_elasticity"])
+    starts = tuple(rigid.adding(None, **shaft) for shaft in (stated, *shafts(sizes)))
+    yield Candidate("series_elasticity", None, starts)
 
 
 def _gas(model: Model) -> Iterator[Candidate]:

@@ -60,7 +60,7 @@ def split(runs: Sequence[Run], holdout: Sequence[str] = ()) -> Split:
         text = "held out: " + ", ".join(names[i] for i in sorted(held))
         return Split(fit, out, _folds(runs, fit), text)
 
-    out, text = held_blocks(_known(runs[0]), names[0])
+    out, text = held_blocks(runs[0].inner, names[0])
     return Split([~out], [out], _folds(runs, [~out]), text)
 
 
@@ -89,15 +89,6 @@ def held_blocks(known: Mask, name: str) -> tuple[Mask, str]:
         out[index[edges[block] : edges[block + 1]]] = True
     numbers = ", ".join(str(block + 1) for block in HELD_OUT_BLOCKS)
     return out, f"held out: blocks {numbers} of {BLOCKS} of {name}"
-
-
-def _known(run: Run) -> Mask:
-    """Where a run has data: not in its gaps (n,). Its ends count as known."""
-    known = run.inner.copy()
-    if known.any():
-        known[: int(np.argmax(known))] = True
-        known[known.size - int(np.argmax(known[::-1])) :] = True
-    return known
 
 
 def may_be_held(sizes: Sequence[int]) -> NDArray[np.intp]:

@@ -109,14 +109,14 @@ def test_a_dead_channel_does_not_cost_the_good_one() -> None:
     assert prepare(dead).channels == ("acceleration",)
 
 
-def test_what_is_held_out_does_not_choose_the_smoothing() -> None:
+def test_what_is_held_out_does_not_choose_the_smoothing_of_what_is_fitted() -> None:
     runs = [inerter(f"run {i}", f, seed=i) for i, f in enumerate((1.5, 1.8, 2.2))]
     walk = np.cumsum(np.random.default_rng(3).normal(0, 3.0, runs[1].samples))
     changed = [runs[0], replace(runs[1], force=runs[1].force + walk), runs[2]]
     found = [
         _Bench(each, None, ["run 1"], lambda text: None, 0.0) for each in (runs, changed)
     ]  # fmt: skip
-    assert found[0].preparation.cutoff == found[1].preparation.cutoff
+    assert found[0].plain.cutoff == found[1].plain.cutoff
     assert found[0].weighed.cutoff == found[1].weighed.cutoff
 
 
