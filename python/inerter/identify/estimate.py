@@ -10,7 +10,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from inerter.core import Device, parameters
 from inerter.identify.bench import Run, thin, whole
 from inerter.identify.coordinates import coordinate, device_values
 from inerter.identify.correction import allowed_for
-from inerter.identify.fit import Fit, Masks, Problem, parameter_errors
+from inerter.identify.fit import Fit, Masks, Problem, parameter_correlation, parameter_errors
 from inerter.identify.identifiability import identifiability
 from inerter.identify.laws import LAWS, Law, law_named
 from inerter.identify.model import NUISANCES, Model
@@ -34,7 +34,7 @@ from inerter.identify.preparation import (
     refuse_unusable,
 )
 from inerter.identify.profile import profile_interval
-from inerter.identify.result import Estimate, Identification, Identified
+from inerter.identify.result import Estimate, Figures, Identification, Identified
 from inerter.identify.split import Split, blocks, split
 from inerter.identify.turns import needs_turns, with_turns
 from inerter.records import Record
@@ -211,26 +211,17 @@ class _Data:
         )  # fmt: skip
         better, inflation = allowed_for(problem, fit, jacobian, noise)
         estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
-        told = identifiability(
-            problem, fit.model, float(np.median(inflation)) if inflation.size else 1.0,
-            tuple(self.fixed),
-        )  # fmt: skip
+        typical = float(np.median(inflation)) if inflation.size else 1.0
+        judge = partial(self._figures, typical)
         model = better.model
         device = Device(friction=law.friction, **device_values(model.values), **model.texts)
-        rmse, low, high, nrmse = self._held_out(model)
         return Identified(
             law=law.name,
             device=_bare(device),
             delay=model.delay,
             parameters=estimates,
             correlation=correlation,
-            undetermined=told.groups,
-            combinations=told.combinations,
-            fit_rmse=self._raw_error(model, self.parted.fit)[0],
-            rmse=rmse,
-            low=low,
-            high=high,
-            nrmse=nrmse,
+            **vars(judge(model)),
             ends=found.ends,
             notes=tuple(_notes(problem, fit, found.ends)),
             converged=fitted.converged,
@@ -238,6 +229,17 @@ class _Data:
             model=model,
             cutoff=self.preparation.cutoff,
             runs=tuple(self.raw),
+            judge=judge,
+        )
+
+    def _figures(self, inflation: float, model: Model) -> Figures:
+        """What is told of a model on these data; `inflation` as in `identifiability`."""
+        told = identifiability(self._problem(), model, inflation, tuple(self.fixed))
+        return Figures(
+            told.groups,
+            told.combinations,
+            self._raw_error(model, self.parted.fit)[0],
+            *self._held_out(model),
         )
 
     def _estimates(
@@ -255,7 +257,7 @@ class _Data:
                 low, high = _profile(problem, fit, name, value, error, typical)
             unit = "s" if name == "delay" else parameters()[name].unit
             found[name] = Estimate(value, error, low, high, unit)
-        return found, _correlation(better, tuple(found))
+        return found, parameter_correlation(better, tuple(found))
 
     def _raw_error(self, model: Model, masks: Sequence[NDArray[np.bool_]]) -> tuple[float, Array]:
         """Force error [N] at the measured rate, and its squares over blocks."""
@@ -347,24 +349,6 @@ def _profile(
     low, high = profile_interval(problem, fit.model, quantity, error, max(inflation, ratio))
     shift = value - quantity(fit.model)
     return (None if low is None else low + shift, None if high is None else high + shift)
-
-
-def _correlation(fit: Fit, names: tuple[str, ...]) -> Array:
-    """Correlation of device parameters."""
-    base = _parameters(fit.model)
-    gradient = np.zeros((len(names), len(fit.model.free)))
-    for i, free in enumerate(fit.model.free):
-        value = fit.model.values[free]
-        step = 1e-6 * (abs(value) or math.sqrt(max(fit.covariance[i, i], 0.0)) or 1.0)
-        there = _parameters(replace(fit.model, values={**fit.model.values, free: value + step}))
-        gradient[:, i] = [(there[name] - base[name]) / step for name in names]
-    covariance = gradient @ fit.covariance @ gradient.T
-    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-    return covariance / np.outer(errors, errors)
-
-
-def _parameters(model: Model) -> dict[str, float]:
-    return device_values(model.values) | {"delay": model.delay}
 
 
 def _bare(device: Device) -> Device:

@@ -288,3 +288,21 @@ def parameter_errors(fit: Fit) -> dict[str, tuple[float, float]]:
         for key, value in here.items()
         if np.any(gradients[key] != 0)
     }
+
+
+def parameter_correlation(fit: Fit, names: Sequence[str]) -> Array:
+    """Correlation of the named device parameters (and the delay) of a fit, shape (names, names)."""
+
+    def parameters(values: Mapping[str, float]) -> Array:
+        found = device_values(values) | {"delay": values.get("delay", 0.0)}
+        return np.array([found[name] for name in names])
+
+    here = parameters(fit.model.values)
+    gradient = np.zeros((len(names), len(fit.model.free)))
+    for i, free in enumerate(fit.model.free):
+        value = fit.model.values[free]
+        step = 1e-6 * (abs(value) or np.sqrt(max(fit.covariance[i, i], 0.0)) or 1.0)
+        gradient[:, i] = (parameters({**fit.model.values, free: value + step}) - here) / step
+    covariance = gradient @ fit.covariance @ gradient.T
+    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    return covariance / np.outer(errors, errors)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -44,6 +44,19 @@ class Motion:
 
 
 @dataclass(frozen=True)
+class Figures:
+    """What is told of a device's parameters on the records, see `Identified`."""
+
+    undetermined: tuple[tuple[str, ...], ...]
+    combinations: tuple[Combination, ...]
+    fit_rmse: float
+    rmse: float
+    low: float
+    high: float
+    nrmse: float
+
+
+@dataclass(frozen=True)
 class Identified:
     """A law fitted to data.
 
@@ -68,7 +81,7 @@ class Identified:
     nrmse
         `rmse` per standard deviation of the held-out force.
     ends
-        Force errors [N] at which the fits from different starts ended.
+        Force errors [N] at which the fits from different starts ended; none of a simulation.
     notes
         Sentences on what a reader should know.
     converged
@@ -80,10 +93,11 @@ class Identified:
     runs
         The records at their own rate, smoothed so.
     motion
-        Displacement errors, where the fit was by simulation; the force errors are then those of
-        the fit before.
+        Displacement errors, where the law was simulated.
     worse_than
         Simpler laws, within this one or its limit, that explain the data fitted better.
+    judge
+        Tells what there is to say of other values of the parameters on the same data.
     """
 
     law: str
@@ -105,6 +119,7 @@ class Identified:
     model: Model = field(repr=False)
     cutoff: float
     runs: tuple[Run, ...] = field(repr=False)
+    judge: Callable[[Model], Figures] = field(repr=False)
     motion: Motion | None = None
     worse_than: tuple[str, ...] = ()
 
@@ -148,7 +163,10 @@ class Identified:
 
 @dataclass(frozen=True)
 class Identification:
-    """`results` by held-out error, the best first; how the data were prepared and divided."""
+    """`results` by held-out error, the best first; how the data were prepared and divided.
+
+    A law that was simulated comes twice, first with the parameters that explain its motion better.
+    """
 
     records: tuple[Record, ...]
     results: tuple[Identified, ...]
@@ -157,7 +175,7 @@ class Identification:
 
     @property
     def best(self) -> Identified:
-        """The law with the smallest held-out error."""
+        """The law with the smallest held-out error, as fitted to what explains it best."""
         return self.results[0]
 
     def json(self) -> dict[str, Any]:

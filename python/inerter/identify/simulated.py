@@ -3,16 +3,21 @@
 A bench that measures the motion badly, or so fast that its acceleration is noise, still has a good
 force. Then the model is simulated from the force, on a carriage that moves freely against the
 ground, and the displacement is what is fitted: no signal is differentiated. The device is the
-MuJoCo plugin, integrated by RK4; all simulations that a derivative needs run in one batch.
+MuJoCo plugin, integrated by RK4 (behind a series element, which is stiff without a mass before it,
+by implicitfast, of first order); all simulations that a derivative needs run in one batch.
 
 Between samples the force is band-limited (resampled by FFT); a step holds the value of its middle.
-The first part of a record, where the motion comes from before it, does not count.
+How a run begins, its first displacement and velocity, is fitted with the device: a free inerter
+never forgets it. A series element begins with the first force; a bristle's state is not known, and
+the first part of a record does not count.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import mujoco
 import numpy as np
@@ -38,6 +43,8 @@ _STEP = 1e-4
 _ENOUGH = 1e-8
 _CHUNK = 4000
 _CARRIAGE = 1e-6
+# least samples that say how a run begins
+_FIRST = 8
 
 
 @dataclass(frozen=True)
@@ -48,6 +55,8 @@ class SimulatedFit:
     ----------
     model
         The fit.
+    begins
+        Displacement [m] and velocity [m/s] with which each run begins, shape (runs, 2).
     displacement
         Simulated [m], one array (n,) for each run, as long as the run.
     error
@@ -56,13 +65,17 @@ class SimulatedFit:
         Of the free coordinates (p, p), robust against correlated residuals.
     evaluations
         Simulations of the record.
+    converged
+        Whether the search ended by itself.
     """
 
     model: Model
+    begins: Array
     displacement: list[Array]
     error: float
     covariance: Array
     evaluations: int
+    converged: bool
 
 
 class Simulator:
@@ -71,11 +84,13 @@ class Simulator:
     Parameters
     ----------
     record
-        Uniformly sampled, with force and displacement; starts near rest.
+        Uniformly sampled, with force and displacement.
     finer
         Steps per sample.
     settle
         Seconds at the beginning that do not count.
+    delay
+        Time by which the force channel is late [s]; the device is driven by the force in time.
     threads
         0 for every processor.
 
@@ -86,25 +101,53 @@ class Simulator:
     """
 
     def __init__(
-        self, record: Record, finer: int = 8, settle: float = 0.5, threads: int = 0
+        self,
+        record: Record,
+        finer: int = 8,
+        settle: float = 0.5,
+        threads: int = 0,
+        delay: float = 0.0,
     ) -> None:
         steps = np.diff(record.time)
         self.spacing = float(np.mean(steps))
         if np.ptp(steps) > 0.02 * self.spacing:
             raise ValueError(f"{record.name}: not uniformly sampled; run inerter prepare first")
         self.settle = round(settle / self.spacing)
-        if self.settle >= record.samples - 2:
+        # of a late force the last part has not arrived
+        self.end = record.samples - math.ceil(max(delay, 0.0) / self.spacing)
+        if self.settle >= self.end - 2:
             raise ValueError(
                 f"{record.name}: {record.duration:.3g} s are no longer than the {settle:g} s left "
                 "to settle; give a longer record, or a shorter settle"
             )
         self.record, self.finer, self.threads = record, finer, threads
-        self.force = _in_the_middle(record.force, finer)
+        self.force = _in_the_middle(record.force, finer, delay / self.spacing)
 
-    def displacements(self, models: Sequence[Model]) -> Array:
-        """Simulated displacement [m] of every model, shape (models, n); NaN where it diverged."""
+    @cached_property
+    def begin(self) -> tuple[Array, Array]:
+        """First displacement [m] and velocity [m/s], from a cubic through the first samples.
+
+        And their errors per error of a sample, 1 and 1/s.
+        """
+        count = max(_FIRST, self.settle // 10)
+        powers = np.vander(self.spacing * np.arange(count), 4, increasing=True)
+        inverse = np.linalg.pinv(powers)[:2]
+        return inverse @ self.record.displacement[:count], np.linalg.norm(inverse, axis=1)
+
+    def displacements(self, models: Sequence[Model], begins: Array | None = None) -> Array:
+        """Simulated displacement [m] of every model, shape (models, n); NaN where it diverged.
+
+        `begins` are first displacement [m] and velocity [m/s], shape (models, 2); None: 0.
+        """
+        begins = np.zeros((len(models), 2)) if begins is None else begins
         first = models[0].device()
-        keys = [k for k, v in first.given.items() if not isinstance(v, str) and k != "inertance"]
+        # behind a series element the flywheel is the device's; else the engine integrates it
+        inside = first.series_stiffness > 0 or first.series_damping > 0
+        keys = [
+            key
+            for key, value in first.given.items()
+            if not isinstance(value, str) and (key != "inertance" or inside)
+        ]
         compiled = _compiled(first, tuple(keys), self.spacing / self.finer)
         device = device_of(compiled, "device")
         worlds = batch.Batch(compiled, len(models), self.threads)
@@ -112,21 +155,30 @@ class Simulator:
         for key in keys:
             column = [float(getattr(each, key)) for each in devices]
             worlds.expand("numeric_data")[:, device.live[key]] = column
-        inertances = [each.inertance for each in devices]
-        if "inertance" in device.live:
-            worlds.expand("numeric_data")[:, device.live["inertance"]] = inertances
-        else:
+        if not inside:
+            inertances = [each.inertance for each in devices]
             worlds.expand("actuator_armature")[:, device.actuator] = inertances
         worlds.set_const()
+        worlds.bind("qpos")[:, 0], worlds.bind("qvel")[:, 0] = begins.T
+        if inside:
+            pairs = zip(devices, begins, strict=True)
+            states = [
+                each.state_of_force(x, v, 0.0, float(self.force[0])) for each, (x, v) in pairs
+            ]
+            worlds.bind("act")[:, [device.act[name] for name in first.state_names]] = states
         found = np.empty((len(models), self.record.samples))
-        found[:, 0] = 0.0
+        found[:, 0] = begins[:, 0]
         count = self.finer * (self.record.samples - 1)
         chunk = _CHUNK * self.finer
         for begin in range(0, count, chunk):
             number = min(chunk, count - begin)
             inputs = np.zeros((len(models), number, compiled.nu))
             inputs[:, :, 0] = self.force[begin : begin + number]
+            before = worlds.bind("qpos").copy()
             state = worlds.rollout(number, inputs, record=("qpos",))["qpos"][:, :, 0]
+            if inside:
+                # this integrator's velocity is the step's last: its path is half a step ahead
+                state = 0.5 * (state + np.hstack([before, state[:, :-1]]))
             at = begin // self.finer + 1
             part = state[:, self.finer - 1 :: self.finer]
             found[:, at : at + part.shape[1]] = part
@@ -135,23 +187,23 @@ class Simulator:
         found[late > 0.5 * self.spacing] = np.nan
         return found
 
-    def residuals(self, models: Sequence[Model], until: float | None = None) -> Array:
-        """Measured less simulated displacement [m] after settling, its mean taken out.
+    def residuals(
+        self, models: Sequence[Model], begins: Array, until: float | None = None
+    ) -> Array:
+        """Measured less simulated displacement [m] after settling, shape (models, samples).
 
-        Shape (models, samples); up to `until` [s] from the beginning.
+        Up to `until` [s] from the beginning; `begins` as in `displacements`.
 
         Raises
         ------
         ValueError
             Nothing is left.
         """
-        end = None if until is None else round(until / self.spacing)
-        if end is not None and end <= self.settle + 1:
+        end = self.end if until is None else min(round(until / self.spacing), self.end)
+        if end <= self.settle + 1:
             raise ValueError(f"until is {until:g} s, not after {self.settle * self.spacing:g} s")
         part = slice(self.settle, end)
-        rest = self.record.displacement[part] - self.displacements(models)[:, part]
-        # where zero is, is the bench's choice
-        return rest - rest.mean(axis=1, keepdims=True)
+        return self.record.displacement[part] - self.displacements(models, begins)[:, part]
 
 
 def fit_simulated(
@@ -168,7 +220,7 @@ def fit_simulated(
     simulators
         The runs, fitted together.
     start
-        See `start_from`.
+        See `start_from`. Of one with nothing free only the beginnings of the runs are fitted.
     until
         Time [s] from the beginning of each run after which it does not count, to be judged on.
     evaluations
@@ -183,56 +235,79 @@ def fit_simulated(
     """
     sizes = _sizes([simulator.record for simulator in simulators])
     how = [coordinate(name, sizes) for name in start.free]
-    first = np.array([c.encode(start.values[n]) for c, n in zip(how, start.free, strict=True)])
-    lower, upper = np.array([each.bounds for each in how]).T
+    free, runs = len(how), len(simulators)
     unit = float(np.std(np.concatenate([s.record.displacement for s in simulators])))
+    units = np.array([unit, sizes.velocity])
     count = 0
 
-    def at(point: Array) -> Model:
-        pairs = zip(start.free, how, point, strict=True)
-        values = {name: each.decode(value) for name, each, value in pairs}
-        return replace(start, values={**start.values, **values})
+    # search variables: coordinates of the device, then displacement and velocity of each run
+    first = np.array([c.encode(start.values[n]) for c, n in zip(how, start.free, strict=True)])
+    first = np.concatenate([first, *(simulator.begin[0] / units for simulator in simulators)])
+    lower, upper = np.array([each.bounds for each in how] + 2 * runs * [(-np.inf, np.inf)]).T
 
-    def residuals(points: Sequence[Array]) -> Array:
+    def at(point: Array) -> tuple[Model, Array]:
+        pairs = zip(start.free, how, point[:free], strict=True)
+        values = {name: each.decode(value) for name, each, value in pairs}
+        model = replace(start, values={**start.values, **values})
+        return model, point[free:].reshape(runs, 2) * units
+
+    def of_run(run: int, points: Sequence[Array]) -> Array:
+        """Errors of a run and of how it begins, shape (points, rows)."""
         nonlocal count
         count += len(points)
-        models = [at(point) for point in points]
-        return np.concatenate([s.residuals(models, until) for s in simulators], axis=1) / unit
+        models, begins = zip(*map(at, points), strict=True)
+        begin = np.array([each[run] for each in begins])
+        rest = simulators[run].residuals(models, begin, until)
+        # a device that forgets its beginning says nothing of it: its first samples do
+        guessed, error = simulators[run].begin
+        return np.hstack([rest, (guessed - begin) / error]) / unit
 
     def residual(point: Array) -> Array:
-        found = residuals([point])[0]
+        found = np.concatenate([of_run(run, [point])[0] for run in range(runs)])
         progress(f"{unit * float(np.sqrt(np.mean(found**2))):.4g} m")
         return np.nan_to_num(found, nan=1e3)
 
     def jacobian(point: Array) -> Array:
         steps = np.diag(np.where(point + _STEP > upper, -_STEP, _STEP))
-        ahead = [point + move for move in steps]
-        behind = [np.clip(point - move, lower, upper) for move in steps]
-        rows = residuals([*ahead, *behind])
-        widths = np.array([np.sum(a - b) for a, b in zip(ahead, behind, strict=True)])
-        return np.nan_to_num(((rows[: point.size] - rows[point.size :]) / widths[:, None]).T)
+        tables = []
+        for run in range(runs):
+            # how other runs begin is no matter of this one
+            own = [*range(free), *(free + 2 * run + np.arange(2))]
+            ahead = [point + steps[i] for i in own]
+            behind = [np.clip(point - steps[i], lower, upper) for i in own]
+            rows = of_run(run, [*ahead, *behind])
+            widths = np.array([np.sum(a - b) for a, b in zip(ahead, behind, strict=True)])
+            table = np.zeros((rows.shape[1], point.size))
+            table[:, own] = ((rows[: len(own)] - rows[len(own) :]) / widths[:, None]).T
+            tables.append(table)
+        return np.nan_to_num(np.concatenate(tables))
 
     inside = np.clip(first, lower + 1e-9, upper - 1e-9)
-    if not np.isfinite(residuals([inside])).all():
+    if not all(np.isfinite(of_run(run, [inside])).all() for run in range(runs)):
         raise ValueError("the start does not lead to a finite motion; start from a better fit")
     found = least_squares(
         residual, inside, jac=jacobian,  # pyright: ignore[reportArgumentType]
         bounds=(lower, upper), x_scale="jac", xtol=_ENOUGH, ftol=_ENOUGH, max_nfev=evaluations,
     )  # fmt: skip
-    model, rest = at(found.x), unit * residuals([found.x])[0]
-    units = np.array(
+    model, begins = at(found.x)
+    factor = np.array(
         [
             model.values[name] if each.logarithmic else each.size
             for name, each in zip(start.free, how, strict=True)
         ]
     )
-    spread = sandwich(found.jac * unit, rest, np.ones_like(rest))
+    rest = unit * np.concatenate([of_run(run, [found.x])[0] for run in range(runs)])
+    spread = sandwich(found.jac * unit, rest, np.ones_like(rest))[:free, :free]
+    both = list(zip(simulators, begins, strict=True))
+    errors = [each.residuals([model], begin[None], until)[0] for each, begin in both]
     return SimulatedFit(
         model,
-        [simulator.displacements([model])[0] for simulator in simulators],
-        float(np.sqrt(np.mean(rest**2))),
-        spread * np.outer(units, units),
+        begins,
+        [each.displacements([model], begin[None])[0] for each, begin in both],
+        float(np.sqrt(np.mean(np.concatenate(errors) ** 2))),
+        spread * np.outer(factor, factor),
         count,
+        found.status > 0,
     )
 
 
@@ -240,9 +315,10 @@ def _sizes(records: Sequence[Record]) -> Scales:
     return scales([thin(motion) for motion in prepare(records).motions])
 
 
-def _in_the_middle(force: Array, finer: int) -> Array:
-    """Force in the middle of each of `finer` steps between samples, band-limited.
+def _in_the_middle(force: Array, finer: int, late: float = 0.0) -> Array:
+    """Force in the middle of each of `finer` steps between samples, `late` samples on.
 
+    It is band-limited;
     The record is continued backwards in time, so that its ends meet.
     """
     n = force.size
@@ -252,7 +328,7 @@ def _in_the_middle(force: Array, finer: int) -> Array:
     wide[: spectrum.size] = spectrum
     # half a step later
     k = np.arange(wide.size)
-    wide *= np.exp(1j * np.pi * k / (finer * wave.size)) * finer
+    wide *= np.exp(1j * np.pi * k * (1 + 2 * finer * late) / (finer * wave.size)) * finer
     return np.fft.irfft(wide, finer * wave.size)[: finer * (n - 1)]
 
 
@@ -261,7 +337,9 @@ def _compiled(device: Device, keys: tuple[str, ...], step: float) -> mujoco.MjMo
     if not device.inertance > 0:
         raise DeviceError("inertance is 0: the force has nothing to move; state an inertance")
     spec: mujoco.MjSpec = mujoco.MjSpec()
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    # a carriage without mass at a series element is stiff; there the device is stepped exactly
+    how = mujoco.mjtIntegrator
+    spec.option.integrator = how.mjINT_IMPLICITFAST if "inertance" in keys else how.mjINT_RK4
     spec.option.timestep = step
     spec.option.gravity = [0.0, 0.0, 0.0]
     body = spec.worldbody.add_body(name="carriage")
@@ -274,12 +352,12 @@ def _compiled(device: Device, keys: tuple[str, ...], step: float) -> mujoco.MjMo
 
 
 def start_from(model: Model) -> Model:
-    """A bench fit as a start: without delay and constant force, which a motion does not show."""
-    dropped = (*NOT_OF_DEVICE, "force_offset")
-    values = {name: value for name, value in model.values.items() if name not in dropped}
-    return Model(
-        model.friction, values, tuple(n for n in model.free if n not in dropped), model.texts
-    )
+    """A bench fit as a start. What is of the record and not of the device, as a delay, is held.
+
+    A constant force is of the device here: it is in the measured force, and without it a free
+    inerter would drift away.
+    """
+    return replace(model, free=tuple(name for name in model.free if name not in NOT_OF_DEVICE))
 
 
 def device_from(fit: SimulatedFit) -> Device:
