@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter import Device
@@ -15,7 +17,7 @@ from inerter.identify.model import Model
 from inerter.identify.multistart import search
 from inerter.identify.prediction import first_state
 from inerter.identify.profile import profile_interval
-from inerter.records import Record
+from inerter.records import Record, check_records
 from random_devices import LAWS, drawn, found
 
 H, N = 2e-3, 6000
@@ -252,3 +254,17 @@ def test_a_run_that_stands_still_is_refused() -> None:
     still = Record(name="still", time=t, displacement=np.zeros(1000), force=np.sin(t))
     with pytest.raises(ValueError, match="still: column 'displacement' does not move"):
         identify([still], ["ideal"])
+
+
+def test_a_copy_of_a_run_is_left_out() -> None:
+    """Held out as one and fitted as the other, a run would be judged on what was learnt from it."""
+    case = drawn("viscous", 1)
+    copy = replace(case.records[-1], name="copy")
+    result = identify(check_records([*case.records, copy]), ["viscous"], intervals="normal")
+    alone = identify(case.records, ["viscous"], intervals="normal")
+    assert result.best.device.given == alone.best.device.given
+    assert result.best.rmse == alone.best.rmse
+    told = {record["name"]: record["role"] for record in result.json()["records"]}
+    assert told == {r["name"]: r["role"] for r in alone.json()["records"]} | {"copy": "unused"}
+    with pytest.raises(ValueError, match="--holdout copy: the same displacement and force as"):
+        identify(check_records([*case.records, copy]), ["viscous"], holdout=["copy"])

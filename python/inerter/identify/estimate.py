@@ -38,6 +38,7 @@ from inerter.identify.result import Estimate, Figures, Identification, Identifie
 from inerter.identify.split import Split, blocks, split
 from inerter.identify.turns import needs_turns, with_turns
 from inerter.records import Record
+from inerter.records.duplicates import without_copies
 from inerter.records.motion import Motion as BenchMotion
 
 Array = NDArray[np.float64]
@@ -72,7 +73,8 @@ def identify(
     Parameters
     ----------
     records
-        One or several runs; all of them are fitted together.
+        One or several runs; all of them are fitted together, but for copies of another (those with
+        the warning `duplicate_record`), which are left out.
     laws
         What to fit, see `inerter.identify.laws`.
     fixed
@@ -105,6 +107,7 @@ def identify(
         if name not in (*parameters(), "gas_law"):
             # says what it may have meant
             Device(**{name: known[name]})
+    given, records = records, without_copies(records, holdout)
     refuse_unusable(records)
     with threadpool_limits(limits=1, user_api="blas"):
         progress(0.0, "smoothing")
@@ -122,7 +125,7 @@ def identify(
             results.append(fitted.told(intervals, results if loss == "linear" else ()))
         progress(1.0, "done")
     results.sort(key=lambda result: result.rmse)
-    return Identification(tuple(records), tuple(results), preparation, data.parted)
+    return Identification(tuple(given), tuple(results), preparation, data.parted)
 
 
 def prepared(

@@ -34,7 +34,7 @@ def write_identification(result: Identification, folder: Path) -> list[str]:
         name: f"{each.unit} (standard error {each.stderr:.2g})".removeprefix("1 ")
         for name, each in best.parameters.items()
     }
-    names = ", ".join(record.name for record in result.records)
+    names = ", ".join(record.name for record in result.used)
     title = f"identified by inerter identify from {names}: {best.law}"
     return write_files(
         folder,

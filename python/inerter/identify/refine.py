@@ -80,11 +80,11 @@ class _Bench:
     """The runs of an identification, driven by their forces."""
 
     def __init__(self, result: Identification) -> None:
-        self.runs = [Simulator(record, delay=result.best.delay) for record in result.records]
+        self.runs = [Simulator(record, delay=result.best.delay) for record in result.used]
         single = len(self.runs) == 1
-        self.until = SHARE * result.records[0].duration if single else None
+        self.until = SHARE * result.used[0].duration if single else None
         self.used = [i for i in range(len(self.runs)) if single or result.split.fit[i].any()]
-        moved = np.concatenate([record.displacement for record in result.records])
+        moved = np.concatenate([record.displacement for record in result.used])
         self.variation = float(np.std(moved))
 
     def fitted(self, start: Model) -> tuple[SimulatedFit, Motion]:

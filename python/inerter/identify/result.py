@@ -16,6 +16,7 @@ from inerter.identify.model import Model
 from inerter.identify.preparation import Preparation
 from inerter.identify.split import Split
 from inerter.records import Record
+from inerter.records.duplicates import repeats_another, without_copies
 
 Array = NDArray[np.float64]
 
@@ -165,6 +166,8 @@ class Identified:
 class Identification:
     """`results` by held-out error, the best first; how the data were prepared and divided.
 
+    `records` are all that were given, `used` those that repeat no other.
+
     A law that was simulated comes twice, first with the parameters that explain its motion better.
     """
 
@@ -174,12 +177,18 @@ class Identification:
     split: Split
 
     @property
+    def used(self) -> list[Record]:
+        """The records that were fitted or held out, in the order of `split`."""
+        return without_copies(self.records)
+
+    @property
     def best(self) -> Identified:
         """The law with the smallest held-out error, as fitted to what explains it best."""
         return self.results[0]
 
     def json(self) -> dict[str, Any]:
         """Plain data; schema inerter.identification/1."""
+        roles = map(self.split.role, range(len(self.used)))
         return {
             "schema": "inerter.identification/1",
             "records": [
@@ -187,10 +196,10 @@ class Identification:
                     "name": record.name,
                     "samples": record.samples,
                     "sample_rate": record.sample_rate,
-                    "role": self.split.role(i),
+                    "role": "unused" if repeats_another(record) else next(roles),
                     "warnings": [{"code": w.code, "text": w.text} for w in record.warnings],
                 }
-                for i, record in enumerate(self.records)
+                for record in self.records
             ],
             "preparation": {
                 "cutoff": self.preparation.cutoff,
