@@ -129,3 +129,24 @@ def test_decimal_commas_are_refused_with_what_to_do(tmp_path: Path) -> None:
     path.write_text(text.replace(",", ";").replace(".", ","))
     with pytest.raises(RecordError, match=r"semicolons.*with a point, not a comma, in the numbers"):
         read_records(path)
+
+
+@pytest.mark.parametrize("second", ["force", "road"])
+def test_a_time_that_leaps_is_refused_and_a_pause_is_not(
+    second: str, write: Callable[[Columns], Path]
+) -> None:
+    """On an even clock a record with a mistyped time would not fit into any memory."""
+    true = columns()
+    if second == "road":
+        true = {"time": true["time"], "road": true["force"], "suspension_travel": true["force"]}
+    # a pause of five times what was recorded
+    paused = {**true, "time": true["time"] + 2.0 * (np.arange(400) >= 200)}
+    (record,) = read_records(write(paused))
+    assert record.samples == 400
+    mistyped = {**true, "time": np.r_[true["time"][:-1], 1e9]}
+    said = r"(line 401|row 400): time leaps by 1e\+09 s, from 0.398 s to 1e\+09 s.*split the run"
+    with pytest.raises(RecordError, match=said):
+        read_records(write(mistyped))
+    days = {**true, "time": true["time"] + 259200.0 * (np.arange(400) >= 200), "run": [3] * 400}
+    with pytest.raises(RecordError, match=r"(line 202|row 201), run '3': time leaps by 2.592e\+05"):
+        read_records(write(days))

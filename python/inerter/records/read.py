@@ -26,6 +26,8 @@ MIN_TABLE_ROWS = 3  # of a bench table
 MAX_MISSING_SHARE = 0.01  # of the rows of a run; three rows are always allowed
 MAX_SIZE = 1e12  # of any value, in SI units: beyond it no unit can be right
 MAX_MISSING_STRETCH = 25  # rows in a row that are still interpolated
+# samples that a run may have on an even clock, per row: pauses may take nine tenths of its time
+MAX_FILLED = 10
 
 Kind = Literal["bench", "vehicle", "table"]
 Rows = NDArray[np.intp]
@@ -388,9 +390,12 @@ class _Part:
         self.check_clock(columns["time"])
 
     def check_clock(self, time: Array) -> None:
-        """RecordError for a time that stands still, repeats or goes back; times in s."""
+        """RecordError for a time that stands still, repeats, goes back or leaps; times in s."""
         step = np.diff(time)
-        if not len(step) or (step > 0.0).all():
+        if not len(step):
+            return
+        if (step > 0.0).all():
+            self._check_pauses(time, step)
             return
         if not step.any():
             raise self.refuse(f"column 'time' is {time[0]:g} s in every row; record the time", 0)
@@ -409,6 +414,21 @@ class _Part:
         else:
             advice = "sort the rows by time"
         raise self.refuse(f"time goes back from {before} s to {now} s; {advice}", row)
+
+    def _check_pauses(self, time: Array, step: Array) -> None:
+        """RecordError for pauses so long that an even clock would be mostly empty."""
+        usual = float(np.median(step))
+        filled = (time[-1] - time[0]) / usual
+        if filled <= MAX_FILLED * len(time):
+            return
+        row = int(np.argmax(step)) + 1
+        leap, before, now = step[row - 1], time[row - 1], time[row]
+        raise self.refuse(
+            f"time leaps by {leap:.4g} s, from {before:.9g} s to {now:.9g} s; "
+            f"evenly sampled at the usual {usual:.3g} s the run would have {filled:.2g} samples, "
+            f"not {len(time)}; correct the time, or split the run there with a 'run' column",
+            row,
+        )
 
     def with_rows(self, rows: Rows) -> _Part:
         return dataclasses.replace(self, rows=rows)
