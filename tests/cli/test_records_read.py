@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 import time as clock
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -170,6 +171,25 @@ def test_csv_parquet_and_mat_agree(tmp_path: Path) -> None:
     for record in records:
         for name, values in truth.items():
             np.testing.assert_allclose(getattr(record, name), values, rtol=1e-14)
+
+
+@pytest.mark.parametrize("zone", [None, "Europe/Berlin"])
+def test_dates_tell_the_time_of_day(tmp_path: Path, zone: str | None) -> None:
+    """Files of one day share a clock; one that runs past midnight goes on."""
+    truth = signals()
+    elapsed = np.round(1e3 * truth["time"]).astype(int)
+    starts = {"a": datetime(2026, 7, 1, 10), "b": datetime(2026, 7, 1, 11, 0, 0, 500000),
+              "c": datetime(2026, 7, 1, 23, 59, 59, 990000)}  # fmt: skip
+    for name, start in starts.items():
+        time = pl.Series("time", [start + timedelta(milliseconds=int(ms)) for ms in elapsed])
+        time = time.dt.replace_time_zone(zone)
+        frame = pl.DataFrame(truth).with_columns(time)
+        frame.write_parquet(tmp_path / f"{name}.parquet")
+    records = read_records(tmp_path, "bench")
+    for record, begin in zip(records, (36000.0, 39600.5, 86399.99), strict=True):
+        np.testing.assert_allclose(record.time, begin + 1e-3 * elapsed, rtol=0, atol=1e-9)
+    assert records[2].time[-1] > 86400
+    assert share_one_clock(records)
 
 
 def test_parquet_with_durations_dates_and_integers(tmp_path: Path) -> None:

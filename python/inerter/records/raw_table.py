@@ -95,11 +95,17 @@ def to_numbers(series: pl.Series) -> tuple[Array, NDArray[np.intp]]:
 
 
 def _to_float(series: pl.Series) -> pl.Series:
-    """Numbers, texts, and durations or dates (in seconds) as Float64; null where impossible."""
+    """Numbers, texts, and durations or dates (in seconds) as Float64; null where impossible.
+
+    Of a date the time of day counts, beyond midnight from the first day in the file on, so that
+    files of one day share a clock.
+    """
     if series.dtype == pl.Duration:
         return series.dt.total_nanoseconds().cast(pl.Float64) * 1e-9
     if isinstance(series.dtype, pl.Datetime):
-        return (series - series.drop_nulls().first()).dt.total_nanoseconds() * 1e-9
+        first = series.drop_nulls().head(1).dt.truncate("1d")
+        midnight = first if len(first) else series
+        return (series - midnight).dt.total_nanoseconds() * 1e-9
     if series.dtype == pl.String or series.dtype.is_numeric() or series.dtype == pl.Boolean:
         return series.cast(pl.Float64, strict=False)
     return pl.Series(series.name, [None] * len(series), dtype=pl.Float64)
