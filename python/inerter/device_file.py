@@ -19,6 +19,8 @@ from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
 SCHEMA = "inerter.device/1"
 LAWS = ("friction", "gas_law")  # keys whose value is a name
+LARGEST_DELAY = 0.05
+"""Delay of the force channel [s] beyond which none is sought or held, either way."""
 
 
 def read_device(path: Path) -> Device:
@@ -56,12 +58,27 @@ def read_device(path: Path) -> Device:
 
 
 def read_delay(path: Path) -> float:
-    """Time by which the force channel was late where the device was identified [s]; usually 0."""
-    content = tomllib.loads(path.read_text(encoding="utf-8"))
-    channels = content.get("channels", {})
-    delay = channels.get("force_delay", 0.0) if isinstance(channels, dict) else channels
-    if isinstance(delay, bool) or not isinstance(delay, (int, float)) or not abs(delay) < 1:
-        raise DeviceError(f"{path}: force_delay is {delay!r}; give seconds, between -1 and 1")
+    """Time by which the force channel was late where the device was identified [s]; usually 0.
+
+    Raises
+    ------
+    DeviceError
+        No number and no time, or more than `LARGEST_DELAY`.
+    """
+    channels = tomllib.loads(path.read_text(encoding="utf-8")).get("channels", {})
+    if not isinstance(channels, dict):
+        raise DeviceError(f"{path}: channels is {channels!r}; write a [channels] table")
+    delay = channels.get("force_delay", 0.0)
+    if isinstance(delay, str):
+        delay = _in_unit(path, "force_delay", delay, "s")
+    if isinstance(delay, bool) or not isinstance(delay, (int, float)) or not math.isfinite(delay):
+        raise DeviceError(f'{path}: force_delay is {delay!r}; give seconds, or a text as "2 ms"')
+    if abs(delay) > LARGEST_DELAY:
+        raise DeviceError(
+            f"{path}: force_delay is {delay:g} s, beyond the {LARGEST_DELAY:g} s that a diagnosis "
+            f"looks at; shift the force with `inerter prepare --delay {delay:g}`, and leave "
+            "force_delay out"
+        )
     return float(delay)
 
 
@@ -71,7 +88,11 @@ def _with_unit(path: Path, key: str, text: str) -> float:
         raise DeviceError(
             f"{path}: {key} is not a parameter of the device; `inerter parameters` lists them"
         )
-    unit = parameters()[key].unit
+    return _in_unit(path, key, text, parameters()[key].unit)
+
+
+def _in_unit(path: Path, key: str, text: str, unit: str) -> float:
+    """A text with a unit in another unit of the same quantity."""
     wanted = "" if unit == "1" else unit.replace("m^-n", "dimensionless")
     number, written = split_quantity(text) or (math.nan, "")
     given = parse_unit(written or "dimensionless")

@@ -12,13 +12,14 @@ import pytest
 from bench_runs import measured
 from inerter import Device
 from inerter.core import DeviceError
-from inerter.device_file import device_text, read_device
+from inerter.device_file import device_text, read_delay, read_device
 from inerter.diagnose import diagnose, diagnose_bench
 from inerter.diagnose.baseline import baseline_model
 from inerter.diagnose.composition import submodel
 from inerter.diagnose.output import write_outputs
 from inerter.diagnose.result import Diagnosis, StatedValue
 from inerter.diagnose.wording import verdict
+from inerter.identify.coordinates import Scales, coordinate
 from inerter.mjcf import device_of_model
 from inerter.records import Record
 from inerter.records.quality import check_records
@@ -213,6 +214,36 @@ def test_units_in_device_files(tmp_path: Path) -> None:
     path.write_text('[device]\ninertance = "0.5 tonne"\nrest_length = "30 mm"\n', encoding="utf-8")
     device = read_device(path)
     assert (device.inertance, device.rest_length) == (pytest.approx(500), pytest.approx(0.03))
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [("0.05", 0.05), ("-0.002", -0.002), ('"2 ms"', 0.002), ('"-30 ms"', -0.03)],
+)
+def test_a_stated_delay_is_what_a_fit_begins_with(tmp_path: Path, text: str, found: float) -> None:
+    path = tmp_path / "device.toml"
+    path.write_text(f"[device]\ninertance = 3\n[channels]\nforce_delay = {text}\n")
+    assert read_delay(path) == pytest.approx(found)
+    how = coordinate("delay", Scales(1.0, 1.0, 1.0, 1.0))
+    assert how.decode(how.encode(read_delay(path))) == pytest.approx(found)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[channels]\nforce_delay = 0.2\n", "beyond the 0.05 s"),
+        ('[channels]\nforce_delay = "-51 ms"\n', "inerter prepare --delay -0.051"),
+        ("[channels]\nforce_delay = nan\n", "give seconds"),
+        ("[channels]\nforce_delay = true\n", "give seconds"),
+        ('[channels]\nforce_delay = "2 mm"\n', "a text in s"),
+        ("channels = 0.001\n", "write a [channels] table"),
+    ],
+)
+def test_delays_that_cannot_be_held_are_refused(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "device.toml"
+    path.write_text(text)
+    with pytest.raises(DeviceError, match=re.escape(words)):
+        read_delay(path)
 
 
 def test_a_doubtful_record_is_told_before_any_cause(records) -> None:

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.device_file import LARGEST_DELAY
 from inerter.identify.channel import UNITS
 
 LOWEST_TONE = 0.2
@@ -165,7 +166,7 @@ def coordinate(name: str, scales: Scales) -> Coordinate:
         "gas_exponent": Coordinate(1.0, 1.0, 1.7),
         "friction_backlash": Coordinate(x, 1e-5 * x, 2 * x, logarithmic=True),
         "friction_place": Coordinate(1.0, -1.0, 1.0),
-        "delay": Coordinate(1e-3, -0.05, 0.05),
+        "delay": Coordinate(1e-3, -LARGEST_DELAY, LARGEST_DELAY),
         "force_drift": Coordinate(force / scales.elapsed, -infinity, infinity),
         "friction_drift": Coordinate(0.5 / scales.elapsed, -0.95 / scales.elapsed, infinity),
         "force_maximum": Coordinate(force, -infinity, infinity),
