@@ -55,3 +55,13 @@ def test_a_handicap_is_counted_in_standard_errors() -> None:
     other = first - 2 * np.std(spread, ddof=1) / np.sqrt(48) + spread - spread.mean()
     assert win_shares([first, other])[1] > 0.9
     assert win_shares([first, other], [0.0, 4.0])[1] < 0.1
+
+
+def test_a_model_whose_error_has_no_end_wins_nothing() -> None:
+    first = np.random.default_rng(1).chisquare(5, 48)
+    for end in (np.inf, np.nan):
+        away = first.copy()
+        away[7] = end
+        assert win_shares([first, 4 * first, away]).tolist() == [1, 0, 0]
+        assert win_shares([away, 4 * first, first], [0.0, 0.0, 4.0]).tolist() == [0, 0, 1]
+        assert win_shares([away, away]).tolist() == [0, 0]

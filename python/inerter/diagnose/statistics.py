@@ -98,9 +98,16 @@ def win_shares(
     Returns
     -------
     ndarray (number of models,)
-        Shares that add up to 1.
+        Shares that add up to 1; 0 for a model that has an error without end.
     """
     table = np.array(squares)
+    finite = np.isfinite(table).all(axis=1)
+    if not finite.all():
+        shares = np.zeros(finite.size)
+        if finite.any():
+            left = None if handicaps is None else np.asarray(handicaps)[finite].tolist()
+            shares[finite] = win_shares(list(table[finite]), left, seed, draws)
+        return shares
 
     # as in `advantage`: a busy stretch does not decide alone
     table = table / np.sqrt(table.mean(axis=0) + 1e-12 * table.sum())
