@@ -72,6 +72,13 @@ def test_without_noise_it_is_exact() -> None:
             assert found.value == pytest.approx(tau, abs=1e-3 * H)
 
 
+def test_samples_may_lie_further_apart_than_any_delay() -> None:
+    g, time, tau = motion(np.random.default_rng(0)), np.arange(2000) / 18.0, 0.02
+    # tones up to 1.6 Hz
+    found = delay_between([g(2, 0.2 * time)], g(2, 0.2 * (time - tau)), 1 / 18.0)
+    assert found.value == pytest.approx(tau, abs=1e-3 / 18.0)
+
+
 @pytest.mark.parametrize("friction", ["none", "coulomb"])
 def test_force_behind_motion(friction: str) -> None:
     """25 devices with inertance, damping, spring and friction, all of them unknown."""

@@ -147,7 +147,8 @@ class _Problem:
     def scan(self, largest: float) -> float:
         """The delay of whole samples within `largest` that leaves least, all weighed alike."""
         weight = np.ones(self.taper.size // 2 + 1)
-        samples = np.arange(-int(largest / self.spacing), int(largest / self.spacing) + 1)
+        most = max(int(largest / self.spacing), 1)
+        samples = np.arange(-most, most + 1)
         # a long scan in larger steps: refined below
         samples = samples[:: max(1, samples.size // 100)]
         # whole samples need no interpolation, and the taper hides what comes round
