@@ -141,7 +141,7 @@ def test_a_simulation_that_drifts_away_is_not_the_best() -> None:
     best = simulated(identify(runs, ["viscous"], intervals="normal")).best
     assert best.law == "viscous"
     assert best.device.inertance == pytest.approx(100.0, rel=0.1)
-    assert "drift away, such as +offset" in best.notes[-1]
+    assert "a force that the law lacks (try +offset)" in best.notes[-1]
 
 
 def test_records_that_cannot_be_simulated_are_refused() -> None:

@@ -93,7 +93,7 @@ def doubts(result: Identification) -> list[str]:
     found = [
         f"the fit of {each.law} has not converged: more --starts may find a better one"
         for each in result.results
-        if not each.converged
+        if not each.converged and each.ends
     ]
     behind: dict[tuple[str, ...], list[str]] = {}
     for each in result.results:

@@ -66,13 +66,18 @@ def simulated(result: Identification) -> Identification:
     rest = result.results[1:]
     if here.relative < EXPLAINED and here.rmse < there.rmse:
         return replace(result, results=(after, before, *rest))
-    note = (
-        f"the simulation gave nothing better: it misses the held-out displacement by "
-        f"{here.rmse:.3g} m rms ({100 * here.relative:.2g} % of its variation), with the "
-        f"parameters found along the motion by {there.rmse:.3g} m, which are kept"
-    )
-    if here.relative >= EXPLAINED:
-        note += "; a force that the law lacks lets a simulation drift away, such as +offset"
+    missed = f"{here.rmse:.3g} m rms ({100 * here.relative:.2g} % of its variation)"
+    if here.relative < EXPLAINED:
+        note = (
+            f"the simulation gave nothing better: its parameters miss the held-out displacement by "
+            f"{missed}, those found along the motion by {there.rmse:.3g} m, which are kept"
+        )
+    else:
+        note = (
+            f"the simulation does not follow the motion: its best parameters miss the held-out "
+            f"displacement by {missed}, and those found along the motion are kept; a force that "
+            "the law lacks (try +offset) lets a simulation drift away"
+        )
     return replace(result, results=(replace(before, notes=(*before.notes, note)), after, *rest))
 
 
