@@ -17,6 +17,7 @@ from inerter.identify.model import Model
 from inerter.identify.multistart import search
 from inerter.identify.prediction import first_state
 from inerter.identify.profile import profile_interval
+from inerter.identify.split import BLOCKS, HELD_OUT_BLOCKS
 from inerter.records import Record, check_records
 from random_devices import LAWS, drawn, found
 
@@ -268,3 +269,17 @@ def test_a_copy_of_a_run_is_left_out() -> None:
     assert told == {r["name"]: r["role"] for r in alone.json()["records"]} | {"copy": "unused"}
     with pytest.raises(ValueError, match="--holdout copy: the same displacement and force as"):
         identify(check_records([*case.records, copy]), ["viscous"], holdout=["copy"])
+
+
+def test_an_error_is_relative_to_the_force_it_was_made_in() -> None:
+    """A single run that is calm where it is held out."""
+    (record,) = drawn("viscous", 1).records[:1]
+    size = record.samples
+    calm = np.ones(size)
+    for block in HELD_OUT_BLOCKS:
+        calm[block * size // BLOCKS : (block + 1) * size // BLOCKS] = 0.1
+    random = np.random.default_rng(0)
+    force = calm * random.standard_normal(size)
+    best = identify([replace(record, force=force)], ["viscous"], intervals="normal").best
+    # white noise has nothing to do with the motion: the error is all of the force
+    assert best.nrmse == pytest.approx(1.0, abs=0.1)

@@ -262,19 +262,17 @@ class _Data:
             found[name] = Estimate(value, error, low, high, unit)
         return found, parameter_correlation(better, tuple(found))
 
+    def _at_measured_rate(self, masks: Sequence[NDArray[np.bool_]]) -> Problem:
+        """The runs at the measured rate, where thinned samples are masked."""
+        wide = [np.zeros(run.force.size, bool) for run in self.raw]
+        for target, mask, run in zip(wide, masks, self.runs, strict=True):
+            full = np.repeat(mask, run.thinned)[: target.size]
+            target[: full.size] = full
+        return Problem(self.raw, wide)
+
     def _raw_error(self, model: Model, masks: Sequence[NDArray[np.bool_]]) -> tuple[float, Array]:
         """Force error [N] at the measured rate, and its squares over blocks."""
-        steps = [r.thinned for r in self.runs]
-        full = [
-            np.repeat(mask, step)[: run.force.size] & run.inner[: mask.size * step]
-            if step > 1
-            else mask & run.inner
-            for mask, step, run in zip(masks, steps, self.raw, strict=True)
-        ]
-        wide = [np.zeros(run.force.size, bool) for run in self.raw]
-        for target, mask in zip(wide, full, strict=True):
-            target[: mask.size] = mask
-        problem = Problem(self.raw, wide)
+        problem = self._at_measured_rate(masks)
         residual = problem.residual(model)
         parts = blocks(problem.masks)
         squares = np.array([[np.sum(residual[i][at] ** 2), at.size] for i, at in parts])
@@ -291,8 +289,9 @@ class _Data:
         drawn = random.integers(0, len(squares), (_RESAMPLES, len(squares)))
         sums = squares[drawn].sum(axis=1)
         low, high = np.quantile(np.sqrt(sums[:, 0] / sums[:, 1]), (0.025, 0.975))
-        held = [r.force for r, m in zip(self.raw, self.parted.holdout, strict=True) if m.any()]
-        return value, float(low), float(high), value / float(np.std(np.concatenate(held)))
+        masks = self._at_measured_rate(self.parted.holdout).masks
+        held = np.concatenate([r.force[m] for r, m in zip(self.raw, masks, strict=True)])
+        return value, float(low), float(high), value / (float(np.std(held)) or 1.0)
 
 
 @dataclass(frozen=True)
