@@ -94,7 +94,9 @@ def diagnose_bench(
     ValueError
         Runs that cannot be split or do not move.
     """
-    with helped(), threadpool_limits(limits=1, user_api="blas"):
+    # predictions of models that are only tried may run away
+    quiet = np.errstate(over="ignore", invalid="ignore")
+    with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
         return _Bench(records, device, holdout, progress, delay).run()
 
 

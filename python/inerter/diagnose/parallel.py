@@ -19,6 +19,8 @@ from typing import Generic, TypeVar
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
+import numpy as np
+
 from inerter.parallel import ONE_THREAD, deaf_children, end_with, environment
 
 S = TypeVar("S")
@@ -70,7 +72,7 @@ def helped() -> Iterator[None]:
         return
     with environment({"PYTHONWARNINGS": _without_tracker()}), deaf_children(resource_tracker):
         pool = ProcessPoolExecutor(
-            count, env=ONE_THREAD, initializer=end_with, initargs=(os.getpid(),)
+            count, env=ONE_THREAD, initializer=_begin, initargs=(os.getpid(),)
         )
         # importing this module will have imported what the work needs
         pool.submit(_each, abs, [])
@@ -93,6 +95,12 @@ def serial() -> Iterator[None]:
         yield
     finally:
         _helpers.reset(token)
+
+
+def _begin(parent: int) -> None:
+    """A process that ends with its parent, and where a prediction may run away as it may there."""
+    end_with(parent)
+    np.seterr(over="ignore", invalid="ignore")
 
 
 def _without_tracker() -> str:
