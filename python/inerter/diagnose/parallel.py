@@ -16,10 +16,9 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
+import numpy as np
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
-
-import numpy as np
 
 from inerter.parallel import ONE_THREAD, deaf_children, end_with, environment
 
