@@ -31,6 +31,8 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     "spring and offset": (("force_offset", "gas_spring"), 3537181163),
     # what a delay does to impacts was taken for other contacts
     "late impacts": (("backlash", "sensor_delay"), 2312281117),
+    # clipped half of the time the force had the motion smoothed away
+    "clipped half of the time": (("sensor_saturation",), 589100172),
     # the drift moved what the load adds too, and stiction and damping made up for it
     "load and drift": (("load_dependent_friction", "friction_drift"), 4151383076),
 }

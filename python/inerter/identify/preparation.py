@@ -29,6 +29,9 @@ SMALLEST = 50
 KEPT = 0.5
 # warnings of a measured velocity or acceleration with which it is left out
 WRONG = ("sign_flip", "unit_suspect", "constant_channel")
+# share of its range within which a force is at the end of it: a channel that clips tells nothing
+# of the motion there
+AT_LIMIT = 1e-3
 # rms displacement of a run that moves, per noise
 MOVES = 10.0
 
@@ -231,6 +234,12 @@ def _errors(
     return found
 
 
+def _inside(force: Array) -> NDArray[np.bool_]:
+    """Where a force is not at the ends of its range (n,)."""
+    margin = AT_LIMIT * np.ptp(force)
+    return (force > force.min() + margin) & (force < force.max() - margin)
+
+
 def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory.
 
@@ -252,8 +261,9 @@ def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf
         table = np.array([*rows, motion.force])
         if np.isfinite(corner):
             table = apply_weight(table, weight_above(x.size, motion.spacing, corner))
-        columns.append(table[:-1].T[mask])
-        forces.append(table[-1][mask])
+        inside = mask & _inside(motion.force)
+        columns.append(table[:-1].T[inside])
+        forces.append(table[-1][inside])
     matrix, force = np.vstack(columns), np.concatenate(forces)
     matrix = matrix / (np.std(matrix, axis=0) + np.abs(np.mean(matrix, axis=0)) + 1e-300)
     gram, right = matrix.T @ matrix, matrix.T @ force
