@@ -154,8 +154,16 @@ def test_whoever_interrupts_does_not_wait() -> None:
     assert time.perf_counter() - began < 30.0
 
 
+@pytest.fixture
+def hearing() -> Iterator[None]:
+    """Ctrl-C as usual, also where a shell has these tests in the background, deaf to it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there no thread is deaf to it")
-def test_an_interrupt_waits_until_the_processes_have_begun() -> None:
+def test_an_interrupt_waits_until_the_processes_have_begun(hearing: None) -> None:
     """Where the thread that begins them is deaf to Ctrl-C, the system gives it to another one."""
     asked, sent = threading.Event(), threading.Event()
 
@@ -182,6 +190,7 @@ def test_an_interrupt_waits_until_the_processes_have_begun() -> None:
 
 SLEEPERS = """
 import os, sys, time
+from collections.abc import Iterator
 from pathlib import Path
 from inerter.parallel import run_all
 def piece(folder):
