@@ -41,6 +41,18 @@ def when_both_are_there(folder: Path) -> Callable[[int], int]:
 
 
 @with_a_helper
+def test_a_helper_says_nothing_of_predictions_that_run_away(tmp_path: Path) -> None:
+    who = when_both_are_there(tmp_path)
+
+    def told(item: int) -> tuple[int, str]:
+        return who(item), np.geterr()["over"]
+
+    by_process = dict(parallel(told, range(2)))
+    del by_process[os.getpid()]
+    assert list(by_process.values()) == ["ignore"]
+
+
+@with_a_helper
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 20, 257])
 def test_results_keep_their_order(count: int) -> None:
     expected = [i * i for i in range(count)]

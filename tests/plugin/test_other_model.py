@@ -59,15 +59,20 @@ def test_a_rollout_over_models_has_each_ones_device(count: int) -> None:
         np.testing.assert_array_equal(state[:, 1 : 1 + one.nq], alone(one))
 
 
-def test_data_that_are_handed_to_another_model_follow_it() -> None:
-    first, second = model(), model(coulomb_force=20)
+def handed_over(first: mujoco.MjModel, second: mujoco.MjModel) -> np.ndarray:
+    """Where data of the first model end that are stepped with the second."""
     data = mujoco.MjData(first)
     mujoco.mj_step(first, data, 5)
     mujoco.mj_resetData(second, data)
     for control in CONTROL:
         data.ctrl[:] = control
         mujoco.mj_step(second, data)
-    np.testing.assert_array_equal(data.qpos, alone(second)[-1])
+    return data.qpos
+
+
+def test_data_that_are_handed_to_another_model_follow_it() -> None:
+    first, second = model(), model(coulomb_force=20)
+    np.testing.assert_array_equal(handed_over(first, second), alone(second)[-1])
 
 
 LIVE = '<numeric name="{}" data="{}"/>'
@@ -83,10 +88,4 @@ PLACES = {
 def test_the_same_device_may_be_elsewhere_in_another_model(changed: dict) -> None:
     """Its configuration is the same; its actuator and what holds its live parameters is not."""
     first, second = model(LIVE.format("strut.coulomb_force", 10)), model(**changed)
-    data = mujoco.MjData(first)
-    mujoco.mj_step(first, data, 5)
-    mujoco.mj_resetData(second, data)
-    for control in CONTROL:
-        data.ctrl[:] = control
-        mujoco.mj_step(second, data)
-    np.testing.assert_array_equal(data.qpos, alone(second)[-1])
+    np.testing.assert_array_equal(handed_over(first, second), alone(second)[-1])

@@ -263,15 +263,14 @@ class _Bench:
         In a wider band the noise of a slow motion turns its velocity about, and a law with memory
         serves as a filter of it. The search is taken back to the narrower band where there is one.
         """
-        if model.friction == self.baseline.friction or self.weighed.cutoff <= self.plain.cutoff:
+        laws = [] if model.friction == self.baseline.friction else simpler_laws(model)
+        if not laws or self.weighed.cutoff <= self.plain.cutoff:
             return None
         narrow = replace(self.plain, corner=self.weighed.corner)
         search = self._weighed_search(narrow)
         masks = search.split.fit
-        laws = [search.problem.fit(law) for law in simpler_laws(model)]
-        best = min(laws, key=lambda fit: fit.rmse(masks), default=None)
-        limit = (1 - WORTH_A_BAND) * search.problem.fit(model).rmse(masks)
-        if best is None or best.rmse(masks) > limit:
+        best = min(map(search.problem.fit, laws), key=lambda fit: fit.rmse(masks))
+        if best.rmse(masks) > (1 - WORTH_A_BAND) * search.problem.fit(model).rmse(masks):
             return None
         self.weighed, self.search = narrow, search
         return best.model

@@ -46,7 +46,19 @@ class Motion:
 
 @dataclass(frozen=True)
 class Figures:
-    """What is told of a device's parameters on the records, see `Identified`."""
+    """What is told of a device's parameters on the records.
+
+    Attributes
+    ----------
+    undetermined
+        Parameters that the data do not determine, alone or in groups that they cannot tell apart.
+    combinations
+        What of them the data do determine.
+    fit_rmse, rmse
+        Force error [N] on the data fitted and on those held out; `low`, `high` its 95 % interval.
+    nrmse
+        `rmse` per standard deviation of the held-out force.
+    """
 
     undetermined: tuple[tuple[str, ...], ...]
     combinations: tuple[Combination, ...]
@@ -58,8 +70,8 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class Identified:
-    """A law fitted to data.
+class Identified(Figures):
+    """A law fitted to data, with its figures.
 
     Attributes
     ----------
@@ -73,14 +85,6 @@ class Identified:
         What was fitted, by name.
     correlation
         Of the estimates, in the order of `parameters`, shape (p, p).
-    undetermined
-        Parameters that the data do not determine, alone or in groups that they cannot tell apart.
-    combinations
-        What of them the data do determine.
-    fit_rmse, rmse
-        Force error [N] on the data fitted and on those held out; `low`, `high` its 95 % interval.
-    nrmse
-        `rmse` per standard deviation of the held-out force.
     ends
         Force errors [N] at which the fits from different starts ended; none of a simulation.
     notes
@@ -106,13 +110,6 @@ class Identified:
     delay: float
     parameters: Mapping[str, Estimate]
     correlation: Array
-    undetermined: tuple[tuple[str, ...], ...]
-    combinations: tuple[Combination, ...]
-    fit_rmse: float
-    rmse: float
-    low: float
-    high: float
-    nrmse: float
     ends: tuple[float, ...]
     notes: tuple[str, ...]
     converged: bool
