@@ -164,17 +164,18 @@ class Device:
     def __init__(self, **values: float | str) -> None:
         self._c = _device_type()()
         library, message = _library(), ctypes.create_string_buffer(_MESSAGE_SIZE)
-        library.inerter_default(ctypes.byref(self._c))
+        at, known = ctypes.byref(self._c), parameters()
+        library.inerter_default(at)
         for name, value in values.items():
-            text, key = value_text(value), value_text(name)
+            text, key = value_text(value), name if name in known else value_text(name)
             if text is None or key is None:
                 raise DeviceError(f"{name!a} is {value!a:.80}: give a number, or the name of a law")
-            if library.inerter_set(ctypes.byref(self._c), key.encode(), text.encode(), message):
-                known = [*parameters(), "friction", "gas_law"]
-                raise DeviceError(with_suggestion(name, _text(message), known))
-        if library.inerter_finish(ctypes.byref(self._c), message):
+            if library.inerter_set(at, key.encode(), text.encode(), message):
+                names = [*known, "friction", "gas_law"]
+                raise DeviceError(with_suggestion(name, _text(message), names))
+        if library.inerter_finish(at, message):
             raise DeviceError(_text(message))
-        self._given = {name: getattr(self, name) for name in values}
+        self._given = {name: getattr(self._c if name in known else self, name) for name in values}
 
     @property
     def given(self) -> dict[str, float | str]:
@@ -361,6 +362,12 @@ class Device:
             Channels of different lengths, a number that is not finite, a spacing that is not > 0.
         """
         x, v, a = checked_motion(h, x, v, a)
+        return self.along_checked(h, x, v, a, state)
+
+    def along_checked(
+        self, h: float, x: NDArray, v: NDArray, a: NDArray, state: ArrayLike = 0.0
+    ) -> dict[str, NDArray[np.float64]]:
+        """`along` a motion that `checked_motion` has returned: many devices along the same one."""
         result, states = np.empty((2, x.size)), np.empty((x.size, self.nstate))
         now = self._states(state)
         at, row = result.ctypes.data, result.strides[0]

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.checked_motion import checked_motion
 from inerter.core import Device
 from inerter.identify.coordinates import Scales
 from inerter.records.motion import (
@@ -88,9 +89,8 @@ class Run:
         """
         if self.measured is None:
             raise ValueError(f"{self.name}: a run at the measured rate has no band")
-        begin, size = self.first * self.thinned, self.measured[0].size
-        motion = [channel[begin:] for channel in self.measured]
-        return forces_along(device, self.spacing / self.thinned, motion, state, size)
+        spacing, size = self.spacing / self.thinned, self.measured[0].size
+        return forces_along(device, spacing, self._followed_finely, state, size)
 
     def in_band(self, values: Array) -> Array:
         """Values at the measured rate through the low-pass of the measured force, thinned."""
@@ -114,6 +114,19 @@ class Run:
             share = values / self.far
             values = self.far * np.sign(share) * np.sqrt(np.log1p(share**2))
         return values
+
+    # checked once, for the many devices that are tried along it
+    @cached_property
+    def followed(self) -> list[Array]:
+        """Displacement, velocity, acceleration from the sample `first` on."""
+        channels = (self.displacement, self.velocity, self.acceleration)
+        return checked_motion(self.spacing, *(channel[self.first :] for channel in channels))
+
+    @cached_property
+    def _followed_finely(self) -> list[Array]:
+        begin = self.first * self.thinned
+        x, v, a = (channel[begin:] for channel in self.measured or ())
+        return checked_motion(self.spacing / self.thinned, x, v, a)
 
     @cached_property
     def _weight(self) -> Array:
@@ -173,9 +186,9 @@ def thin(motion: Motion, rate: float | None = None) -> Run:
 def forces_along(
     device: Device, spacing: float, motion: Sequence[Array], state: float | Array, size: int
 ) -> dict[str, Array]:
-    """Total and friction force of a device along a motion that may begin late [N], (size,)."""
+    """Total and friction force of a device along a checked motion that may begin late, (size,)."""
     x, v, a = motion
-    found = device.along(spacing, x, v, a, state)
+    found = device.along_checked(spacing, x, v, a, state)
     return {name: held(found[name], size) for name in ("total", "friction")}
 
 

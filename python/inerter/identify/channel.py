@@ -81,17 +81,14 @@ def delayed(force: Array, delay: float, spacing: float) -> Array:
     shift = delay / spacing
     whole = int(np.floor(shift))
     s = 1 - (shift - whole)  # position after sample i - whole - 1
-    index = np.arange(n) - whole - 1
+    held = force[np.arange(-whole - 2, n - whole + 1).clip(0, n - 1)]
     weights = (
         -s * (s - 1) * (s - 2) / 6,
         (s + 1) * (s - 1) * (s - 2) / 2,
         -(s + 1) * s * (s - 2) / 2,
         (s + 1) * s * (s - 1) / 6,
     )
-    return sum(
-        weight * force[np.clip(index + offset, 0, n - 1)]
-        for weight, offset in zip(weights, (-1, 0, 1, 2), strict=True)
-    )  # type: ignore[return-value]
+    return sum(weight * held[i : i + n] for i, weight in enumerate(weights))  # type: ignore[return-value]
 
 
 def without_tone(

@@ -68,17 +68,17 @@ class Coordinate:
 
     def encode(self, value: float) -> float:
         """Coordinate value to search variable."""
-        if self.logarithmic:
-            return float(np.log(np.clip(value, self.lower, self.upper)))
-        return float(np.clip(value, self.lower, self.upper)) / self.size
+        value = float(min(max(value, self.lower), self.upper))
+        return float(np.log(value)) if self.logarithmic else value / self.size
 
     def decode(self, variable: float) -> float:
         """Search variable to coordinate value."""
         if self.logarithmic:
-            return float(np.exp(np.clip(variable, np.log(self.lower), np.log(self.upper))))
-        return float(np.clip(variable * self.size, self.lower, self.upper))
+            low, high = self.bounds
+            return float(np.exp(min(max(variable, low), high)))
+        return float(min(max(variable * self.size, self.lower), self.upper))
 
-    @property
+    @functools.cached_property
     def bounds(self) -> tuple[float, float]:
         """Bounds of the search variable."""
         if self.logarithmic:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.identify.bench import Run, forces_along, held
+from inerter.identify.bench import Run, forces_along
 from inerter.identify.channel import delayed, through_channel, without_limits, without_tone
 from inerter.identify.model import Model
 from inerter.identify.residual import without_transient
@@ -68,20 +68,19 @@ def force_along(model: Model, run: Run) -> Array:
     device = model.device()
     run, values = with_late_motion(model, run)
     state = first_state(device, run, values.get("friction_place", 0.0))
-    x, v, a = (c[run.first :] for c in (run.displacement, run.velocity, run.acceleration))
     rough = model.has_jumps or device.friction != "none" or device.load_friction
     drift = values.get("friction_drift", 0.0)
     if np.isinf(run.cutoff) or not rough:
 
         def along(each: Device) -> dict[str, Array]:
-            return forces_along(each, run.spacing, (x, v, a), state, run.force.size)
+            return forces_along(each, run.spacing, run.followed, state, run.force.size)
 
         total = with_friction_drift(device, drift, along, run.elapsed)
         return through_channel(values, total, run.elapsed, run.spacing)
 
     part = model.smooth_part()
     rest = _states_of(part, device, state)
-    smooth = held(part.along(run.spacing, x, v, a, rest)["total"], run.force.size)
+    smooth = forces_along(part, run.spacing, run.followed, rest, run.force.size)["total"]
     found = run.at_measured_rate(device, state)
     if not abs(found["friction"][-1]) < RUNAWAY:
         # hysteresis that hardens without end: nothing that could be low-passed
