@@ -33,6 +33,10 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     "late impacts": (("backlash", "sensor_delay"), 2312281117),
     # clipped half of the time the force had the motion smoothed away
     "clipped half of the time": (("sensor_saturation",), 589100172),
+    # neither was sure alone: each makes large errors where the other shows
+    "friction behind a clipped force": (("hysteretic_friction", "sensor_saturation"), 889493904),
+    # Bouc-Wen, whose law has a spring of its own, did better than LuGre without one
+    "LuGre beside a spring": (("hysteretic_friction", "parallel_stiffness"), 1248197593),
     # the drift moved what the load adds too, and stiction and damping made up for it
     "load and drift": (("load_dependent_friction", "friction_drift"), 4151383076),
 }

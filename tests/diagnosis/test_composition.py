@@ -11,10 +11,12 @@ import pytest
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
+    as_spring,
     effects_of,
     is_blur,
     is_distinct,
     simpler_laws,
+    with_own_spring,
     without_effect,
 )
 from inerter.diagnose.rivals import BEATEN, _is_better
@@ -54,6 +56,34 @@ def test_a_narrow_peak_that_explains_little_is_the_blur_of_a_reversal(
     # errors in rms over all data, N: 1 with the peak; 4 % of 20 N more are 1.28
     assert is_blur(peak, SCALES, plain, 1.0) is blur
     assert not is_blur(BASELINE.adding("coulomb", coulomb_force=20.0), SCALES, plain, 1.0)
+
+
+def test_stops_that_meet_are_a_spring() -> None:
+    stops = {"stop_lower": 0.0099, "stop_upper": 0.0101}
+    stops |= {"stop_stiffness": 1e4, "stop_damping": 0.0, "force_offset": 5.0}
+    model = BASELINE.adding(None, **stops)
+    (spring,) = as_spring(model)
+    assert spring.free == ("inertance", "force_offset", "stiffness")
+    x = np.linspace(-0.05, 0.05, 101)
+    one, two = (each.device().along(1e-3, x, 0 * x, 0 * x)["total"] for each in (model, spring))
+    # they differ by half the gap times the stiffness at most
+    np.testing.assert_allclose(one, two, atol=1.001)
+    assert as_spring(BASELINE.adding(None, stop_upper=0.01, stop_stiffness=1e4)) == []
+
+
+def test_the_spring_of_a_bouc_wen_law_stands_beside_another_law() -> None:
+    own = BASELINE.adding(
+        "bouc_wen", bw_level=20.0, presliding=1e-3, bw_shape=0.6, bw_exponent=1.0, bw_ratio=0.05
+    )
+    (beside,) = with_own_spring(own)
+    assert (beside.friction, beside.complexity) == ("dahl", own.complexity - 2)
+    # over long strokes both forces are a spring and a level; alike they begin
+    device, other = own.device(), beside.device()
+    far = np.linspace(0.05, 0.1, 101)
+    one, two = (each.along(1e-3, far, 0 * far + 0.5, 0 * far) for each in (device, other))
+    slopes = [np.ptp(each["total"][50:]) / np.ptp(far[50:]) for each in (one, two)]
+    assert slopes[1] == pytest.approx(slopes[0], rel=1e-3)
+    assert with_own_spring(BASELINE.adding("dahl", coulomb_force=20.0, presliding=1e-3)) == []
 
 
 @pytest.mark.parametrize(("error", "told"), [(0.01, True), (0.3, True), (0.4, False), (2.0, False)])

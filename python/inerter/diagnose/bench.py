@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from inerter.core import Device
 from inerter.diagnose import wording
 from inerter.diagnose.baseline import baseline_of
-from inerter.diagnose.chain import Link, chain_of, tone_link
+from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
 from inerter.diagnose.composition import effects_of, has_series, simpler_laws, submodel
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.effects import EFFECTS
@@ -163,13 +163,14 @@ class _Bench:
         final, standings = self._settle(final)
         self.progress("measuring the gain of each effect")
         chain = chain_of(self.search, self.judge, final.model)
-        while weak := [link.effect for link in chain if not link.stands]:
-            self.progress(f"{weak[-1]} is not confirmed on held-out data: dropped")
-            rest = [name for name, _ in effects_of(final.model, self.baseline) if name != weak[-1]]
+        while weak := weakest(chain, self.judge, final.model):
+            self.progress(f"{weak} is not confirmed on held-out data: dropped")
+            rest = [name for name, _ in effects_of(final.model, self.baseline) if name != weak]
             fit = self.search.problem.fit(submodel(final.model, rest, self.baseline))
             final = self.search.score("", None, fit)
             chain = chain_of(self.search, self.judge, final.model)
-        fit = self._with_tone(final.fit, chain, standings)
+        # where nothing stands the baseline is left, fitted as it was
+        fit = self._with_tone(final.fit if chain else before, chain, standings)
         if "backlash" in fit.model.free:
             self.progress("free play: how far other data would lead")
             spread = jackknife(self.search.problem, self.full.folds, fit.model)

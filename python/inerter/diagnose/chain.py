@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,6 +113,21 @@ def _link(
     )
     interval = gain_interval(*squares)
     return Link(effect, law, before, after, *errors, interval, silent, stands)
+
+
+def weakest(chain: Sequence[Link], judge: Judge, model: Model) -> str | None:
+    """The effect to drop next of a model with a chain, if any.
+
+    The last one that does not stand; or a free play with which nothing is predicted better than
+    with none of the chain, though each impact that comes late may be forgiven.
+    """
+    weak = [link.effect for link in chain if not link.stands]
+    if weak:
+        return weak[-1]
+    play = any(link.effect == "backlash" for link in chain)
+    if play and judge.rmse(model) >= judge.rmse(chain[0].before.model):
+        return "backlash"
+    return None
 
 
 def tone_link(judge: Judge, before: Fit, after: Fit) -> tuple[Link, float]:

@@ -257,6 +257,19 @@ def as_one(model: Model) -> list[Model]:
     return [model.without(("force_offset",)).adding(friction_asymmetry=share)]
 
 
+def as_spring(model: Model) -> list[Model]:
+    """A spring in the place of two stops: where these meet nothing moves freely between them."""
+    if not {"stop_lower", "stop_upper"} <= set(model.free):
+        return []
+    stiffness = model.values["stop_stiffness"]
+    middle = 0.5 * (model.values["stop_lower"] + model.values["stop_upper"])
+    spring = {
+        "stiffness": model.values.get("stiffness", 0.0) + stiffness,
+        "force_offset": model.values.get("force_offset", 0.0) - stiffness * middle,
+    }
+    return [model.without(EFFECTS["end_stop"].coordinates).adding(**spring)]
+
+
 def simpler_laws(model: Model) -> list[Model]:
     """The model under each friction law with fewer parameters."""
     level, presliding = _level_and_distance(model)
@@ -271,3 +284,13 @@ def simpler_laws(model: Model) -> list[Model]:
         values = {name: model.values[name] for name in names} | width(bare)
         simpler.append(bare.adding("stribeck", **values))
     return simpler
+
+
+def with_own_spring(model: Model) -> list[Model]:
+    """Dahl friction beside a spring in the place of Bouc-Wen friction, whose law has a spring."""
+    level, presliding = _level_and_distance(model)
+    if "bw_ratio" not in model.free or not presliding:
+        return []
+    spring = model.device().bw_ratio * model.device().bw_stiffness
+    bare = model.without(LAW_COORDINATES, "none")
+    return [bare.adding("dahl", coulomb_force=level, presliding=presliding, stiffness=spring)]

@@ -143,7 +143,8 @@ class Unexplained:
     summary : str
         The same in words.
     structure : float
-        Rms of what was found to be no noise [N].
+        Rms of what was found to be no noise [N]: what the tests predict of the residual, or all
+        beyond the noise where that is too much for any.
     tests : list of dict
         Every test: {"goes_with", "share" and "share_held_out" (of the residual's power, both out of
         sample; the first over all data), "rms" [N], "p"}.

@@ -17,10 +17,12 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
+    as_spring,
     effects_of,
     is_blur,
     is_distinct,
     simpler_laws,
+    with_own_spring,
     within_blur,
     without_effect,
 )
@@ -62,6 +64,9 @@ SHORTLIST = 5
 LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
 # share of the rms error that these must take away where they show
 LOCAL_GAIN = 0.5
+# share of the rms error that an effect that is not sure by itself must take away to be tried with
+# a second one
+FOOTHOLD = 0.1
 # effects that a friction law cannot stand in for
 UNLIKE_FRICTION = (
     *LOCAL,
@@ -145,6 +150,8 @@ class Search:
         self.trials = Trials(self.problem, REQUIRED_GAIN)
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
+        # what the last step without a result came upon
+        self._refused: list[Scored] = []
 
     def __getstate__(self) -> dict[str, object]:
         """What another process is told: it has nobody to report to."""
@@ -174,7 +181,7 @@ class Search:
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
         while len(self.found) < MOST_EFFECTS:
-            chosen = self._best_step(current)
+            chosen = self._best_step(current) or self._two_steps(current)
             if chosen is None:
                 break
             self.found.append(chosen.effect)
@@ -221,6 +228,7 @@ class Search:
     def _best_step(self, current: Scored) -> Scored | None:
         """The effect to add next, or None."""
         masks = self.problem.masks
+        self._refused = []
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
         trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
         fitted = self.trials.fit_all(trials, current.fit)
@@ -248,14 +256,16 @@ class Search:
         scored = parallel(
             lambda pair: self.score(pair[0].effect, pair[0].law, pair[1], folds), shortlist
         )
-        good = [
+        there = [
             s
             for s in scored
-            if self._better(current, s)
-            and is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.baseline)
+            if is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
         ]
+        good = [s for s in there if self._better(current, s)]
         if not good:
+            limit = (1 - FOOTHOLD) ** 2 * current.squares.sum()
+            self._refused = [s for s in there if s.squares.sum() < limit]
             return None
         best = min(good, key=lambda s: s.squares.sum())
         equal = [s for s in good if s is best or self._as_good(s, best)]
@@ -265,6 +275,23 @@ class Search:
         elif folds is not self._folds:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
         return replace(chosen, fit=self.problem.fit(chosen.model))
+
+    def _two_steps(self, current: Scored) -> Scored | None:
+        """Two effects that are sure together, where none is alone.
+
+        What shows in few places is not to be seen before what lies about it is explained.
+        """
+        first = min(self._refused, key=lambda s: s.squares.sum(), default=None)
+        if first is None:
+            return None
+        folds = self._folds
+        if first.effect in LOCAL:
+            self._folds = self._spread
+        second = self._best_step(replace(first, fit=self.problem.fit(first.model)))
+        if second and self._better(*(self.score_on_blocks(s.fit) for s in (current, second))):
+            return second
+        self._folds = folds
+        return None
 
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
         """Whether a fit's peak of friction does little more than friction without one.
@@ -312,7 +339,7 @@ class Search:
         since: a rich law stands in for a simple one with, say, viscous friction.
         """
         masks, free = self.problem.masks, current.model.free
-        trials = []
+        trials = [Candidate("exchange", None, (model,)) for model in as_spring(current.model)]
         for model in simpler_laws(current.model):
             trials.append(Candidate("exchange", None, (model,)))
             for candidate in candidates(model, self.problem.scales):
@@ -333,11 +360,30 @@ class Search:
             loss = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
             if loss < TOLERATED_LOSS / 2:
                 return self._exchange(scored)
+        if with_spring := self._spring_beside(current):
+            return self._exchange(with_spring)
         for model in as_one(current.model):
             fit = self.problem.fit(model)
             if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):
                 return self.score("exchange", None, fit)
         return current
+
+    def _spring_beside(self, current: Scored) -> Scored | None:
+        """LuGre friction and a spring in the place of Bouc-Wen friction, which has one of its own.
+
+        Neither explains as much alone, and so they are not found one after the other.
+        """
+        trials = [
+            candidate
+            for model in with_own_spring(current.model)
+            for candidate in candidates(model, self.problem.scales)
+            if candidate.law == "lugre"
+        ]
+        for candidate in trials:
+            scored = self.score("exchange", None, self.trials.fit(candidate))
+            if self._better(current, scored):
+                return scored
+        return None
 
     def _prune(self, current: Scored) -> Scored:
         """Take away what the others have made unnecessary, the least important first."""

@@ -111,9 +111,11 @@ def unexplained(
         details["harmonics"] = details.pop("frequency")
 
     left = float(np.sqrt(power))
-    excess = not depends and left > max(EXCESS * floor, EXCESS_PART * force)
+    large = left > max(EXCESS * floor, EXCESS_PART * force)
+    excess = large and not depends
+    no_noise = float(np.sqrt(power - floor**2)) if large else 0.0
     if excess:
-        structure = float(np.sqrt(power - floor**2))
+        structure = no_noise
     proposal = None
     if chosen:
         lengths = {
@@ -139,7 +141,7 @@ def unexplained(
         fraction,
         depends,
         text,
-        structure=structure if significant else 0.0,
+        structure=max(structure, no_noise) if significant else 0.0,
         tests=tests,
         false_alarm_rate=FALSE_ALARM,
         proposal=proposal,
