@@ -267,7 +267,7 @@ def as_spring(model: Model) -> list[Model]:
         "stiffness": model.values.get("stiffness", 0.0) + stiffness,
         "force_offset": model.values.get("force_offset", 0.0) - stiffness * middle,
     }
-    return [model.without(EFFECTS["end_stop"].coordinates).adding(**spring)]
+    return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
 
 
 def simpler_laws(model: Model) -> list[Model]:
