@@ -1,0 +1,44 @@
+"""Which effect of a chain is dropped next."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from inerter.diagnose.chain import Link, weakest
+from inerter.diagnose.judge import Judge
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
+
+BARE = Model("none", {"inertance": 80.0}, ("inertance",))
+WHOLE = BARE.adding(viscous=100.0, backlash=1e-4)
+
+
+def link(effect: str, stands: bool = True) -> Link:
+    fit = Fit(BARE, [], np.zeros((1, 1)), 1)
+    return Link(effect, None, fit, fit, 10.0, 9.0, None, False, stands)
+
+
+def judge(before: float, after: float) -> Judge:
+    """One that finds these errors [N] without and with the effects."""
+    return cast(Judge, SimpleNamespace(rmse=lambda m: after if m is WHOLE else before))
+
+
+def test_the_last_effect_that_does_not_stand_is_dropped() -> None:
+    chain = [link("viscous_friction", False), link("force_offset", False), link("backlash")]
+    assert weakest(chain, judge(10.0, 5.0), WHOLE) == "force_offset"
+
+
+@pytest.mark.parametrize(
+    ("after", "dropped"), [(9.9, None), (10.0, "backlash"), (12.0, "backlash")]
+)
+def test_a_play_that_predicts_nothing_better_is_dropped(after: float, dropped: str | None) -> None:
+    chain = [link("viscous_friction"), link("backlash")]
+    assert weakest(chain, judge(10.0, after), WHOLE) == dropped
+
+
+def test_only_a_play_can_predict_worse_and_stand() -> None:
+    assert weakest([link("viscous_friction")], judge(10.0, 12.0), WHOLE) is None
+    assert weakest([], judge(10.0, 10.0), WHOLE) is None
