@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inerter.identify.bench import Run
 from inerter.identify.preparation import prepare, prepare_again, weighed
 from inerter.records import Record
-from inerter.records.motion import Motion, apply_weight, weight_above
+from inerter.records.motion import Motion, apply_weight, motion_noise, response, weight_above
 
 RATE = 500.0
 
@@ -70,6 +71,33 @@ def test_a_weight_falls_with_the_square_above_its_corner(frequency: float) -> No
     left = apply_weight(wave, weight_above(wave.size, 1 / RATE, 5.0))
     share = left[inner] @ wave[inner] / (wave[inner] @ wave[inner])
     assert share == pytest.approx((1 + (frequency / 5.0) ** 4) ** -0.5, rel=0.02)
+
+
+@pytest.mark.parametrize("frequency", [1.0, 8.0, 10.0, 11.0, 40.0])
+def test_a_weight_heeds_what_a_shaft_makes_of_the_noise(frequency: float) -> None:
+    """Near its resonance more, above no less than without it."""
+    corner, resonance, damping = 5.0, 10.0, 0.05
+    inertance, angular, s = 100.0, 2 * np.pi * resonance, 2j * np.pi * frequency
+    stiffness, damper = inertance * angular**2, 2 * damping * inertance * angular
+    series = (stiffness + damper * s) / (inertance * s**2 + damper * s + stiffness)
+    expected = 1 + (frequency / corner) ** 4 * max(abs(series) ** 2, 1.0)
+    found = motion_noise(np.array([frequency]), corner, (resonance, damping))
+    assert found == pytest.approx([expected], rel=1e-9)
+
+
+def test_no_shaft_wins_by_its_weights() -> None:
+    """Along noise of the spectrum that is expected, a model's own shaft has the least error."""
+    size, spacing, shaft = 2**15, 2e-3, (10.0, 0.05)
+    frequency = np.fft.rfftfreq(size, spacing)
+    spectrum = np.sqrt(motion_noise(frequency, 5.0, shaft)) * response(frequency, 25.0)
+    white = np.random.default_rng(0).standard_normal(size)
+    noise = np.fft.irfft(np.fft.rfft(white) * spectrum, size)
+    silent = np.zeros(size)
+    run = Run("run", 0.0, spacing, silent, silent, silent, silent, silent == 0, 0.0, cutoff=25.0,
+              corner=5.0, shaft=(12.0, 0.1))  # fmt: skip
+    others = [shaft, (9.5, 0.05), (10.5, 0.05), (10.0, 0.03), (10.0, 0.1), (12.0, 0.1)]
+    errors = [np.std(run.weighted(noise, run.inner, other)) for other in others]
+    assert np.argmin(errors) == 0
 
 
 def test_the_corner_is_where_the_noises_are_equal() -> None:

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from inerter.core import Device
 from inerter.diagnose import wording
+from inerter.diagnose.band import WORTH_A_BAND, best_band, narrower_band, wider_band
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
 from inerter.diagnose.composition import effects_of, has_series, simpler_laws, submodel
@@ -36,20 +37,18 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.bench import Run, on_clocks, scales, thin, whole
 from inerter.identify.channel import channel_values
-from inerter.identify.fit import Fit, Masks, Problem, rms
+from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.preparation import (
     Preparation,
     prepare,
-    prepare_again,
     refuse_unusable,
     weighed,
 )
 from inerter.identify.split import Split, split
 from inerter.records import Record
 from inerter.records.duplicates import repeats_another, without_copies
-from inerter.records.motion import Motion
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -58,8 +57,6 @@ Progress = Callable[[str], None]
 TONES_FROM = 0.7
 # bands in which the search goes on, each wider than the one before, at most
 MORE_BANDS = 2
-# share of the error that a wider band has to take away
-WORTH_A_BAND = 0.1
 # effects that take away the rigid drive of the flywheel
 SERIES = ("backlash", "series_elasticity")
 # rivals that may take the place of an effect, one after another
@@ -181,8 +178,7 @@ class _Bench:
     def _searched(self) -> Scored:
         """What the search ends with.
 
-        The cut-offs were chosen with a linear model. Where the model found predicts the force
-        better in a wider band, the search goes on there.
+        Where the model found predicts the force better in a wider band, the search goes on there.
         """
         final = self.search.run(until="backlash")
         for _ in range(MORE_BANDS):
@@ -199,6 +195,12 @@ class _Bench:
             self._take(raw)
         if play := self._play(final.model):
             return self._with_play(play)
+        before = self.search.baseline_fit().model
+        held_out, sizes = self.full.holdout, self.band.scales
+        if narrow := narrower_band(
+            self.records, self.preparation, held_out, before, final.model, sizes
+        ):
+            self._take(narrow)
         return final
 
     def _play(self, model: Model) -> Model | None:
@@ -216,7 +218,8 @@ class _Bench:
         """The search from a model with free play on, with the force as measured."""
         for _ in range(MORE_BANDS):
             far = forgiving(self._followed(), play).runs[0].far
-            band = self._prepared_for(play, self.preparation, far)
+            learnt, sizes = self.full.fit, self.band.scales
+            band = best_band(self.records, self.preparation, learnt, play, sizes, far)
             if band is self.preparation:
                 break
             self._take(band)
@@ -232,31 +235,8 @@ class _Bench:
         learnt = self._learnt()
         return Problem([from_contact(run) for run in learnt.runs], learnt.masks, learnt.scales)
 
-    def _prepared_for(
-        self, model: Model, preparation: Preparation, far: float = np.inf
-    ) -> Preparation:
-        """The records in the band in which a model predicts the fit data best."""
-
-        def error(motions: Sequence[Motion], masks: Masks) -> float:
-            runs = [
-                replace(run, corner=preparation.corner, far=far)
-                for run in on_clocks([whole(motion) for motion in motions])
-            ]
-            fit = [mask & fit for mask, fit in zip(masks, self.full.fit, strict=True)]
-            learnt = Problem(runs, fit, self.band.scales)
-            return rms(learnt.residual(model), learnt.masks)
-
-        return prepare_again(self.records, preparation, error)
-
     def _wider(self, preparation: Preparation, model: Model) -> Preparation | None:
-        """The records in the wider band in which a model predicts the fit data better, if any."""
-        again = self._prepared_for(model, preparation)
-        here, there = (
-            float(again.errors[np.searchsorted(again.cutoffs, 0.999 * p.cutoff)])
-            for p in (preparation, again)
-        )
-        wider = again.cutoff > preparation.cutoff and there < (1 - WORTH_A_BAND) * here
-        return again if wider else None
+        return wider_band(self.records, preparation, self.full.fit, model, self.band.scales)
 
     def _calmer(self, model: Model) -> Model | None:
         """A plainer friction law that predicts the fit data better in the band of the plain fits.

@@ -72,7 +72,8 @@ class Judge:
             problem = self.weighed if effect == "series_elasticity" else self.band
         masks = problem.masks
         before, after = (problem.residual(model) for model in (simple, rich))
-        return advantage_of(before, after, masks, blocks(masks), effect)
+        # what took away its share where it was found only has to help here
+        return advantage_of(before, after, masks, blocks(masks), effect, least=0.0)
 
     def raw_squares(self, model: Model) -> Array:
         """Squared errors at the measured rate over blocks, shape (blocks,)."""

@@ -145,13 +145,26 @@ class Search:
     found: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
+        self._set_out()
+        # what the last step without a result came upon
+        self._refused: list[Scored] = []
+
+    def _set_out(self) -> None:
         self.problem = Problem(self.runs, self.split.fit)
         self.blocks = blocks(self.problem.masks)
         self.trials = Trials(self.problem, REQUIRED_GAIN)
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
-        # what the last step without a result came upon
-        self._refused: list[Scored] = []
+
+    def _weigh_for(self, model: Model) -> None:
+        """Let errors count by what a model's shaft, if it has one, makes of the motion's noise."""
+        if model.shaft is None:
+            return
+        on_blocks = self._folds is self._spread
+        self.runs = [replace(run, shaft=model.shaft) for run in self.runs]
+        self._set_out()
+        if on_blocks:
+            self._folds = self._spread
 
     def __getstate__(self) -> dict[str, object]:
         """What another process is told: it has nobody to report to."""
@@ -177,6 +190,7 @@ class Search:
         Where the effect `until` is found the search ends with it, and nothing is pruned.
         """
         start = start or self.baseline
+        self._weigh_for(start)
         if any(effect in LOCAL for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
@@ -262,19 +276,41 @@ class Search:
             if is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
         ]
-        good = [s for s in there if self._better(current, s)]
+        good = [s for s in there if self._better(*self._weighed_for(s, [current, s]))]
         if not good:
             limit = (1 - FOOTHOLD) ** 2 * current.squares.sum()
             self._refused = [s for s in there if s.squares.sum() < limit]
             return None
-        best = min(good, key=lambda s: s.squares.sum())
-        equal = [s for s in good if s is best or self._as_good(s, best)]
-        chosen = min(equal, key=lambda s: (s.model.complexity, s.squares.sum()))
+        chosen = self._plainest(good)
+        if chosen.effect == "series_elasticity":
+            self._weigh_for(chosen.model)
+            return self.score(chosen.effect, None, self.problem.fit(chosen.model))
         if chosen.effect in LOCAL:
             self._folds = folds
         elif folds is not self._folds:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
         return replace(chosen, fit=self.problem.fit(chosen.model))
+
+    def _weighed_for(self, rich: Scored, scored: Sequence[Scored]) -> list[Scored]:
+        """Models as they count where one of them brings a shaft."""
+        if rich.effect != "series_elasticity":
+            return list(scored)
+        runs = [replace(run, shaft=rich.model.shaft) for run in self.runs]
+        problem = Problem(runs, self.split.fit, self.problem.scales)
+        return [
+            replace(s, residual=residual, squares=block_squares(residual, self.blocks))
+            for s in scored
+            for residual in [problem.weighted(s.errors)]
+        ]
+
+    def _plainest(self, good: Sequence[Scored]) -> Scored:
+        """The best of some models, or the plainest of those that are about as good."""
+        shaft = next((s for s in good if s.effect == "series_elasticity"), good[0])
+        counted = self._weighed_for(shaft, good)
+        best = min(counted, key=lambda s: s.squares.sum())
+        equal = [s for s in counted if s is best or self._as_good(s, best)]
+        chosen = min(equal, key=lambda s: (s.model.complexity, s.squares.sum()))
+        return good[counted.index(chosen)]
 
     def _two_steps(self, current: Scored) -> Scored | None:
         """Two effects that are sure together, where none is alone.

@@ -15,6 +15,7 @@ from inerter.core import Device
 from inerter.identify.coordinates import Scales
 from inerter.records.motion import (
     Motion,
+    Shaft,
     apply_weight,
     band_response,
     filtered,
@@ -59,6 +60,8 @@ class Run:
     corner : float
         Frequency [Hz] above which the motion's noise outweighs the force's; residuals count less
         there.
+    shaft : tuple of float, optional
+        Resonance [Hz] and damping ratio of a series element, which amplifies the motion's noise.
     far : float
         Size [N] beyond which a residual counts little, see `weighted`.
     """
@@ -78,6 +81,7 @@ class Run:
     first: int = 0
     clock: float = 0.0
     corner: float = np.inf
+    shaft: Shaft | None = None
     far: float = np.inf
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
@@ -99,17 +103,22 @@ class Run:
             object.__setattr__(self, "_response", found)
         return filtered(values, self.__dict__["_response"])[:: self.thinned]
 
-    def weighted(self, values: Array, mask: NDArray[np.bool_]) -> Array:
+    def weighted(self, values: Array, mask: NDArray[np.bool_], shaft: Shaft | None = None) -> Array:
         """Masked values as they count against noise, shape (n,); 0 elsewhere is taken for them.
 
         White noise of the displacement becomes one of b a whose power grows with the fourth power
         of the frequency: below the corner a residual counts in full, above ever less. Without that
-        a model would win by predicting less of this noise.
+        a model would win by predicting less of this noise. Near the resonance of a shaft a right
+        model makes more of it than one without the shaft, and would lose by that; and a fit would
+        find more damping than there is, to make less of it. So a model's own `shaft` sets what
+        counts, in a run that has one: its weights are as large in the mean, and no model wins by
+        the noise that it makes (the likelihood of a noise whose size is not known).
 
         What is beyond `far` counts by its logarithm: the sum of the squares is the Cauchy loss.
         """
         if np.isfinite(self.corner) and np.isfinite(values).all():
-            values = apply_weight(np.where(mask, values, 0.0), self._weight)
+            weight = self._weight if shaft is None else self._weight_of(shaft)
+            values = apply_weight(np.where(mask, values, 0.0), weight)
         if np.isfinite(self.far):
             share = values / self.far
             values = self.far * np.sign(share) * np.sqrt(np.log1p(share**2))
@@ -130,7 +139,18 @@ class Run:
 
     @cached_property
     def _weight(self) -> Array:
-        return weight_above(self.force.size, self.spacing, self.corner)
+        return weight_above(self.force.size, self.spacing, self.corner, self.shaft)
+
+    def _weight_of(self, shaft: Shaft) -> Array:
+        if self.shaft is None or shaft == self.shaft:
+            return self._weight
+        weight = weight_above(self.force.size, self.spacing, self.corner, shaft)
+        return weight * np.exp(self._mean_logarithm(self._weight) - self._mean_logarithm(weight))
+
+    def _mean_logarithm(self, weight: Array) -> float:
+        """Mean over the band of a weight's logarithm."""
+        frequency = np.linspace(0.0, 0.5 / self.spacing, weight.size)
+        return float(np.average(np.log(weight), weights=response(frequency, self.cutoff) ** 2))
 
     def gain(self, frequency: float) -> float:
         """What the low-pass leaves of a tone."""

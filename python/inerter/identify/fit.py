@@ -19,6 +19,7 @@ from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_valu
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.residual import robust_weight, sandwich
+from inerter.records.motion import Shaft
 
 Array = NDArray[np.float64]
 Masks = Sequence[NDArray[np.bool_]]
@@ -92,7 +93,7 @@ class Problem:
 
     def residual(self, model: Model) -> list[Array]:
         """Errors as they count against noise, of every run [N]."""
-        return self.weighted(self.errors(model))
+        return self.weighted(self.errors(model), model.shaft)
 
     def errors(self, model: Model) -> list[Array]:
         """Measured minus predicted force of every run [N]."""
@@ -101,10 +102,10 @@ class Problem:
             for run, mask in zip(self.runs, self.masks, strict=True)
         ]
 
-    def weighted(self, arrays: Sequence[Array]) -> list[Array]:
+    def weighted(self, arrays: Sequence[Array], shaft: Shaft | None = None) -> list[Array]:
         """Arrays of every run as they count, see `Run.weighted`."""
         everything = zip(self.runs, arrays, self.masks, strict=True)
-        return [run.weighted(values, mask) for run, values, mask in everything]
+        return [run.weighted(values, mask, shaft) for run, values, mask in everything]
 
     def _masked(self, arrays: Sequence[Array]) -> Array:
         return np.concatenate([a[m] for a, m in zip(arrays, self.masks, strict=True)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,6 +11,7 @@ from types import MappingProxyType
 from inerter.core import Device, DeviceError, parameters
 from inerter.identify.channel import clips
 from inerter.identify.coordinates import device_values
+from inerter.records.motion import Shaft
 
 # free coordinates that make up for how a law is smoothed or how a run begins, and name no effect
 NUISANCES = ("transition_velocity", "friction_place")
@@ -88,6 +90,16 @@ class Model:
     def delay(self) -> float:
         """Time by which the force channel is late [s]."""
         return self.values.get("delay", 0.0)
+
+    @property
+    def shaft(self) -> Shaft | None:
+        """Resonance [Hz] and damping ratio of the inertance on its series element, if any."""
+        device = self.device()
+        inertance, stiffness = device.inertance, device.series_stiffness
+        if not (inertance > 0 and stiffness > 0):
+            return None
+        critical = 2 * math.sqrt(stiffness * inertance)
+        return stiffness / (math.pi * critical), device.series_damping / critical
 
     @property
     def complexity(self) -> int:

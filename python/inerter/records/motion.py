@@ -28,9 +28,12 @@ from scipy.interpolate import make_interp_spline
 from inerter.records.record import Record
 
 Array = NDArray[np.float64]
+Shaft = tuple[float, float]
 
 # samples within this many periods of the cut-off from an end are not used
 EDGE_PERIODS = 2.5
+# damping ratio of a resonance that a weight heeds; one of less would ring for ever
+LEAST_LOSS = 0.01
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
 
@@ -163,15 +166,35 @@ def filtered(values: Array, response: Array) -> Array:
     return line + irfft(rfft(wave) * response, wave.size)[:n]
 
 
-def weight_above(size: int, spacing: float, corner: float) -> Array:
-    """(1 + (f / corner)^4)^(-1/2) for channels of a size, see `apply_weight`; corner in Hz.
-
-    The inverse of a noise that is white below the corner and grows with the square of the frequency
-    above.
-    """
-    least = (size + round(1 / (corner * spacing)) + 1) // 2
+def weight_above(size: int, spacing: float, corner: float, shaft: Shaft | None = None) -> Array:
+    """1 / `motion_noise`^(1/2) for channels of a size, see `apply_weight`."""
+    slowest = corner if shaft is None else min(corner, shaft[0] * max(shaft[1], LEAST_LOSS))
+    least = (size + round(1 / (slowest * spacing)) + 1) // 2
     length = 2 * int(next_fast_len(least, real=True) or least)
-    return 1 / np.sqrt(1 + (rfftfreq(length, spacing) / corner) ** 4)
+    return motion_noise(rfftfreq(length, spacing), corner, shaft) ** -0.5
+
+
+def motion_noise(frequency: Array, corner: float, shaft: Shaft | None = None) -> Array:
+    """Power of a force's noise and of what the motion's noise adds, per the former (n,).
+
+    White noise of the displacement becomes one of b a: (f / corner)^4. A shaft amplifies it near
+    its resonance; what it takes away above is not counted.
+
+    Parameters
+    ----------
+    frequency : ndarray (n,)
+        In Hz.
+    corner : float
+        Frequency at which both are alike without a shaft [Hz].
+    shaft : (float, float), optional
+        Resonance [Hz] and damping ratio of the inertance on its series element.
+    """
+    noise = (frequency / corner) ** 4
+    if shaft is not None:
+        ratio = frequency / shaft[0]
+        damping = 2j * max(shaft[1], LEAST_LOSS) * ratio
+        noise *= np.maximum(np.abs((1 + damping) / (1 - ratio**2 + damping)) ** 2, 1.0)
+    return 1 + noise
 
 
 def apply_weight(values: Array, weight: Array) -> Array:

@@ -1,0 +1,111 @@
+"""The band of the motion: whether a model that was found predicts the force better in another.
+
+The cut-offs were chosen with a linear model, which knows neither contacts nor a resonance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from inerter.identify.bench import on_clocks, whole
+from inerter.identify.coordinates import Scales
+from inerter.identify.fit import Masks, Problem, rms
+from inerter.identify.model import Model
+from inerter.identify.preparation import Preparation, prepare_again
+from inerter.records import Record
+from inerter.records.motion import Motion
+
+# share of the error that another band has to take away
+WORTH_A_BAND = 0.1
+
+Error = Callable[[Problem], float]
+
+
+def best_band(
+    records: Sequence[Record],
+    preparation: Preparation,
+    learnt: Masks,
+    model: Model,
+    sizes: Scales,
+    far: float = np.inf,
+) -> Preparation:
+    """The records in the band in which a model predicts the samples `learnt` best.
+
+    Errors count as in fits of that preparation, beyond `far` [N] little.
+    """
+
+    def error(problem: Problem) -> float:
+        return rms(problem.residual(model), problem.masks)
+
+    return _smoothed(records, preparation, learnt, model, sizes, error, far)
+
+
+def wider_band(
+    records: Sequence[Record],
+    preparation: Preparation,
+    learnt: Masks,
+    model: Model,
+    sizes: Scales,
+) -> Preparation | None:
+    """The records in the wider band in which a model predicts `learnt` better, if any."""
+    again = best_band(records, preparation, learnt, model, sizes)
+    return again if _lowered(preparation, again, 1) else None
+
+
+def narrower_band(
+    records: Sequence[Record],
+    preparation: Preparation,
+    held_out: Masks,
+    baseline: Model,
+    model: Model,
+    sizes: Scales,
+) -> Preparation | None:
+    """The records in the narrower band in which `held_out` tells more of a shaft, if any.
+
+    Near its resonance a shaft amplifies the motion's noise. Runs that are fitted may be loud enough
+    there, and the one held out not. The geometric mean of the two models' errors decides, which
+    favours neither.
+    """
+    if model.shaft is None:
+        return None
+
+    def error(problem: Problem) -> float:
+        one, other = (rms(problem.errors(m), problem.masks) for m in (baseline, model))
+        return float(np.sqrt(one * other))
+
+    again = _smoothed(records, preparation, held_out, model, sizes, error)
+    return again if _lowered(preparation, again, -1) else None
+
+
+def _smoothed(
+    records: Sequence[Record],
+    preparation: Preparation,
+    judged: Masks,
+    model: Model,
+    sizes: Scales,
+    error: Error,
+    far: float = np.inf,
+) -> Preparation:
+    """The records at the cut-off at which the error over the samples `judged` is smallest."""
+
+    def along(motions: Sequence[Motion], masks: Masks) -> float:
+        runs = [
+            replace(run, corner=preparation.corner, shaft=model.shaft, far=far)
+            for run in on_clocks([whole(motion) for motion in motions])
+        ]
+        both = [mask & other for mask, other in zip(masks, judged, strict=True)]
+        return error(Problem(runs, both, sizes))
+
+    return prepare_again(records, preparation, along)
+
+
+def _lowered(before: Preparation, after: Preparation, way: int) -> bool:
+    """Whether another band, wider (1) or narrower (-1), takes enough of the error away."""
+    here, there = (
+        float(after.errors[np.searchsorted(after.cutoffs, 0.999 * p.cutoff)])
+        for p in (before, after)
+    )
+    return way * (after.cutoff - before.cutoff) > 0 and there < (1 - WORTH_A_BAND) * here
