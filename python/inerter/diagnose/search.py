@@ -145,11 +145,12 @@ class Search:
     found: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self._set_out()
+        self._divide()
         # what the last step without a result came upon
         self._refused: list[Scored] = []
 
-    def _set_out(self) -> None:
+    def _divide(self) -> None:
+        """What is fitted, and the folds of it."""
         self.problem = Problem(self.runs, self.split.fit)
         self.blocks = blocks(self.problem.masks)
         self.trials = Trials(self.problem, REQUIRED_GAIN)
@@ -162,7 +163,7 @@ class Search:
             return
         on_blocks = self._folds is self._spread
         self.runs = [replace(run, shaft=model.shaft) for run in self.runs]
-        self._set_out()
+        self._divide()
         if on_blocks:
             self._folds = self._spread
 
@@ -308,9 +309,9 @@ class Search:
         shaft = next((s for s in good if s.effect == "series_elasticity"), good[0])
         counted = self._weighed_for(shaft, good)
         best = min(counted, key=lambda s: s.squares.sum())
-        equal = [s for s in counted if s is best or self._as_good(s, best)]
-        chosen = min(equal, key=lambda s: (s.model.complexity, s.squares.sum()))
-        return good[counted.index(chosen)]
+        pairs = zip(good, counted, strict=True)
+        equal = [pair for pair in pairs if pair[1] is best or self._as_good(pair[1], best)]
+        return min(equal, key=lambda pair: (pair[1].model.complexity, pair[1].squares.sum()))[0]
 
     def _two_steps(self, current: Scored) -> Scored | None:
         """Two effects that are sure together, where none is alone.
