@@ -174,7 +174,9 @@ def weight_above(size: int, spacing: float, corner: float, shaft: Shaft | None =
     return motion_noise(rfftfreq(length, spacing), corner, shaft) ** -0.5
 
 
-def motion_noise(frequency: Array, corner: float, shaft: Shaft | None = None) -> Array:
+def motion_noise(
+    frequency: NDArray[np.floating], corner: float, shaft: Shaft | None = None
+) -> Array:
     """Power of a force's noise and of what the motion's noise adds, per the former (n,).
 
     White noise of the displacement becomes one of b a: (f / corner)^4. A shaft amplifies it near
