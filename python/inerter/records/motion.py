@@ -191,7 +191,7 @@ def motion_noise(
     shaft : (float, float), optional
         Resonance [Hz] and damping ratio of the inertance on its series element.
     """
-    noise = (frequency / corner) ** 4
+    noise = np.asarray(frequency / corner, dtype=float) ** 4
     if shaft is not None:
         ratio = frequency / shaft[0]
         damping = 2j * max(shaft[1], LEAST_LOSS) * ratio
