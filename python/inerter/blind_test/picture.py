@@ -73,8 +73,8 @@ def calibration_picture(result: dict[str, Any]) -> bytes:
         axes.plot([x, x], [lower, upper], color=LIGHT["after"], lw=1.2, alpha=0.6)
         axes.plot(x, y, "o", color=LIGHT["after"], ms=4.0 + 1.6 * np.log10(number))
         axes.annotate(
-            f"{number}", (x, y), xytext=(6, -10), textcoords="offset points", fontsize=8,
-            color=LIGHT["text"],
+            f"{number}", (x, lower), xytext=(0, -5), textcoords="offset points", fontsize=8,
+            ha="center", va="top", color=LIGHT["text"],
         )  # fmt: skip
     axes.set_xlim(0.0, 1.04)
     axes.set_ylim(0.0, 1.04)
