@@ -95,6 +95,11 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
 
 //------------------------------ forces ------------------------------------------------------------
 
+double inerter_bristle(const InerterDevice* device, double* damping) {
+  *damping = device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
+  return has_bristle(device) ? law_of(device)->stiffness(device) : 0;
+}
+
 double inerter_friction_force(const InerterDevice* device, double x, double v, const double* z) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;

@@ -160,6 +160,9 @@ INERTER_API double inerter_force_motion(const InerterDevice* device, double x, d
 INERTER_API double inerter_force_motion_of_rate(const InerterDevice* device, double x, double v,
                                                 const double* z, const double* rate);
 
+// Largest stiffness of the friction law's bristle [N/m], and its damping [N s/m]; 0 without one.
+INERTER_API double inerter_bristle(const InerterDevice* device, double* damping);
+
 // Force of the friction law alone (without load friction).
 INERTER_API double inerter_friction_force(const InerterDevice* device, double x, double v,
                                           const double* z);
@@ -184,9 +187,29 @@ INERTER_API InerterForce inerter_force_over_step(const InerterDevice* device, do
                                                  double a, const double* z, double h,
                                                  double mobility, double* end);
 
-// Whether its total is a line in a, start + rise a, and which; no memory, no corner.
-INERTER_API int inerter_line_over_step(const InerterDevice* device, double x, double v, double h,
-                                       double* start, double* rise);
+// The total of those as a function of the acceleration alone, for a solver that asks often: what
+// does not depend on a is found once. z has to live as long as the step.
+typedef struct InerterStep_ {
+  const InerterDevice* device;
+  double x, v;
+  const double* z;
+  double h, mobility;
+  int kind;                   // which of the parts below there are (over_step.c)
+  double start, rise;         // a line: start + rise a
+  double level, width, lean;  // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
+  double motion, load;        // load friction of this instant
+} InerterStep;
+
+INERTER_API void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x,
+                                    double v, const double* z, double h, double mobility);
+
+// The same for the force of this instant, h = 0; motion: what inerter_force_motion says.
+INERTER_API void inerter_step_instant(InerterStep* step, const InerterDevice* device, double x,
+                                      double v, double motion);
+
+// Whether the force is a line in a; the force at a, and how it rises with a (>= 0).
+INERTER_API int inerter_step_is_line(const InerterStep* step);
+INERTER_API double inerter_step_force(const InerterStep* step, double a, double* slope);
 
 // Energy stored in inertance, springs, bristles, gas and stops [J].
 INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, double v,

@@ -23,7 +23,9 @@ typedef struct FrictionPath_ {
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
 // force_of_rate: the force where the rate of the state is known already; NULL where it is no help.
 // along: force and state at samples of a motion, see `friction_along`.
-// Laws without states leave all but force and along NULL.
+// level, width: the force of a law without state is level(p, x, v) tanh(v / width(p)); the level is
+// even in v but for the asymmetry, which it leaves out.
+// Laws without states leave all but force, along, level and width NULL, those with one the latter.
 typedef struct FrictionLaw_ {
   double (*rate)(const InerterDevice* p, double x, double v, double z);
   double (*step)(const InerterDevice* p, double x, double v, double z, double h);
@@ -33,6 +35,8 @@ typedef struct FrictionLaw_ {
   double (*stiffness)(const InerterDevice* p);
   void (*along)(const InerterDevice* p, const FrictionPath* path, double* z, double* forces);
   double (*force_of_rate)(const InerterDevice* p, double z, double rate);
+  double (*level)(const InerterDevice* p, double x, double v);
+  double (*width)(const InerterDevice* p);
 } FrictionLaw;
 
 extern const FrictionLaw inerter_coulomb;
@@ -62,13 +66,16 @@ static inline double friction_direction(const InerterDevice* p, double v) {
 // Factor on both friction levels: it differs between the directions and along the stroke.
 //   (1 + asymmetry sign(v)) max(0.001, 1 + gradient x + curvature x^2)
 // The floor keeps bristles from facing a yield level of zero.
-static inline double friction_level(const InerterDevice* p, double x, double v) {
-  double level = 1;
-  if (p->friction_asymmetry != 0) {
-    level += p->friction_asymmetry * friction_direction(p, v);
+static inline double friction_along_stroke(const InerterDevice* p, double x) {
+  if (p->friction_gradient == 0 && p->friction_curvature == 0) {
+    return 1;
   }
-  if (p->friction_gradient != 0 || p->friction_curvature != 0) {
-    level *= fmax(1e-3, 1 + (p->friction_gradient + p->friction_curvature * x) * x);
+  return fmax(1e-3, 1 + (p->friction_gradient + p->friction_curvature * x) * x);
+}
+static inline double friction_level(const InerterDevice* p, double x, double v) {
+  double level = friction_along_stroke(p, x);
+  if (p->friction_asymmetry != 0) {
+    level *= 1 + p->friction_asymmetry * friction_direction(p, v);
   }
   return level;
 }

@@ -1,7 +1,8 @@
 // Force over a step at whose end the velocity is v1 = v + h a, for implicit time stepping.
 //
-//   dampers, friction without memory, direction of the load friction: at v1
-//   springs and constant force: at x;  end stops: at x + h v1, v1
+//   dampers, direction of friction without memory and of the load friction: at v1
+//   level of friction without memory: at v;  springs and constant force: at x
+//   end stops: at x + h v1, v1
 //   bristle: z1 = step(x, v1, z, h), force at v1 and z + share (z1 - z); behind free play its
 //   damper at the mean rate (friction_play.c)
 //   rigid inertance: B a + R + G at (x, v), the dampers of G with their slope times (v1 - v)
@@ -9,35 +10,75 @@
 //   share(k, m) = max(0, 1 - 1 / (h^2 k m)), m = mobility [1/kg] of the masses at the spring's ends
 //
 // Why: an explicit force is unstable where h^2 k m > 4 or h c m > 2, and forces at the end of the
-// step make a = a0 - mobility F(a) an equation with one solution, since F does not fall with a.
-// The share is the least that is stable: it adds no damping where h resolves the spring.
+// step make a = a0 - mobility F(a) an equation with one solution, since F does not fall with a: the
+// part of friction that falls with speed (Stribeck, Brown-McPhee, asymmetry above 1/2) is that of
+// the start. The share is the least that is stable: it adds no damping where h resolves the spring.
 // End stops are backward in full: they may take energy at an impact, never give it. Where h
 // resolves one without damping, a mass m comes back with exp(-pi h sqrt(k_e / m) / 2) of its speed.
-// Falls with a where friction falls with speed (Stribeck, asymmetry above 1/2): the solution is
-// then unique for h mobility |slope| < 1. Order: 1. For h -> 0 it is inerter_force. Source:
-// Newmark's beta method in its semi-implicit form. Not modelled: springs between the terminals
-// stiffer than h resolves; those belong to the caller.
+// Falls with a where the yield level of LuGre falls with speed: the solution is then unique for
+// h mobility |slope| < 1. Order: 1. For h -> 0 it is inerter_force. Source: Newmark's beta method
+// in its semi-implicit form. Not modelled: springs between the terminals stiffer than h resolves;
+// those belong to the caller.
 
 #include <string.h>
 
 #include "laws.h"
 
-// force of the friction law; z1: its state at the end
-static double friction_over_step(const InerterDevice* device, double x, double v1, const double* z,
-                                 double h, double mobility, double* z1) {
-  if (device->friction == INERTER_FRICTION_none) {
-    return 0;
+// asymmetry of friction up to which its force does not fall with v1
+static const double kMildAsymmetry = 0.5;
+
+enum { STEP_LINE, STEP_FRICTION, STEP_LOAD, STEP_GENERAL };  // InerterStep.kind
+
+// friction without memory, with its slope over v1
+static Tangent sharp_friction(const InerterStep* step, double v1) {
+  const InerterDevice* p = step->device;
+  double direction = tanh(v1 / step->width);
+  Tangent friction = {step->level * direction,
+                      step->level * (1 - direction * direction) / step->width};
+  if (step->lean != 0) {
+    double side = friction_direction(p, v1), factor = 1 + step->lean * side;
+    double turn = step->lean * (1 - side * side) / p->transition_velocity;
+    friction.slope = friction.slope * factor + friction.value * turn;
+    friction.value *= factor;
   }
+  return friction;
+}
+
+// what friction without memory is at any v1
+static void find_level(InerterStep* step, double stretch) {
+  const InerterDevice* p = step->device;
+  step->level = law_of(p)->level(p, stretch, step->v);
+  step->width = law_of(p)->width(p);
+  step->lean = p->friction_asymmetry;
+  if (fabs(step->lean) > kMildAsymmetry) {
+    step->level *= 1 + step->lean * friction_direction(p, step->v);
+    step->lean = 0;
+  }
+}
+
+// force of a law with a bristle; z1: its state at the end
+static double bristle_over_step(const InerterDevice* device, double x, double v1, const double* z,
+                                double h, double mobility, double* z1) {
   const FrictionLaw* law = law_of(device);
-  if (!has_bristle(device)) {
-    return law->force(device, x, v1, 0);
-  }
   *z1 = bristle_step(device, x, v1, z[0], h);
   double share = least_share(law->stiffness(device), mobility, h);
   if (device->friction_backlash > 0) {
     return play_force_over_step(device, x, v1, z[0], *z1, share, h);
   }
   return law->force(device, x, v1, z[0] + share * (*z1 - z[0]));
+}
+
+static double friction_over_step(const InerterDevice* device, double x, double v, double v1,
+                                 const double* z, double h, double mobility, double* z1) {
+  if (device->friction == INERTER_FRICTION_none) {
+    return 0;
+  }
+  if (has_bristle(device)) {
+    return bristle_over_step(device, x, v1, z, h, mobility, z1);
+  }
+  InerterStep step = {.device = device, .v = v};
+  find_level(&step, x);
+  return sharp_friction(&step, v1).value;
 }
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
@@ -51,7 +92,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
   if (h == 0) {
     force = inerter_force(device, x, v, a, z);
   } else {
-    double bristle = friction_over_step(device, stretch, v1, z, h, mobility, next);
+    double friction = friction_over_step(device, stretch, v, v1, z, h, mobility, next);
     if (has(device, PART_SERIES)) {
       double* series = next + series_index(device);
       force.inertance = series_over_step(device, stretch, v1, series, h, mobility);
@@ -63,7 +104,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
     double damper = (device->viscous + device->quadratic_damping * fabs(v1)) * v1;
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
-    force.friction = bristle + inerter_load_factor(device, v1) * fabs(force.inertance);
+    force.friction = friction + inerter_load_factor(device, v1) * fabs(force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }
   if (end && device->nstate) {
@@ -72,13 +113,74 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
   return force;
 }
 
-int inerter_line_over_step(const InerterDevice* device, double x, double v, double h, double* start,
-                           double* rise) {
-  if (device->friction != INERTER_FRICTION_none || device->load_friction != 0 ||
-      device->quadratic_damping != 0 || device->parts & ~(uint32_t)PART_VARYING) {
-    return 0;
+//------------------------------ as a function of the acceleration ---------------------------------
+
+void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x, double v,
+                        const double* z, double h, double mobility) {
+  *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
+  step->kind = STEP_GENERAL;
+  if (device->load_friction != 0 || device->quadratic_damping != 0 || has_bristle(device) ||
+      has(device, PART_SERIES) || has(device, PART_STOPS)) {
+    return;
   }
-  *start = inerter_force_over_step(device, x, v, 0, NULL, h, 0, NULL).total;
-  *rise = inerter_inertance(device, x, v, NULL) + h * device->viscous;
-  return 1;
+
+  // a line, or a line and the sign of friction
+  double rest, inertance = inerter_inertance(device, x, v, &rest), stretch = stretch_of(device, x);
+  double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
+  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
+  step->start = rest + spring + device->viscous * v + device->force_offset;
+  step->rise = inertance + h * (slope + device->viscous);
+  step->kind = STEP_LINE;
+  if (device->friction != INERTER_FRICTION_none) {
+    step->kind = STEP_FRICTION;
+    find_level(step, stretch);
+  }
+}
+
+void inerter_step_instant(InerterStep* step, const InerterDevice* device, double x, double v,
+                          double motion) {
+  *step = (InerterStep){.device = device, .x = x, .v = v};
+  step->rise = inerter_inertance(device, x, v, &step->start);
+  if (device->load_friction != 0) {
+    step->kind = STEP_LOAD;
+    step->motion = motion;
+    step->load = inerter_load_factor(device, v);
+  } else {
+    step->kind = STEP_LINE;
+    step->start += motion;
+  }
+}
+
+int inerter_step_is_line(const InerterStep* step) {
+  return step->kind == STEP_LINE;
+}
+
+double inerter_step_force(const InerterStep* step, double a, double* slope) {
+  double line = step->start + step->rise * a;
+  switch (step->kind) {
+    case STEP_LINE:
+      *slope = step->rise;
+      return line;
+
+    case STEP_FRICTION: {
+      Tangent friction = sharp_friction(step, step->v + step->h * a);
+      *slope = step->rise + step->h * friction.slope;
+      return line + friction.value;
+    }
+
+    case STEP_LOAD:
+      *slope = step->rise * (1 + step->load * sign(line));
+      return line + step->load * fabs(line) + step->motion;
+  }
+
+  // a small difference: laws with corners have no better slope
+  double near = 1e-6 * (1 + fabs(a));
+  const InerterDevice* p = step->device;
+  double force =
+      inerter_force_over_step(p, step->x, step->v, a, step->z, step->h, step->mobility, NULL).total;
+  double beside =
+      inerter_force_over_step(p, step->x, step->v, a + near, step->z, step->h, step->mobility, NULL)
+          .total;
+  *slope = fmax(0, (beside - force) / near);
+  return force;
 }

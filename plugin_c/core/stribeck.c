@@ -14,8 +14,17 @@ static double force(const InerterDevice* p, double x, double v, double z) {
   return friction_level(p, x, v) * friction_stribeck_curve(p, v) * friction_direction(p, v);
 }
 
+static double level(const InerterDevice* p, double x, double v) {
+  return friction_along_stroke(p, x) * friction_stribeck_curve(p, v);
+}
+
+static double width(const InerterDevice* p) {
+  return p->transition_velocity;
+}
+
 static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
   friction_along(p, path, z, forces, NULL, force);
 }
 
-const FrictionLaw inerter_stribeck = {.force = force, .along = along};
+const FrictionLaw inerter_stribeck = {
+    .force = force, .along = along, .level = level, .width = width};

@@ -155,36 +155,18 @@ int attachment_check(const mjModel* m, int actuator, const InerterDevice* device
              : 0;
 }
 
-int attachment_check_force(const mjModel* m, int actuator, const InerterDevice* device, int native,
-                           char message[INERTER_MESSAGE_SIZE]) {
-  if ((native || device->inertance == 0) && !instance_has_series(device) &&
-      !instance_varies(device)) {
-    return 0;
-  }
+int attachment_limited(const mjModel* m, int actuator) {
   int target = m->actuator_trnid[2 * actuator];
-  int tendon = m->actuator_trntype[actuator] == mjTRN_TENDON;
-  const char* limit = NULL;
-  int joint = -1;
   if (m->actuator_forcelimited[actuator]) {
-    limit = "forcerange";
-  } else if (tendon && m->tendon_actfrclimited[target]) {
-    limit = "actuatorfrcrange of the tendon";
-  } else if (!tendon) {
-    joint = m->jnt_actfrclimited[target] ? target : -1;
-  } else {
-    for (int k = 0; joint < 0 && k < m->ten_J_rownnz[target]; k++) {
-      int candidate = m->dof_jntid[m->ten_J_colind[m->ten_J_rowadr[target] + k]];
-      joint = m->jnt_actfrclimited[candidate] ? candidate : -1;
+    return 1;
+  }
+  if (m->actuator_trntype[actuator] != mjTRN_TENDON) {
+    return m->jnt_actfrclimited[target];
+  }
+  for (int k = 0; k < m->ten_J_rownnz[target]; k++) {
+    if (m->jnt_actfrclimited[m->dof_jntid[m->ten_J_colind[m->ten_J_rowadr[target] + k]]]) {
+      return 1;
     }
   }
-  if (limit || joint >= 0) {
-    snprintf(
-        message, INERTER_MESSAGE_SIZE,
-        "%s%s%.60s%s is given, but the inertance of this device is a force of its actuator and "
-        "would be cut; remove it",
-        limit ? limit : "actuatorfrcrange of joint ", limit ? "" : "\"",
-        limit ? "" : attachment_name(m, mjOBJ_JOINT, joint), limit ? "" : "\"");
-    return -1;
-  }
-  return 0;
+  return m->tendon_actfrclimited[target];
 }

@@ -13,10 +13,9 @@
 int attachment_check(const mjModel* m, int actuator, const InerterDevice* device, int live,
                      char message[INERTER_MESSAGE_SIZE]);
 
-// Check that no limit cuts an inertance that is a force of the actuator: not native (or
-// live), varying, with load friction or behind a series element. Return 0, or -1 with a message.
-int attachment_check_force(const mjModel* m, int actuator, const InerterDevice* device, int native,
-                           char message[INERTER_MESSAGE_SIZE]);
+// Whether the engine limits the forces of actuators where this one acts (forcerange,
+// actuatorfrcrange of its tendon or of a joint that it moves).
+int attachment_limited(const mjModel* m, int actuator);
 
 // The geom that a tendon wraps around, or -1.
 int attachment_wrapped_geom(const mjModel* m, int tendon);

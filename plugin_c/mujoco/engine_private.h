@@ -22,8 +22,10 @@ void mj_factorI(mjtNum* factor, mjtNum* inverse, int nv, const int* rownnz, cons
 void mj_solveLD(mjtNum* x, const mjtNum* factor, const mjtNum* inverse, int nv, int n,
                 const int* rownnz, const int* rowadr, const int* colind, const int* index);
 
-// Solve with the effective metric of the discrete integrator.
+// Solve with the effective metric of the discrete integrator; add what it has beyond the inertia,
+// times a vector.
 void mj_effSolve(const mjModel* m, mjData* d, mjtNum* x, const mjtNum* y);
+void mj_effMulAdd(const mjModel* m, mjData* d, mjtNum* result, const mjtNum* vector);
 
 // Damping that actuators add to a joint (returned, and poly), and the slope of a damping law.
 mjtNum mj_actuatorDamping(const mjModel* m, mjtObj type, int id, mjtNum poly[mjNPOLY]);

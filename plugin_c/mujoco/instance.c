@@ -75,6 +75,23 @@ int instance_has_live_inertance(const Instance* self) {
          (channel && self->stated.channel_length > 0);
 }
 
+// inertance and viscous damping, as the engine keeps its armature and damping
+static InerterDevice matter_of(const InerterDevice* share) {
+  InerterDevice matter;
+  inerter_default(&matter);
+  if (instance_has_series(share)) {
+    return matter;
+  }
+  matter.inertance = share->inertance;
+  matter.inertance_gradient = share->inertance_gradient;
+  matter.inertance_curvature = share->inertance_curvature;
+  matter.inertance_speed_gradient = share->inertance_speed_gradient;
+  matter.viscous = share->viscous;
+  char message[INERTER_MESSAGE_SIZE];
+  inerter_finish(&matter, message);
+  return matter;
+}
+
 static int is_nothing(const InerterDevice* share) {
   return share->friction == INERTER_FRICTION_none && !share->parts && share->inertance == 0 &&
          share->load_friction == 0 && share->viscous == 0 && share->quadratic_damping == 0 &&
@@ -125,27 +142,29 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
     }
   }
   self->forceless = is_nothing(&self->share) && self->replaced == 0;
+  self->matter = matter_of(&self->share);
 }
 
 //------------------------------ motion ------------------------------------------------------------
 
-int instance_idle(const mjModel* m, const mjData* d, const Instance* self) {
-  int i = self->actuator;
-  int group = m->actuator_group[i];
-  if (m->opt.disableflags & mjDSBL_ACTUATION) {
-    return 1;
-  }
-  if (group >= 0 && group < 31 && m->opt.disableactuator & (1 << group)) {
-    return 1;
-  }
+int instance_disabled(const mjModel* m, const Instance* self) {
+  int group = m->actuator_group[self->actuator];
+  return m->opt.disableflags & mjDSBL_ACTUATION ||
+         (group >= 0 && group < 31 && m->opt.disableactuator & (1 << group));
+}
 
-  // asleep: every tree that it moves is
-  int row = m->actuator_outadr[i], start = d->moment_rowadr[row], count = d->moment_rownnz[row];
+int instance_asleep(const mjModel* m, const mjData* d, const Instance* self) {
+  int row = m->actuator_outadr[self->actuator];
+  int start = d->moment_rowadr[row], count = d->moment_rownnz[row];
   int asleep = m->opt.enableflags & mjENBL_SLEEP && count;
   for (int k = start; asleep && k < start + count; k++) {
     asleep = d->tree_asleep[m->dof_treeid[d->moment_colind[k]]] >= 0;
   }
   return asleep;
+}
+
+int instance_idle(const mjModel* m, const mjData* d, const Instance* self) {
+  return instance_disabled(m, self) || instance_asleep(m, d, self);
 }
 
 int instance_sees_falling_asleep(const mjModel* m, const mjData* d) {
@@ -172,6 +191,36 @@ void instance_add_moment(const mjModel* m, const mjData* d, const Instance* self
   for (int k = start; k < end; k++) {
     vec[d->moment_colind[k]] += force * d->actuator_moment[k];
   }
+}
+
+void instance_pull(const mjModel* m, mjData* d, Instance* self, mjtNum force) {
+  if (self->limited || self->disabled) {
+    instance_add_moment(m, d, self, -force, d->qfrc_passive);
+    self->detour = force;
+  } else {
+    d->actuator_force[m->actuator_outadr[self->actuator]] -= force;
+  }
+}
+
+void instance_let_go(const mjModel* m, mjData* d, Instance* self) {
+  if (self->detour == 0) {
+    return;
+  }
+  // without springs and dampers the engine makes passive forces of nothing, and asks nobody
+  int none = mjDSBL_SPRING | mjDSBL_DAMPER;
+  if ((m->opt.disableflags & none) == none) {
+    int row = m->actuator_outadr[self->actuator], start = d->moment_rowadr[row];
+    for (int k = start; k < start + d->moment_rownnz[row]; k++) {
+      d->qfrc_passive[d->moment_colind[k]] = 0;
+    }
+  } else {
+    instance_add_moment(m, d, self, self->detour, d->qfrc_passive);
+  }
+  self->detour = 0;
+}
+
+void instance_passive_is_new(Instance* self) {
+  self->detour = 0;
 }
 
 mjtNum instance_along(const mjModel* m, const mjData* d, const Instance* self, const mjtNum* vec) {

@@ -28,6 +28,7 @@ typedef struct Instance_ {
   InerterDevice stated;  // as configured, nothing derived yet
   InerterDevice device;  // as it is now, with what the engine integrates of it; rest_length: 0
   InerterDevice share;   // the device without that: what the plugin's force is made of
+  InerterDevice matter;  // what of the share stays when actuation is disabled
   mjtNum armature;       // what of the model these were made for (instance_refresh)
   mjtNum damping;
   mjtNum replaced;  // inertance of the engine's that the plugin's share stands in for [kg]
@@ -37,9 +38,11 @@ typedef struct Instance_ {
   int actuator;        // index of the actuator
   int forceless;       // 1: the plugin's share is nothing
   int native;          // 1: the engine integrates inertance and viscous damping (placement.h)
+  int limited;         // 1: the engine limits what actuators do where it pulls (instance_pull)
   int sensed;          // 1: a sensor reads this instance
   int last;            // 1: the last instance of the plugin in the model
   int probing;         // 1: the engine is asked what it does without the forces (coupled.c)
+  int disabled;        // 1: its actuator is, so that only matter is left
   int nlive;           // number of live parameters
   LiveParameter live[INERTER_NPARAMETER];
 
@@ -51,6 +54,7 @@ typedef struct Instance_ {
   mjtNum x, v;  // displacement, velocity
   mjtNum bias;  // acceleration that qvel alone causes: d(moment)/dt qvel
   double state[INERTER_MAXSTATE];
+  mjtNum detour;           // force that stands in mjData.qfrc_passive
   int solved;              // 1: the force was found together with the acceleration (coupled.h)
   double acceleration;     // which one [m/s^2]
   double mobility;         // acceleration of the terminals per force [1/kg]
@@ -58,10 +62,19 @@ typedef struct Instance_ {
   int complained;          // reasons (Complaint) for which it has said once what is wrong
   int integrator;          // under which (+ 1), and with which step, its stiffness was looked at
   mjtNum timestep;
+  int stiff_bristle;  // 1: a bristle is too stiff to be taken at the start of the step
+  int64_t solves;     // how often its force was solved for, how often that stopped at its bound,
+  int64_t stops;      // and how often the engine's solver left it a misfit
+  int64_t misfits;
 } Instance;
 
 static inline Instance* instance_of(const mjData* d, int instance) {
   return (Instance*)d->plugin_data[instance];
+}
+
+// Whether an mjData was made without plugins.
+static inline int instance_absent(const mjData* d, int instance) {
+  return instance >= d->nplugin || !d->plugin_data || !d->plugin_data[instance];
 }
 
 // The slots at which the engine knows the plugin, for instances with and without a sensor
@@ -125,8 +138,10 @@ int instance_has_live_inertance(const Instance* self);
 // Make device and share anew if the model's armature or damping, or `force`, says so.
 void instance_refresh(const mjModel* m, Instance* self, int force);
 
-// Whether the actuator does nothing now: its group or all actuation is disabled, or all that it
-// moves sleeps.
+// Whether the actuator is disabled, its group or all of them; whether all that it moves sleeps; and
+// one or the other: nothing but matter is left then.
+int instance_disabled(const mjModel* m, const Instance* self);
+int instance_asleep(const mjModel* m, const mjData* d, const Instance* self);
 int instance_idle(const mjModel* m, const mjData* d, const Instance* self);
 
 // Whether this evaluation is the engine's second look in the middle of a step, because trees have
@@ -139,6 +154,14 @@ mjtNum instance_displacement(const mjModel* m, const mjData* d, const Instance* 
 
 // Velocity of the actuator at the present qvel, with the moment arms of the last forward pass.
 mjtNum instance_velocity(const mjModel* m, const mjData* d, const Instance* self);
+
+// Let the device pull with a force: it is the actuator's, but where the engine limits what
+// actuators do. Motors have such limits, a device is none: there it takes the way of passive
+// forces. The second takes that force away again; the third says that the engine has made passive
+// forces anew.
+void instance_pull(const mjModel* m, mjData* d, Instance* self, mjtNum force);
+void instance_let_go(const mjModel* m, mjData* d, Instance* self);
+void instance_passive_is_new(Instance* self);
 
 // Add the actuator's moment arms, times a force, to a vector of the model's dofs.
 void instance_add_moment(const mjModel* m, const mjData* d, const Instance* self, mjtNum force,

@@ -6,9 +6,12 @@
 
 //------------------------------ factors -----------------------------------------------------------
 
-// factor H, whose lower half stands in metric->factor in the sparsity of M
+// factor H, whose lower half stands in metric->matrix in the sparsity of M
 static void factor_cholesky(const mjModel* m, mjData* d, Metric* metric) {
+  metric->kind = METRIC_CHOLESKY;
+  metric->factor = mj_stackAllocNum(d, m->nC);
   metric->inverse = mj_stackAllocNum(d, m->nv);
+  mju_copy(metric->factor, metric->matrix, m->nC);
   mj_factorI(metric->factor, metric->inverse, m->nv, m->M_rownnz, m->M_rowadr, m->M_colind, NULL);
 }
 
@@ -54,18 +57,18 @@ static void factor_lu(const mjModel* m, mjData* d, mjtNum* A) {
   mj_freeStack(d);
 }
 
-static void solve_lu(const mjModel* m, const mjtNum* A, mjtNum* x) {
+static void solve_lu(const mjModel* m, const mjtNum* A, int ndof, const int* dof, mjtNum* x) {
   // upper part, leaves first
-  for (int i = m->nv - 1; i >= 0; i--) {
-    int start = m->D_rowadr[i], end = start + m->D_rownnz[i];
+  for (int k = ndof - 1; k >= 0; k--) {
+    int i = dof[k], start = m->D_rowadr[i], end = start + m->D_rownnz[i];
     for (int q = start + m->D_diag[i] + 1; q < end; q++) {
       x[i] -= A[q] * x[m->D_colind[q]];
     }
   }
 
   // lower part with the pivots
-  for (int i = 0; i < m->nv; i++) {
-    int start = m->D_rowadr[i], diagonal = start + m->D_diag[i];
+  for (int k = 0; k < ndof; k++) {
+    int i = dof[k], start = m->D_rowadr[i], diagonal = start + m->D_diag[i];
     for (int q = start; q < diagonal; q++) {
       x[i] -= A[q] * x[m->D_colind[q]];
     }
@@ -73,27 +76,46 @@ static void solve_lu(const mjModel* m, const mjtNum* A, mjtNum* x) {
   }
 }
 
+static void solve_lu_transposed(const mjModel* m, const mjtNum* A, int ndof, const int* dof,
+                                mjtNum* x) {
+  // lower part with the pivots, leaves first
+  for (int k = ndof - 1; k >= 0; k--) {
+    int i = dof[k], start = m->D_rowadr[i], diagonal = start + m->D_diag[i];
+    x[i] /= A[diagonal];
+    for (int q = start; q < diagonal; q++) {
+      x[m->D_colind[q]] -= A[q] * x[i];
+    }
+  }
+
+  // upper part
+  for (int k = 0; k < ndof; k++) {
+    int i = dof[k], start = m->D_rowadr[i], end = start + m->D_rownnz[i];
+    for (int q = start + m->D_diag[i] + 1; q < end; q++) {
+      x[m->D_colind[q]] -= A[q] * x[i];
+    }
+  }
+}
+
 //------------------------------ metric ------------------------------------------------------------
 
 static Metric metric_of_euler(const mjModel* m, mjData* d) {
-  Metric metric = {METRIC_INERTIA, NULL, NULL};
+  Metric metric = {METRIC_INERTIA, NULL, NULL, NULL};
   if (m->opt.disableflags & (mjDSBL_EULERDAMP | mjDSBL_DAMPER)) {
     return metric;
   }
-  metric.factor = mj_stackAllocNum(d, m->nC);
-  mju_copy(metric.factor, d->M, m->nC);
-  if (add_joint_damping(m, d, metric.factor)) {
-    metric.kind = METRIC_CHOLESKY;
+  metric.matrix = mj_stackAllocNum(d, m->nC);
+  mju_copy(metric.matrix, d->M, m->nC);
+  if (add_joint_damping(m, d, metric.matrix)) {
     factor_cholesky(m, d, &metric);
   }
   return metric;
 }
 
 static Metric metric_of_implicitfast(const mjModel* m, mjData* d) {
-  Metric metric = {METRIC_CHOLESKY, mj_stackAllocNum(d, m->nC), NULL};
+  Metric metric = {METRIC_CHOLESKY, mj_stackAllocNum(d, m->nC), NULL, NULL};
   mjd_smooth_vel(m, d, 0);
   for (int k = 0; k < m->nC; k++) {
-    metric.factor[k] = d->M[k] - m->opt.timestep * d->qDeriv[m->mapD2M[k]];
+    metric.matrix[k] = d->M[k] - m->opt.timestep * d->qDeriv[m->mapD2M[k]];
   }
 
   // the engine solves free bodies apart, in full: here they keep the plain inertia
@@ -103,7 +125,7 @@ static Metric metric_of_implicitfast(const mjModel* m, mjData* d) {
       continue;
     }
     for (int i = m->jnt_dofadr[j]; i < m->jnt_dofadr[j] + 6; i++) {
-      mju_copy(metric.factor + m->M_rowadr[i], d->M + m->M_rowadr[i], m->M_rownnz[i]);
+      mju_copy(metric.matrix + m->M_rowadr[i], d->M + m->M_rowadr[i], m->M_rownnz[i]);
     }
   }
   factor_cholesky(m, d, &metric);
@@ -111,12 +133,13 @@ static Metric metric_of_implicitfast(const mjModel* m, mjData* d) {
 }
 
 static Metric metric_of_implicit(const mjModel* m, mjData* d) {
-  Metric metric = {METRIC_LU, mj_stackAllocNum(d, m->nD), NULL};
+  Metric metric = {METRIC_LU, mj_stackAllocNum(d, m->nD), mj_stackAllocNum(d, m->nD), NULL};
   mjd_smooth_vel(m, d, 1);
   for (int k = 0; k < m->nD; k++) {
     mjtNum inertia = m->mapM2D[k] >= 0 ? d->M[m->mapM2D[k]] : 0;
-    metric.factor[k] = inertia - m->opt.timestep * d->qDeriv[k];
+    metric.matrix[k] = inertia - m->opt.timestep * d->qDeriv[k];
   }
+  mju_copy(metric.factor, metric.matrix, m->nD);
   factor_lu(m, d, metric.factor);
   return metric;
 }
@@ -130,7 +153,11 @@ Metric metric_of_step(const mjModel* m, mjData* d) {
     case mjINT_IMPLICITFAST:
       return metric_of_implicitfast(m, d);
     default:
-      return (Metric){d->efm_active ? METRIC_DISCRETE : METRIC_INERTIA, NULL, NULL};
+      // with all actuation disabled the engine has not built it yet (plugin.c)
+      if (m->opt.disableflags & mjDSBL_ACTUATION) {
+        return (Metric){METRIC_INERTIA, NULL, NULL, NULL};
+      }
+      return (Metric){d->efm_active ? METRIC_DISCRETE : METRIC_INERTIA, NULL, NULL, NULL};
   }
 }
 
@@ -138,47 +165,79 @@ int metric_moves_qacc(const Metric* metric) {
   return metric->kind == METRIC_CHOLESKY || metric->kind == METRIC_LU;
 }
 
-void metric_solve(const mjModel* m, mjData* d, const Metric* metric, mjtNum* x, const mjtNum* y,
-                  int n) {
-  int nv = m->nv;
-  switch (metric->kind) {
-    case METRIC_INERTIA:
-      mj_solveM(m, d, x, y, n);
-      return;
-
-    case METRIC_DISCRETE:
-      for (int i = 0; i < n; i++) {
-        mj_effSolve(m, d, x + i * nv, y + i * nv);
-      }
-      return;
-
-    case METRIC_LU:
-      mju_copy(x, y, n * nv);
-      for (int i = 0; i < n; i++) {
-        solve_lu(m, metric->factor, x + i * nv);
-      }
-      return;
-
-    case METRIC_CHOLESKY:
-      mju_copy(x, y, n * nv);
-      mj_solveLD(x, metric->factor, metric->inverse, nv, n, m->M_rownnz, m->M_rowadr, m->M_colind,
-                 NULL);
-      break;
+// with the full metric, which knows no parts
+static void solve_discrete(const mjModel* m, mjData* d, int ndof, const int* dof, const mjtNum* y,
+                           mjtNum* x) {
+  mj_markStack(d);
+  mjtNum* force = mj_stackAllocNum(d, m->nv);
+  mjtNum* answer = mj_stackAllocNum(d, m->nv);
+  mju_zero(force, m->nv);
+  for (int k = 0; k < ndof; k++) {
+    force[dof[k]] = y[dof[k]];
   }
-
-  // implicitfast: free bodies with their gyroscopic terms
-  if (m->opt.integrator != mjINT_IMPLICITFAST) {
-    return;
+  mj_effSolve(m, d, answer, force);
+  for (int k = 0; k < ndof; k++) {
+    x[dof[k]] = answer[dof[k]];
   }
-  for (int j = 0; j < m->njnt; j++) {
+  mj_freeStack(d);
+}
+
+// implicitfast: free bodies with their gyroscopic terms
+static void solve_free_bodies(const mjModel* m, const mjData* d, int ndof, const int* dof,
+                              const mjtNum* y, mjtNum* x, int transposed) {
+  for (int k = 0; k < ndof; k++) {
     mjtNum block[36];
-    int pivot[6], address = m->jnt_dofadr[j];
-    if (m->jnt_type[j] != mjJNT_FREE || !mjd_freeMhat(m, d, j, m->opt.timestep, block, 0) ||
-        !mju_factorLU6(block, pivot)) {
+    int pivot[6], joint = m->dof_jntid[dof[k]], address = m->jnt_dofadr[joint];
+    if (m->jnt_type[joint] != mjJNT_FREE || dof[k] != address ||
+        !mjd_freeMhat(m, d, joint, m->opt.timestep, block, 0)) {
       continue;
     }
-    for (int i = 0; i < n; i++) {
-      mju_solveLU6(x + i * nv + address, block, y + i * nv + address, pivot);
+    if (transposed) {
+      mjtNum rows[36];
+      mju_copy(rows, block, 36);
+      mju_transpose(block, rows, 6, 6);
+    }
+    if (mju_factorLU6(block, pivot)) {
+      mju_solveLU6(x + address, block, y + address, pivot);
     }
   }
+}
+
+static void solve(const mjModel* m, mjData* d, const Metric* metric, int ndof, const int* dof,
+                  const mjtNum* y, mjtNum* x, int transposed) {
+  if (metric->kind == METRIC_DISCRETE) {
+    solve_discrete(m, d, ndof, dof, y, x);
+    return;
+  }
+  for (int k = 0; k < ndof; k++) {
+    x[dof[k]] = y[dof[k]];
+  }
+  const int *nnz = m->M_rownnz, *address = m->M_rowadr, *column = m->M_colind;
+  if (metric->kind == METRIC_INERTIA) {
+    mj_solveLD(x, d->qLD, d->qLDiagInv, ndof, 1, nnz, address, column, dof);
+  } else if (metric->kind == METRIC_CHOLESKY) {
+    mj_solveLD(x, metric->factor, metric->inverse, ndof, 1, nnz, address, column, dof);
+    if (m->opt.integrator == mjINT_IMPLICITFAST) {
+      solve_free_bodies(m, d, ndof, dof, y, x, transposed);
+    }
+  } else if (transposed) {
+    solve_lu_transposed(m, metric->factor, ndof, dof, x);
+  } else {
+    solve_lu(m, metric->factor, ndof, dof, x);
+  }
+}
+
+void metric_solve(const mjModel* m, mjData* d, const Metric* metric, int ndof, const int* dof,
+                  const mjtNum* y, mjtNum* x) {
+  solve(m, d, metric, ndof, dof, y, x, 0);
+}
+
+void metric_solve_transposed(const mjModel* m, mjData* d, const Metric* metric, int ndof,
+                             const int* dof, const mjtNum* y, mjtNum* x) {
+  solve(m, d, metric, ndof, dof, y, x, 1);
+}
+
+void metric_multiply_discrete(const mjModel* m, mjData* d, const mjtNum* x, mjtNum* product) {
+  mj_mulM(m, d, product, x);
+  mj_effMulAdd(m, d, product, x);
 }

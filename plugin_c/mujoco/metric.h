@@ -18,7 +18,8 @@ typedef enum MetricKind_ { METRIC_INERTIA, METRIC_DISCRETE, METRIC_CHOLESKY, MET
 
 typedef struct Metric_ {
   MetricKind kind;
-  mjtNum* factor;   // of H, in the sparsity of M (METRIC_CHOLESKY) or of D (METRIC_LU)
+  mjtNum* matrix;   // H, in the sparsity of M (METRIC_CHOLESKY) or of D (METRIC_LU)
+  mjtNum* factor;   // of H
   mjtNum* inverse;  // inverse diagonal of the factor (METRIC_CHOLESKY)
 } Metric;
 
@@ -28,8 +29,15 @@ Metric metric_of_step(const mjModel* m, mjData* d);
 // Whether the acceleration of the step differs from mjData.qacc.
 int metric_moves_qacc(const Metric* metric);
 
-// x = H^-1 y for n vectors; x and y are different places.
-void metric_solve(const mjModel* m, mjData* d, const Metric* metric, mjtNum* x, const mjtNum* y,
-                  int n);
+// x = H^-1 y, or its transpose, of some dofs (dof[0..ndof-1], ascending, whole trees that the
+// metric ties to no others). x and y are vectors of the model, different ones; the places of other
+// dofs are not looked at.
+void metric_solve(const mjModel* m, mjData* d, const Metric* metric, int ndof, const int* dof,
+                  const mjtNum* y, mjtNum* x);
+void metric_solve_transposed(const mjModel* m, mjData* d, const Metric* metric, int ndof,
+                             const int* dof, const mjtNum* y, mjtNum* x);
+
+// product = H x in the metric of the discrete integrator
+void metric_multiply_discrete(const mjModel* m, mjData* d, const mjtNum* x, mjtNum* product);
 
 #endif  // INERTER_MUJOCO_METRIC_H_

@@ -1,18 +1,19 @@
 // Forces and accelerations that fit each other: see monotone.h.
 //
-// Newton's method: laws that are linear in a take one round. Where a step does not shrink the
-// residual (the corner of a friction law), one device after the other is solved for alone within a
-// bracket; such sweeps always converge.
+// With a = p - W y the solution y = F(a) is where the convex function
+//   psi(y) = y'W y / 2 + sum_i (integral of F_i)(p - W y)_i,   grad psi = W (y - F)
+// is least. Newton's step (I + S W) dy = F - y, S the rises of F, leads downhill; where it goes too
+// far (past the corner of a friction law) the line is searched for the zero of psi's slope along
+// it, which rises. So no step can lead away, however sharp the laws are.
 
 #include "mujoco/monotone.h"
 
 #include <float.h>
 #include <math.h>
 
-enum { NEWTON_ROUNDS = 12, SWEEPS = 200, BISECTIONS = 120 };
+#include "mujoco/downhill.h"
 
-// residual over the rounding of its terms that is not worth sweeps
-static const double ENOUGH = 1e3;
+enum { ROUNDS = 100 };
 
 // solve the n x n system A x = y by elimination with row exchange; A and y are destroyed
 static void solve_dense(int n, mjtNum* A, mjtNum* y, mjtNum* x) {
@@ -49,99 +50,107 @@ static void solve_dense(int n, mjtNum* A, mjtNum* y, mjtNum* x) {
   }
 }
 
-// residual a + W F - p; returns its size relative to what rounding leaves, 1 or less is done
-static double residual(int n, const mjtNum* W, const mjtNum* p, const mjtNum* a,
-                       const mjtNum* force, mjtNum* r) {
+// where y is, and what the laws say there
+typedef struct Point_ {
+  mjtNum* y;
+  mjtNum* a;      // p - W y
+  mjtNum* force;  // F(a)
+  mjtNum* rise;
+} Point;
+
+static void evaluate(MonotoneLaw law, const void* devices, int n, Point* at) {
+  for (int i = 0; i < n; i++) {
+    at->force[i] = law(devices, i, at->a[i], at->rise + i);
+  }
+}
+
+// W x
+static void multiply(int n, const mjtNum* W, const mjtNum* x, mjtNum* product) {
+  for (int i = 0; i < n; i++) {
+    product[i] = 0;
+    for (int j = 0; j < n; j++) {
+      product[i] += W[i * n + j] * x[j];
+    }
+  }
+}
+
+// largest of the changes of a over what rounding leaves of its terms, 1 or less is nothing
+static double largest(int n, const mjtNum* W, const mjtNum* p, const Point* at,
+                      const mjtNum* change) {
   double worst = 0;
   for (int i = 0; i < n; i++) {
-    double size = fabs(p[i]) + fabs(a[i]) + DBL_MIN;
-    r[i] = a[i] - p[i];
+    double size = fabs(p[i]) + fabs(at->a[i]) + DBL_MIN;
     for (int j = 0; j < n; j++) {
-      r[i] += W[i * n + j] * force[j];
-      size += fabs(W[i * n + j] * force[j]);
+      size += fabs(W[i * n + j] * at->y[j]);
     }
-    worst = fmax(worst, fabs(r[i]) / (64 * DBL_EPSILON * size));
+    worst = fmax(worst, fabs(change[i]) / (64 * DBL_EPSILON * size));
   }
   return worst;
 }
 
-// the root of a + w F_i(a) = q, which grows with a at a rate of at least 1
-static double solve_alone(MonotoneForce law, const void* devices, int i, double w, double q,
-                          double a) {
-  double value = a + w * law(devices, i, a) - q;
-  double low = a - fmax(value, 0), high = a - fmin(value, 0);
-  double at_low = value > 0 ? low + w * law(devices, i, low) - q : value;
-  double at_high = value > 0 ? value : high + w * law(devices, i, high) - q;
+// from a point along dy, u = W dy, to another
+typedef struct Line_ {
+  MonotoneLaw law;
+  const void* devices;
+  int n;
+  const Point* from;
+  const mjtNum *dy, *u;
+  Point* to;
+} Line;
 
-  // false position that halves a retained end (Illinois), until the bracket is rounding
-  int side = 0;
-  for (int k = 0; k < BISECTIONS && high - low > 2 * DBL_EPSILON * (fabs(low) + fabs(high)); k++) {
-    double middle = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!(middle > low && middle < high) || k % 4 == 3) {
-      middle = 0.5 * (low + high);
-    }
-    double at = middle + w * law(devices, i, middle) - q;
-    if (at == 0) {
-      return middle;
-    }
-    if (at > 0) {
-      high = middle;
-      at_high = at;
-      at_low = side > 0 ? 0.5 * at_low : at_low;
-      side = 1;
-    } else {
-      low = middle;
-      at_low = at;
-      at_high = side < 0 ? 0.5 * at_high : at_high;
-      side = -1;
-    }
+// go the part t of the line; slope of psi there
+static double go(void* context, double t) {
+  Line* line = context;
+  double slope = 0;
+  for (int i = 0; i < line->n; i++) {
+    line->to->y[i] = line->from->y[i] + t * line->dy[i];
+    line->to->a[i] = line->from->a[i] - t * line->u[i];
   }
-  return fabs(at_low) < fabs(at_high) ? low : high;
+  evaluate(line->law, line->devices, line->n, line->to);
+  for (int i = 0; i < line->n; i++) {
+    slope += line->u[i] * (line->to->y[i] - line->to->force[i]);
+  }
+  return slope;
 }
 
-void monotone_solve(MonotoneForce law, MonotoneSlope slope, const void* devices, int n,
-                    const mjtNum* W, const mjtNum* p, mjtNum* a, mjtNum* force, mjtNum* scratch) {
-  mjtNum *A = scratch, *r = A + n * n, *step = r + n, *trial = step + n, *other = trial + n;
-  for (int i = 0; i < n; i++) {
-    force[i] = law(devices, i, a[i]);
-  }
-  double size = residual(n, W, p, a, force, r);
+int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
+                   mjtNum* a, mjtNum* force, mjtNum* scratch) {
+  mjtNum *A = scratch, *r = A + n * n, *dy = r + n, *u = dy + n;
+  Point now = {force, a, u + n, u + 2 * n};
+  Point next = {u + 3 * n, u + 4 * n, u + 5 * n, u + 6 * n};
 
-  for (int round = 0; round < NEWTON_ROUNDS && size > 1; round++) {
-    for (int j = 0; j < n; j++) {
-      double rise = slope(devices, j, a[j], force[j]);
-      for (int i = 0; i < n; i++) {
-        A[i * n + j] = (i == j) + W[i * n + j] * rise;
-      }
-    }
-    solve_dense(n, A, r, step);
-    for (int i = 0; i < n; i++) {
-      trial[i] = a[i] - step[i];
-      other[i] = law(devices, i, trial[i]);
-    }
-    double reached = residual(n, W, p, trial, other, r);
-    if (!(reached < 0.9 * size)) {
-      break;
-    }
-    size = reached;
-    mju_copy(a, trial, n);
-    mju_copy(force, other, n);
-  }
+  // the forces at the guess, then the point that they lead to
+  evaluate(law, devices, n, &now);
+  mju_copy(now.y, now.force, n);
+  multiply(n, W, now.y, u);
+  mju_sub(a, p, u, n);
+  evaluate(law, devices, n, &now);
 
-  // one after the other
-  for (int sweep = 0; sweep < SWEEPS && size > ENOUGH; sweep++) {
+  for (int round = 0; round < ROUNDS; round++) {
+    mju_sub(r, now.force, now.y, n);
+    multiply(n, W, r, u);
+    if (!(largest(n, W, p, &now, u) > 1)) {
+      return round;
+    }
     for (int i = 0; i < n; i++) {
-      double q = p[i];
       for (int j = 0; j < n; j++) {
-        q -= i == j ? 0 : W[i * n + j] * force[j];
+        A[i * n + j] = (i == j) + now.rise[i] * W[i * n + j];
       }
-      a[i] = solve_alone(law, devices, i, W[i * n + i], q, a[i]);
-      force[i] = law(devices, i, a[i]);
     }
-    double reached = residual(n, W, p, a, force, r);
-    if (sweep > 2 && reached > 0.9999 * size) {
-      break;
+    solve_dense(n, A, r, dy);
+    multiply(n, W, dy, u);
+    Line line = {law, devices, n, &now, dy, u, &next};
+    downhill_search(go, &line, mju_dot(u, now.y, n) - mju_dot(u, now.force, n));
+    int last = !(largest(n, W, p, &now, u) > 1);
+    mju_copy(now.y, next.y, n);
+    mju_copy(now.a, next.a, n);
+    mju_copy(now.force, next.force, n);
+    mju_copy(now.rise, next.rise, n);
+
+    // laws so steep that the rounding of a moves their force
+    if (last) {
+      return round + 1;
     }
-    size = reached;
   }
+  return -ROUNDS;
 }

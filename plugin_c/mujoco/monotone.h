@@ -11,15 +11,12 @@
 
 #include <mujoco/mujoco.h>
 
-// force of device i at acceleration a
-typedef double (*MonotoneForce)(const void* devices, int i, double a);
-
-// how it changes with a, where the force is known; near enough will do
-typedef double (*MonotoneSlope)(const void* devices, int i, double a, double force);
+// Force of device i at acceleration a, and how it rises with a; near enough will do for the rise.
+typedef double (*MonotoneLaw)(const void* devices, int i, double a, double* rise);
 
 // Solve for a (in: a guess), as far as rounding lets. force: the n forces at the solution. scratch:
-// n * (n + 4) numbers.
-void monotone_solve(MonotoneForce law, MonotoneSlope slope, const void* devices, int n,
-                    const mjtNum* W, const mjtNum* p, mjtNum* a, mjtNum* force, mjtNum* scratch);
+// n * (n + 9) numbers. Returns the number of rounds, negative if it stopped at its bound.
+int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
+                   mjtNum* a, mjtNum* force, mjtNum* scratch);
 
 #endif  // INERTER_MUJOCO_MONOTONE_H_

@@ -1,8 +1,11 @@
 // The plugin "inerter.device": what the engine calls, and when.
 //
 //   compile       nstate, nsensordata, init (the first time: the model receives b and c)
-//   forward pass  act_dot, compute (actuator), ..., compute (sensor)
+//   forward pass  compute (passive), act_dot, compute (actuator), ..., compute (sensor)
 //   end of step   advance
+//
+// The engine also steps mjData that it has made without plugins (the compiler does, for ranges of
+// lengths): callbacks that meet one do nothing.
 //
 // The actuator's force is what the engine does not integrate itself (placement.c):
 //   actuator_force = ctrl - (F - b a - c v)
@@ -81,9 +84,7 @@ static int prepare(const mjModel* m, int instance, Instance* self,
       live_derive(m, self, message)) {
     return -1;
   }
-  if (attachment_check_force(m, self->actuator, &self->device, self->native && !live, message)) {
-    return -1;
-  }
+  self->limited = attachment_limited(m, self->actuator);
 
   // what acts on the inertance alone would do nothing; edited or live, it may be 0
   if (compiling && instance_varies(&self->device) && self->device.inertance == 0 && !live) {
@@ -167,24 +168,36 @@ static void destroy(mjData* d, int instance) {
 
 static void copy(mjData* dest, const mjModel* m, const mjData* src, int instance) {
   (void)m;
+  if (instance_absent(dest, instance) || instance_absent(src, instance)) {
+    return;
+  }
   *instance_of(dest, instance) = *instance_of(src, instance);
   instance_of(dest, instance)->probing = 0;
 }
 
 static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int instance) {
   Instance* self = plugin_data;
+  if (!self) {
+    return;
+  }
   mju_zero(plugin_state, m->plugin_statenum[instance]);
   mju_zero(self->power, MAXSTAGE);
   mju_zero(self->state, INERTER_MAXSTATE);
   self->probing = 0;  // a callback may have ended the pass by an error
+  self->detour = 0;
+  self->solves = self->stops = self->misfits = 0;
 }
 
 //------------------------------ forward pass ------------------------------------------------------
 
 static void act_dot(const mjModel* m, mjData* d, int instance) {
+  if (instance_absent(d, instance)) {
+    return;
+  }
   Instance* self = instance_of(d, instance);
   follow_model(m, d, instance, self);
   live_update(m, self);
+  instance_let_go(m, d, self);
   int nstate = inerter_nstate(&self->device);
   if (!nstate) {
     return;
@@ -225,16 +238,18 @@ static mjtNum command(const mjModel* m, const mjData* d, int actuator) {
 // force of one device, or a note that it has to be solved for
 static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   live_update(m, self);
-  int row = m->actuator_outadr[self->actuator];
   self->x = instance_displacement(m, d, self);
-  self->v = d->actuator_velocity[row];
+  self->v = instance_velocity(m, d, self);
   self->solved = 0;
-  if (instance_idle(m, d, self)) {
+  self->disabled = instance_disabled(m, self);
+  if (instance_asleep(m, d, self)) {
     return;
   }
-  watch_stiffness(m, self);
-  watch_sites(m, d, self);
-  d->actuator_force[row] = command(m, d, self->actuator);
+  if (!self->disabled) {
+    watch_stiffness(m, self);
+    watch_sites(m, d, self);
+    d->actuator_force[m->actuator_outadr[self->actuator]] = command(m, d, self->actuator);
+  }
   if (self->forceless) {
     return;
   }
@@ -246,11 +261,13 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   self->solved = coupled_needed(m, self);
   if (self->solved) {
     self->bias = instance_bias_acceleration(m, d, self);
-    return;
+  } else if (self->disabled) {
+    instance_pull(m, d, self, inerter_force_motion(&self->matter, self->x, self->v, NULL));
+  } else {
+    mjtNum rest;
+    inerter_inertance(&self->share, self->x, self->v, &rest);
+    instance_pull(m, d, self, rest + instance_force_motion(self));
   }
-  mjtNum rest;
-  inerter_inertance(&self->share, self->x, self->v, &rest);
-  d->actuator_force[row] -= rest + instance_force_motion(self);
 }
 
 // heat now, for the sensors
@@ -265,14 +282,21 @@ static void remember_power(const mjModel* m, const mjData* d, Instance* self) {
   }
 }
 
-static void compute(const mjModel* m, mjData* d, int instance, int capability) {
-  Instance* self = instance_of(d, instance);
-  if (capability & mjPLUGIN_SENSOR && self->sensed) {
-    sensor_compute(m, d, instance);
-  }
-  if (!(capability & mjPLUGIN_ACTUATOR)) {
+// With all actuation disabled the engine does not come to `compute_forces`: what is matter is
+// solved for while it adds up the passive forces.
+static void compute_matter(const mjModel* m, mjData* d, int instance, Instance* self) {
+  instance_passive_is_new(self);
+  if (!(m->opt.disableflags & mjDSBL_ACTUATION)) {
     return;
   }
+  follow_model(m, d, instance, self);
+  compute_force(m, d, self);
+  if (self->last) {
+    coupled_solve(m, d, instance);
+  }
+}
+
+static void compute_forces(const mjModel* m, mjData* d, int instance, Instance* self) {
   follow_model(m, d, instance, self);
   compute_force(m, d, self);
   if (!self->last) {
@@ -288,10 +312,26 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
       continue;
     }
     Instance* each = instance_of(d, k);
-    watch_force(m, each, d->actuator_force[m->actuator_outadr[each->actuator]]);
+    watch_force(m, each, d->actuator_force[m->actuator_outadr[each->actuator]] - each->detour);
     if (each->sensed && !instance_sees_falling_asleep(m, d)) {
       remember_power(m, d, each);
     }
+  }
+}
+
+static void compute(const mjModel* m, mjData* d, int instance, int capability) {
+  if (instance_absent(d, instance)) {
+    return;
+  }
+  Instance* self = instance_of(d, instance);
+  if (capability & mjPLUGIN_PASSIVE) {
+    compute_matter(m, d, instance, self);
+  }
+  if (capability & mjPLUGIN_ACTUATOR) {
+    compute_forces(m, d, instance, self);
+  }
+  if (capability & mjPLUGIN_SENSOR && self->sensed) {
+    sensor_compute(m, d, instance);
   }
 }
 
@@ -305,6 +345,9 @@ static void keep_gap(const InerterDevice* device, int nstate, mjtNum* state) {
 }
 
 static void advance(const mjModel* m, mjData* d, int instance) {
+  if (instance_absent(d, instance)) {
+    return;
+  }
   Instance* self = instance_of(d, instance);
   int resting = !self->device.nstate && !self->device.parts && !self->sensed;
   if (resting || instance_idle(m, d, self)) {
@@ -376,7 +419,7 @@ mjPLUGIN_LIB_INIT(inerter) {
   plugin.name = kName;
   plugin.nattribute = NATTRIBUTE;
   plugin.attributes = kAttributes;
-  plugin.capabilityflags = mjPLUGIN_ACTUATOR | mjPLUGIN_SENSOR;
+  plugin.capabilityflags = mjPLUGIN_ACTUATOR | mjPLUGIN_SENSOR | mjPLUGIN_PASSIVE;
   plugin.needstage = mjSTAGE_ACC;
   plugin.nstate = count_states;
   plugin.nsensordata = count_sensor_values;
@@ -392,6 +435,6 @@ mjPLUGIN_LIB_INIT(inerter) {
 
   // the same for instances that no sensor reads; `prepare` moves them there
   plugin.name = kQuietName;
-  plugin.capabilityflags = mjPLUGIN_ACTUATOR;
+  plugin.capabilityflags = mjPLUGIN_ACTUATOR | mjPLUGIN_PASSIVE;
   instance_slot_quiet = mjp_registerPlugin(&plugin);
 }

@@ -12,24 +12,20 @@ InerterForce sensor_force(const mjModel* m, const mjData* d, const Instance* sel
   // motion along the device; the acceleration that the whole model has found
   mjtNum v = instance_velocity(m, d, self);
   mjtNum a = instance_along(m, d, self, d->qacc) + instance_bias_acceleration(m, d, self);
-
-  // a disabled actuator is the inertance and damping that the engine holds
-  InerterForce force = {0, 0, 0};
-  mjtNum held = self->armature * a;
-  if (instance_idle(m, d, self)) {
-    force.inertance = held;
-    force.total = held + self->damping * v;
-    return force;
-  }
-  if (!self->solved) {
+  if (!self->solved && !instance_idle(m, d, self)) {
     return inerter_force(&self->device, self->x, v, a, self->state);
   }
 
-  // found together with the acceleration: what was applied, and what the engine adds
-  force = coupled_force(m, self);
-  held -= self->replaced * a;
-  force.inertance += held;
-  force.total += held + self->damping * v;
+  // what the engine holds, and what was found together with the acceleration
+  InerterForce force = {0, 0, 0};
+  mjtNum held = self->armature - (self->solved ? self->replaced : 0);
+  if (self->solved) {
+    force = coupled_force(m, self);
+  } else if (self->disabled) {
+    force.total = inerter_force_motion(&self->matter, self->x, v, NULL);
+  }
+  force.inertance += held * a;
+  force.total += held * a + self->damping * v;
   return force;
 }
 

@@ -9,40 +9,94 @@
 // Whether the forces of all other actuators stand already, and nothing but them and what the
 // forward pass has made of position and velocity goes into the smooth force.
 static int stands(const mjModel* m, const mjData* d) {
-  if (m->opt.integrator == mjINT_DISCRETE || m->opt.enableflags & mjENBL_SLEEP || m->ngravcomp) {
+  if (m->opt.integrator == mjINT_DISCRETE || m->opt.enableflags & mjENBL_SLEEP) {
     return 0;
   }
   for (int i = 0; i < m->nactuator; i++) {
     // cogging and friction of a motor are added after the plugins
     int motor = m->actuator_biastype[i] == mjBIAS_DCMOTOR;
     int other = m->actuator_plugin[i] >= 0 && !instance_is_device(m, m->actuator_plugin[i]);
-    if (motor || other || m->actuator_forcelimited[i]) {
+    if (motor || other || (m->actuator_forcelimited[i] && m->actuator_outnum[i] != 1)) {
       return 0;
     }
   }
-  for (int i = 0; i < m->ntendon; i++) {
-    if (m->tendon_actfrclimited[i]) {
-      return 0;
-    }
-  }
-  for (int i = 0; i < m->njnt; i++) {
-    if (m->jnt_actfrclimited[i]) {
+  for (int i = 0; m->ngravcomp && i < m->njnt; i++) {
+    if (m->jnt_actgravcomp[i]) {
       return 0;
     }
   }
   return mju_isZero(d->xfrc_applied, 6 * m->nbody);
 }
 
-// that force
-static void add_up(const mjModel* m, const mjData* d, mjtNum* smooth) {
-  for (int i = 0; i < m->nv; i++) {
-    smooth[i] = d->qfrc_passive[i] - d->qfrc_bias[i] + d->qfrc_applied[i];
+// what the engine leaves of the forces of actuators on limited tendons
+static void limit_tendons(const mjModel* m, mjtNum* force) {
+  for (int t = 0; t < m->ntendon; t++) {
+    if (!m->tendon_actfrclimited[t]) {
+      continue;
+    }
+    mjtNum total = 0, low = m->tendon_actfrcrange[2 * t], high = m->tendon_actfrcrange[2 * t + 1];
+    for (int i = 0; i < m->nactuator; i++) {
+      int here = m->actuator_trntype[i] == mjTRN_TENDON && m->actuator_trnid[2 * i] == t;
+      total += here ? force[m->actuator_outadr[i]] : 0;
+    }
+    mjtNum kept = mju_clip(total, low, high);
+    for (int i = 0; total != kept && i < m->nactuator; i++) {
+      if (m->actuator_trntype[i] == mjTRN_TENDON && m->actuator_trnid[2 * i] == t) {
+        force[m->actuator_outadr[i]] *= kept / total;
+      }
+    }
   }
+}
+
+// forces of the actuators on the dofs, limited as the engine does after the plugins
+static void actuate(const mjModel* m, mjData* d, mjtNum* total) {
+  mj_markStack(d);
+  mjtNum* force = mj_stackAllocNum(d, m->nout);
+  mju_copy(force, d->actuator_force, m->nout);
+  limit_tendons(m, force);
+  for (int i = 0; i < m->nactuator; i++) {
+    const mjtNum* range = m->actuator_forcerange + 2 * i;
+    if (m->actuator_forcelimited[i]) {
+      mjtNum* limited = force + m->actuator_outadr[i];
+      *limited = mju_clip(*limited, range[0], range[1]);
+    }
+  }
+  mju_zero(total, m->nv);
   for (int row = 0; row < m->nout; row++) {
-    mjtNum force = d->actuator_force[row];
     int start = d->moment_rowadr[row], end = start + d->moment_rownnz[row];
-    for (int k = start; force != 0 && k < end; k++) {
-      smooth[d->moment_colind[k]] += force * d->actuator_moment[k];
+    for (int k = start; force[row] != 0 && k < end; k++) {
+      total[d->moment_colind[k]] += force[row] * d->actuator_moment[k];
+    }
+  }
+  for (int j = 0; j < m->njnt; j++) {
+    if (m->jnt_actfrclimited[j]) {
+      mjtNum* limited = total + m->jnt_dofadr[j];
+      *limited = mju_clip(*limited, m->jnt_actfrcrange[2 * j], m->jnt_actfrcrange[2 * j + 1]);
+    }
+  }
+  mj_freeStack(d);
+}
+
+// that force
+static void add_up(const mjModel* m, mjData* d, mjtNum* smooth) {
+  actuate(m, d, smooth);
+  for (int i = 0; i < m->nv; i++) {
+    smooth[i] += d->qfrc_passive[i] - d->qfrc_bias[i] + d->qfrc_applied[i];
+  }
+}
+
+// The same while the engine adds up its passive forces, all actuation disabled: what it derives
+// from the velocity after them is derived here.
+static void add_up_early(const mjModel* m, mjData* d, mjtNum* smooth) {
+  mj_referenceConstraint(m, d);
+  mj_rne(m, d, 0, smooth);
+  for (int i = 0; i < m->nv; i++) {
+    smooth[i] = d->qfrc_passive[i] - smooth[i] + d->qfrc_applied[i];
+  }
+  for (int body = 1; body < m->nbody; body++) {
+    const mjtNum* applied = d->xfrc_applied + 6 * body;
+    if (!mju_isZero(applied, 6)) {
+      mj_applyFT(m, d, applied, applied + 3, d->xipos + 3 * body, body, smooth);
     }
   }
 }
@@ -114,13 +168,20 @@ static void forward_without(const mjModel* m, mjData* d, int last) {
   mj_freeStack(d);
 }
 
-void smooth_without(const mjModel* m, mjData* d, int last, mjtNum* force, mjtNum* acceleration) {
-  if (stands(m, d)) {
+void smooth_without(const mjModel* m, mjData* d, int last, mjtNum* force, mjtNum* shift) {
+  mju_zero(shift, m->nv);
+  if (m->opt.disableflags & mjDSBL_ACTUATION) {
+    add_up_early(m, d, force);
+  } else if (stands(m, d)) {
     add_up(m, d, force);
-    mj_solveM(m, d, acceleration, force, 1);
   } else {
     forward_without(m, d, last);
     mju_copy(force, d->qfrc_smooth, m->nv);
-    mju_copy(acceleration, d->qacc_smooth, m->nv);
+    if (m->opt.integrator == mjINT_DISCRETE && d->efm_active) {
+      mju_copy(shift, d->efm_c, m->nv);
+      if (d->efm_ca) {
+        mju_addTo(shift, d->efm_ca, m->nv);
+      }
+    }
   }
 }

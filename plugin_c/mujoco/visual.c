@@ -72,6 +72,9 @@ void visual_draw(const mjModel* m, mjData* d, const mjvOption* option, mjvScene*
                  int instance) {
   const Instance* self = instance_of(d, instance);
   mjtNum from[3], to[3], axis[3], quat[4], mat[9], pos[3];
+  if (instance_absent(d, instance)) {
+    return;
+  }
   if (!option->flags[mjVIS_ACTUATOR] && !option->flags[mjVIS_TENDON]) {
     return;
   }

@@ -134,6 +134,9 @@ static void consider(Fastest* fastest, double rate, double limit, const char* ca
   }
 }
 
+// share of what a step can bear up to which a bristle is taken at its start
+static const double kResolvedBristle = 0.1;
+
 void watch_stiffness(const mjModel* m, Instance* self) {
   if (self->integrator == m->opt.integrator + 1 && self->timestep == m->opt.timestep) {
     return;
@@ -149,12 +152,15 @@ void watch_stiffness(const mjModel* m, Instance* self) {
     light /= 1 + light * p->inertance;
   }
   double wheel = series ? 1 / p->inertance : light;
+  double bristle_damping, bristle = inerter_bristle(p, &bristle_damping);
+  double h = m->opt.timestep;
+  self->stiff_bristle = h * (bristle_damping + h * bristle) * light > kResolvedBristle;
   double gas = p->gas_pressure > 0
                    ? p->gas_exponent * p->gas_pressure * p->gas_area * p->gas_area / p->gas_volume
                    : 0;
 
   // an oscillation of omega h < 2 (one stage), 2.8 (RK4); a decay of lambda h < 2.7
-  double h = m->opt.timestep, swing = (stages ? 2.8 : 2) / h, decay = 2.7 / h;
+  double swing = (stages ? 2.8 : 2) / h, decay = 2.7 / h;
   const char* tendon =
       ", or give the stiffness to the tendon or joint, with integrator=\"discrete\"";
   const char* implicit = ", or integrator=\"implicitfast\"";

@@ -20,7 +20,8 @@ void watch_force(const mjModel* m, Instance* self, mjtNum force);
 void watch_validity(const mjModel* m, Instance* self, const mjtNum* state);
 
 // Say what is too stiff for the integrator and the timestep, whenever these are new: what acts at
-// the start of a step or within stages, and is not resolved by them.
+// the start of a step or within stages, and is not resolved by them. Tells too whether a bristle
+// is.
 void watch_stiffness(const mjModel* m, Instance* self);
 
 // Say that the sites of a tendon meet: there is no direction then.

@@ -44,20 +44,7 @@ def pair(
     return PAIR.format(actuator=device, **{**blanks, **texts})
 
 
-ELASTIC = {"inertance": 5, "series_stiffness": 1e4, "series_damping": 10}
-VARYING = {"inertance": 5, "inertance_gradient": 1}
 REFUSED = {
-    "series force cut": (
-        pair('joint="a"', 'forcerange="-5 5"', 2, ELASTIC), ["forcerange is given", "cut"]),
-    "varying force cut": (
-        pair('joint="a"', 'forcerange="-5 5"', 0, VARYING), ["forcerange is given", "cut"]),
-    "live inertance cut": (
-        pair('joint="a"', 'forcerange="-5 5"').replace(
-            "</mujoco>", '<custom><numeric name="strut.inertance" data="5"/></custom></mujoco>'),
-        ["forcerange is given", "cut"]),
-    "joint limit cuts": (
-        pair('joint="a"', "", 2, ELASTIC, joint='actuatorfrcrange="-5 5"'),
-        ['actuatorfrcrange of joint "a"', "remove it"]),
     "friction of no load": (
         pair(keys={"load_friction": 0.5}), ["load_friction is given", "inertance is 0"]),
     "variation of nothing": (
@@ -94,7 +81,6 @@ def test_trees_that_sleep_one_by_one_are_refused(capfd: pytest.CaptureFixture) -
 
 def test_what_is_not_a_lie_is_taken() -> None:
     for xml in (
-        pair('joint="a"', 'forcerange="-5 5"', 0, {"inertance": 5, "stiffness": 3}),
         pair(flag='<flag sleep="enable"/>', sleep='sleep="never"'),
         pair(tendon='armature="3"', keys={"viscous": 5}).replace("armature", "stiffness"),
     ):
