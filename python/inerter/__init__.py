@@ -10,20 +10,25 @@ from inerter.plugin import load_plugin, plugin_path
 if TYPE_CHECKING:
     from inerter.device_in_model import DeviceInModel, device_of, devices_of
     from inerter.mjspec import AddedDevice, add_device
+    from inerter.running import Energy, SolveCounts, energy, solve_counts
 
 __all__ = [
     "AddedDevice",
     "Device",
     "DeviceError",
     "DeviceInModel",
+    "Energy",
+    "SolveCounts",
     "add_device",
     "along_many",
     "device_of",
     "devices_of",
+    "energy",
     "friction_laws",
     "load_plugin",
     "parameters",
     "plugin_path",
+    "solve_counts",
 ]
 __version__ = "0.1.0"
 
@@ -34,6 +39,10 @@ _LAZY = {
     "DeviceInModel": "inerter.device_in_model",
     "device_of": "inerter.device_in_model",
     "devices_of": "inerter.device_in_model",
+    "Energy": "inerter.running",
+    "SolveCounts": "inerter.running",
+    "energy": "inerter.running",
+    "solve_counts": "inerter.running",
 }
 
 
