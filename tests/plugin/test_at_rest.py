@@ -120,11 +120,10 @@ def test_drawn_boxes_gain_no_energy(seed: int) -> None:
             if name in keys:
                 keys[name] = float(keys[name]) * level
         keys["inertance"] = 10.0 ** rng.uniform(-2, 2)
-        places = (rng.uniform(-1, 1, 3) + [0, 0, 1.2], rng.uniform(-0.05, 0.05, 3))
+        places = (rng.uniform([-1, -1, 0.2], [1, 1, 2.2]), rng.uniform(-0.05, 0.05, 3))
         struts.append((keys, states, *(" ".join(f"{c:.4f}" for c in p) for p in places)))
-    model = box(
-        mass, struts, step, str(rng.choice(ONE_STAGE)), str(rng.choice(["elliptic", "pyramidal"]))
-    )
+    integrator, cone = str(rng.choice(ONE_STAGE)), str(rng.choice(["elliptic", "pyramidal"]))
+    model = box(mass, struts, step, integrator, cone)
     speed, rise = fastest(model, 200)
     weight = mass * 9.81
     assert speed < 0.3, (mass, step, struts)

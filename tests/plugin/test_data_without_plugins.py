@@ -16,6 +16,7 @@ from plugin_models import plugin_actuator
 MODEL = """
 <mujoco>
   <extension><plugin plugin="inerter.device"/></extension>
+  <option gravity="0 0 0"/>
   <compiler><lengthrange {mode} inttotal="10"/></compiler>
   <worldbody>
     <body><joint name="a" type="slide" range="-1 1" limited="true" damping="2"/>
@@ -62,6 +63,17 @@ for actuators in ({0!r} + {1!r}, {1!r} + {0!r}):
 """.format(DEVICES[name], MUSCLE, MODEL.format(mode=mode, actuators="ACTUATORS"))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
+
+
+def test_a_range_of_lengths_can_be_asked_for() -> None:
+    model = mujoco.MjModel.from_xml_string(
+        MODEL.format(mode="", actuators=DEVICES["coupled"] + MUSCLE)
+    )
+    data, option = mujoco.MjData(model), mujoco.MjLROpt()
+    option.mode, option.useexisting, option.inttotal = mujoco.mjtLRMode.mjLRMODE_ALL, 0, 10
+    mujoco.mj_setLengthRange(model, data, 0, option)
+    assert np.isfinite(model.actuator_lengthrange).all()
+    assert model.actuator_lengthrange[0, 0] < -1 < 1 < model.actuator_lengthrange[0, 1]
 
 
 def test_specs_compile_again_and_again() -> None:
