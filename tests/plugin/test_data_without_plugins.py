@@ -70,7 +70,8 @@ def test_a_range_of_lengths_can_be_asked_for() -> None:
         MODEL.format(mode="", actuators=DEVICES["coupled"] + MUSCLE)
     )
     data, option = mujoco.MjData(model), mujoco.MjLROpt()
-    option.mode, option.useexisting, option.inttotal = mujoco.mjtLRMode.mjLRMODE_ALL, 0, 10
+    option.mode, option.accel, option.timeconst = mujoco.mjtLRMode.mjLRMODE_ALL, 20, 1
+    option.timestep, option.inttotal, option.interval, option.tolrange = 0.01, 10, 2, 0.05
     mujoco.mj_setLengthRange(model, data, 0, option)
     assert np.isfinite(model.actuator_lengthrange).all()
     assert model.actuator_lengthrange[0, 0] < -1 < 1 < model.actuator_lengthrange[0, 1]
