@@ -38,6 +38,7 @@ typedef struct Part_ {
   // along the devices and the rows
   mjtNum *q, *x, *gradient, *step, *product;     // n
   mjtNum *j, *answer, *model, *change, *beside;  // rows
+  mjtNum* reference;                             // a_ref of the rows
   mjtNum *p, *along, *turn, *other;              // k
 } Part;
 
@@ -102,12 +103,10 @@ static void find_profile(Part* part) {
   }
   const Rows* rows = &part->rows;
   for (int i = 0; i < rows->n; i++) {
-    int least = part->n;
-    for (int e = rows->start[i]; e < rows->start[i + 1]; e++) {
-      least = mjMIN(least, rows->column[e]);
-    }
-    for (int e = rows->start[i]; e < rows->start[i + 1]; e++) {
-      part->first[rows->column[e]] = mjMIN(part->first[rows->column[e]], least);
+    int end = rows->start[i + 1];
+    for (int e = rows->start[i]; e < end; e++) {
+      int* first = part->first + rows->column[e];
+      *first = mjMIN(*first, rows->column[end - 1]);
     }
   }
 }
@@ -170,11 +169,15 @@ static Part allocate(mjData* d, const Group* group, int k, int nentry) {
   part.gradient = part.x + n;
   part.step = part.gradient + n;
   part.product = part.step + n;
-  part.j = mj_stackAllocNum(d, 5 * r);
+  part.j = mj_stackAllocNum(d, 6 * r);
   part.answer = part.j + r;
   part.model = part.answer + r;
   part.change = part.model + r;
   part.beside = part.change + r;
+  part.reference = part.beside + r;
+  for (int i = 0; i < r; i++) {
+    part.reference[i] = d->efc_aref[group->row[i]];
+  }
   part.p = mj_stackAllocNum(d, 4 * k);
   part.along = part.p + k;
   part.turn = part.along + k;
@@ -292,7 +295,7 @@ static int solve_springs(Part* part, const Constrained* problem, mjtNum* a, mjtN
 
   // without the devices: f + J_c' (f_c + S J_c q)
   mju_zero(part->model, part->rows.n);
-  rows_multiply(NULL, &part->rows, part->q, 0, part->change);
+  mju_add(part->change, part->j, part->reference, part->rows.n);
   rows_stiffen(&part->rows, part->change, part->model);
   mju_addTo(part->model, part->answer, part->rows.n);
   mju_copy(part->x, part->f, n);
@@ -317,27 +320,35 @@ static int solve_springs(Part* part, const Constrained* problem, mjtNum* a, mjtN
   return rounds >= 0;
 }
 
-// what the rows answer at x less what the springs did: the gradient that is left there, over the
-// size of its terms
+// What the springs of the round do at x less what the rows answer there: the gradient that is left,
+// over the size of its terms.
 static double miss(Part* part, const mjData* d) {
   int n = part->n, r = part->rows.n;
-  rows_multiply(d, &part->rows, part->x, 1, part->beside);
-
-  // the springs' answer at x: model - S J_c x
-  rows_multiply(d, &part->rows, part->x, 0, part->change);
+  rows_multiply(&part->rows, part->x, part->change);
+  mju_sub(part->beside, part->change, part->reference, r);
   mju_zero(part->j, r);
   rows_stiffen(&part->rows, part->change, part->j);
-  mju_sub(part->model, part->model, part->j, r);
   rows_answer(d, &part->rows, part->beside, part->answer);
+
+  // the same springs: nothing but rounding
+  double most = 0, size = 0;
+  for (int i = 0; i < r; i++) {
+    mjtNum apart = part->model[i] - part->j[i] - part->answer[i];
+    size = fmax(size, fabs(part->j[i]) + fabs(part->answer[i]));
+    most = fmax(most, fabs(apart));
+    part->model[i] = apart;
+  }
+  if (most <= kSolved * size) {
+    return 0;
+  }
   mju_zero(part->gradient, n);
   mju_zero(part->product, n);
   rows_add_force(&part->rows, part->answer, part->product);
-  mju_sub(part->model, part->model, part->answer, r);
   rows_add_force(&part->rows, part->model, part->gradient);
   multiply(part, part->x, part->step);
-  double size = dot(part->f, part->f, n) + dot(part->product, part->product, n) +
-                dot(part->step, part->step, n);
-  return size > 0 ? sqrt(dot(part->gradient, part->gradient, n) / size) : 0;
+  double square = dot(part->f, part->f, n) + dot(part->product, part->product, n) +
+                  dot(part->step, part->step, n);
+  return square > 0 ? sqrt(dot(part->gradient, part->gradient, n) / square) : 0;
 }
 
 // the line from q to x
@@ -376,8 +387,9 @@ static double search(Part* part, const mjData* d, const Constrained* problem) {
   multiply(part, part->step, part->product);
   line.rise = dot(part->step, part->product, n);
   line.constant = dot(part->q, part->product, n) - dot(part->f, part->step, n);
-  rows_multiply(d, &part->rows, part->q, 1, line.start);
-  rows_multiply(d, &part->rows, part->step, 0, line.change);
+  rows_multiply(&part->rows, part->q, line.start);
+  mju_subFrom(line.start, part->reference, part->rows.n);
+  rows_multiply(&part->rows, part->step, line.change);
   for (int i = 0; i < part->k; i++) {
     line.along[i] = dot(part->Y + i * n, part->q, n) + problem->bias[i];
     line.turn[i] = dot(part->Y + i * n, part->step, n);
@@ -399,7 +411,8 @@ static int descend(const mjData* d, Part* part, const Constrained* problem, cons
   }
   double before = INFINITY;
   for (int round = 1; round <= ROUNDS; round++) {
-    rows_multiply(d, &part->rows, part->q, 1, part->j);
+    rows_multiply(&part->rows, part->q, part->j);
+    mju_subFrom(part->j, part->reference, part->rows.n);
     rows_answer(d, &part->rows, part->j, part->answer);
     if (!solve_springs(part, problem, a, force, W, scratch)) {
       return -round;

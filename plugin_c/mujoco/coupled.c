@@ -119,9 +119,17 @@ static void collect(const mjModel* m, mjData* d, int last, Solution* s) {
   }
 }
 
+// all devices in one group: nothing to sort
+static int is_whole(const Solution* s, const Group* group) {
+  return group->n == s->n;
+}
+
 // the same for one group, its devices one after another
 static Solution part_of(mjData* d, const Solution* s, const Group* group) {
   Solution part = *s;
+  if (is_whole(s, group)) {
+    return part;
+  }
   int n = part.n = group->n;
   part.all = mj_stackAllocByte(d, (size_t)n * sizeof(Coupled), _Alignof(Coupled));
   part.moment = mj_stackAllocInt(d, n);
@@ -137,6 +145,9 @@ static Solution part_of(mjData* d, const Solution* s, const Group* group) {
 }
 
 static void give_back(const Solution* part, const Group* group, Solution* s) {
+  if (is_whole(s, group)) {
+    return;
+  }
   for (int i = 0; i < group->n; i++) {
     int k = group->device[i];
     s->all[k] = part->all[i];
@@ -184,12 +195,25 @@ static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* 
   mjtNum* p = mj_stackAllocNum(d, n);
   mjtNum* x = mj_stackAllocNum(d, m->nv);
   metric_solve(m, d, &part->metric, group->ndof, group->dof, part->smooth, x);
+  int lines = 1;
   for (int i = 0; i < n; i++) {
     const Instance* self = part->all[i].self;
     p[i] = instance_along(m, d, self, x) + self->bias;
-    part->a[i] = instance_along(m, d, self, d->qacc_warmstart) + self->bias;
+    lines &= inerter_step_is_line(&part->all[i].step);
   }
   mjtNum* scratch = mj_stackAllocNum(d, n * (n + 9));
+  if (lines) {
+    mjtNum *start = scratch, *rise = scratch + n;
+    for (int i = 0; i < n; i++) {
+      start[i] = law(part->all, i, 0, rise + i);
+    }
+    monotone_solve_lines(n, start, rise, W, p, part->a, part->force, scratch + 2 * n);
+    return 0;
+  }
+  for (int i = 0; i < n; i++) {
+    const Instance* self = part->all[i].self;
+    part->a[i] = instance_along(m, d, self, d->qacc_warmstart) + self->bias;
+  }
   return monotone_solve(law, part->all, n, W, p, part->a, part->force, scratch);
 }
 

@@ -79,7 +79,10 @@ static int tie_constraint(const mjModel* m, const mjData* d, int* parent, int ro
 
 //------------------------------ groups ------------------------------------------------------------
 
-// one group of all, where there is but one tree
+// so few devices and dofs are solved for at once sooner than they are told apart
+enum { FEW = 4, FEW_DOFS = 30 };
+
+// one group of all
 static int group_of_all(const mjModel* m, mjData* d, int n, Group* groups) {
   int size = mjMAX(n, mjMAX(m->nv, d->nefc));
   int* all = mj_stackAllocInt(d, size);
@@ -107,7 +110,8 @@ static int** places(mjData* d, int count, const int* size) {
 
 int groups_find(const mjModel* m, mjData* d, const Metric* metric, int n, const int* moment,
                 Group* groups) {
-  if (m->ntree == 1) {
+  int tied = d->nefc || metric->kind == METRIC_DISCRETE;
+  if (m->ntree == 1 || (!tied && n <= FEW && m->nv <= FEW_DOFS)) {
     return group_of_all(m, d, n, groups);
   }
   int* parent = mj_stackAllocInt(d, m->ntree);

@@ -50,6 +50,22 @@ static void solve_dense(int n, mjtNum* A, mjtNum* y, mjtNum* x) {
   }
 }
 
+void monotone_solve_lines(int n, const mjtNum* start, const mjtNum* rise, const mjtNum* W,
+                          const mjtNum* p, mjtNum* a, mjtNum* force, mjtNum* scratch) {
+  mjtNum *A = scratch, *r = A + n * n;
+  for (int i = 0; i < n; i++) {
+    r[i] = p[i];
+    for (int j = 0; j < n; j++) {
+      A[i * n + j] = (i == j) + W[i * n + j] * rise[j];
+      r[i] -= W[i * n + j] * start[j];
+    }
+  }
+  solve_dense(n, A, r, a);
+  for (int i = 0; i < n; i++) {
+    force[i] = start[i] + rise[i] * a[i];
+  }
+}
+
 // where y is, and what the laws say there
 typedef struct Point_ {
   mjtNum* y;

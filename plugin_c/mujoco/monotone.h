@@ -19,4 +19,8 @@ typedef double (*MonotoneLaw)(const void* devices, int i, double a, double* rise
 int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
                    mjtNum* a, mjtNum* force, mjtNum* scratch);
 
+// The same where every law is a line: F_i = start_i + rise_i a_i. scratch: n * (n + 1) numbers.
+void monotone_solve_lines(int n, const mjtNum* start, const mjtNum* rise, const mjtNum* W,
+                          const mjtNum* p, mjtNum* a, mjtNum* force, mjtNum* scratch);
+
 #endif  // INERTER_MUJOCO_MONOTONE_H_

@@ -3,6 +3,7 @@
 #include "mujoco/rows.h"
 
 #include <math.h>
+#include <string.h>
 
 //------------------------------ rows --------------------------------------------------------------
 
@@ -38,37 +39,51 @@ static int gather_sparse(const mjData* d, Rows* rows, int i, int dim, const int*
   return dim * nnz;
 }
 
-// the same from its dense ones
-static int gather_dense(const mjModel* m, const mjData* d, Rows* rows, int i, int dim,
-                        const int* place, int at) {
-  int nv = m->nv, nnz = 0;
-  const mjtNum* J = d->efc_J + rows->row[i] * nv;
+// columns in which one row, or any of the rows of one contact, has an entry; returns their number
+static int columns_of(int nv, const mjtNum* J, int dim, int* column) {
+  int nnz = 0;
+  if (dim == 1) {
+    for (int c = 0; c < nv; c++) {
+      column[nnz] = c;
+      nnz += J[c] != 0;
+    }
+    return nnz;
+  }
   for (int c = 0; c < nv; c++) {
     int there = 0;
     for (int k = 0; k < dim; k++) {
       there |= J[k * nv + c] != 0;
     }
-    if (there) {
-      rows->column[at + nnz++] = c;
-    }
+    column[nnz] = c;
+    nnz += there;
   }
-  for (int k = dim - 1; k >= 0; k--) {
+  return nnz;
+}
+
+// the same from its dense ones; there has to be room for one entry more
+static int gather_dense(const mjModel* m, const mjData* d, Rows* rows, int i, int dim,
+                        const int* place, int at) {
+  int nv = m->nv, *column = rows->column + at;
+  const mjtNum* J = d->efc_J + rows->row[i] * nv;
+  int nnz = columns_of(nv, J, dim, column);
+  for (int k = 0; k < dim; k++) {
     rows->start[i + k] = at + k * nnz;
     for (int e = 0; e < nnz; e++) {
-      int c = rows->column[at + e];
-      rows->value[at + k * nnz + e] = J[k * nv + c];
-      rows->column[at + k * nnz + e] = k ? place[c] : c;
+      rows->value[at + k * nnz + e] = J[k * nv + column[e]];
     }
   }
   for (int e = 0; e < nnz; e++) {
-    rows->column[at + e] = place[rows->column[at + e]];
+    column[e] = place[column[e]];
+  }
+  for (int k = 1; k < dim; k++) {
+    memcpy(column + k * nnz, column, (size_t)nnz * sizeof(int));
   }
   return dim * nnz;
 }
 
 Rows rows_gather(const mjModel* m, mjData* d, int n, const int* row, const int* place) {
   Rows rows = {.n = n, .row = row};
-  int sparse = mj_isSparse(m), entries = sparse ? 0 : n * m->nv, cones = 0;
+  int sparse = mj_isSparse(m), entries = sparse ? 0 : n * m->nv + 1, cones = 0;
   rows.kind = mj_stackAllocByte(d, (size_t)n * sizeof(RowKind), _Alignof(RowKind));
   rows.start = mj_stackAllocInt(d, n + 1);
   rows.stiffness = mj_stackAllocNum(d, n);
@@ -93,9 +108,9 @@ Rows rows_gather(const mjModel* m, mjData* d, int n, const int* row, const int* 
 
 //------------------------------ products ----------------------------------------------------------
 
-void rows_multiply(const mjData* d, const Rows* rows, const mjtNum* a, int relative, mjtNum* j) {
+void rows_multiply(const Rows* rows, const mjtNum* a, mjtNum* j) {
   for (int i = 0; i < rows->n; i++) {
-    mjtNum sum = relative ? -d->efc_aref[rows->row[i]] : 0;
+    mjtNum sum = 0;
     for (int e = rows->start[i]; e < rows->start[i + 1]; e++) {
       sum += rows->value[e] * a[rows->column[e]];
     }
@@ -111,16 +126,14 @@ void rows_add_force(const Rows* rows, const mjtNum* force, mjtNum* vector) {
   }
 }
 
-// add scale left' right to the lower half, two rows of entries in the same columns
+// Add scale left' right to the lower half, two rows of entries in the same columns, which fall.
 static void add_product(const int* column, int nnz, mjtNum scale, const mjtNum* left,
                         const mjtNum* right, int n, mjtNum* matrix) {
   for (int r = 0; scale != 0 && r < nnz; r++) {
     mjtNum scaled = scale * left[r];
     mjtNum* to = matrix + column[r] * n;
-    for (int c = 0; c < nnz; c++) {
-      if (column[c] <= column[r]) {
-        to[column[c]] += scaled * right[c];
-      }
+    for (int c = r; c < nnz; c++) {
+      to[column[c]] += scaled * right[c];
     }
   }
 }

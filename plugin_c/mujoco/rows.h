@@ -22,17 +22,18 @@ typedef struct Rows_ {
   const int* row;  // place among the engine's rows
   RowKind* kind;   // ROW_CONE: the first of a contact, whose others are ROW_OF_CONE
   int* start;      // entries of row i: start[i] to start[i + 1]; those of a contact have the same
-  int* column;
+  int* column;     // places of later dofs come first: the numbers of a row fall
   mjtNum* value;
   mjtNum* stiffness;  // curvature of s while a row acts; 0: it does not
   mjtNum* cones;      // Hessian of a cone where its stiffness is negative, 36 numbers a row
 } Rows;
 
-// Rows row[0..n-1] of the engine; place[dof]: number of a dof. On the stack of mjData.
+// Rows row[0..n-1] of the engine; place[dof]: number of a dof, which falls as the dof rises. On the
+// stack of mjData.
 Rows rows_gather(const mjModel* m, mjData* d, int n, const int* row, const int* place);
 
-// j for an acceleration of the numbered dofs, less a_ref where `relative`
-void rows_multiply(const mjData* d, const Rows* rows, const mjtNum* a, int relative, mjtNum* j);
+// J_c a for an acceleration of the numbered dofs
+void rows_multiply(const Rows* rows, const mjtNum* a, mjtNum* product);
 
 // f_c at j; stiffness and cones of the rows become those at j
 void rows_answer(const mjData* d, Rows* rows, const mjtNum* j, mjtNum* force);
