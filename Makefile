@@ -33,7 +33,7 @@ help:
 	@echo 'make soak    1e8 steps, ten minutes'
 	@echo 'make bench   benchmarks, into out/bench; ARGS=--quick for a first look'
 	@echo 'make docs    the documentation as pages, into out/docs'
-	@echo 'make lint    ruff, pyright, clang-format, cppcheck, clang-tidy'
+	@echo 'make lint    ruff, layers of imports, pyright, clang-format, cppcheck, clang-tidy'
 	@echo 'make format  let ruff and clang-format rewrite the files'
 	@echo 'make check   lint and test'
 	@echo 'make wheel   a wheel (on Linux for every recent one) and the sources of it, into dist'
@@ -99,6 +99,8 @@ lint: $(VENV)/dev
 	@status=0; \
 	echo 'ruff check';   $(BIN)/ruff check --quiet . || status=1; \
 	echo 'ruff format';  $(BIN)/ruff format --quiet --check . || status=1; \
+	echo 'imports';      PYTHONPATH=python $(BIN)/lint-imports --no-cache > $(VENV)/imports.log || { \
+	  cat $(VENV)/imports.log; status=1; }; \
 	echo 'pyright';      $(BIN)/pyright --pythonpath $(BIN)/python || status=1; \
 	echo 'clang-format'; $(BIN)/clang-format --style=file:plugin_c/.clang-format --dry-run -Werror \
 	  $(C_FILES) || status=1; \

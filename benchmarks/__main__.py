@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from inerter.bench.machine import busy, machine
-from inerter.bench.report import print_machine
-from inerter.bench.rows import Row, aims, table
-from inerter.bench.step import tables
+from inerter.benchmark.machine import busy, machine
+from inerter.benchmark.report import print_machine
+from inerter.benchmark.rows import Row, aims, table
+from inerter.benchmark.step import tables
 from inerter.folder import json_text, write_files
 from rich.console import Console
 
@@ -95,7 +95,7 @@ def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[s
     folder.mkdir(parents=True, exist_ok=True)
     described = machine()
     result: dict[str, Any] = {
-        "schema": "inerter.bench/1", "quick": quick, "machine": described, "benchmarks": {},
+        "schema": "inerter.benchmark/1", "quick": quick, "machine": described, "benchmarks": {},
     }  # fmt: skip
     print_machine(described, console)
     if remark := busy(described):

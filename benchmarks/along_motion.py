@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from inerter.bench.laws import INERTANCE, LAWS, parameters_of
-from inerter.bench.motion import SPACING, core_work, motion, reference_work, samples
-from inerter.bench.rows import Row, spread_of
-from inerter.bench.timing import Work, interleaved
+from inerter.benchmark.laws import INERTANCE, LAWS, parameters_of
+from inerter.benchmark.motion import SPACING, core_work, motion, reference_work, samples
+from inerter.benchmark.rows import Row, spread_of
+from inerter.benchmark.timing import Work, interleaved
 from inerter.core import Device
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp

@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from inerter.bench.rows import Row, aimed
+from inerter.benchmark.rows import Row, aimed
 from inerter.diagnose import Diagnosis, diagnose, diagnose_bench
 from inerter.records import Record
 from inerter.reference import (

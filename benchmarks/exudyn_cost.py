@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from inerter.bench.laws import LAWS
-from inerter.bench.rows import Row, spread_of
-from inerter.bench.timing import Work, interleaved
+from inerter.benchmark.laws import LAWS
+from inerter.benchmark.rows import Row, spread_of
+from inerter.benchmark.timing import Work, interleaved
 from inerter.exudyn import CreateInerter
 from inerter.exudyn.engine import exudyn
 

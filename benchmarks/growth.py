@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from inerter.bench.rows import Row, aimed, spread_of
-from inerter.bench.timing import Spread, Timing, Work, interleaved
+from inerter.benchmark.rows import Row, aimed, spread_of
+from inerter.benchmark.timing import Spread, Timing, Work, interleaved
 from matplotlib.ticker import NullFormatter
 
 from benchmarks import growth_lab, growth_models

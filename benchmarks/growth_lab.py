@@ -6,15 +6,15 @@ from functools import cache
 
 import numpy as np
 from inerter import Device
-from inerter.bench.laws import LAWS, parameters_of
-from inerter.bench.timing import Work
-from inerter.identify.bench import thin
+from inerter.benchmark.laws import LAWS, parameters_of
+from inerter.benchmark.timing import Work
 from inerter.identify.fit import Problem
 from inerter.identify.laws import law_named
 from inerter.identify.model import Model
 from inerter.identify.multistart import search
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import thin
 from inerter.records import Record
+from inerter.records.preparation import prepare
 from inerter.reference import sum_of_sines
 
 SPACING = 1e-3

@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import mujoco
 import mujoco.batch
-from inerter.bench.cars import car_xml, jolt
-from inerter.bench.laws import parameters_of
-from inerter.bench.timing import Work
+from inerter.benchmark.cars import car_xml, jolt
+from inerter.benchmark.laws import parameters_of
+from inerter.benchmark.timing import Work
 from inerter.plugin import load_plugin
 
 # the same motion at every size: what it costs hangs on what it meets

@@ -24,15 +24,15 @@ from typing import Any
 
 import numpy as np
 from inerter import Device
-from inerter.bench.rows import Row, aimed, spread_of
-from inerter.bench.timing import Spread, Work, interleaved
-from inerter.identify.bench import thin
-from inerter.identify.coordinates import coordinate
+from inerter.benchmark.rows import Row, aimed, spread_of
+from inerter.benchmark.timing import Spread, Work, interleaved
+from inerter.catalogue.coordinates import search_range
 from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import thin
 from inerter.records import Record
+from inerter.records.preparation import prepare
 from scipy.optimize import least_squares
 
 EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "fit_with_mujoco_sysid.py"
@@ -255,7 +255,7 @@ def _by_scipy(record: Record, model: Model) -> Callable[[Counted], Values]:
 
     def fit(counted: Counted) -> Values:
         problem = _problem(record, counted)
-        how = [coordinate(name, problem.scales) for name in model.free]
+        how = [search_range(name, problem.scales) for name in model.free]
         start = problem.variables(model)
         lower, upper = np.array([each.bounds for each in how]).T
         masks = np.concatenate(problem.masks)

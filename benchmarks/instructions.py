@@ -21,7 +21,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from pathlib import Path
 
-from inerter.bench.laws import LAWS, parameters_of
+from inerter.benchmark.laws import LAWS, parameters_of
 from inerter.core import library_path
 
 # arithmetic, loads and stores, calls of the mathematical library that a sample cannot do without

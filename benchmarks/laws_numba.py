@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from inerter.bench.laws import INERTANCE, LAWS
+from inerter.benchmark.laws import INERTANCE, LAWS
 from numba import njit  # pyright: ignore[reportMissingImports]
 from numpy.typing import NDArray
 

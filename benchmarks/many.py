@@ -17,9 +17,9 @@ from typing import Any
 
 import mujoco
 import mujoco.batch
-from inerter.bench.cars import car_xml, jolt
-from inerter.bench.rows import Row, aimed, spread_of
-from inerter.bench.timing import Timing, Work, interleaved
+from inerter.benchmark.cars import car_xml, jolt
+from inerter.benchmark.rows import Row, aimed, spread_of
+from inerter.benchmark.timing import Timing, Work, interleaved
 from inerter.plugin import load_plugin
 from matplotlib.ticker import NullLocator
 

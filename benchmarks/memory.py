@@ -15,8 +15,8 @@ from typing import Any
 
 import mujoco
 import mujoco.batch
-from inerter.bench.cars import jolt
-from inerter.bench.rows import Row, aimed
+from inerter.benchmark.cars import jolt
+from inerter.benchmark.rows import Row, aimed
 
 from benchmarks.many import BRANCHES, CAR, NATIVE, PLUGIN, model_of
 

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from inerter.bench.cars import CARS, INTEGRATORS, PLUGIN
-from inerter.bench.rows import Row
-from inerter.bench.step import step_costs
+from inerter.benchmark.cars import CARS, INTEGRATORS, PLUGIN
+from inerter.benchmark.rows import Row
+from inerter.benchmark.step import step_costs
 
 from benchmarks.picture import COLOURS, figure, save
 
 
 def run(quick: bool = False) -> list[Row]:
-    """Rows as `inerter.bench.step.step_costs` gives them."""
+    """Rows as `inerter.benchmark.step.step_costs` gives them."""
     return step_costs(tuple(CARS), INTEGRATORS, *((7, 200) if quick else (41, 500)))
 
 

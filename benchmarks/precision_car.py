@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from inerter.bench.laws import INERTANCE, LAWS
+from inerter.benchmark.laws import INERTANCE, LAWS
 from inerter.model_parameters import QUARTER_CAR
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp

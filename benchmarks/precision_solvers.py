@@ -12,9 +12,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from inerter.bench.cars import CARS, car_xml
-from inerter.bench.laws import INERTANCE, LAWS
-from inerter.bench.timing import Work
+from inerter.benchmark.cars import CARS, car_xml
+from inerter.benchmark.laws import INERTANCE, LAWS
+from inerter.benchmark.timing import Work
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.engine import installed as has_exudyn
 from inerter.reference import QuarterCar, ReferenceDevice

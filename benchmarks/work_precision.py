@@ -14,8 +14,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
-from inerter.bench.rows import Row, aimed, spread_of
-from inerter.bench.timing import Timing, interleaved, once
+from inerter.benchmark.rows import Row, aimed, spread_of
+from inerter.benchmark.timing import Timing, interleaved, once
 from inerter.exudyn.engine import installed as has_exudyn
 from inerter.exudyn.engine import quiet
 from inerter.simulate.checks import engine_warnings

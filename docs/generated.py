@@ -13,6 +13,7 @@ from pathlib import Path
 
 import figures
 from inerter.core import library_path
+from inerter.diagnose.decision import CRITERIA
 from inerter.models import model_names, model_path
 from inerter.plugin import plugin_path
 
@@ -38,6 +39,7 @@ def make() -> str | None:
     (FOLDER / "gallery.md").write_text(gallery(kept["pictures"]), encoding="utf-8")
     (FOLDER / "scenes.md").write_text(scenes(kept["missing"]), encoding="utf-8")
     (FOLDER / "not_modelled.md").write_text(not_modelled(), encoding="utf-8")
+    (FOLDER / "criteria.md").write_text(criteria(), encoding="utf-8")
     return kept["missing"]
 
 
@@ -53,7 +55,7 @@ def render_scenes() -> str | None:
     """A picture of every model's scene, a moment after its start; why not, where it cannot be."""
     import matplotlib.image
     import mujoco
-    from inerter.simulate.errors import SimulationError
+    from inerter.engine_errors import SimulationError
     from inerter.simulate.load import load_model, start
     from inerter.view.picture import render
 
@@ -110,6 +112,14 @@ def not_modelled() -> str:
         found = re.search(r"Not modelled: (.*?)(?:\n\n|\n#)", text, re.S)
         if found:
             rows.append(f"| `{path.name}` | {' '.join(found[1].split())} |")
+    return "\n".join(rows) + "\n"
+
+
+def criteria() -> str:
+    """The bounds that a diagnosis decides by, with their reasons."""
+    rows = ["| bound | value | of | reason |", "| --- | ---: | --- | --- |"]
+    for name, value, unit, reason in CRITERIA.rows():
+        rows.append(f"| `{name}` | {value:g} | {unit} | {reason} |")
     return "\n".join(rows) + "\n"
 
 

@@ -16,12 +16,12 @@ import time
 import mujoco
 import numpy as np
 from inerter import load_plugin
-from inerter.identify.bench import thin
 from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import thin
 from inerter.records import Record
+from inerter.records.preparation import prepare
 from mujoco import rollout, sysid
 
 TRUTH = {

@@ -12,7 +12,7 @@ INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
 # what the lab brings: a command imports it when it is run
 _LAB = (
     "PyEMD", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotly", "polars", "pyarrow",
-    "pydantic", "rich", "scipy", "threadpoolctl", "typer",
+    "rich", "scipy", "threadpoolctl", "typer",
 )  # fmt: skip
 
 

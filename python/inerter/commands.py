@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import inerter
-from inerter.bench.command import bench_command
+from inerter.benchmark.command import benchmark_command
 from inerter.blind_test.command import blind_test_command
 from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing, status
 from inerter.design.commands import app as design_app
@@ -113,7 +113,7 @@ def _diagnose(
     import numpy as np
 
     from inerter.diagnose import diagnose
-    from inerter.diagnose.output import write_outputs
+    from inerter.report.output import write_outputs
     from inerter.report.terminal import print_summary
 
     # a user's data that overflow are judged by what comes out, not by numpy's warnings
@@ -166,7 +166,7 @@ def simulate_command(
     """
     import mujoco
 
-    from inerter.simulate.errors import SimulationError, engine_text
+    from inerter.engine_errors import SimulationError, engine_text
     from inerter.simulate.output import write_run
     from inerter.simulate.run import run_model
     from inerter.simulate.summary import print_run, summary
@@ -284,7 +284,9 @@ app.command("identify")(identify_command)
 app.command("prepare")(prepare_command)
 app.command("blind-test")(blind_test_command)
 app.command("view")(view_command)
-app.command("bench")(bench_command)
+app.command("benchmark")(benchmark_command)
+# its name before
+app.command("bench", hidden=True)(benchmark_command)
 app.add_typer(suspension_app, name="suspension")
 app.add_typer(design_app, name="design")
 app.add_typer(study_app, name="study")

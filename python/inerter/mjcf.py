@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 import mujoco
 
 from inerter.core import Device, DeviceError
+from inerter.engine_errors import engine_text
 from inerter.plugin import load_plugin
-from inerter.simulate.errors import engine_text
 
 
 def device_of_model(path: Path) -> Device:

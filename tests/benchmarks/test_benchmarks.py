@@ -16,11 +16,11 @@ import mujoco
 import numpy as np
 import pytest
 from inerter import Device
-from inerter.bench.cars import CARS, INTEGRATORS, NATIVE, PLUGIN, car_xml, jolt
-from inerter.bench.laws import LAWS, parameters_of
-from inerter.bench.motion import SPACING, along_costs, samples
-from inerter.bench.python_way import coupled_steps, passive_callback
-from inerter.bench.step import CALLBACK, LOOP, step_costs, tables
+from inerter.benchmark.cars import CARS, INTEGRATORS, NATIVE, PLUGIN, car_xml, jolt
+from inerter.benchmark.laws import LAWS, parameters_of
+from inerter.benchmark.motion import SPACING, along_costs, samples
+from inerter.benchmark.python_way import coupled_steps, passive_callback
+from inerter.benchmark.step import CALLBACK, LOOP, step_costs, tables
 from inerter.commands import app
 from typer.testing import CliRunner
 
@@ -287,7 +287,7 @@ def test_make_bench_writes_json_and_a_picture(
     with (tmp_path / "log").open("w") as log:
         frame.run(["one_step", "absent"], True, tmp_path, Console(file=log, width=100))
     found = json.loads((tmp_path / "bench.json").read_text())
-    assert found["schema"] == "inerter.bench/1"
+    assert found["schema"] == "inerter.benchmark/1"
     assert list(found["benchmarks"]) == ["one_step"]
     assert "pip install no_such_package" in (tmp_path / "log").read_text()
 
@@ -307,7 +307,7 @@ def test_pictures_are_drawn(tmp_path: Path) -> None:
 
 
 def test_bench_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from inerter.bench import report
+    from inerter.benchmark import report
 
     monkeypatch.setattr(
         report, "step_costs", lambda *_: step_costs(["quarter-car"], ["Euler"], 1, 5)

@@ -9,8 +9,8 @@ from typing import Any
 
 import mujoco
 import pytest
-from inerter.bench.rows import aims
-from inerter.bench.timing import Timing
+from inerter.benchmark.rows import aims
+from inerter.benchmark.timing import Timing
 from test_benchmarks import check_rows, checkout  # noqa: F401 - a fixture of the module
 
 

@@ -6,9 +6,9 @@ import io
 
 import mujoco
 import pytest
-from inerter.bench.machine import busy, machine
-from inerter.bench.rows import aimed, aims, table
-from inerter.bench.timing import Spread, Timing, Work, interleaved, once
+from inerter.benchmark.machine import busy, machine
+from inerter.benchmark.rows import aimed, aims, table
+from inerter.benchmark.timing import Spread, Timing, Work, interleaved, once
 from rich.console import Console
 
 

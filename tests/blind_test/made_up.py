@@ -28,13 +28,22 @@ def outcome(
         for i, (effect, confidence) in enumerate(named)
     )
     return Outcome(
-        Task(group, seed, 0.01, hidden, laws[0], kind), laws[0], findings, errors, unexplained,
-        gain, "a verdict", seconds, 0.5 * seconds, 0.2, error,
-    )  # fmt: skip
+        task=Task(group=group, seed=seed, noise=0.01, effects=hidden, law=laws[0], kind=kind),
+        law=laws[0],
+        named=findings,
+        parameters=errors,
+        unexplained=unexplained,
+        gain=gain,
+        verdict="a verdict",
+        seconds=seconds,
+        processor_seconds=0.5 * seconds,
+        share=0.2,
+        error=error,
+    )
 
 
 def solve_or_die(task: Task) -> Outcome:
     """End the whole process at seed 2, as a crash in a library would."""
     if task.seed == 2:
         os._exit(9)
-    return Outcome(task, verdict=str(task.seed))
+    return Outcome(task=task, verdict=str(task.seed))

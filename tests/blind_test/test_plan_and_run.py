@@ -53,13 +53,13 @@ def test_impossible_plans_are_refused(wrong: dict, words: str) -> None:
 
 
 def test_noise_levels() -> None:
-    levels = Task("clean", 1, 0.05).levels
+    levels = Task(group="clean", seed=1, noise=0.05).levels
     assert (levels.force, levels.force_share) == (0.0, 0.05)
     assert levels.displacement == pytest.approx(5e-6)
 
 
 def test_a_process_that_dies_is_a_failure_of_its_case_alone() -> None:
-    tasks = [Task("clean", seed, 0.01) for seed in (1, 2, 3)]
+    tasks = [Task(group="clean", seed=seed, noise=0.01) for seed in (1, 2, 3)]
     shares: list[float] = []
     first, died, last = run_tasks(tasks, 2, shares.append, solve_or_die)
     assert (first.verdict, last.verdict) == ("1", "3")
@@ -75,12 +75,14 @@ def solve_and_count(task: Task) -> Outcome:
     CALLS.append(task.seed)
     named = (Named("backlash", None, 0.75),)
     errors = (ParameterError("backlash", "backlash", 1e-4, float("nan"), None),)
-    return Outcome(task, named=named, parameters=errors, gain=0.5, verdict=str(task.seed))
+    return Outcome(task=task, named=named, parameters=errors, gain=0.5, verdict=str(task.seed))
 
 
 def test_a_test_that_was_broken_off_goes_on(tmp_path: Path) -> None:
     """What was found by the same code is taken as it is; the rest, and what is torn, is done."""
-    tasks = [Task("single", seed, 0.01, ("backlash",)) for seed in (1, 2, 3)]
+    tasks = [
+        Task(group="single", seed=seed, noise=0.01, effects=("backlash",)) for seed in (1, 2, 3)
+    ]
     CALLS.clear()
     before = run_tasks(tasks[:2], 1, work=solve_and_count, folder=tmp_path)
     torn = next(tmp_path.glob("*-2.json"))
@@ -110,7 +112,7 @@ def test_a_diagnosis_that_raises_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         raise RuntimeError("two\nlines")
 
     monkeypatch.setattr(blind_case, "diagnose_bench", fail)
-    found = solve(Task("single", 3, 0.01, ("inertance_error",)))
+    found = solve(Task(group="single", seed=3, noise=0.01, effects=("inertance_error",)))
     assert found.error == "RuntimeError: two lines"
     assert found.first == "failed"
     assert "inertance" in found.truth
@@ -118,16 +120,31 @@ def test_a_diagnosis_that_raises_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def _diagnosis(effect: str, law: str | None, values: dict[str, tuple[float, float]]) -> Diagnosis:
     named = {name: ParameterValue(value, error, "") for name, (value, error) in values.items()}
-    finding = Finding(effect, law, 0.9, named, 2.0, 1.0, "", [])
+    finding = Finding(
+        effect=effect,
+        law=law,
+        confidence=0.9,
+        parameters=named,
+        rmse_before=2.0,
+        rmse_after=1.0,
+        evidence="",
+        rivals=[],
+    )
     device: dict[str, float | str] = {name: value for name, (value, _) in values.items()}
     return Diagnosis(
-        [], Accuracy({}, 2.0, 1.0), [finding], Accuracy(device, 1.0, 0.5), 0.1,
-        Unexplained(False, 0.0, [], ""), {}, "words",
-    )  # fmt: skip
+        records=[],
+        baseline=Accuracy({}, 2.0, 1.0),
+        findings=[finding],
+        extended=Accuracy(device, 1.0, 0.5),
+        noise_floor=0.1,
+        unexplained=Unexplained(significant=False, fraction=0.0, depends_on=[], summary=""),
+        engines={},
+        verdict="words",
+    )
 
 
 def test_parameters_are_compared_by_name() -> None:
-    task = Task("single", 4, 0.0, ("hysteretic_friction",), "dahl")
+    task = Task(group="single", seed=4, noise=0.0, effects=("hysteretic_friction",), law="dahl")
     case = hide(task)
     level = case.parameters["coulomb_force"]
     right = {"coulomb_force": (1.1 * level, level), "bristle_stiffness": (1.0, 0.1)}
@@ -144,7 +161,7 @@ def test_parameters_are_compared_by_name() -> None:
 
 
 def test_gas_is_compared_by_what_the_data_see() -> None:
-    task = Task("single", 5, 0.0, ("gas_spring",))
+    task = Task(group="single", seed=5, noise=0.0, effects=("gas_spring",))
     case = hide(task)
     p = case.parameters
     # twice the area, half the pressure, twice the volume: the same spring

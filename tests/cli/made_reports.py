@@ -36,17 +36,17 @@ def run(name: str, samples: int = 900, held: bool = False, part: bool = False) -
     if part:
         holdout[samples // 3 : samples // 2] = True
     return RunCurves(
-        name,
-        "holdout" if held else "fit",
-        time,
-        x,
-        v,
-        a,
-        100 * a + 40 * np.sign(v) + noise,
-        95 * a,
-        100 * a + 40 * np.tanh(v / 0.002),
-        holdout,
-        np.ones(samples, bool),
+        name=name,
+        role="holdout" if held else "fit",
+        time=time,
+        displacement=x,
+        velocity=v,
+        acceleration=a,
+        force=100 * a + 40 * np.sign(v) + noise,
+        baseline=95 * a,
+        extended=100 * a + 40 * np.tanh(v / 0.002),
+        holdout=holdout,
+        inner=np.ones(samples, bool),
     )
 
 
@@ -54,27 +54,31 @@ def diagnosis(*curves: RunCurves, **changes: Any) -> Diagnosis:
     """A diagnosis by hand: Coulomb friction found."""
     warnings = [{"code": "outliers", "text": "3 samples <b>stand out</b> & more"}]
     finding = Finding(
-        "coulomb_friction",
-        None,
-        0.998,
-        {"coulomb_force": ParameterValue(40.0, 0.4, "N")},
-        40.0,
-        1.1,
-        "f_c = 40 N",
-        [Rival("hysteretic_friction", 0.06, "dahl")],
+        effect="coulomb_friction",
+        law=None,
+        confidence=0.998,
+        parameters={"coulomb_force": ParameterValue(40.0, 0.4, "N")},
+        rmse_before=40.0,
+        rmse_after=1.1,
+        evidence="f_c = 40 N",
+        rivals=[Rival("hysteretic_friction", 0.06, "dahl")],
     )
     parameters = {"inertance": ParameterValue(100.0, 0.5, "kg"), **finding.parameters}
     made = Diagnosis(
-        [RecordSummary(c.name, len(c.time), 300.0, c.role, warnings) for c in curves],
-        Accuracy({"friction": "none", "inertance": 95.0}, 40.0, 0.3),
-        [finding],
-        Accuracy({"friction": "coulomb", "inertance": 100.0, "coulomb_force": 40.0}, 1.1, 0.01),
-        0.9,
-        Unexplained(False, 0.1, [], "What remains is noise."),
-        {"mujoco": 1.1, "exudyn": None, "reference": None},
-        "The simulation misses the measured force by 40 N rms.",
-        parameters,
-        {
+        records=[RecordSummary(c.name, len(c.time), 300.0, c.role, warnings) for c in curves],
+        baseline=Accuracy({"friction": "none", "inertance": 95.0}, 40.0, 0.3),
+        findings=[finding],
+        extended=Accuracy(
+            {"friction": "coulomb", "inertance": 100.0, "coulomb_force": 40.0}, 1.1, 0.01
+        ),
+        noise_floor=0.9,
+        unexplained=Unexplained(
+            significant=False, fraction=0.1, depends_on=[], summary="What remains is noise."
+        ),
+        engines={"mujoco": 1.1, "exudyn": None, "reference": None},
+        verdict="The simulation misses the measured force by 40 N rms.",
+        parameters=parameters,
+        method={
             "cutoff": 20.0,
             "cutoffs_tried": [5.0, 10.0, 20.0, 40.0],
             "force_error_at_cutoffs": [9.0, 4.0, 2.0, 6.0],
@@ -82,7 +86,7 @@ def diagnosis(*curves: RunCurves, **changes: Any) -> Diagnosis:
             "channels": ["displacement"],
             "held_out_samples": 900,
         },
-        list(curves),
+        curves=list(curves),
     )
     return replace(made, **changes)
 
@@ -93,7 +97,14 @@ def table() -> TablePoints:
     acceleration = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
     held = np.array([False, True, False, True, False])
     force = 100 * acceleration
-    return TablePoints(frequency, acceleration, force + 40, force, force + 39, held)
+    return TablePoints(
+        frequency=frequency,
+        acceleration=acceleration,
+        force=force + 40,
+        baseline=force,
+        extended=force + 39,
+        holdout=held,
+    )
 
 
 def two_runs() -> Diagnosis:
@@ -126,6 +137,18 @@ CASES = {
         noise_floor=float("nan"),
     ),
     "effect without words": lambda: replace(
-        two_runs(), findings=[Finding("backlash", None, 0.9, {}, 40.0, 2.0, "a gap.", [])]
+        two_runs(),
+        findings=[
+            Finding(
+                effect="backlash",
+                law=None,
+                confidence=0.9,
+                parameters={},
+                rmse_before=40.0,
+                rmse_after=2.0,
+                evidence="a gap.",
+                rivals=[],
+            )
+        ],
     ),
 }

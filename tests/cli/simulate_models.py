@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from inerter.simulate.run import Run
+from inerter.simulate.run import SimulatedRun
 
 EXTENSION = '<extension><plugin plugin="inerter.device"/></extension>'
 
@@ -47,7 +47,7 @@ def written(folder: Path, xml: str, name: str = "model.xml") -> Path:
     return path
 
 
-def columns(run: Run, index: int = 0) -> dict[str, np.ndarray]:
+def columns(run: SimulatedRun, index: int = 0) -> dict[str, np.ndarray]:
     return run.devices[index].columns
 
 

@@ -12,9 +12,9 @@ import pytest
 from inerter import Device
 from inerter.commands import app
 from inerter.device_file import device_text, read_device
+from inerter.pictures.png import png
 from inerter.records import read_records
 from inerter.report.page import render_report
-from inerter.report.png import png
 from inerter.simulate.page import render_page
 from inerter.simulate.run import run_model
 from made_reports import TOML, XML, diagnosis, run

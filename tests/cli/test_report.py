@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 import pytest
 from inerter.diagnose.result import ParameterValue
-from inerter.report import text, thinning
+from inerter.pictures import thinning
+from inerter.pictures.plotting import to_script
+from inerter.report import text
 from inerter.report.figures import loop_figure
 from inerter.report.page import render_report
-from inerter.report.plotting import to_script
 from inerter.report.terminal import print_summary
 from made_reports import CASES, HOSTILE, TOML, XML, diagnosis, run, table_only, two_runs
 from rich.console import Console

@@ -15,13 +15,13 @@ import mujoco
 import numpy as np
 import pytest
 from inerter.commands import app
+from inerter.engine_errors import SimulationError
 from inerter.models import model_path
 from inerter.records import read_records
-from inerter.simulate.errors import SimulationError
 from inerter.simulate.load import load_model
 from inerter.simulate.output import write_run
 from inerter.simulate.page import render_page
-from inerter.simulate.run import Run, run_model
+from inerter.simulate.run import SimulatedRun, run_model
 from inerter.simulate.summary import summary
 from inerter.simulate.video import refuse_video
 from simulate_models import PULL, device, oscillator, written
@@ -67,7 +67,7 @@ def test_json_alone_on_stdout_and_four_files(finished) -> None:
 def test_a_number_that_is_not_finite_is_null_in_the_file_and_on_stdout(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def without_end(run: Run) -> dict[str, object]:
+    def without_end(run: SimulatedRun) -> dict[str, object]:
         return {**summary(run), "duration": float("inf"), "spread": [float("nan")]}
 
     for place in ("inerter.simulate.summary.summary", "inerter.simulate.output.summary"):
@@ -167,7 +167,7 @@ def test_files_appear_together_or_not_at_all(
     (tmp_path / "out" / "strut.csv").write_text("old")
     output = importlib.import_module("inerter.simulate.output")
 
-    def fail(run: Run) -> str:
+    def fail(run: SimulatedRun) -> str:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(output, "render_page", fail)
@@ -213,7 +213,7 @@ def test_what_the_documentation_shows_runs(tmp_path: Path, monkeypatch: pytest.M
 # ------------------------------ page and video ------------------------------
 
 
-def two_devices(folder: Path) -> Run:
+def two_devices(folder: Path) -> SimulatedRun:
     series = device(
         states=2, inertance=50, series_stiffness=2e5, series_damping=100, name="</script><b>"
     ).replace("</script>", "&lt;/script&gt;").replace("<b>", "&lt;b&gt;")  # fmt: skip

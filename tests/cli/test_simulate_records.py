@@ -10,9 +10,9 @@ import numpy as np
 import polars as pl
 import pytest
 from inerter.device_in_model import device_of
+from inerter.engine_errors import SimulationError
 from inerter.models import model_path
 from inerter.records import read_records
-from inerter.simulate.errors import SimulationError
 from inerter.simulate.output import write_run
 from inerter.simulate.record import device_csv
 from inerter.simulate.run import run_model

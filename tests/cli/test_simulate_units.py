@@ -7,9 +7,9 @@ from pathlib import Path
 import mujoco
 import pytest
 from inerter import Device
+from inerter.engine_errors import SimulationError
 from inerter.plugin import load_plugin
 from inerter.rig import device_mjcf
-from inerter.simulate.errors import SimulationError
 from inerter.simulate.quantities import quantity_of_control
 from inerter.simulate.run import run_model
 from simulate_models import device, oscillator, written

@@ -11,19 +11,20 @@ import numpy as np
 import pytest
 from bench_runs import measured
 from inerter import Device
+from inerter.catalogue.coordinates import search_range
+from inerter.catalogue.scales import Scales
 from inerter.core import DeviceError
 from inerter.device_file import device_text, read_delay, read_device
 from inerter.diagnose import diagnose, diagnose_bench
 from inerter.diagnose.baseline import baseline_model
 from inerter.diagnose.composition import submodel
-from inerter.diagnose.output import write_outputs
 from inerter.diagnose.result import Diagnosis, StatedValue
 from inerter.diagnose.wording import verdict
-from inerter.identify.coordinates import Scales, coordinate
 from inerter.mjcf import device_of_model
 from inerter.records import Record
 from inerter.records.quality import check_records
 from inerter.reference import ReferenceDevice, response, strokes, sum_of_sines
+from inerter.report.output import write_outputs
 
 TRUE = {"inertance": 80.0, "viscous": 40.0, "friction": "coulomb", "coulomb_force": 12.0}
 
@@ -224,7 +225,7 @@ def test_a_stated_delay_is_what_a_fit_begins_with(tmp_path: Path, text: str, fou
     path = tmp_path / "device.toml"
     path.write_text(f"[device]\ninertance = 3\n[channels]\nforce_delay = {text}\n")
     assert read_delay(path) == pytest.approx(found)
-    how = coordinate("delay", Scales(1.0, 1.0, 1.0, 1.0))
+    how = search_range("delay", Scales(force=1.0, displacement=1.0, velocity=1.0, acceleration=1.0))
     assert how.decode(how.encode(read_delay(path))) == pytest.approx(found)
 
 

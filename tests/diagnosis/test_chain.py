@@ -18,7 +18,17 @@ WHOLE = BARE.adding(viscous=100.0, backlash=1e-4)
 
 def link(effect: str, stands: bool = True) -> Link:
     fit = Fit(BARE, [], np.zeros((1, 1)), 1)
-    return Link(effect, None, fit, fit, 10.0, 9.0, None, False, stands)
+    return Link(
+        effect=effect,
+        law=None,
+        before=fit,
+        after=fit,
+        rmse_before=10.0,
+        rmse_after=9.0,
+        interval=None,
+        seen_in_blocks=False,
+        stands=stands,
+    )
 
 
 def judge(before: float, after: float) -> Judge:

@@ -8,6 +8,8 @@ from typing import cast
 
 import numpy as np
 import pytest
+from inerter.catalogue.coordinates import search_range
+from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
@@ -19,11 +21,11 @@ from inerter.diagnose.composition import (
     with_own_spring,
     without_effect,
 )
-from inerter.diagnose.rivals import BEATEN, _is_better
+from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.rivals import _is_better
 from inerter.diagnose.search import Scored
 from inerter.diagnose.statistics import win_shares
 from inerter.diagnose.trials import FAR, FEW, Trials
-from inerter.identify.coordinates import Scales, coordinate
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 
@@ -40,7 +42,14 @@ def fitted(model: Model, error: float = 0.01) -> Fit:
 def scored(model: Model, rms: float, spread: float = 0.05) -> Scored:
     """A model and its errors on 48 blocks."""
     blocks = rms**2 * (1 + spread * np.random.default_rng(int(1e3 * rms)).standard_normal(48))
-    return Scored("coulomb_friction", None, fitted(model), [], [], blocks)
+    return Scored(
+        effect="coulomb_friction",
+        law=None,
+        fit=fitted(model),
+        errors=[],
+        residual=[],
+        squares=blocks,
+    )
 
 
 @pytest.mark.parametrize(
@@ -50,7 +59,7 @@ def scored(model: Model, rms: float, spread: float = 0.05) -> Scored:
 def test_a_narrow_peak_that_explains_little_is_the_blur_of_a_reversal(
     share: float, plain: float, blur: bool
 ) -> None:
-    narrowest = coordinate("stribeck_velocity", SCALES).lower
+    narrowest = search_range("stribeck_velocity", SCALES).lower
     values = {"coulomb_force": 20.0, "stribeck_velocity": share * narrowest}
     peak = BASELINE.adding("stribeck", **values, static_excess=8.0)
     # errors in rms over all data, N: 1 with the peak; 4 % of 20 N more are 1.28
@@ -91,7 +100,7 @@ def test_a_peak_of_less_than_three_standard_errors_is_none(error: float, told: b
     model = BASELINE.adding(
         "stribeck", coulomb_force=20.0, static_excess=8.0, stribeck_velocity=0.05
     )
-    assert is_distinct("stribeck_friction", fitted(model, error), 3.0, BASELINE) is told
+    assert is_distinct("stribeck_friction", fitted(model, error), BASELINE) is told
 
 
 def test_a_gas_is_told_though_its_exponent_is_not() -> None:
@@ -107,7 +116,7 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
         sizes = np.diag([push, reach, 1.0])
         covariance[1:, 1:] = sizes @ np.linalg.inv(precision) @ sizes
         assert np.sqrt(covariance[1, 1]) > 3 * push
-        return is_distinct("gas_spring", Fit(model, [], covariance, 1, 1.0), 3.0, BASELINE)
+        return is_distinct("gas_spring", Fit(model, [], covariance, 1, 1.0), BASELINE)
 
     assert told(0.02)
     assert not told(0.3)
@@ -116,7 +125,7 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
 @pytest.mark.parametrize(("beta", "told"), [(-0.2, False), (1.0, False), (5.0, True)])
 def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
     model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)
-    assert is_distinct("hysteretic_friction", fitted(model), 3.0, BASELINE) is told
+    assert is_distinct("hysteretic_friction", fitted(model), BASELINE) is told
 
 
 def test_a_level_and_a_constant_force_may_be_friction_that_differs_between_directions() -> None:
@@ -203,7 +212,7 @@ def test_what_stays_far_off_is_not_followed(error: float, follows: bool) -> None
 
 def test_a_model_that_is_not_scored_would_win_no_resample() -> None:
     best = np.random.default_rng(7).gamma(2.0, 1.0, 48)
-    beside = BEATEN**2 * np.random.default_rng(8).permutation(best)
+    beside = CRITERIA.beaten**2 * np.random.default_rng(8).permutation(best)
     assert win_shares([best, beside])[1] < 0.02
     # nearer ones do win some
     assert win_shares([best, 1.01**2 * np.random.default_rng(8).permutation(best)])[1] > 0.02

@@ -14,7 +14,16 @@ from inerter.report.page import render_report
 
 QUIET = NoiseLevels(0.0, 0.01, 1e-6)
 # explains 3 N of 5
-THREE = Finding("viscous_friction", None, 0.98, {}, 5.0, 4.0, "c = 1.", [])
+THREE = Finding(
+    effect="viscous_friction",
+    law=None,
+    confidence=0.98,
+    parameters={},
+    rmse_before=5.0,
+    rmse_after=4.0,
+    evidence="c = 1.",
+    rivals=[],
+)
 
 
 def test_trust_is_even_beside_an_equal_rest_and_whole_without_a_rest() -> None:

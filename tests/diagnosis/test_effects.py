@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inerter.diagnose.effects import EFFECTS
+from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.statistics import advantage, block_squares, where_apart, win_shares
 from inerter.identify.split import blocks
 

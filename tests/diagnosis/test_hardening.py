@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bench_runs import measured
+from inerter.catalogue.scales import Scales
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws
-from inerter.identify.bench import Run
-from inerter.identify.coordinates import Scales
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
 from inerter.reference import ReferenceDevice, sum_of_sines
 
 # alpha is the spring of the hysteresis, beta + gamma < 0: it hardens away from rest
@@ -48,8 +48,20 @@ def test_its_parameters_are_near(diagnosis: Diagnosis) -> None:
 def test_a_state_that_runs_away_has_no_force_and_no_warning() -> None:
     time = np.arange(0, 2, 1e-3)
     x, v, a = 0.01 * np.sin(9 * time), 0.09 * np.cos(9 * time), -0.81 * np.sin(9 * time)
-    run = Run("a", 0.0, 1e-3, x, v, a, 2 * a, np.ones(time.size, bool), 0.0, 40.0,
-              measured=(x, v, a), corner=10.0)  # fmt: skip
+    run = BenchRun(
+        name="a",
+        start=0.0,
+        spacing=1e-3,
+        displacement=x,
+        velocity=v,
+        acceleration=a,
+        force=2 * a,
+        inner=np.ones(time.size, bool),
+        first_force=0.0,
+        cutoff=40.0,
+        measured=(x, v, a),
+        corner=10.0,
+    )
     model = Model("bouc_wen", {"inertance": 2.0, "bw_stiffness": 1e4, "bw_beta": 0.0,
                                "bw_gamma": -1e9, "bw_exponent": 3.0}, ("bw_gamma",))  # fmt: skip
     problem = Problem([run], [np.ones(time.size, bool)])

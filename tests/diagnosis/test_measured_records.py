@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.diagnose import diagnose
-from inerter.identify.bench import thin
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import thin
 from inerter.records import read_records
+from inerter.records.preparation import prepare
 
 
 @pytest.mark.parametrize(("ratio", "inertance", "aim"), [("r0", 61.35, 15.0), ("r16", 32.56, 8.0)])

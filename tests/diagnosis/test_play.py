@@ -15,9 +15,9 @@ from inerter.diagnose.play import (
     from_contact,
     jackknife,
 )
-from inerter.identify.bench import Run, head, head_size
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun, head, head_size
 
 RATE = 1000.0
 TRUTH = Device(inertance=60.0, backlash=4e-4, series_stiffness=8e5, series_damping=5e3)
@@ -25,7 +25,7 @@ NOISE = 0.3
 RIGID = Model("none", {"inertance": 40.0, "transition_velocity": 1e-4}, ("inertance",))
 
 
-def run(seed: int, seconds: float = 6.0) -> Run:
+def run(seed: int, seconds: float = 6.0) -> BenchRun:
     """A flywheel thrown about in its play by some sines; begun as it flies."""
     random = np.random.default_rng(seed)
     t = np.arange(0, seconds + 3, 1 / RATE)
@@ -41,7 +41,18 @@ def run(seed: int, seconds: float = 6.0) -> Run:
     x, v, a, force = (c[part] for c in (x, v, a, force["total"]))
     force = force + NOISE * random.standard_normal(force.size)
     inner = np.ones(force.size, bool)
-    return Run(f"run{seed}", 0.0, 1 / RATE, x, v, a, force, inner, float(force[:10].mean()), np.inf)
+    return BenchRun(
+        name=f"run{seed}",
+        start=0.0,
+        spacing=1 / RATE,
+        displacement=x,
+        velocity=v,
+        acceleration=a,
+        force=force,
+        inner=inner,
+        first_force=float(force[:10].mean()),
+        cutoff=np.inf,
+    )
 
 
 def problem(count: int = 2) -> Problem:

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from inerter import Device
 from inerter.diagnose import Diagnosis, diagnose, diagnose_bench
-from inerter.diagnose.output import write_outputs
 from inerter.models import model_path
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, response, sum_of_sines
+from inerter.report.output import write_outputs
 from inerter.simulate.record import device_csv
 from inerter.simulate.run import run_model
 

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from inerter.diagnose import bench as module
-from inerter.diagnose import diagnose_bench
-from inerter.diagnose.bench import _Bench
+from inerter.diagnose import diagnose_bench, stages
 from inerter.diagnose.composition import is_distinct
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import ParameterValue
 from inerter.diagnose.rivals import Standing
-from inerter.diagnose.search import Scored, Search
+from inerter.diagnose.search import Search
+from inerter.diagnose.stages import Given
 from inerter.diagnose.wording import quantity
-from inerter.identify.bench import scales, thin
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import scales, thin
 from inerter.identify.split import split
 from inerter.records import Record, check_records
+from inerter.records.preparation import prepare
 
 
 def inerter(
@@ -113,9 +113,7 @@ def test_what_is_held_out_does_not_choose_the_smoothing_of_what_is_fitted() -> N
     runs = [inerter(f"run {i}", f, seed=i) for i, f in enumerate((1.5, 1.8, 2.2))]
     walk = np.cumsum(np.random.default_rng(3).normal(0, 3.0, runs[1].samples))
     changed = [runs[0], replace(runs[1], force=runs[1].force + walk), runs[2]]
-    found = [
-        _Bench(each, None, ["run 1"], lambda text: None, 0.0) for each in (runs, changed)
-    ]  # fmt: skip
+    found = [stages.prepared(Given(records=each, holdout=["run 1"])) for each in (runs, changed)]
     assert found[0].plain.cutoff == found[1].plain.cutoff
     assert found[0].weighed.cutoff == found[1].weighed.cutoff
 
@@ -145,12 +143,10 @@ def test_a_model_named_in_the_end_is_compared_itself(monkeypatch: pytest.MonkeyP
         other = Named(final.turn + 1) if effect.startswith("first") else None
         return Standing(0.9, [], other)  # pyright: ignore[reportArgumentType]
 
-    monkeypatch.setattr(module, "effects_of", effects)
-    monkeypatch.setattr(module, "standing", stand)
-    bench = object.__new__(_Bench)
-    bench.baseline = bench.search = None  # pyright: ignore[reportAttributeAccessIssue]
-    start: Scored = Named(0)  # pyright: ignore[reportAssignmentType]
-    final, standings = bench._settle(start)
+    monkeypatch.setattr(stages, "effects_of", effects)
+    monkeypatch.setattr(stages, "standing", stand)
+    search, baseline, start = Mock(), Mock(), Named(0)
+    final, standings = stages.compared(search, baseline, start)  # pyright: ignore
     assert set(standings) == {name for name, _ in effects(final.model, None)}  # pyright: ignore
 
 
@@ -162,8 +158,8 @@ def test_a_shaft_of_a_stiffness_that_is_not_known_is_none() -> None:
     model = Model("none", values, tuple(values))
     sure = Fit(replace(model, values={**values, "inertance": 50.0}), [], np.diag([1, 0.1, 0.01]), 1)
     unsure = Fit(model, [], np.diag([1, 0.1, 0.01]), 1)
-    assert is_distinct("series_elasticity", sure, 3.0, IDEAL)
-    assert not is_distinct("series_elasticity", unsure, 3.0, IDEAL)
+    assert is_distinct("series_elasticity", sure, IDEAL)
+    assert not is_distinct("series_elasticity", unsure, IDEAL)
 
 
 # words

@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 from bench_runs import measured
 from inerter import Device
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.scales import Scales
 from inerter.diagnose import diagnose_bench
+from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.result import Diagnosis
+from inerter.diagnose.stated import stated_candidates
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, sum_of_sines
 
@@ -69,3 +73,50 @@ def test_a_delay_that_is_stated_and_not_there(runs: list[Record]) -> None:
     diagnosis = diagnosed(runs, delay=4e-3)
     assert [finding.effect for finding in diagnosis.findings] == ["sensor_delay"]
     assert "(stated 0.004, " in diagnosis.verdict
+
+
+# what is given beside the level, and what of the law the data can contradict
+PARTLY = {
+    "dahl": ({}, {"coulomb_force", "presliding"}),
+    "lugre": (
+        {"bristle_stiffness": 2e4},
+        {"coulomb_force", "static_excess", "stribeck_velocity", "presliding", "bristle_damping"},
+    ),
+    "stribeck": ({}, {"coulomb_force", "static_excess", "stribeck_velocity"}),
+    "brown_mcphee": (
+        {"static_force": 4.0},
+        {"coulomb_force", "static_excess", "stribeck_velocity"},
+    ),
+}
+
+
+@pytest.mark.parametrize("law", PARTLY)
+def test_what_a_stated_law_leaves_to_its_defaults_is_set_free_too(law: str) -> None:
+    given, wanted = PARTLY[law]
+    sizes = Scales(force=100.0, displacement=0.01, velocity=0.1, acceleration=1.0, cutoff=30.0)
+    device = Device(inertance=50.0, friction=law, coulomb_force=3.0, **given)
+    baseline = baseline_of(device, sizes)
+    for model in (baseline, baseline.adding(coulomb_force=2.0)):
+        (candidate,) = [
+            each for each in stated_candidates(model, sizes) if EFFECTS[each.effect].kind == "law"
+        ]
+        for start in candidate.starts:
+            assert wanted <= set(start.free)
+            start.device()
+    # one that was found by itself is not found again
+    free = candidate.starts[0]
+    assert not [e for e in stated_candidates(free, sizes) if EFFECTS[e.effect].kind == "law"]
+
+
+def test_a_default_stiffness_is_contradicted() -> None:
+    """The user states the level of Dahl friction alone; the bench's bristle is much softer."""
+    motions = [sum_of_sines([3e-3, 0.9e-3], [f, 1.6 * f], [0.0, 0.0]) for f in (1.5, 1.8, 2.2)]
+    truth = {"friction": "dahl", "coulomb_force": 12.0, "bristle_stiffness": 1.2e4}
+    device = ReferenceDevice(inertance=50.0, **truth)  # type: ignore[arg-type]
+    runs = measured(device, motions, np.arange(0, 8, 4e-3), force_noise=NOISE)
+    stated = Device(inertance=50.0, friction="dahl", coulomb_force=12.0)
+    diagnosis = diagnose_bench(runs, stated)
+    assert [(f.effect, f.law) for f in diagnosis.findings] == [("hysteretic_friction", "dahl")]
+    found = diagnosis.findings[0].parameters["bristle_stiffness"]
+    assert found.value == pytest.approx(1.2e4, rel=0.1)
+    assert "bristle stiffness" in diagnosis.verdict

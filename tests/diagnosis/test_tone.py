@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter.diagnose.tone import strongest_line, with_tone_above
-from inerter.identify.bench import Run, whole
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import BenchRun, whole
 from inerter.records import Record
+from inerter.records.preparation import prepare
 
 TIME = np.arange(0, 8, 1e-3)
 
 
-def moving(frequency: float, seed: int) -> Run:
+def moving(frequency: float, seed: int) -> BenchRun:
     random = np.random.default_rng(seed)
     x = 5e-3 * np.sin(2 * np.pi * frequency * TIME)
     force = 40 * np.gradient(np.gradient(x, TIME), TIME) + random.standard_normal(TIME.size)

@@ -32,7 +32,16 @@ def test_departures_are_readable(value: float, stated: float, text: str) -> None
 
 def test_what_is_stated_and_other_is_called_so() -> None:
     value = StatedValue(60.0, 0.1, "N*s/m", 40.0)
-    finding = Finding("viscous_friction", None, 1.0, {"viscous": value}, 5.0, 1.0, "", [])
+    finding = Finding(
+        effect="viscous_friction",
+        law=None,
+        confidence=1.0,
+        parameters={"viscous": value},
+        rmse_before=5.0,
+        rmse_after=1.0,
+        evidence="",
+        rivals=[],
+    )
     assert effect_in_words(finding) == "viscous friction other than stated"
     unstated = replace(finding, parameters={"viscous": replace(value, stated=None)})
     assert effect_in_words(unstated) == "viscous friction"

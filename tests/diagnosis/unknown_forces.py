@@ -9,12 +9,12 @@ import numpy as np
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.result import Unexplained
 from inerter.diagnose.unexplained import unexplained
-from inerter.identify.bench import Run, scales, thin, whole
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import BenchRun, scales, thin, whole
 from inerter.identify.split import split
 from inerter.records import Record
+from inerter.records.preparation import prepare
 from inerter.reference import HiddenCase, NoiseLevels, hide_effect
 from numpy.typing import NDArray
 from scipy.signal import lfilter
@@ -153,7 +153,7 @@ def _noisy(seed: int, along: list[Along], forces: list[Array], noise: float) -> 
 
 
 def remaining(
-    records: list[Record], model: Callable[[list[Run]], Model] | None = None
+    records: list[Record], model: Callable[[list[BenchRun]], Model] | None = None
 ) -> Unexplained:
     """What a fitted model leaves: by default the ideal inerter with viscous and Coulomb friction.
 
@@ -190,7 +190,7 @@ def remaining(
     )
 
 
-def with_stated(case: HiddenCase) -> Callable[[list[Run]], Model]:
+def with_stated(case: HiddenCase) -> Callable[[list[BenchRun]], Model]:
     """The family of the hidden effect, to fit from the true values."""
     from inerter.core import Device
 
@@ -198,7 +198,7 @@ def with_stated(case: HiddenCase) -> Callable[[list[Run]], Model]:
         inertance=case.device.inertance, friction=case.device.friction, **case.parameters
     )
 
-    def model(runs: list[Run]) -> Model:
+    def model(runs: list[BenchRun]) -> Model:
         start = baseline_of(device, scales(runs))
         free = tuple(name for name in start.values if name != "transition_velocity")
         if start.friction in ("coulomb", "stribeck"):

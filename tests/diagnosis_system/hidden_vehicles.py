@@ -16,10 +16,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from inerter.diagnose.system.build import read_model
-from inerter.diagnose.system.diagnosis import diagnose_system
-from inerter.diagnose.system.mapping import map_columns
-from inerter.diagnose.system.outcome import SystemDiagnosis
+from inerter.diagnose.vehicle.build import read_model
+from inerter.diagnose.vehicle.diagnosis import diagnose_system
+from inerter.diagnose.vehicle.mapping import map_columns
+from inerter.diagnose.vehicle.outcome import SystemDiagnosis
 from inerter.model_parameters import QUARTER_CAR
 from inerter.models import model_path
 from inerter.records import VehicleRecord

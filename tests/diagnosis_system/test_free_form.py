@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hidden_vehicles import Road, noisy
 from inerter.diagnose import diagnose
-from inerter.diagnose.system import SystemDiagnosis
+from inerter.diagnose.vehicle import SystemDiagnosis
 from inerter.models import model_path
 from inerter.reference import Corner, HalfCar, ReferenceDevice, Strut
 from scipy.integrate import solve_ivp

@@ -8,8 +8,8 @@ import mujoco
 import pytest
 from hidden_vehicles import Car, Road, record, write
 from inerter.commands import app
-from inerter.diagnose.system.build import read_model
-from inerter.diagnose.system.mapping import MappingError, map_columns, read_options
+from inerter.diagnose.vehicle.build import read_model
+from inerter.diagnose.vehicle.mapping import MappingError, map_columns, read_options
 from inerter.models import model_path
 from typer.testing import CliRunner
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hidden_vehicles import Car, Road, diagnose, record, write
 from inerter.diagnose import diagnose as diagnose_files
-from inerter.diagnose.system.build import UserModel, read_model
-from inerter.diagnose.system.model import SystemModel
+from inerter.diagnose.vehicle.build import UserModel, read_model
+from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.models import model_path
 
 # file: (wheel, body, kind of spring, kind of damper) of every device
@@ -59,7 +59,7 @@ def test_device_of_a_building_is_no_suspension() -> None:
 
 def test_one_sided_damper_brakes_in_its_direction_alone() -> None:
     user = _user("quarter_car", "model.xml")
-    change = SystemModel({"strut.rebound_damping": 4000.0, "strut.bump_damping": 3000.0})
+    change = VehicleModel({"strut.rebound_damping": 4000.0, "strut.bump_damping": 3000.0})
     model = user.compile(change)
     data = mujoco.MjData(model)
 
@@ -75,7 +75,7 @@ def test_one_sided_damper_brakes_in_its_direction_alone() -> None:
 
 def test_tyre_cannot_pull_more_than_its_static_load() -> None:
     user = _user("quarter_car", "model.xml")
-    model = user.compile(SystemModel({"tyre:road.tyre_static_load": 2000.0}))
+    model = user.compile(VehicleModel({"tyre:road.tyre_static_load": 2000.0}))
     data = mujoco.MjData(model)
     for road, force in ((-0.1, -2000.0), (-0.01, -1200.0), (0.1, 12000.0)):
         data.ctrl[0] = road
@@ -104,7 +104,7 @@ def test_native_spring_and_damper_in_a_model_with_gravity(tmp_path: Path) -> Non
     spring = user.parts.suspensions[0].spring
     assert spring is not None
     assert spring.kind == "tendon"
-    change = SystemModel({"tendon:strut.stiffness": 1e5, "tendon:strut.damping": 3000.0})
+    change = VehicleModel({"tendon:strut.stiffness": 1e5, "tendon:strut.damping": 3000.0})
     compiled = user.compile(change)
     assert compiled.tendon_stiffness[0] == 1e5
     assert compiled.tendon_damping[0] == 3000.0

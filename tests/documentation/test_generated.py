@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from inerter.diagnose.decision import CRITERIA
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 sys.path.insert(0, str(DOCS))
@@ -48,6 +49,13 @@ def test_a_missing_scene_is_said_and_not_shown() -> None:
     assert "not rendered in this build: no OpenGL" in text
     assert "](figures/" not in text
     assert generated.scenes(None).count("](figures/scene_") == text.count("## ")
+
+
+def test_every_bound_of_a_diagnosis_is_printed_with_its_reason() -> None:
+    rows = [line.split(" | ") for line in generated.criteria().splitlines()[2:]]
+    printed = {row[0].strip("| `"): float(row[1]) for row in rows}
+    assert printed == {name: value for name, value, _, _ in CRITERIA.rows()}
+    assert all(len(row) == 4 and len(row[3]) > 5 for row in rows)
 
 
 def test_every_law_says_what_it_leaves_out() -> None:

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inerter.identify.bench import Run, on_clocks, thin
+from inerter.catalogue.coordinates import LOWEST_TONE
 from inerter.identify.channel import through_channel, without_tone
-from inerter.identify.coordinates import LOWEST_TONE
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
-from inerter.identify.preparation import prepare
+from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.records import Record
+from inerter.records.preparation import prepare
 
 TIME = np.arange(0, 8, 1e-3)
 INERTANCE = 50.0
@@ -35,7 +35,7 @@ def record(name: str = "run", start: float = 0.0, **channel: float) -> Record:
     return Record(name=name, time=TIME + start, displacement=np.asarray(x), force=force)
 
 
-def runs(*records: Record) -> list[Run]:
+def runs(*records: Record) -> list[BenchRun]:
     return on_clocks([thin(motion) for motion in prepare(records).motions])
 
 
@@ -131,7 +131,7 @@ def test_a_tone_is_no_offset() -> None:
 def test_a_delay_between_samples_keeps_impacts_whole(delay: float) -> None:
     """Against the same device along the motion as it was that much earlier."""
 
-    def moved(late: float) -> Run:
+    def moved(late: float) -> BenchRun:
         angle = 2 * np.pi * 1.3 * (TIME - late)
         rate = 2 * np.pi * 1.3
         waves = np.sin(angle), rate * np.cos(angle), -(rate**2) * np.sin(angle)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from inerter import Device
 from inerter.core import DeviceError
-from inerter.identify.bench import Run
 from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem, parameter_errors
 from inerter.identify.identifiability import identifiability
@@ -17,6 +16,7 @@ from inerter.identify.model import Model
 from inerter.identify.multistart import search
 from inerter.identify.prediction import first_state
 from inerter.identify.profile import profile_interval
+from inerter.identify.runs import BenchRun
 from inerter.identify.split import BLOCKS, HELD_OUT_BLOCKS
 from inerter.records import Record, check_records
 from random_devices import LAWS, drawn, found
@@ -42,7 +42,18 @@ def problem(device: Device, noise: float, scale: float = 1.0, seed: int = 0) -> 
     start = device.state_of_force(x[0], v[0], a[0], 0.0) if device.nstate else 0.0
     force = device.along(H, x, v, a, start)["total"] + noise * random.standard_normal(N)
     everything = np.ones(N, bool)
-    run = Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf)
+    run = BenchRun(
+        name="r",
+        start=0.0,
+        spacing=H,
+        displacement=x,
+        velocity=v,
+        acceleration=a,
+        force=force,
+        inner=everything,
+        first_force=float(force[0]),
+        cutoff=np.inf,
+    )
     return Problem([run], [everything])
 
 
@@ -177,7 +188,23 @@ def test_where_in_its_play_a_run_begins_is_found_with_the_play(place: float) -> 
     force = device.along(H, x, v, a, place * half)["total"] + 0.3 * noise
     everything = np.ones(N, bool)
     first = float(50 * a[0] + 100 * v[0])
-    data = Problem([Run("r", 0.0, H, x, v, a, force, everything, first, np.inf)], [everything])
+    data = Problem(
+        [
+            BenchRun(
+                name="r",
+                start=0.0,
+                spacing=H,
+                displacement=x,
+                velocity=v,
+                acceleration=a,
+                force=force,
+                inner=everything,
+                first_force=first,
+                cutoff=np.inf,
+            )
+        ],
+        [everything],
+    )
     fit = search(data, law_named("dahl+play"), {}).best
     assert fit.rmse(data.masks) < 1.02 * 0.3
     assert fit.model.values["friction_place"] == pytest.approx(place, abs=0.02)
@@ -200,7 +227,18 @@ def test_a_first_force_beyond_doubt_tells_the_side_of_the_play() -> None:
     for force, place, state in (
         (20.0, -1.0, 3.5e-3), (-20.0, 1.0, -3.5e-3), (0.0, 0.4, 1.2e-3), (0.0, -1.0, -3e-3),
     ):  # fmt: skip
-        run = Run("r", 0.0, H, none, none, none, none, few, force, np.inf)
+        run = BenchRun(
+            name="r",
+            start=0.0,
+            spacing=H,
+            displacement=none,
+            velocity=none,
+            acceleration=none,
+            force=none,
+            inner=few,
+            first_force=force,
+            cutoff=np.inf,
+        )
         assert first_state(device, run, place) == pytest.approx(state, abs=1e-12)
 
 

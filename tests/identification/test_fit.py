@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from inerter import Device
-from inerter.identify.bench import Run
 from inerter.identify.fit import Problem, delayed, parameter_errors, rms
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
 
 H, N = 2e-3, 6000
 TIME = H * np.arange(N)
 
 
-def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> Run:
+def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> BenchRun:
     """A run of a device along three sines, force noise only."""
     random = np.random.default_rng(seed)
     omega = 2 * np.pi * np.array([[0.4], [1.7], [4.3]])
@@ -27,10 +27,21 @@ def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> Run:
     x, v, a = motion(TIME)
     force = device.along(H, *motion(TIME - delay))["total"] + random.normal(0, noise, N)
     everything = np.ones(N, bool)
-    return Run("r", 0.0, H, x, v, a, force, everything, float(force[0]), np.inf)
+    return BenchRun(
+        name="r",
+        start=0.0,
+        spacing=H,
+        displacement=x,
+        velocity=v,
+        acceleration=a,
+        force=force,
+        inner=everything,
+        first_force=float(force[0]),
+        cutoff=np.inf,
+    )
 
 
-def problem(one: Run) -> Problem:
+def problem(one: BenchRun) -> Problem:
     return Problem([one], [np.ones(N, bool)])
 
 
@@ -120,7 +131,7 @@ def test_delayed_is_a_shift_of_third_order() -> None:
 def test_bounds_hold() -> None:
     """Friction that pushes cannot be fitted by a damper: it stays at zero."""
     force = run(Device(inertance=50.0, force_offset=1.0), 0.1)
-    pushed = Run(**{**force.__dict__, "force": force.force - 30 * force.velocity})
+    pushed = BenchRun(**{**force.__dict__, "force": force.force - 30 * force.velocity})
     fit = problem(pushed).fit(
         Model("none", {"inertance": 50.0, "viscous": 5.0}, ("inertance", "viscous"))
     )

@@ -13,11 +13,11 @@ from inerter.identify.laws import law_named
 from inerter.identify.multistart import search
 from inerter.identify.nested import contains, embedded
 from inerter.identify.output import left_open, print_identification
-from inerter.identify.preparation import prepare
 from inerter.identify.result import Estimate, Identification
 from inerter.identify.turns import turned
 from inerter.models import data_path
 from inerter.records import Record, read_records
+from inerter.records.preparation import prepare
 from rich.console import Console
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from inerter.core import Device
-from inerter.identify.bench import Run, thin
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
-from inerter.identify.residual import without_transient
+from inerter.identify.runs import BenchRun, thin
+from inerter.identify.transient import without_transient
 from inerter.records import Record
 from inerter.records.motion import smooth
 
@@ -16,7 +16,7 @@ TIME = np.arange(0, 8, 1e-3)
 
 
 @pytest.fixture(scope="module")
-def run() -> Run:
+def run() -> BenchRun:
     random = np.random.default_rng(5)
     x = 5e-3 * np.sin(2 * np.pi * 1.3 * TIME) + 2e-3 * np.sin(2 * np.pi * 3.1 * TIME)
     force = 60 * np.gradient(np.gradient(x, TIME), TIME)
@@ -39,7 +39,7 @@ DULL = {"coulomb_force": 4.0, "transition_velocity": 1e-3}
     ],
 )
 def test_what_is_never_reached_changes_nothing(
-    run: Run, friction: str, idle: dict[str, float]
+    run: BenchRun, friction: str, idle: dict[str, float]
 ) -> None:
     """A limit must not win by a smoother prediction of everything else."""
     values = PLAIN | (DULL if friction == "coulomb" else {})
@@ -49,7 +49,7 @@ def test_what_is_never_reached_changes_nothing(
 
 
 @pytest.mark.parametrize("friction", ["none", "coulomb"])
-def test_a_stop_adds_its_force_in_the_band(run: Run, friction: str) -> None:
+def test_a_stop_adds_its_force_in_the_band(run: BenchRun, friction: str) -> None:
     values = PLAIN | (DULL if friction == "coulomb" else {})
     stop = {"stop_upper": 4e-3, "stop_stiffness": 1e5, "stop_damping": 0.0}
     added = force_along(Model(friction, values | stop, ()), run) - force_along(
@@ -62,7 +62,7 @@ def test_a_stop_adds_its_force_in_the_band(run: Run, friction: str) -> None:
     np.testing.assert_allclose(added[later], expected, atol=1e-4 * np.max(spring))
 
 
-def test_a_limit_cuts_what_is_beyond_it(run: Run) -> None:
+def test_a_limit_cuts_what_is_beyond_it(run: BenchRun) -> None:
     assert run.measured is not None
     _, v, a = run.measured
     whole = 60.0 * a + 30.0 * v
@@ -99,7 +99,7 @@ def test_a_decay_of_any_damping_is_taken_out(damping: float) -> None:
         assert np.max(np.abs(left[mask])) < 0.02 * 30.0
 
 
-def test_a_flywheel_that_turns_as_a_record_begins_is_settled(run: Run) -> None:
+def test_a_flywheel_that_turns_as_a_record_begins_is_settled(run: BenchRun) -> None:
     values = {"inertance": 60.0, "series_stiffness": 6e4, "series_damping": 60.0}
     model = Model("none", values, ())
     decay = np.exp(-0.5 * run.elapsed) * np.sin(np.sqrt(1e3 - 0.25) * run.elapsed)

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inerter.identify.bench import Run
-from inerter.identify.preparation import prepare, prepare_again, weighed
+from inerter.identify.runs import BenchRun
 from inerter.records import Record
 from inerter.records.motion import Motion, apply_weight, motion_noise, response, weight_above
+from inerter.records.preparation import prepare, prepare_again, weighed
 
 RATE = 500.0
 
@@ -93,8 +93,20 @@ def test_no_shaft_wins_by_its_weights() -> None:
     white = np.random.default_rng(0).standard_normal(size)
     noise = np.fft.irfft(np.fft.rfft(white) * spectrum, size)
     silent = np.zeros(size)
-    run = Run("run", 0.0, spacing, silent, silent, silent, silent, silent == 0, 0.0, cutoff=25.0,
-              corner=5.0, shaft=(12.0, 0.1))  # fmt: skip
+    run = BenchRun(
+        name="run",
+        start=0.0,
+        spacing=spacing,
+        displacement=silent,
+        velocity=silent,
+        acceleration=silent,
+        force=silent,
+        inner=silent == 0,
+        first_force=0.0,
+        cutoff=25.0,
+        corner=5.0,
+        shaft=(12.0, 0.1),
+    )
     others = [shaft, (9.5, 0.05), (10.5, 0.05), (10.0, 0.03), (10.0, 0.1), (12.0, 0.1)]
     errors = [np.std(run.weighted(noise, run.inner, other)) for other in others]
     assert np.argmin(errors) == 0

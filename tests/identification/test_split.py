@@ -4,20 +4,31 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from inerter.identify.bench import Run
+from inerter.identify.runs import BenchRun
 from inerter.identify.split import split
 
 
-def run(name: str, low: float, high: float, rate: float = 3.0, seconds: float = 5.0) -> Run:
+def run(name: str, low: float, high: float, rate: float = 3.0, seconds: float = 5.0) -> BenchRun:
     """A sine between two displacements [m]."""
     time = np.arange(0, seconds, 0.01)
     middle, size = (low + high) / 2, (high - low) / 2
     x = middle + size * np.sin(rate * time)
     v, a = size * rate * np.cos(rate * time), -size * rate**2 * np.sin(rate * time)
-    return Run(name, 0.0, 0.01, x, v, a, 2 * a, np.ones(time.size, bool), 0.0, np.inf)
+    return BenchRun(
+        name=name,
+        start=0.0,
+        spacing=0.01,
+        displacement=x,
+        velocity=v,
+        acceleration=a,
+        force=2 * a,
+        inner=np.ones(time.size, bool),
+        first_force=0.0,
+        cutoff=np.inf,
+    )
 
 
-def held(*runs: Run) -> str:
+def held(*runs: BenchRun) -> str:
     return split(runs).description
 
 

@@ -4,6 +4,7 @@ Pointwise: force, state rate, stored energy, dissipated power, to 1e-12 of the t
 what both owe to physics: odd symmetry, passivity, power balance.
 """
 
+from collections.abc import Callable
 from dataclasses import fields
 
 import numpy as np
@@ -26,6 +27,7 @@ from inerter.core import Device, friction_laws, parameters
 from inerter.reference import FRICTION_LAWS, ReferenceDevice
 
 TOLERANCE = 1e-12
+DECLARED = {f.name: (f.default, f.metadata) for f in fields(ReferenceDevice) if f.metadata}
 
 
 def reach(p: Parameters) -> float:
@@ -34,10 +36,98 @@ def reach(p: Parameters) -> float:
 
 def test_both_know_the_same_laws_and_parameters() -> None:
     assert tuple(friction_laws()) == tuple(FRICTION_LAWS) == LAWS
-    assert set(parameters()) == {f.name for f in fields(ReferenceDevice)} - {
-        "friction",
-        "gas_law",
-    }
+    assert set(parameters()) == set(DECLARED)
+
+
+@pytest.mark.parametrize("name", parameters())
+def test_both_declare_the_same_unit_default_and_bounds(name: str) -> None:
+    core, (default, said) = parameters()[name], DECLARED[name]
+    unit = "1" if said["unit"] == "-" else said["unit"].replace(" ", "*")
+    assert unit == core.unit
+    np.testing.assert_equal(default, core.initial)
+    assert core.lower_open == (said["above"] is not None)
+    lower = said["above"] if core.lower_open else said["at_least"]
+    assert (-np.inf if lower is None else lower) == core.lower
+    assert (np.inf if said["at_most"] is None else said["at_most"]) == core.upper
+
+
+def around_the_bounds(name: str) -> list[float]:
+    """At, just inside and just outside each bound of a parameter."""
+    core = parameters()[name]
+    found = []
+    for bound in (core.lower, core.upper):
+        if np.isfinite(bound):
+            near = 1e-9 * max(abs(bound), 1.0)
+            found += [bound - near, bound, bound + near]
+    return [*found, np.inf, np.nan]
+
+
+def accepts(make: Callable[..., object], given: Parameters) -> bool:
+    try:
+        make(**given)
+    except ValueError:
+        return False
+    return True
+
+
+# parts without which one of their parameters is a mistake in itself
+SERIES = {"series_stiffness": 1e5, "series_damping": 10.0}
+STOPS = {"stop_lower": -0.01, "stop_upper": 0.01, "stop_stiffness": 1e5}
+GAS = {"gas_pressure": 1e5, "gas_area": 1e-3, "gas_volume": 2e-5}
+CHANNEL = {"piston_area": 1.6e-3, "channel_area": 1e-4, "channel_length": 1.7}
+
+
+def beside(name: str) -> Parameters:
+    """The part that a parameter is of."""
+    if name.startswith("gas_"):
+        return GAS
+    if name.startswith("stop_"):
+        return STOPS
+    if name.startswith(("series_", "backlash")):
+        return SERIES
+    fluid = name.startswith(("piston_", "channel_", "fluid_", "minor_"))
+    return CHANNEL if fluid else {}
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_both_take_and_refuse_the_same_values(law: str) -> None:
+    rng = np.random.default_rng(LAWS.index(law))
+    base = draw_friction(rng, law) | draw_branches(rng)
+    both = 0
+    for name, known in parameters().items():
+        if known.laws and law not in known.laws:
+            continue
+        for value in around_the_bounds(name):
+            # a parameter that is not a number is one that is not given, to the reference
+            if np.isnan(value) and np.isnan(known.initial):
+                continue
+            given = base | beside(name) | {name: value}
+            if beside(name) is CHANNEL:
+                del given["inertance"]
+            taken = accepts(Device, given)
+            assert taken == accepts(ReferenceDevice, given), (name, value)
+            both += taken
+    assert both > 10
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_both_say_the_same_of_a_device_with_next_to_nothing_given(law: str) -> None:
+    """Each parameter but the level left to its default: what is not given is the same in both."""
+    rng = np.random.default_rng(100 + LAWS.index(law))
+    least = {"bouc_wen": {"bw_stiffness": 2e4}, "none": {}}.get(law, {"coulomb_force": 10.0})
+    needed = {"friction", *least}
+    drawn = draw_friction(rng, law)
+    for left in (None, *(name for name in sorted(drawn) if name not in needed)):
+        each = {"friction": law, **least} if left is None else {**drawn}
+        each.pop(left or "", None)
+        core, reference = Device(**each), ReferenceDevice(**each)
+        x, v, a, z = draw_points(rng, 40, 1e-3, 2.0)
+        found = core.evaluate(x, v, a, z)
+        sizes = magnitudes(reference, x, v, a, z)
+        error = abs(found["total"] - reference.force(x, v, a, z))
+        assert np.all(error <= TOLERANCE * sizes["total"]), (each, error.max())
+        rates = abs(found["state_rate"] - reference.state_rate(x, v, z))
+        assert np.all(rates <= TOLERANCE * sizes["state_rate"]), each
 
 
 @pytest.mark.parametrize("wide", [1.0, 3.0], ids=["usual", "extreme"])

@@ -70,7 +70,7 @@ def test_the_library_is_where_it_is_said_to_be() -> None:
 # ------------------------------ light imports ------------------------------
 
 HEAVY = (
-    "scipy", "polars", "pyarrow", "plotly", "matplotlib", "pydantic", "typer", "rich", "jinja2",
+    "scipy", "polars", "pyarrow", "plotly", "matplotlib", "typer", "rich", "jinja2",
     "pint", "tomlkit", "exudyn",
 )  # fmt: skip
 

@@ -19,10 +19,10 @@ from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 from inerter import Device, DeviceError, devices_of, parameters
 from inerter.device_file import device_text, read_device
+from inerter.engine_errors import SimulationError
 from inerter.reference import ReferenceDevice
 from inerter.rig import device_mjcf
-from inerter.simulate.errors import SimulationError
-from inerter.simulate.run import Run, run_model
+from inerter.simulate.run import SimulatedRun, run_model
 
 SETTINGS = settings(
     max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
@@ -131,7 +131,7 @@ def test_what_is_no_number_is_an_error_of_the_device(name: str, value: Any) -> N
         assert name == "friction" or math.isfinite(getattr(told, name))
 
 
-def simulated(path: Path) -> Run | str:
+def simulated(path: Path) -> SimulatedRun | str:
     try:
         return run_model(path, 0.05, keyframe="pushed", rate=5e3)
     except SimulationError as error:

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from inerter.commands import app
 from inerter.rig import quiet
-from inerter.studies.fluid_rig.identify import Held, Identified
+from inerter.studies.fluid_rig.identify import Held, IdentifiedRig
 from inerter.studies.fluid_rig.output import write_study
 from inerter.studies.fluid_rig.rig import Configuration, Rig
 from inerter.studies.fluid_rig.settings import Settings, StudyError
 from inerter.studies.fluid_rig.signals import Noise, Signals
 from inerter.studies.fluid_rig.statements import statements
-from inerter.studies.fluid_rig.study import Run, Study, measured_tests, outside
+from inerter.studies.fluid_rig.study import RigRun, Study, measured_tests, outside
 from inerter.studies.fluid_rig.summary import recovery, study_json
 from inerter.studies.fluid_rig.sweeps import COMPLETE, DRY, LEVELS, RATE_OF_RISE, Sweep
 from inerter.studies.fluid_rig.truth import published_air_damping
@@ -23,14 +23,16 @@ from typer.testing import CliRunner
 DURATION = 30.0
 
 
-def fit(configuration: Configuration, sweeps: tuple[Sweep, ...], signals, off: float) -> Identified:
+def fit(
+    configuration: Configuration, sweeps: tuple[Sweep, ...], signals, off: float
+) -> IdentifiedRig:
     """A fit that found every parameter off by a share, with standard errors of a per cent."""
     names = tuple(published(configuration, sweeps))
     values = np.array(list(published(configuration, sweeps).values()))
     covariance = np.diag((0.01 * values) ** 2)
     covariance[0, 1] = covariance[1, 0] = 0.99 * 0.01**2 * values[0] * values[1]
     errors = 0.01 * values
-    return Identified(
+    return IdentifiedRig(
         configuration=configuration, objective="spectra", names=names, values=values * (1 + off),
         covariance=covariance, held=Held(), cost_ratio=1.0, together=errors,
         alone={"receptance": 3 * errors, "density": 2 * errors}, noise=Noise(), step_shift=0.0,
@@ -60,7 +62,7 @@ def made() -> Study:
     dry_signals = tuple(truth["dry", s] for s in dry)
     wet_signals = tuple(truth["complete", s] for s in complete)
     runs = tuple(
-        Run(seed, "spectra", fit("dry", dry, dry_signals, off),
+        RigRun(seed, "spectra", fit("dry", dry, dry_signals, off),
             fit("complete", complete, wet_signals, off))
         for seed, off in ((3, 0.01), (4, -0.03))
     )  # fmt: skip

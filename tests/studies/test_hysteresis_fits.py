@@ -68,9 +68,15 @@ def test_a_model_fits_its_own_data_and_predicts_what_was_held_out() -> None:
 def _other(crossing: Crossing, held: float) -> Crossing:
     fitted = tuple(f for f in FREQUENCIES if f != held)
     return Crossing(
-        crossing.maker, crossing.fitter, fitted, crossing.fit_error, crossing.true_errors,
-        crossing.measured_errors, crossing.device, 0.0,
-    )  # fmt: skip
+        maker=crossing.maker,
+        fitter=crossing.fitter,
+        fitted=fitted,
+        fit_error=crossing.fit_error,
+        true_errors=crossing.true_errors,
+        measured_errors=crossing.measured_errors,
+        device=crossing.device,
+        seconds=0.0,
+    )
 
 
 def test_bouc_wen_of_table_3_is_a_damper() -> None:

@@ -71,14 +71,18 @@ def test_a_range_writes_figures(tmp_path: Path) -> None:
 
 
 def test_the_page_needs_no_network() -> None:
-    study = Study(("S1", "S3"), ("J1",), (50e3, 60e3), {"none": None})
+    study = Study(
+        layouts=("S1", "S3"), indices=("J1",), stiffnesses=(50e3, 60e3), series={"none": None}
+    )
     text = page(sweep(study, jobs=1))
     assert "<script src=" not in text
     assert "S3 ideal" in text
 
 
 def test_processes_do_not_change_the_answer() -> None:
-    study = Study(("S1", "S3"), ("J1", "J5"), (60e3, 90e3), {"none": None})
+    study = Study(
+        layouts=("S1", "S3"), indices=("J1", "J5"), stiffnesses=(60e3, 90e3), series={"none": None}
+    )
     assert sweep(study, jobs=2) == sweep(study, jobs=1)
 
 

@@ -7,7 +7,7 @@ import pytest
 from inerter.suspension.h_infinity_norm import h_infinity_norm
 from inerter.suspension.layouts import LAYOUTS, SOFT, SeriesPair
 from inerter.suspension.optimum import Optimum, optimise
-from inerter.suspension.problem import Problem
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
 from scipy.optimize import differential_evolution, minimize
 
@@ -24,9 +24,11 @@ EVERY = [
 @cache
 def solved(
     layout: str, index: str, k: float, pair: SeriesPair | None
-) -> tuple[Problem, Optimum, np.ndarray]:
+) -> tuple[SuspensionProblem, Optimum, np.ndarray]:
     """The problem, its optimum and where that is, as logarithms."""
-    problem = Problem(CAR, ROAD, layout, index, k, pair)
+    problem = SuspensionProblem(
+        car=CAR, road=ROAD, layout=layout, index=index, stiffness=k, pair=pair
+    )
     found = optimise(problem)
     if problem.network.has_inerter and found.inertance == 0.0:
         problem = problem.without()
@@ -58,7 +60,12 @@ def test_no_other_design_is_better(
 ) -> None:
     problem, found, point = solved(layout, index, k, pair)
     if problem.massless:
-        problem, point = Problem(CAR, ROAD, layout, index, k, pair), np.insert(point, 1, -9.0)
+        problem, point = (
+            SuspensionProblem(
+                car=CAR, road=ROAD, layout=layout, index=index, stiffness=k, pair=pair
+            ),
+            np.insert(point, 1, -9.0),
+        )
     low, high = problem.bounds.T
     draw = np.random.default_rng(11)
     close = [
@@ -77,7 +84,7 @@ def test_no_other_design_is_better(
 def test_a_dense_grid_is_not_better(layout: str, index: str, k: float) -> None:
     problem, found, _ = solved(layout, index, k, None)
     if problem.massless:
-        problem = Problem(CAR, ROAD, layout, index, k)
+        problem = SuspensionProblem(car=CAR, road=ROAD, layout=layout, index=index, stiffness=k)
     count = 60 if index == "J5" else 300
     axes = [np.log(np.geomspace(3e2, 1e5, count)), np.log(np.geomspace(1e-1, 1e5, count))]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -87,7 +94,7 @@ def test_a_dense_grid_is_not_better(layout: str, index: str, k: float) -> None:
     assert values.min() <= found.value * 1.1
 
 
-def evolved(problem: Problem) -> float:
+def evolved(problem: SuspensionProblem) -> float:
     """The least value that differential evolution finds."""
     found = differential_evolution(
         lambda x: np.log(problem.value(x.T)), problem.bounds, vectorized=True, polish=False,
@@ -148,8 +155,8 @@ def test_richer_layouts_contain_the_plain_ones() -> None:
 
 def test_in_comfort_a_rigid_undamped_relaxation_spring_is_not_none() -> None:
     # its resonance with the inerter rises with its root and leaves as much acceleration behind
-    plain = Problem(CAR, ROAD, "S2", "J1", 120e3)
-    sprung = Problem(CAR, ROAD, "S4", "J1", 120e3)
+    plain = SuspensionProblem(car=CAR, road=ROAD, layout="S2", index="J1", stiffness=120e3)
+    sprung = SuspensionProblem(car=CAR, road=ROAD, layout="S4", index="J1", stiffness=120e3)
     c, b = np.log([3705.4, 128.57])
     rigid = [sprung.value(np.array([c, b, np.log(kb)])) for kb in (1e9, 1e10, 1e11)]
     assert float(rigid[2]) == pytest.approx(float(rigid[1]), rel=1e-3)
@@ -162,7 +169,7 @@ def test_of_many_equal_designs_the_most_comfortable_is_given(layout: str) -> Non
     problem, found, _ = solved(layout, "J5", k, None)
     assert not problem.massless
     assert any("smallest J1" in note for note in found.notes)
-    comfort = Problem(CAR, ROAD, layout, "J1", k)
+    comfort = SuspensionProblem(car=CAR, road=ROAD, layout=layout, index="J1", stiffness=k)
     low, high = problem.bounds.T
     at = np.log([found.damping, found.inertance or 1e-9][: len(low)])
     draw = np.random.default_rng(2)
@@ -177,7 +184,9 @@ def test_other_cars_scale() -> None:
     n = 7.0
     heavy = QuarterCar(sprung_mass=n * 181.75, unsprung_mass=n * 25.0, tyre_stiffness=n * 120e3)
     for index, power in (("J1", 0), ("J3", 1), ("J5", -1)):
-        found = optimise(Problem(heavy, ROAD, "S3", index, n * 120e3))
+        found = optimise(
+            SuspensionProblem(car=heavy, road=ROAD, layout="S3", index=index, stiffness=n * 120e3)
+        )
         same = solved("S3", index, 120e3, None)[1]
         assert found.value == pytest.approx(same.value * n**power, rel=1e-10)
         assert found.inertance == pytest.approx(n * same.inertance, rel=1e-5)
@@ -185,5 +194,7 @@ def test_other_cars_scale() -> None:
 
 def test_the_answer_is_the_same_each_time() -> None:
     for index in ("J1", "J5"):
-        problem = Problem(CAR, ROAD, "S3", index, 90e3, SOFT)
+        problem = SuspensionProblem(
+            car=CAR, road=ROAD, layout="S3", index=index, stiffness=90e3, pair=SOFT
+        )
         assert optimise(problem) == optimise(problem)

@@ -6,7 +6,7 @@ from functools import cache
 import pytest
 from inerter.suspension.layouts import HARD, SOFT, SeriesPair
 from inerter.suspension.optimum import Optimum, optimise
-from inerter.suspension.problem import Problem
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
 from scipy.optimize import brentq
 
@@ -29,7 +29,11 @@ TABLE_1 = [
 
 @cache
 def best(layout: str, index: str, stiffness: float, pair: SeriesPair | None = None) -> Optimum:
-    return optimise(Problem(CAR, ROAD, layout, index, stiffness, pair))
+    return optimise(
+        SuspensionProblem(
+            car=CAR, road=ROAD, layout=layout, index=index, stiffness=stiffness, pair=pair
+        )
+    )
 
 
 def agrees(value: float, printed: str) -> bool:

@@ -67,7 +67,11 @@ def test_a_range_writes_figures(tmp_path: Path) -> None:
 
 def test_processes_do_not_change_the_answer() -> None:
     study = Study(
-        ("S1", "S3"), ("J1", "J5"), ((6e4, 5e4), (1.2e5, 1e5)), {"none": None}, car=half_car()
+        layouts=("S1", "S3"),
+        indices=("J1", "J5"),
+        stiffnesses=((6e4, 5e4), (1.2e5, 1e5)),
+        series={"none": None},
+        car=half_car(),
     )
     rows = sweep(study, jobs=2)
     assert rows == sweep(study, jobs=1)

@@ -177,13 +177,29 @@ def test_gradients_are_difference_quotients(car: HalfCar | FullCar, layout: str)
     step = 1e-5
     for equal in (False, True):
         for index in ("J1", "J3"):
-            problem = VehicleProblem(car, ROAD, layout, index, (19960.0, 17500.0), SOFT, equal)
+            problem = VehicleProblem(
+                car=car,
+                road=ROAD,
+                layout=layout,
+                index=index,
+                stiffnesses=(19960.0, 17500.0),
+                pair=SOFT,
+                equal=equal,
+            )
             point = problem.point(STRUTS[layout])
             _, slope = problem.logarithm(point)
             moves = np.eye(len(point)) * step
             up, down = problem.value(point + moves), problem.value(point - moves)
             assert slope == pytest.approx((np.log(up) - np.log(down)) / (2.0 * step), abs=3e-6)
-        problem = VehicleProblem(car, ROAD, layout, "J5", (19960.0, 17500.0), SOFT, equal)
+        problem = VehicleProblem(
+            car=car,
+            road=ROAD,
+            layout=layout,
+            index="J5",
+            stiffnesses=(19960.0, 17500.0),
+            pair=SOFT,
+            equal=equal,
+        )
         frequency = np.array([0.0, 3.0, 8.0, 70.0])
         _, slopes = problem.levels(point, frequency)
         quotients = [
@@ -198,7 +214,14 @@ def test_the_quick_route_agrees() -> None:
     for car in (COUPLED, full_car()):
         for layout in LAYOUTS:
             for index in ("J1", "J3"):
-                problem = VehicleProblem(car, ROAD, layout, index, (19960.0, 17500.0), SOFT)
+                problem = VehicleProblem(
+                    car=car,
+                    road=ROAD,
+                    layout=layout,
+                    index=index,
+                    stiffnesses=(19960.0, 17500.0),
+                    pair=SOFT,
+                )
                 point = problem.point(STRUTS[layout])
                 several = problem.branches(np.array([point, point]))
                 quick = quick_rms_index(index, car, ROAD, several)

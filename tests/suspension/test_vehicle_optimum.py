@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from inerter.suspension.layouts import SOFT, SeriesPair
 from inerter.suspension.optimum import optimise
-from inerter.suspension.problem import Problem
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.vehicle import (
     VehicleOptimum,
@@ -41,7 +41,16 @@ def test_a_dynamic_index_of_1_has_the_optima_of_its_quarter_cars(index: str, lay
     inertia = HALF.body_mass * HALF.front.distance * HALF.rear.distance
     car = replace(HALF, pitch_inertia=inertia)
     quarters = [
-        optimise(Problem(corner, ROAD, layout, index, k, SOFT if layout != "S1" else None))
+        optimise(
+            SuspensionProblem(
+                car=corner,
+                road=ROAD,
+                layout=layout,
+                index=index,
+                stiffness=k,
+                pair=SOFT if layout != "S1" else None,
+            )
+        )
         for corner, k in zip(car.corners(), STIFFER, strict=True)
     ]
     found = vehicle_optimum(index, car, layout, STIFFER, SOFT if layout != "S1" else None, ROAD)
@@ -62,7 +71,9 @@ def test_no_other_design_is_better(
     layout: str, index: str, stiffnesses: tuple[float, float], pair: SeriesPair | None
 ) -> None:
     found = solved(layout, index, stiffnesses, pair)
-    problem = VehicleProblem(HALF, ROAD, layout, index, stiffnesses, pair)
+    problem = VehicleProblem(
+        car=HALF, road=ROAD, layout=layout, index=index, stiffnesses=stiffnesses, pair=pair
+    )
     point, (low, high) = problem.point(found.struts), problem.bounds.T
     # the design that is given has the value that is given
     exact = vehicle_index(index, HALF, layout, found.struts, pair, ROAD)
@@ -85,7 +96,9 @@ def test_peaks_of_j5_are_equal() -> None:
 @pytest.mark.parametrize(("layout", "index"), [("S2", "J1"), ("S3", "J3"), ("S1", "J5")])
 def test_ten_times_as_many_starts_find_nothing_better(layout: str, index: str) -> None:
     for car in (HALF, COUPLED):
-        problem = VehicleProblem(car, ROAD, layout, index, STIFFER)
+        problem = VehicleProblem(
+            car=car, road=ROAD, layout=layout, index=index, stiffnesses=STIFFER
+        )
         few, many = optimise_vehicle(problem), optimise_vehicle(problem, 10)
         assert few.value <= many.value * (1.0 + 1e-6)
 
@@ -94,7 +107,7 @@ def test_at_the_bound_of_j5_the_most_comfortable_is_given() -> None:
     found = solved("S1", "J5", SOFTER)
     assert any("smallest J1" in note for note in found.notes)
     assert found.value == HALF.static_compliance(SOFTER)
-    load = VehicleProblem(HALF, ROAD, "S1", "J5", SOFTER)
+    load = VehicleProblem(car=HALF, road=ROAD, layout="S1", index="J5", stiffnesses=SOFTER)
     ride = replace(load, index="J1")
     point = load.point(found.struts)
     draw = np.random.default_rng(2)
@@ -140,5 +153,5 @@ def test_a_full_car_lies_between_its_tracks() -> None:
 
 def test_the_answer_is_the_same_each_time() -> None:
     for index in ("J1", "J5"):
-        problem = VehicleProblem(HALF, ROAD, "S1", index, STIFFER)
+        problem = VehicleProblem(car=HALF, road=ROAD, layout="S1", index=index, stiffnesses=STIFFER)
         assert optimise_vehicle(problem) == optimise_vehicle(problem)

@@ -56,7 +56,7 @@ class ParameterError:
         return abs(self.found - self.true) <= max(0.05 * abs(self.true), 3.0 * spread)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Outcome:
     """What was hidden and what was said; `error` where the diagnosis did not come to an end.
 
@@ -141,7 +141,7 @@ def solve(task: Task) -> Outcome:
         outcome = compare(task, case, diagnosis)
     except Exception as error:
         text = " ".join(f"{type(error).__name__}: {error}".split())
-        outcome = Outcome(task, task.law, error=text)
+        outcome = Outcome(task=task, law=task.law, error=text)
         if case is not None:
             outcome = replace(outcome, law=case.law, share=case.share, truth=case.parameters)
     wall, busy = time.perf_counter() - start[0], time.process_time() - start[1]
@@ -151,13 +151,13 @@ def solve(task: Task) -> Outcome:
 def compare(task: Task, case: HiddenCase, diagnosis: Diagnosis) -> Outcome:
     """A diagnosis against the truth."""
     return Outcome(
-        task,
-        case.law,
-        tuple(Named(f.effect, f.law, f.confidence) for f in diagnosis.findings),
-        tuple(parameter_errors(case, diagnosis)),
-        diagnosis.unexplained.significant,
-        gain_on_truth(case, diagnosis),
-        diagnosis.verdict,
+        task=task,
+        law=case.law,
+        named=tuple(Named(f.effect, f.law, f.confidence) for f in diagnosis.findings),
+        parameters=tuple(parameter_errors(case, diagnosis)),
+        unexplained=diagnosis.unexplained.significant,
+        gain=gain_on_truth(case, diagnosis),
+        verdict=diagnosis.verdict,
         share=case.share,
         truth=case.parameters,
     )

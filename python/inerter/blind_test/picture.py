@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from inerter.report.palette import LIGHT
+from inerter.pictures.palette import LIGHT
 
 
 def confusion_picture(result: dict[str, Any]) -> bytes:

@@ -11,7 +11,7 @@ import numpy as np
 from inerter.reference import EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Task:
     """One case: `effects` that are hidden, empty for "clean"; for "unknown" its `kind`.
 
@@ -37,7 +37,7 @@ class Task:
         return NoiseLevels(0.0, self.noise, 1e-4 * self.noise)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Plan:
     """A blind test: how many cases of what.
 
@@ -125,7 +125,7 @@ class Plan:
     ) -> Task:
         sequence = np.random.SeedSequence([self.seed, crc32(label.encode()), number])
         seed = int(sequence.generate_state(1)[0])
-        return Task(group, seed, self.noise, effects, law, kind)
+        return Task(group=group, seed=seed, noise=self.noise, effects=effects, law=law, kind=kind)
 
     def _drawn(self, group: str, size: int, number: int) -> list[tuple[str, ...]]:
         """Sets of effects that go together, none twice before each had its turn."""

@@ -130,7 +130,7 @@ def _solve_alone(piece: Piece) -> None:
         process.terminate()
     if _found(piece) is None:
         text = f"the process ended without a result (exit status {process.exitcode})"
-        _keep(piece, Outcome(piece[1], piece[1].law, error=text))
+        _keep(piece, Outcome(task=piece[1], law=piece[1].law, error=text))
 
 
 def _keep(piece: Piece, outcome: Outcome) -> None:

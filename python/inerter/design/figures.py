@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from plotly.subplots import make_subplots
 
 from inerter.design.result import Design, Panel
-from inerter.report.palette import LIGHT
-from inerter.report.plotting import FONT
-from inerter.report.png import png
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.plotting import FONT
+from inerter.pictures.png import png
 
 _COLOURS = (LIGHT["after"], LIGHT["before"], "#3f8f4f", "#a63d73", "#7a5cc0")
 

@@ -34,7 +34,7 @@ class Curve:
     dashed: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Panel:
     """One plot: titles of its axes with units, its curves."""
 
@@ -59,7 +59,7 @@ class Panel:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Design:
     """A calculated device.
 

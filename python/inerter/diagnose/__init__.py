@@ -8,10 +8,10 @@ from pathlib import Path
 
 from inerter.core import Device
 from inerter.device_file import read_delay, read_device
-from inerter.diagnose.bench import diagnose_bench
 from inerter.diagnose.result import Diagnosis, Finding
-from inerter.diagnose.system import SystemInput, diagnose_model, is_for_a_model
+from inerter.diagnose.rig import diagnose_bench
 from inerter.diagnose.table import diagnose_table
+from inerter.diagnose.vehicle import SystemInput, diagnose_model, is_for_a_model
 from inerter.mjcf import device_of_model
 from inerter.records import BenchTable, Record, RecordError, read_records
 

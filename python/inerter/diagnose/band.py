@@ -10,16 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from inerter.identify.bench import on_clocks, whole
-from inerter.identify.coordinates import Scales
+from inerter.catalogue.scales import Scales
+from inerter.diagnose.decision import CRITERIA
 from inerter.identify.fit import Masks, Problem, rms
 from inerter.identify.model import Model
-from inerter.identify.preparation import Preparation, prepare_again
+from inerter.identify.runs import on_clocks, whole
 from inerter.records import Record
 from inerter.records.motion import Motion
-
-# share of the error that another band has to take away
-WORTH_A_BAND = 0.1
+from inerter.records.preparation import Preparation, prepare_again
 
 Error = Callable[[Problem], float]
 
@@ -108,4 +106,4 @@ def _lowered(before: Preparation, after: Preparation, way: int) -> bool:
         float(after.errors[np.searchsorted(after.cutoffs, 0.999 * p.cutoff)])
         for p in (before, after)
     )
-    return way * (after.cutoff - before.cutoff) > 0 and there < (1 - WORTH_A_BAND) * here
+    return way * (after.cutoff - before.cutoff) > 0 and there < (1 - CRITERIA.band_gain) * here

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from inerter.catalogue.friction import law_coordinates
+from inerter.catalogue.scales import Scales
 from inerter.core import Device, parameters
-from inerter.identify.coordinates import Scales
 from inerter.identify.model import Model, stated_values
 
 # width of sign(v) in fits, per rms velocity: wide enough for the velocity's noise at rest
@@ -32,11 +33,7 @@ def baseline_model(device: Device | None, inertance: float, transition: float) -
         )
     values, texts = stated_values(device)
     values.setdefault("transition_velocity", transition)
-    level = values.get("coulomb_force", 0.0)
-    if "static_force" in values:
-        values["static_excess"] = values.pop("static_force") - level
-    if "bristle_stiffness" in values:
-        values["presliding"] = level / values.pop("bristle_stiffness")
+    values = law_coordinates(device, values)
     free = () if "inertance" in values else ("inertance",)
     values.setdefault("inertance", inertance)
     return Model(device.friction, values, free, texts)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from inerter.catalogue.friction import FRICTION
 from inerter.identify.model import Model
 
 
@@ -17,6 +18,11 @@ class Candidate:
     effect: str
     law: str | None
     starts: tuple[Model, ...]
+
+    @property
+    def is_rich(self) -> bool:
+        """Whether it is a friction law that is tried only where memory is to be seen."""
+        return self.law in FRICTION and FRICTION[self.law].rich
 
     @property
     def key(self) -> tuple[object, ...]:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from inerter.diagnose.composition import effects_of, submodel
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.search import LOCAL, Search
+from inerter.diagnose.search import Search, is_local
 from inerter.diagnose.statistics import (
     Interval,
     advantage,
@@ -21,11 +22,8 @@ from inerter.diagnose.statistics import (
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
-# how surely an effect must help on data left out to be reported (standard errors)
-CONFIRMING_ADVANTAGE = 2.0
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Link:
     """One effect of a chain: fits before and after it is added.
 
@@ -89,7 +87,7 @@ def _link(
 ) -> Link:
     errors = judge.rmse(before.model), judge.rmse(after.model)
     counted = judge.counted(before.model), judge.counted(after.model)
-    silent = effect in LOCAL and not judge.visible(
+    silent = is_local(effect) and not judge.visible(
         float(np.hypot(errors[1], judge.difference(before.model, after.model))),
         errors[1],
         after.model,
@@ -107,12 +105,22 @@ def _link(
         squares = [judge.error_squares(fit.model) for fit in (before, after)]
     stands = (
         counted[1] < counted[0]
-        and won >= CONFIRMING_ADVANTAGE
+        and won >= CRITERIA.confirming_advantage
         and judge.visible(counted[0], counted[1], after.model)
         and not (effect == "sensor_delay" and not judge.delay_visible(after.model))
     )
     interval = gain_interval(*squares)
-    return Link(effect, law, before, after, *errors, interval, silent, stands)
+    return Link(
+        effect=effect,
+        law=law,
+        before=before,
+        after=after,
+        rmse_before=errors[0],
+        rmse_after=errors[1],
+        interval=interval,
+        seen_in_blocks=silent,
+        stands=stands,
+    )
 
 
 def weakest(chain: Sequence[Link], judge: Judge, model: Model) -> str | None:
@@ -134,10 +142,20 @@ def tone_link(judge: Judge, before: Fit, after: Fit) -> tuple[Link, float]:
     """A tone beyond the fits' band, judged at the measured rate; and how sure it is."""
     squares = [judge.raw_squares(fit.model) for fit in (before, after)]
     errors = [judge.rmse(fit.model) for fit in (before, after)]
-    stands = advantage(squares[0], squares[1]) >= CONFIRMING_ADVANTAGE and judge.visible(
+    stands = advantage(squares[0], squares[1]) >= CRITERIA.confirming_advantage and judge.visible(
         errors[0], errors[1], after.model
     )
     interval = gain_interval(*(judge.error_squares(fit.model) for fit in (before, after)))
     tone = "periodic_disturbance"
-    link = Link(tone, None, before, after, errors[0], errors[1], interval, False, stands)
+    link = Link(
+        effect=tone,
+        law=None,
+        before=before,
+        after=after,
+        rmse_before=errors[0],
+        rmse_after=errors[1],
+        interval=interval,
+        seen_in_blocks=False,
+        stands=stands,
+    )
     return link, float(win_shares(squares[::-1])[0])

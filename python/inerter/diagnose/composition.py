@@ -9,36 +9,17 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from inerter.diagnose.effects import EFFECTS, LAW_COORDINATES, LEVEL_COORDINATES
-from inerter.identify.coordinates import Scales, coordinate
+from inerter.catalogue.coordinates import search_range
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.friction import FRICTION, LAW_COORDINATES, LEVEL_COORDINATES
+from inerter.catalogue.scales import Scales
+from inerter.diagnose.decision import CRITERIA
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
-
-# coordinates whose being zero means that the effect is absent, where not all of them do
-_AMPLITUDES = {
-    "stribeck_friction": ("static_excess",),
-    "hysteretic_friction": ("coulomb_force", "bw_level", "bw_stiffness"),
-    "inertance_error": (),
-    "series_elasticity": (),
-    "backlash": (),
-    "gas_spring": ("gas_push",),
-    "end_stop": (),
-    "sensor_saturation": (),
-    "periodic_disturbance": ("disturbance_amplitude",),
-}
-
 
 # how well a coordinate is known before any data: the exponent of a gas lies between 1 and 1.7.
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
-# a fall of the friction narrower than this many of the narrowest that is searched for may be the
-# blur of a reversal, which any friction has in smoothed data: in 43 cases of plain friction it was
-# up to 3.1 wide and explained up to 1.4 % of the friction (rms), the peaks of 43 others 13 to 31 %
-_NARROW = 4.0
-_BLUR = 0.04
-# share of gamma that beta of a Bouc-Wen law has at least: without beta nothing is lost, and the law
-# is a spring with any zero, which stands in for gas and offsets
-_LOSING = 0.1
 
 
 def has_series(model: Model) -> bool:
@@ -47,34 +28,41 @@ def has_series(model: Model) -> bool:
     return any(name in model.values for name in names)
 
 
-def is_distinct(effect: str, fit: Fit, required: float, baseline: Model) -> bool:
+def is_distinct(effect: str, fit: Fit, baseline: Model) -> bool:
     """Whether a fitted effect differs from none by some standard errors of its coordinates.
 
     What the baseline states and a fit sets free is distinct as it is: it may be that there is none.
     """
+    required = CRITERIA.distinction
     if _contradicts(effect, fit.model, baseline):
         return True
-    if effect == "hysteretic_friction" and fit.model.friction == "bouc_wen":
-        device = fit.model.device()
-        if device.bw_beta < _LOSING * abs(device.bw_gamma):
-            return False
-    if effect == "series_elasticity":
+    if EFFECTS[effect].kind == "law" and _loses_nothing(fit.model):
+        return False
+    if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
         stiffness, error = parameter_errors(fit).get("series_stiffness", (1.0, 0.0))
         return stiffness > required * error
-    names = _AMPLITUDES.get(effect, EFFECTS[effect].coordinates)
     errors = _errors(fit)
-    known = [name for name in names if name in errors]
+    known = [name for name in EFFECTS[effect].amplitudes if name in errors]
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def _loses_nothing(model: Model) -> bool:
+    """Whether the hysteresis of a Bouc-Wen law is none."""
+    device = model.device()
+    return bool(
+        model.friction == "bouc_wen" and device.bw_beta < CRITERIA.losing * abs(device.bw_gamma)
+    )
 
 
 def _contradicts(effect: str, model: Model, baseline: Model) -> bool:
     """Whether an effect is one that the baseline states, with values of its own."""
-    if effect in LAW_EFFECT.values() and model.friction != baseline.friction:
+    known = EFFECTS[effect]
+    if known.kind == "law" and model.friction != baseline.friction:
         return False
-    if effect == "series_elasticity":
+    if known.kind == "shaft":
         return has_series(baseline)
-    names = (*EFFECTS[effect].coordinates, *STATED_AS.get(effect, ()))
+    names = (*known.coordinates, *known.stated_as)
     return any(name in baseline.values and name not in baseline.free for name in names)
 
 
@@ -95,15 +83,15 @@ def is_blur(model: Model, scales: Scales, plain: float, error: float) -> bool:
 
     The rms errors [N] are those with friction that does not fall with speed, and with the peak.
     """
-    if model.friction not in ("stribeck", "brown_mcphee"):
+    if not FRICTION[model.friction].peaked:
         return False
-    narrow = _NARROW * coordinate("stribeck_velocity", scales).lower
+    narrow = CRITERIA.narrow_peak * search_range("stribeck_velocity", scales).lower
     return model.values["stribeck_velocity"] < narrow and within_blur(model, plain, error)
 
 
 def within_blur(model: Model, one: float, other: float) -> bool:
     """Whether an error [N] is above another by no more than the blur of reversals can make."""
-    return one**2 - other**2 < (_BLUR * model.values["coulomb_force"]) ** 2
+    return one**2 - other**2 < (CRITERIA.blur * model.values["coulomb_force"]) ** 2
 
 
 def width(model: Model) -> dict[str, float]:
@@ -111,60 +99,33 @@ def width(model: Model) -> dict[str, float]:
     return {"transition_velocity": model.values["transition_velocity"]}
 
 
-LAW_EFFECT = {
-    "coulomb": "coulomb_friction",
-    "stribeck": "stribeck_friction",
-    "brown_mcphee": "stribeck_friction",
-    "dahl": "hysteretic_friction",
-    "lugre": "hysteretic_friction",
-    "bouc_wen": "hysteretic_friction",
-}
-# parameters that a user states for what is searched for in other coordinates
-STATED_AS = {
-    "series_elasticity": ("series_stiffness", "series_damping"),
-    "gas_spring": ("gas_pressure", "gas_volume"),
-}
-_MODULATIONS = ("asymmetric_friction", "position_dependent_friction", "friction_drift")
-_SIMPLE = (
-    "hardening_stiffness",
-    "gas_spring",
-    "end_stop",
-    "force_drift",
-    "sensor_saturation",
-    "periodic_disturbance",
-    "viscous_friction",
-    "load_dependent_friction",
-    "parallel_stiffness",
-    "force_offset",
-    "sensor_delay",
-    "quadratic_damping",
-    "variable_inertance",
-)
+LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
+"""The effect that each friction law is named as."""
+_LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")
 
 
 def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
     """Effects (and friction law) that a model has beyond the baseline.
 
-    A Coulomb level that varies with direction or position is one effect, not two.
+    A Coulomb level that varies with direction or position is one effect, not two; a play has its
+    shaft in it.
     """
-    added = [name for name in model.free if name not in baseline.free]
+    added = {name for name in model.free if name not in baseline.free}
+    law = LAW_EFFECT.get(model.friction)
+    touched = model.friction != baseline.friction or not added.isdisjoint(LAW_COORDINATES)
+    varied = [name for name in _LEVELS if not added.isdisjoint(EFFECTS[name].coordinates)]
     found: list[tuple[str, str | None]] = []
-    modulations = [
-        name for name in _MODULATIONS if any(c in added for c in EFFECTS[name].coordinates)
-    ]
-    law_touched = model.friction != baseline.friction or any(c in added for c in LAW_COORDINATES)
-    if law_touched and model.friction in LAW_EFFECT:
-        effect = LAW_EFFECT[model.friction]
-        if not (effect == "coulomb_friction" and modulations):
-            found.append((effect, model.friction if effect == "hysteretic_friction" else None))
-    found += [(name, None) for name in modulations]
-    found += [(n, None) for n in _SIMPLE if any(c in added for c in EFFECTS[n].coordinates)]
-    if "backlash" in added:
-        found.append(("backlash", None))
-    elif "series_frequency" in added:
-        found.append(("series_elasticity", None))
-    if "inertance" in added:
-        found.append(("inertance_error", None))
+    for name, effect in EFFECTS.items():
+        if effect.kind == "law":
+            there = touched and name == law and not (model.friction == "coulomb" and varied)
+        elif effect.kind == "play":
+            there = name in added
+        elif effect.kind == "shaft":
+            there = "series_frequency" in added and "backlash" not in added
+        else:
+            there = not added.isdisjoint(effect.coordinates)
+        if there:
+            found.append((name, model.friction if effect.tells_law else None))
     return found
 
 
@@ -172,9 +133,9 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
     """Simpler models: without an effect, and for friction laws also with each simpler law."""
     names = [name for name, _ in effects_of(model, baseline)]
     without = submodel(model, [name for name in names if name != effect], baseline)
-    if effect in ("hysteretic_friction", "stribeck_friction"):
+    if EFFECTS[effect].kind == "law":
         return [*simpler_laws(model), without]
-    if effect == "backlash" and "series_frequency" in model.free:
+    if EFFECTS[effect].kind == "play" and "series_frequency" in model.free:
         # its elasticity alone
         return [model.without(("backlash",)), without]
     if effect == "variable_inertance":
@@ -182,7 +143,7 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         along, speed = ("inertance_gradient", "inertance_curvature"), ("inertance_speed_gradient",)
         if {*along, *speed} <= set(model.free):
             return [model.without(speed), model.without(along), without]
-    if effect in _MODULATIONS:
+    if effect in _LEVELS:
         # the variation of the level alone
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
@@ -190,7 +151,7 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
 
 def stripped(model: Model, effect: str, baseline: Model) -> Model:
     """The model without what is particular to an effect; a level that varies leaves the level."""
-    if effect in _MODULATIONS:
+    if effect in _LEVELS:
         return model.without(EFFECTS[effect].coordinates)
     names = [name for name, _ in effects_of(model, baseline) if name != effect]
     return submodel(model, names, baseline)
@@ -200,30 +161,26 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
     """The model reduced to the baseline and some of its effects."""
     present = dict(effects_of(model, baseline))
     dropped = [name for name in present if name not in effects]
-    laws = [name for name in present if name in LAW_EFFECT.values()]
+    laws = [name for name in present if EFFECTS[name].kind == "law"]
     names: set[str] = set()
     for name in dropped:
         names.update(EFFECTS[name].coordinates if name not in laws else LAW_COORDINATES)
-        names.update(STATED_AS.get(name, ()))
+        names.update(EFFECTS[name].stated_as)
     friction = model.friction
-    kept_modulations = [name for name in _MODULATIONS if name in effects and name in present]
+    kept_levels = [name for name in _LEVELS if name in effects and name in present]
     if (laws and laws[0] in dropped) or (
-        not laws and not kept_modulations and not _stated_friction(baseline)
+        not laws and not kept_levels and baseline.friction == "none"
     ):
         # without its law, a level that varies needs Coulomb friction to act on
         level, _ = _level_and_distance(model)
         names.update(LAW_COORDINATES)
-        if kept_modulations and baseline.friction == "none":
+        if kept_levels and baseline.friction == "none":
             bare = _restored(model.without(tuple(names), "none"), names, baseline)
             return bare.adding("coulomb", coulomb_force=level, **width(bare))
         friction = baseline.friction
         if friction == "none":
             names.update((*LEVEL_COORDINATES, "friction_drift"))
     return _restored(model.without(tuple(names), friction), names, baseline)
-
-
-def _stated_friction(baseline: Model) -> bool:
-    return baseline.friction != "none"
 
 
 def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
@@ -273,16 +230,16 @@ def as_spring(model: Model) -> list[Model]:
 def simpler_laws(model: Model) -> list[Model]:
     """The model under each friction law with fewer parameters."""
     level, presliding = _level_and_distance(model)
+    known = dict(model.values) | {"coulomb_force": level} | width(model)
+    if presliding:
+        known["presliding"] = presliding
     bare = model.without(LAW_COORDINATES, "none")
     simpler = []
-    if model.friction not in ("none", "coulomb"):
-        simpler.append(bare.adding("coulomb", coulomb_force=level, **width(bare)))
-    if model.friction in ("lugre", "bouc_wen") and presliding:
-        simpler.append(bare.adding("dahl", coulomb_force=level, presliding=presliding))
-    if model.friction == "lugre":
-        names = ("coulomb_force", "static_excess", "stribeck_velocity")
-        values = {name: model.values[name] for name in names} | width(bare)
-        simpler.append(bare.adding("stribeck", **values))
+    for name in FRICTION[model.friction].simpler:
+        law = FRICTION[name]
+        names = (*law.coordinates, *(width(model) if law.smoothed else ()))
+        if all(each in known for each in names):
+            simpler.append(bare.adding(name, **{each: known[each] for each in names}))
     return simpler
 
 

@@ -12,16 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding
-
-# An effect that explains so many times what stays unexplained is there in half of the cases. From
-# 40 cases of seeds used for nothing else, one cause without a name in each, half of them with a
-# named effect beside it: 43 findings. The likeliest value is 0.5 to 1 where the nearest of kin
-# count as right (Coulomb for periodic friction, Stribeck for friction that grows at rest), 2 where
-# they do not.
-EVEN = 1.0
-# trust below which it is told in words
-TOLD = 0.8
 
 
 def trust(finding: Finding, structure: float) -> float:
@@ -30,7 +22,7 @@ def trust(finding: Finding, structure: float) -> float:
     structure: rms of what is surely no noise and stays unexplained, in the unit of the errors.
     """
     square = explained(finding) ** 2
-    doubt = (EVEN * structure) ** 2
+    doubt = (CRITERIA.even_doubt * structure) ** 2
     return square / (square + doubt) if doubt else 1.0
 
 
@@ -46,7 +38,7 @@ def by_weight(findings: Sequence[Finding]) -> list[Finding]:
 
 def reason(finding: Finding, structure: float) -> str:
     """Why an effect may stand in for something else, in a sentence; empty where it hardly may."""
-    if trust(finding, structure) >= TOLD:
+    if trust(finding, structure) >= CRITERIA.doubt_told:
         return ""
     share = explained(finding) / structure
     return (
@@ -64,7 +56,7 @@ def doubted(finding: Finding, structure: float) -> Finding:
 
 def stand_ins(findings: Sequence[Finding], structure: float) -> list[Finding]:
     """Those that may only stand in for something else."""
-    return [finding for finding in findings if trust(finding, structure) < TOLD]
+    return [finding for finding in findings if trust(finding, structure) < CRITERIA.doubt_told]
 
 
 def warning(names: Sequence[str]) -> str:

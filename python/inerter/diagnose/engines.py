@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from inerter import rig
 from inerter.core import Device
 from inerter.exudyn.engine import installed
-from inerter.identify.bench import Run, from_first, held
 from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
 from inerter.identify.prediction import (
@@ -20,17 +19,18 @@ from inerter.identify.prediction import (
     with_friction_drift,
     with_late_motion,
 )
+from inerter.identify.runs import BenchRun, from_first, held
 from inerter.reference import Motion, ReferenceDevice, response
 
 Array = NDArray[np.float64]
-Along = Callable[[Device, Run, Any], dict[str, Array]]
+Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 
 # steps per sample of a device with free play
 PLAY_PARTS = 8
 
 
 def simulate_engines(
-    model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
+    model: Model, runs: Sequence[BenchRun], masks: Sequence[NDArray[np.bool_]]
 ) -> dict[str, float | None]:
     """Rms force error [N] of each engine over the masked samples.
 
@@ -49,7 +49,7 @@ def simulate_engines(
 
 
 def _error(
-    along: Along, model: Model, runs: Sequence[Run], masks: Sequence[NDArray[np.bool_]]
+    along: Along, model: Model, runs: Sequence[BenchRun], masks: Sequence[NDArray[np.bool_]]
 ) -> float:
     """Rms error [N]; ValueError if a force is not finite."""
     device = model.device()
@@ -59,7 +59,7 @@ def _error(
             continue
         moved, values = with_late_motion(model, run)
 
-        def forces(each: Device, run: Run = moved) -> dict[str, Array]:
+        def forces(each: Device, run: BenchRun = moved) -> dict[str, Array]:
             found = along(each, from_first(run), first_state(device, run))
             return {name: held(force, run.force.size) for name, force in found.items()}
 
@@ -74,13 +74,13 @@ def _error(
     return float(np.sqrt(square / count))
 
 
-def _mujoco(device: Device, run: Run, state: Any) -> dict[str, Array]:
+def _mujoco(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     parts, channels = _steps(device, run)
     found = rig.simulate_along(device, run.spacing / parts, *channels, state)
     return {name: found[name][::parts] for name in ("total", "friction")}
 
 
-def _exudyn(device: Device, run: Run, state: Any) -> dict[str, Array]:
+def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
     parts, channels = _steps(device, run)
@@ -88,7 +88,7 @@ def _exudyn(device: Device, run: Run, state: Any) -> dict[str, Array]:
     return {name: found[name] for name in ("total", "friction")}
 
 
-def _steps(device: Device, run: Run) -> tuple[int, tuple[Any, Any, Any]]:
+def _steps(device: Device, run: BenchRun) -> tuple[int, tuple[Any, Any, Any]]:
     """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands."""
     if not device.backlash:
         return 1, (run.displacement, run.velocity, run.acceleration)
@@ -97,7 +97,7 @@ def _steps(device: Device, run: Run) -> tuple[int, tuple[Any, Any, Any]]:
     return parts, (motion.displacement(times), motion.velocity(times), motion.acceleration(times))
 
 
-def _reference(device: Device, run: Run, state: Any) -> dict[str, Array]:
+def _reference(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     times = run.spacing * np.arange(run.displacement.size)
     given: dict[str, Any] = device.given
     reference, motion = ReferenceDevice(**given), _motion(run)
@@ -107,7 +107,7 @@ def _reference(device: Device, run: Run, state: Any) -> dict[str, Array]:
     return {"total": found.force, "friction": np.asarray(friction)}
 
 
-def _motion(run: Run) -> Motion:
+def _motion(run: BenchRun) -> Motion:
     """The recorded motion between its samples: cubic in displacement, linear in acceleration."""
     h, last = run.spacing, run.displacement.size - 2
     x, v, a = run.displacement, run.velocity, run.acceleration

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.diagnose.acceptance import visible, visible_delay
-from inerter.diagnose.search import advantage_of
+from inerter.diagnose.decision import visible, visible_delay
+from inerter.diagnose.search import advantage_of, is_shaft
 from inerter.diagnose.statistics import block_squares
-from inerter.identify.fit import Problem
+from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
-from inerter.identify.preparation import Preparation
 from inerter.identify.split import blocks
 from inerter.records.motion import NOISE_SEGMENT, white_noise
+from inerter.records.preparation import Preparation
 
 Array = NDArray[np.float64]
 
@@ -46,21 +45,20 @@ class Judge:
     @cached_property
     def force(self) -> Array:
         """Measured force of the held-out samples [N]."""
-        pairs = zip(self.raw.runs, self.raw.masks, strict=True)
-        return np.concatenate([run.force[mask] for run, mask in pairs])
+        return self.raw.masked([run.force for run in self.raw.runs])
 
     def rmse(self, model: Model) -> float:
         """Rms force error at the measured rate [N]."""
-        return _rms(self.raw.errors(model), self.raw.masks)
+        return rms(self.raw.errors(model), self.raw.masks)
 
     def counted(self, model: Model) -> float:
         """The same as it counts: what is far off behind a free play counts little [N]."""
-        return _rms(self.raw.residual(model), self.raw.masks)
+        return rms(self.raw.residual(model), self.raw.masks)
 
     def difference(self, one: Model, other: Model) -> float:
         """Rms difference of the forces that two models predict in the band [N]."""
         pairs = zip(self.band.residual(one), self.band.residual(other), strict=True)
-        return _rms([a - b for a, b in pairs], self.band.masks)
+        return rms([a - b for a, b in pairs], self.band.masks)
 
     def advantage(self, simple: Model, rich: Model, effect: str) -> float:
         """How surely the model with an effect is the better one, in standard errors."""
@@ -69,7 +67,7 @@ class Judge:
         if "backlash" in rich.free:
             problem = self.raw
         else:
-            problem = self.weighed if effect == "series_elasticity" else self.band
+            problem = self.weighed if is_shaft(effect) else self.band
         masks = problem.masks
         before, after = (problem.residual(model) for model in (simple, rich))
         # what took away its share where it was found only has to help here
@@ -115,8 +113,3 @@ class Judge:
             return force
         variances = [motion.acceleration_noise**2 for motion in self.preparation.motions]
         return float(np.hypot(force, model.values["inertance"] * np.sqrt(np.mean(variances))))
-
-
-def _rms(residual: Sequence[Array], masks: Sequence[NDArray[np.bool_]]) -> float:
-    square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, masks, strict=True))
-    return float(np.sqrt(square / sum(int(m.sum()) for m in masks)))

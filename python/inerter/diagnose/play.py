@@ -3,8 +3,8 @@
 Behind a play the flywheel is thrown from side to side. How hard and when it lands is in the force
 far above the band of the motion, so the fit needs the force as measured. An impact that is a sample
 early or late leaves an error as large as its force, whatever else is right: what is far off counts
-little (`Run.far`), or a few impacts would decide. There are many minima, one for each way in which
-impacts can be out of step, so the fit starts from many points about what the band tells.
+little (`BenchRun.far`), or a few impacts would decide. There are many minima, one for each way in
+which impacts can be out of step, so the fit starts from many points about what the band tells.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from scipy.stats import kurtosis, qmc
 
 from inerter.diagnose.parallel import parallel
-from inerter.identify.bench import Run
 from inerter.identify.fit import Fit, Problem, rms, typical
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -78,7 +78,7 @@ _CONTACT = 0.2
 _LONG = 0.5
 
 
-def from_contact(run: Run) -> Run:
+def from_contact(run: BenchRun) -> BenchRun:
     """A run at the measured rate that is followed from a contact on, where the state is known.
 
     In free flight nothing tells where the flywheel is and how it turns. In the middle of a contact
@@ -99,7 +99,7 @@ def from_contact(run: Run) -> Run:
     )
 
 
-def _side(run: Run) -> np.ndarray:
+def _side(run: BenchRun) -> np.ndarray:
     """Sign of the force of contacts, 0 in free flight, shape (n,)."""
     return np.sign(run.force) * (np.abs(run.force) > _CONTACT * np.std(run.force))
 

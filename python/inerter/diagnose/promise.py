@@ -7,19 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 
 Array = NDArray[np.float64]
-
-# effects of which one step from a starting point says little: what they cut off, or remember
-FAR = (
-    "sensor_saturation",
-    "backlash",
-    "hysteretic_friction",
-    "stribeck_friction",
-)
 
 
 class Promise:
@@ -38,15 +31,14 @@ class Promise:
 
     def holds(self, candidate: Candidate) -> bool:
         """False where no starting point leads below the limit [N]."""
-        if candidate.effect in FAR:
+        if EFFECTS[candidate.effect].far:
             return True
         return any(self._error_after_a_step(start) < self.limit for start in candidate.starts)
 
     def _error_after_a_step(self, start: Model) -> float:
-        free, masks = self.current.model.free, self.problem.masks
+        free = self.current.model.free
         added = [name for name in start.free if name not in free]
-        residual = self.problem.residual(start)
-        flat = np.concatenate([r[m] for r, m in zip(residual, masks, strict=True)])
+        flat = self.problem.masked(self.problem.residual(start))
         columns = np.concatenate([self._known, self.problem.jacobian(start, added)], axis=1)
         columns = columns / (np.linalg.norm(columns, axis=0) + 1e-300)
         step = np.linalg.lstsq(columns, flat, rcond=1e-10)[0]

@@ -42,7 +42,7 @@ class Rival:
     law: str | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Finding:
     """An effect that the simulation lacks.
 
@@ -128,7 +128,7 @@ class RecordSummary:
         return {**vars(self), "sample_rate": float(f"{self.sample_rate:.10g}")}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Unexplained:
     """What remains after the extension.
 
@@ -164,7 +164,7 @@ class Unexplained:
     proposal: dict[str, Any] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RunCurves:
     """Measured and simulated force of one run, for the report; arrays (n,), NaN-free.
 
@@ -187,7 +187,7 @@ class RunCurves:
     unit: str = "N"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class TablePoints:
     """A bench table with the amplitudes of both models, arrays (n,)."""
 
@@ -199,7 +199,7 @@ class TablePoints:
     holdout: NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Diagnosis:
     """The outcome of a diagnosis."""
 

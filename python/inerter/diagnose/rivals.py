@@ -4,60 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
+from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
+from inerter.diagnose.decision import CRITERIA, does_as_well
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
-from inerter.diagnose.search import (
-    REQUIRED_DISTINCTION,
-    TOLERATED_ADVANTAGE,
-    Scored,
-    Search,
-)
+from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
-from inerter.diagnose.trials import RICH_LAWS
 from inerter.identify.model import Model
-
-# where the data cannot tell two effects apart, the earlier one here is named
-PRECEDENCE = (
-    "inertance_error",
-    "coulomb_friction",
-    "viscous_friction",
-    "force_offset",
-    "parallel_stiffness",
-    "sensor_delay",
-    "quadratic_damping",
-    "hysteretic_friction",
-    "load_dependent_friction",
-    "asymmetric_friction",
-    "stribeck_friction",
-    "position_dependent_friction",
-    "variable_inertance",
-    "hardening_stiffness",
-    "force_drift",
-    "friction_drift",
-    "sensor_saturation",
-    "periodic_disturbance",
-    "end_stop",
-    "gas_spring",
-    "series_elasticity",
-    "backlash",
-)
-# effects of which it is told by which law
-WITH_LAWS = ("hysteretic_friction",)
-EQUAL_ADVANTAGE = 2.0
-EQUAL_LOSS = 0.005
-# share of the resamples in which a rival must be the best to be named instead
-PREFERRED = 0.5
-# rivals that are worth cross-validating
-SHORTLIST = 3
-# one that misses so much more, fitted to all data, is the best in no resample of them
-BEATEN = 1.25
-# share of the rms error by which a rival with more parameters has to be better
-HANDICAP = 0.03
 
 
 @dataclass(frozen=True)
@@ -83,7 +39,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         for candidate in candidates(without.model, problem.scales)
         if (candidate.effect, candidate.law) != (effect, law)
         and candidate.effect not in rest
-        and (law is not None or candidate.law not in RICH_LAWS)
+        and (law is not None or not candidate.is_rich)
     ]
     masks = problem.masks
     error = final.fit.rmse(masks)
@@ -92,21 +48,22 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     trials = [
         (candidate, fit)
         for candidate, fit in fitted
-        if fit.rmse(masks) < BEATEN * error
-        and is_distinct(candidate.effect, fit, REQUIRED_DISTINCTION, baseline)
+        if fit.rmse(masks) < CRITERIA.beaten * error
+        and is_distinct(candidate.effect, fit, baseline)
         and not search.is_blur(fit, without.fit, known)
     ]
     scored = parallel(
-        lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]), trials[:SHORTLIST]
+        lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]),
+        trials[: CRITERIA.rivals_checked],
     )
 
     # a rival with more parameters has to win by more than such a one can by chance
-    richer = [s.model.complexity > final.model.complexity for s in scored]
-    handicap = 1 / (1 - HANDICAP) ** 2
+    richer = [s.complexity > final.complexity for s in scored]
+    handicap = 1 / (1 - CRITERIA.handicap) ** 2
     fair = [s.squares * (handicap if more else 1.0) for s, more in zip(scored, richer, strict=True)]
     shares = win_shares(
         [final.squares, without.squares, *fair],
-        [0.0, 0.0, *(TOLERATED_ADVANTAGE * more for more in richer)],
+        [0.0, 0.0, *(CRITERIA.tolerated_advantage * more for more in richer)],
     )
     pairs = sorted(zip(scored, shares[2:], strict=True), key=lambda pair: -pair[1])
     better = next(
@@ -116,7 +73,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
             if s.effect != effect
             and (
                 _takes_precedence(s, final, effect, baseline)
-                or (share > PREFERRED and _is_better(s, final, baseline))
+                or (share > CRITERIA.preferred and _is_better(s, final, baseline))
             )
         ),
         None,
@@ -124,9 +81,9 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     # another law or form of the same effect is no doubt about the effect; a law is told
     same = float(sum(share for s, share in pairs if s.effect == effect))
     rivals = [
-        Rival(s.effect, float(share), s.law if s.effect in WITH_LAWS else None)
+        Rival(s.effect, float(share), s.law if EFFECTS[s.effect].tells_law else None)
         for s, share in pairs
-        if s.effect != effect or effect in WITH_LAWS
+        if s.effect != effect or EFFECTS[effect].tells_law
     ]
     return Standing(min(float(shares[0]) + same, 1.0), rivals, better)
 
@@ -137,9 +94,9 @@ def _takes_precedence(rival: Scored, final: Scored, effect: str, baseline: Model
     Or as many, and the more usual one.
     """
     causes = [len(effects_of(scored.model, baseline)) for scored in (rival, final)]
-    usual = PRECEDENCE.index(rival.effect) < PRECEDENCE.index(effect)
+    usual = EFFECTS[rival.effect].rank < EFFECTS[effect].rank
     return bool(
-        rival.model.complexity <= final.model.complexity
+        rival.complexity <= final.complexity
         and (causes[0] < causes[1] or (causes[0] == causes[1] and usual))
         and _does_as_well(rival, final)
     )
@@ -152,13 +109,11 @@ def _is_better(rival: Scored, final: Scored, baseline: Model) -> bool:
     """
     causes = [len(effects_of(scored.model, baseline)) for scored in (rival, final)]
     return bool(
-        rival.model.complexity <= final.model.complexity
+        rival.complexity <= final.complexity
         and causes[0] <= causes[1]
         and not _does_as_well(final, rival)
     )
 
 
 def _does_as_well(one: Scored, other: Scored) -> bool:
-    """Whether the errors of a model are hardly larger than those of another."""
-    loss = np.sqrt(one.squares.sum() / other.squares.sum()) - 1
-    return bool(loss < EQUAL_LOSS and advantage(one.squares, other.squares) < EQUAL_ADVANTAGE)
+    return does_as_well(one, other, advantage(one.squares, other.squares))

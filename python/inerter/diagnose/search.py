@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
@@ -26,6 +27,7 @@ from inerter.diagnose.composition import (
     within_blur,
     without_effect,
 )
+from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import (
     Array,
@@ -35,51 +37,23 @@ from inerter.diagnose.statistics import (
 )
 from inerter.diagnose.tone import strongest_line
 from inerter.diagnose.trials import FAR, ROUGH, Trials
-from inerter.identify.bench import Run
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
 from inerter.identify.split import Mask, Split, blocks, spread_folds
-
-# what a richer model must win by: standard errors over paired blocks, and share of the rms error.
-# 4 standard errors: about one false alarm in 30,000 candidates on noise alone. A gain many times
-# the smallest one cannot come from noise; there 2 guard against one lucky stretch.
-REQUIRED_ADVANTAGE = 4.0
-REQUIRED_GAIN = 0.01
-LARGE_ADVANTAGE = 2.0
-LARGE_GAIN = 0.05
-# standard errors by which an effect's own parameter must differ from none
-REQUIRED_DISTINCTION = 3.0
-# how much a simpler candidate may lose against the best and still be taken
-TOLERATED_ADVANTAGE = 3.0
-LARGE_TOLERATED_ADVANTAGE = 6.0
-TOLERATED_LOSS = 0.01
-# a loss that is never small, though the best may show in few places
-TOO_MUCH = 0.25
-# removing an effect that is worth less than this many standard errors
-KEEPING_ADVANTAGE = 2.0
-MOST_EFFECTS = 8
-# candidates that are worth cross-validating in one round
-SHORTLIST = 5
-# effects that may show in few stretches, or in one run alone
-LOCAL = ("end_stop", "sensor_saturation", "gas_spring", "hardening_stiffness")
-# share of the rms error that these must take away where they show
-LOCAL_GAIN = 0.5
-# share of the rms error that an effect that is not sure by itself must take away to be tried with
-# a second one
-FOOTHOLD = 0.1
-# effects that a friction law cannot stand in for
-UNLIKE_FRICTION = (
-    *LOCAL,
-    "series_elasticity",
-    "backlash",
-    "periodic_disturbance",
-    "parallel_stiffness",
-    "variable_inertance",
-    "force_drift",
-)
 
 Progress = Callable[[str], None]
 Folds = list[tuple[Problem, list[Mask]]]
+
+
+def is_local(effect: str) -> bool:
+    """Whether an effect may show in few stretches, or in one run alone."""
+    return effect in EFFECTS and EFFECTS[effect].local
+
+
+def is_shaft(effect: str) -> bool:
+    """Whether an effect makes the noise of the motion larger near a resonance."""
+    return effect in EFFECTS and EFFECTS[effect].kind == "shaft"
 
 
 def advantage_of(
@@ -88,22 +62,21 @@ def advantage_of(
     masks: Sequence[Mask],
     stretches: Sequence[tuple[int, NDArray]],
     effect: str,
-    least: float = LOCAL_GAIN,
+    least: float = CRITERIA.local_gain,
 ) -> float:
     """`statistics.advantage` of residuals, over the stretches where the effect may show.
 
-    What shows in few places has to take away at least a share of what is missed there: peaks, where
-    such effects lie, are where a slightly wrong model errs most.
+    What shows in few places has to take away at least a share of what is missed there.
     """
-    if effect in LOCAL:
+    if is_local(effect):
         stretches = where_apart(simple, rich, masks)
     before, after = block_squares(simple, stretches), block_squares(rich, stretches)
-    if effect in LOCAL and after.sum() > (1 - least) ** 2 * before.sum():
+    if is_local(effect) and after.sum() > (1 - least) ** 2 * before.sum():
         return 0.0
     return advantage(before, after)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Scored:
     """A fitted candidate and its errors on left-out folds.
 
@@ -129,6 +102,11 @@ class Scored:
         """The fitted model."""
         return self.fit.model
 
+    @property
+    def complexity(self) -> int:
+        """Number of free coordinates that say something."""
+        return self.model.complexity
+
 
 def _silent(text: str) -> None:
     """Tell nobody."""
@@ -138,7 +116,7 @@ def _silent(text: str) -> None:
 class Search:
     """A search over the fit data of a split."""
 
-    runs: Sequence[Run]
+    runs: Sequence[BenchRun]
     split: Split
     baseline: Model
     progress: Progress = _silent
@@ -153,7 +131,7 @@ class Search:
         """What is fitted, and the folds of it."""
         self.problem = Problem(self.runs, self.split.fit)
         self.blocks = blocks(self.problem.masks)
-        self.trials = Trials(self.problem, REQUIRED_GAIN)
+        self.trials = Trials(self.problem)
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
 
@@ -192,10 +170,10 @@ class Search:
         """
         start = start or self.baseline
         self._weigh_for(start)
-        if any(effect in LOCAL for effect, _ in effects_of(start, self.baseline)):
+        if any(is_local(effect) for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
-        while len(self.found) < MOST_EFFECTS:
+        while len(self.found) < CRITERIA.most_effects:
             chosen = self._best_step(current) or self._two_steps(current)
             if chosen is None:
                 break
@@ -230,7 +208,14 @@ class Search:
 
     def _scored(self, effect: str, law: str | None, fit: Fit, errors: list[Array]) -> Scored:
         residual = self.problem.weighted(errors)
-        return Scored(effect, law, fit, errors, residual, block_squares(residual, self.blocks))
+        return Scored(
+            effect=effect,
+            law=law,
+            fit=fit,
+            errors=errors,
+            residual=residual,
+            squares=block_squares(residual, self.blocks),
+        )
 
     def advantage(self, simple: Scored, rich: Scored, effect: str) -> float:
         """How surely a model with an effect has smaller errors on left-out folds than without."""
@@ -250,20 +235,20 @@ class Search:
         if not fitted:
             return None
         floor = fitted[0][1].rmse(masks)
-        worth = (1 - REQUIRED_GAIN) * current.fit.rmse(masks)
+        worth = (1 - CRITERIA.gain) * current.fit.rmse(masks)
         worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
         if not worthy:
             return None
 
         # simpler candidates that are nearly as good must have their chance
-        near = floor * (1 + 5 * TOLERATED_LOSS)
-        shortlist = worthy[:SHORTLIST]
-        shortlist += [pair for pair in worthy[SHORTLIST:] if pair[1].rmse(masks) < near]
+        near = floor * (1 + 5 * CRITERIA.tolerated_loss)
+        shortlist = worthy[: CRITERIA.shortlist]
+        shortlist += [pair for pair in worthy[CRITERIA.shortlist :] if pair[1].rmse(masks) < near]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 
         # what shows in one run alone cannot be foretold from the others
-        if self._folds is not self._spread and any(c.effect in LOCAL for c, _ in shortlist):
+        if self._folds is not self._spread and any(is_local(c.effect) for c, _ in shortlist):
             folds = self._spread
             current = self.score(current.effect, current.law, current.fit, folds)
         else:
@@ -274,19 +259,19 @@ class Search:
         there = [
             s
             for s in scored
-            if is_distinct(s.effect, s.fit, REQUIRED_DISTINCTION, self.baseline)
+            if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
         ]
         good = [s for s in there if self._better(*self._weighed_for(s, [current, s]))]
         if not good:
-            limit = (1 - FOOTHOLD) ** 2 * current.squares.sum()
+            limit = (1 - CRITERIA.foothold) ** 2 * current.squares.sum()
             self._refused = [s for s in there if s.squares.sum() < limit]
             return None
         chosen = self._plainest(good)
-        if chosen.effect == "series_elasticity":
+        if is_shaft(chosen.effect):
             self._weigh_for(chosen.model)
             return self.score(chosen.effect, None, self.problem.fit(chosen.model))
-        if chosen.effect in LOCAL:
+        if is_local(chosen.effect):
             self._folds = folds
         elif folds is not self._folds:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
@@ -294,7 +279,7 @@ class Search:
 
     def _weighed_for(self, rich: Scored, scored: Sequence[Scored]) -> list[Scored]:
         """Models as they count where one of them brings a shaft."""
-        if rich.effect != "series_elasticity":
+        if not is_shaft(rich.effect):
             return list(scored)
         runs = [replace(run, shaft=rich.model.shaft) for run in self.runs]
         problem = Problem(runs, self.split.fit, self.problem.scales)
@@ -306,12 +291,13 @@ class Search:
 
     def _plainest(self, good: Sequence[Scored]) -> Scored:
         """The best of some models, or the plainest of those that are about as good."""
-        shaft = next((s for s in good if s.effect == "series_elasticity"), good[0])
+        shaft = next((s for s in good if is_shaft(s.effect)), good[0])
         counted = self._weighed_for(shaft, good)
         best = min(counted, key=lambda s: s.squares.sum())
         pairs = zip(good, counted, strict=True)
         equal = [pair for pair in pairs if pair[1] is best or self._as_good(pair[1], best)]
-        return min(equal, key=lambda pair: (pair[1].model.complexity, pair[1].squares.sum()))[0]
+        chosen = plainest([each for _, each in equal])
+        return next(s for s, each in equal if each is chosen)
 
     def _two_steps(self, current: Scored) -> Scored | None:
         """Two effects that are sure together, where none is alone.
@@ -322,7 +308,7 @@ class Search:
         if first is None:
             return None
         folds = self._folds
-        if first.effect in LOCAL:
+        if is_local(first.effect):
             self._folds = self._spread
         second = self._best_step(replace(first, fit=self.problem.fit(first.model)))
         if second and self._better(*(self.score_on_blocks(s.fit) for s in (current, second))):
@@ -354,20 +340,14 @@ class Search:
         return [Candidate("periodic_disturbance", None, (start,))]
 
     def _better(self, simple: Scored, rich: Scored) -> bool:
-        gain = 1 - np.sqrt(rich.squares.sum() / simple.squares.sum())
-        share = np.clip((gain - REQUIRED_GAIN) / (LARGE_GAIN - REQUIRED_GAIN), 0, 1)
-        required = REQUIRED_ADVANTAGE + share * (LARGE_ADVANTAGE - REQUIRED_ADVANTAGE)
-        return bool(gain > REQUIRED_GAIN and self.advantage(simple, rich, rich.effect) > required)
+        return better(simple, rich, self.advantage(simple, rich, rich.effect))
 
     def _as_good(self, simple: Scored, best: Scored) -> bool:
         """Whether a candidate loses so little against the best that fewer parameters decide."""
-        loss = np.sqrt(simple.squares.sum() / best.squares.sum()) - 1
-        masks, least = self.problem.masks, LOCAL_GAIN if loss < TOO_MUCH else 0.0
-        won = advantage_of(simple.residual, best.residual, masks, self.blocks, best.effect, least)
-        return bool(
-            simple.model.complexity < best.model.complexity
-            and won < (LARGE_TOLERATED_ADVANTAGE if loss < TOLERATED_LOSS else TOLERATED_ADVANTAGE)
-        )
+        masks = self.problem.masks
+        least = CRITERIA.local_gain if loss(simple, best) < CRITERIA.too_much else 0.0
+        lost = advantage_of(simple.residual, best.residual, masks, self.blocks, best.effect, least)
+        return as_good(simple, best, lost)
 
     def _exchange(self, current: Scored) -> Scored:
         """Another friction law, alone or with one more effect, where that needs fewer parameters.
@@ -383,19 +363,18 @@ class Search:
                 same = candidate.starts[0].friction == model.friction
                 # a Bouc-Wen law has a stiffness of its own
                 stiffens = candidate.effect == "parallel_stiffness" and "bw_ratio" in free
-                if same and (stiffens or candidate.effect not in UNLIKE_FRICTION):
+                if same and (stiffens or not EFFECTS[candidate.effect].unlike_friction):
                     trials.append(candidate)
         spare = current.model.complexity
         trials = [trial for trial in trials if trial.starts[0].complexity < spare]
-        limit = current.fit.rmse(masks) * (1 + TOLERATED_LOSS)
+        limit = current.fit.rmse(masks) * (1 + CRITERIA.tolerated_loss)
         fits = sorted(
             parallel(lambda trial: self.trials.fit(trial, (FAR * limit, np.inf)), trials),
             key=lambda fit: fit.rmse(masks),
         )
         near = [fit for fit in fits if fit.rmse(masks) < limit][:2]
         for scored in parallel(lambda fit: self.score("exchange", None, fit), near):
-            loss = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
-            if loss < TOLERATED_LOSS / 2:
+            if loss(scored, current) < CRITERIA.exchange_loss:
                 return self._exchange(scored)
         if with_spring := self._spring_beside(current):
             return self._exchange(with_spring)
@@ -437,11 +416,10 @@ class Search:
                 lambda pair: self.score(pair[0], None, self.problem.fit(pair[1])), models
             ):
                 lost = self.advantage(scored, current, scored.effect)
-                ratio = np.sqrt(scored.squares.sum() / current.squares.sum()) - 1
                 # a refit may go astray on one fold: nothing is sure of the errors there
-                needed = scored.fit.rmse(masks) > (1 + TOO_MUCH) * current.fit.rmse(masks)
-                if (lost < KEEPING_ADVANTAGE and not needed) or ratio < REQUIRED_GAIN / 2:
-                    simpler.append((ratio, scored))
+                astray = scored.fit.rmse(masks) > (1 + CRITERIA.too_much) * current.fit.rmse(masks)
+                if not_needed(scored, current, lost, astray):
+                    simpler.append(scored)
             if not simpler:
                 return current
-            current = min(simpler, key=lambda pair: pair[0])[1]
+            current = min(simpler, key=lambda scored: scored.squares.sum())

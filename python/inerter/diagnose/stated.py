@@ -1,8 +1,9 @@
 """What a user's device states, set free: the models by which the data can contradict it.
 
 Inertance, damping, stiffness, levels and their variations are coordinates that `candidates` sets
-free itself. A law's other parameters, a shaft, stops and a gas are set free here, each as a whole.
-A stated free play is held.
+free itself. A law's other parameters, a shaft, stops and a gas are set free here, each as a whole;
+of a law also what the user leaves to its default, for the simulation has it. A stated free play is
+held.
 """
 
 from __future__ import annotations
@@ -11,21 +12,25 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from inerter.catalogue.coordinates import COORDINATES
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.friction import FRICTION
+from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.composition import LAW_EFFECT, STATED_AS, width
-from inerter.diagnose.effects import EFFECTS, LAW_CONSTANTS, LAW_COORDINATES
-from inerter.identify.coordinates import Scales
+from inerter.diagnose.composition import width
 from inerter.identify.model import Model
 
 # least share of the critical damping from which a stated shaft's is searched
 _LOSS = 1e-3
 # share of a stated stiffness from which on one that is not there is sought
 _NOTHING = 1e-3
+# where a peak and a damping begin that are none as stated: of the level, of the rms force per speed
+_PEAK, _DAMPING = 0.5, 1e-3
 
 
 def stated_candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Each part that a model states and holds, set free from its stated values."""
-    yield from _law(model)
+    yield from _law(model, sizes)
     yield from _shaft(model, sizes)
     yield from _gas(model)
     stops = {name: model.values[name] for name in _held(model, EFFECTS["end_stop"].coordinates)}
@@ -45,16 +50,44 @@ def _starts(model: Model, values: dict[str, float], size: str) -> tuple[Model, .
     return stated, model.adding(None, **{**values, size: _NOTHING * values[size]})
 
 
-def _law(model: Model) -> Iterator[Candidate]:
-    # of Coulomb friction the level is all, and a candidate already
-    held = [name for name in _held(model, LAW_COORDINATES) if name not in LAW_CONSTANTS]
-    if model.friction not in LAW_EFFECT or model.friction == "coulomb" or not held:
+def _law(model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """The whole law, stated or by default; from its defaults others lie far."""
+    law = FRICTION[model.friction]
+    effect = EFFECTS.get(law.effect)
+    # of one whose level is all that is a candidate already
+    if effect is None or law.set_free == (law.level,):
         return
-    effect = LAW_EFFECT[model.friction]
-    values = {name: model.values[name] for name in held}
-    law = model.friction if effect == "hysteretic_friction" else None
+    device = law.of_device(model.device())
+    values = {name: model.values.get(name, value) for name, value in device.items()}
+    # one that a search found has all of its coordinates, and all of them free
+    by_default = law.varies and any(name not in model.values for name in values)
+    if not by_default and not _held(model, law.set_free):
+        return
+    told = law.name if effect.tells_law else None
     starts = _starts(model, {**values, **width(model)}, "bw_stiffness")
-    yield Candidate(effect, law, starts)
+    if any(name not in model.values for name in values):
+        starts += tuple(
+            model.adding(None, **{**values, **begin, **width(model)})
+            for begin in _elsewhere(model, values, sizes)
+        )
+    yield Candidate(effect.name, told, starts)
+
+
+def _elsewhere(model: Model, values: dict[str, float], sizes: Scales) -> Iterator[dict[str, float]]:
+    """Where what is left to its default may begin too."""
+    law = FRICTION[model.friction]
+    level = values.get("coulomb_force", 0.0)
+    none = {
+        "static_excess": _PEAK * level,
+        "bristle_damping": _DAMPING * sizes.force / sizes.velocity,
+    }
+    begun = {n: v for n, v in none.items() if n in values and n not in model.values}
+    for row in range(max((len(ratios) for ratios in law.grid.values()), default=0)):
+        yield begun | {
+            name: ratios[row % len(ratios)] * COORDINATES[name].start_unit(sizes)
+            for name, ratios in law.grid.items()
+            if name in values and name not in model.values
+        }
 
 
 def shafts(sizes: Scales) -> list[dict[str, float]]:
@@ -69,28 +102,19 @@ def shafts(sizes: Scales) -> list[dict[str, float]]:
 
 
 def _shaft(model: Model, sizes: Scales) -> Iterator[Candidate]:
-    device = model.device()
+    device, effect = model.device(), EFFECTS["series_elasticity"]
     if "series_frequency" in model.values or not device.series_stiffness:
         return
-    inertance, stiffness = device.inertance, device.series_stiffness
-    loss = device.series_damping / (2 * np.sqrt(stiffness * inertance))
-    stated = {
-        "series_frequency": float(np.sqrt(stiffness / inertance) / (2 * np.pi)),
-        "series_loss": max(float(loss), _LOSS),
-    }
-    rigid = model.without(STATED_AS["series_elasticity"])
+    stated = {name: COORDINATES[name].of(device) for name in effect.coordinates}
+    stated["series_loss"] = max(stated["series_loss"], _LOSS)
+    rigid = model.without(effect.stated_as)
     starts = tuple(rigid.adding(None, **shaft) for shaft in (stated, *shafts(sizes)))
-    yield Candidate("series_elasticity", None, starts)
+    yield Candidate(effect.name, None, starts)
 
 
 def _gas(model: Model) -> Iterator[Candidate]:
-    device = model.device()
+    device, effect = model.device(), EFFECTS["gas_spring"]
     if "gas_push" in model.values or not device.gas_pressure:
         return
-    start = model.without(STATED_AS["gas_spring"]).adding(
-        None,
-        gas_push=device.gas_pressure * device.gas_area,
-        gas_reach=device.gas_volume / device.gas_area,
-        gas_exponent=device.gas_exponent,
-    )
-    yield Candidate("gas_spring", None, (start,))
+    stated = {name: COORDINATES[name].of(device) for name in effect.coordinates}
+    yield Candidate(effect.name, None, (model.without(effect.stated_as).adding(None, **stated),))

@@ -12,14 +12,16 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
+from inerter.catalogue.coordinates import NUISANCES
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.scales import Scales
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
 from inerter.diagnose.baseline import baseline_model
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of
-from inerter.diagnose.effects import EFFECTS
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -32,9 +34,10 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.statistics import win_shares
 from inerter.diagnose.values import parameter_values
-from inerter.identify.coordinates import Scales, coordinate
+from inerter.estimation.least_squares import Tolerances, minimise
+from inerter.estimation.variables import Variables
 from inerter.identify.fit import Fit
-from inerter.identify.model import NUISANCES, Model
+from inerter.identify.model import Model
 from inerter.records import BenchTable
 from inerter.records.duplicates import repeats_another, without_copies
 from inerter.rig import quiet, simulate_along
@@ -42,25 +45,11 @@ from inerter.rig import quiet, simulate_along
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
-# effects that leave a trace in amplitudes and have few enough parameters for a table
-TRIED = (
-    "inertance_error",
-    "viscous_friction",
-    "coulomb_friction",
-    "parallel_stiffness",
-    "quadratic_damping",
-    "load_dependent_friction",
-)
 SAMPLES_PER_PERIOD = 400
 # a state forgets how it began: until periods in a row differ by no more than this share
 FEWEST_PERIODS, MOST_PERIODS = 3, 768
 SETTLED = 1e-4
-# twice the log-likelihood ratio (left-out errors) that a richer model needs: about one false alarm
-# in 600
-REQUIRED_EVIDENCE = 10.0
 HELD_OUT_EVERY = 4
-# points that a fit needs beyond its parameters: with fewer, leaving one out tells nothing
-SPARE = 2
 
 
 def amplitude(device: Device, frequency: float, acceleration: float) -> float:
@@ -137,10 +126,10 @@ class _Table:
             )
         omega = 2 * np.pi * self.frequency
         self.scales = Scales(
-            float(np.sqrt(np.mean(self.force**2) / 2)),
-            float(np.sqrt(np.mean((self.acceleration / omega**2) ** 2) / 2)),
-            float(np.sqrt(np.mean((self.acceleration / omega) ** 2) / 2)),
-            float(np.sqrt(np.mean(self.acceleration**2) / 2)),
+            force=float(np.sqrt(np.mean(self.force**2) / 2)),
+            displacement=float(np.sqrt(np.mean((self.acceleration / omega**2) ** 2) / 2)),
+            velocity=float(np.sqrt(np.mean((self.acceleration / omega) ** 2) / 2)),
+            acceleration=float(np.sqrt(np.mean(self.acceleration**2) / 2)),
         )
         self.holdout = np.zeros(self.force.size, bool)
         self.holdout[HELD_OUT_EVERY // 2 :: HELD_OUT_EVERY] = True
@@ -161,34 +150,25 @@ class _Table:
 
     def fit(self, model: Model, mask: NDArray[np.bool_]) -> Fit:
         """Least squares of the relative errors over masked points."""
-        how = [coordinate(name, self.scales) for name in model.free]
-        if not how:
+        if not model.free:
             return Fit(model, [self.error(model)], np.zeros((0, 0)), 1)
+        variables = Variables.of(model.free, self.scales)
 
-        def at(variables: Array) -> Model:
-            values = {n: c.decode(x) for n, c, x in zip(model.free, how, variables, strict=True)}
-            return replace(model, values={**model.values, **values})
+        def at(point: Array) -> Model:
+            return replace(model, values={**model.values, **variables.decode(point)})
 
-        start = [c.encode(model.values[n]) for n, c in zip(model.free, how, strict=True)]
-        bounds = np.array([c.bounds for c in how]).T
-        inside = np.clip(start, bounds[0] + 1e-9, bounds[1] - 1e-9)
-        solution = least_squares(
-            lambda variables: self.error(at(variables))[mask], inside, bounds=bounds
+        found = minimise(
+            lambda point: self.error(at(point))[mask],
+            variables.encode(model.values),
+            variables.bounds,
+            tolerances=Tolerances(gradient=1e-8),
         )
-        freedom = max(int(mask.sum()) - len(how), 1)
-        size = np.array(
-            [
-                model.values[n] if c.logarithmic else c.size
-                for n, c in zip(model.free, how, strict=True)
-            ]
-        )
-        covariance = (
-            np.linalg.pinv(solution.jac.T @ solution.jac)
-            * (2 * solution.cost / freedom)
-            * np.outer(size, size)
-        )
-        best = at(solution.x)
-        return Fit(best, [self.error(best)], covariance, int(solution.nfev), float(solution.cost))
+        best = at(found.variables)
+        freedom = max(int(mask.sum()) - len(variables), 1)
+        size = variables.units(best.values)
+        covariance = np.linalg.pinv(found.jacobian.T @ found.jacobian) * np.outer(size, size)
+        covariance *= 2 * found.cost / freedom
+        return Fit(best, [self.error(best)], covariance, found.evaluations, found.cost)
 
     def left_out(self, model: Model) -> Array:
         """Squared relative errors of every fit point when it is left out, shape (points,)."""
@@ -225,7 +205,7 @@ def diagnose_table(
     before = table.fit(baseline, fit_mask)
     fit, squares = before, table.left_out(before.model)
     findings: list[Finding] = []
-    while len(findings) < 3:
+    while len(findings) < CRITERIA.most_on_tables:
         progress(f"effect {len(findings) + 1}: trying every candidate")
         step = _best(table, baseline, fit, squares)
         if step is None:
@@ -235,7 +215,18 @@ def diagnose_table(
         if rmse_after >= rmse_before:
             break
         fit, squares = after, after_squares
-        findings.append(Finding(effect, None, confidence, {}, rmse_before, rmse_after, "", rivals))
+        findings.append(
+            Finding(
+                effect=effect,
+                law=None,
+                confidence=confidence,
+                parameters={},
+                rmse_before=rmse_before,
+                rmse_after=rmse_after,
+                evidence="",
+                rivals=rivals,
+            )
+        )
     values = parameter_values(fit, device)
     findings = [
         replace(f, parameters={n: values[n] for n in EFFECTS[f.effect].parameters if n in values})
@@ -252,7 +243,7 @@ def _best(
     tried = []
     for candidate in candidates(fit.model, table.scales):
         present = [name for name, _ in effects_of(fit.model, baseline)]
-        if candidate.effect in TRIED and candidate.effect not in present:
+        if EFFECTS[candidate.effect].on_table and candidate.effect not in present:
             fits = []
             for start in candidate.starts:
                 free = tuple(name for name in start.free if name not in NUISANCES)
@@ -262,8 +253,8 @@ def _best(
     good = [
         one
         for one in tried
-        if squares.size >= len(one[1].model.free) + SPARE
-        and squares.size * np.log(squares.sum() / one[2].sum()) > REQUIRED_EVIDENCE
+        if squares.size >= len(one[1].model.free) + CRITERIA.spare_points
+        and squares.size * np.log(squares.sum() / one[2].sum()) > CRITERIA.evidence
     ]
     if not good:
         return None
@@ -273,7 +264,7 @@ def _best(
     rivals = [
         Rival(one[0], float(share))
         for one, share in zip(others, shares[2:], strict=True)
-        if share > 0.005
+        if share > CRITERIA.rival_kept
     ]
     return effect, after, best, float(shares[0]), sorted(rivals, key=lambda r: -r.confidence)
 
@@ -298,13 +289,13 @@ def _diagnosis(
         f"The amplitudes scatter by {100 * relative:.1f} % about the model; a table cannot tell "
         "noise from structure further, a time record can."
     )
-    points, needed = int((~table.holdout).sum()), len(before.model.free) + 1 + SPARE
+    points, needed = int((~table.holdout).sum()), len(before.model.free) + 1 + CRITERIA.spare_points
     if points < needed:
         text += (
             f" Of {points} fitted points no effect can be tried; {needed} are needed, and every "
             f"{HELD_OUT_EVERY}th more is held out."
         )
-    remains = Unexplained(False, 0.0, [], text)
+    remains = Unexplained(significant=False, fraction=0.0, depends_on=[], summary=text)
     device = fit.model.device()
     with quiet():
         engine = np.array(
@@ -315,16 +306,16 @@ def _diagnosis(
         )
     mujoco = float(np.sqrt(np.mean((table.force - engine)[table.holdout] ** 2)))
     shown = TablePoints(
-        table.frequency,
-        table.acceleration,
-        table.force,
-        table.predict(before.model),
-        table.predict(fit.model),
-        table.holdout,
+        frequency=table.frequency,
+        acceleration=table.acceleration,
+        force=table.force,
+        baseline=table.predict(before.model),
+        extended=table.predict(fit.model),
+        holdout=table.holdout,
     )
     held = ", ".join(f"{f:g}" for f in table.frequency[table.holdout])
     diagnosis = Diagnosis(
-        [
+        records=[
             RecordSummary(
                 t.name,
                 t.samples,
@@ -334,19 +325,19 @@ def _diagnosis(
             )
             for t in tables
         ],
-        accuracy(before.model),
-        findings,
-        extended,
-        relative * float(np.mean(table.force)),
-        remains,
-        {"mujoco": mujoco, "exudyn": None, "reference": None},
-        "",
-        values,
-        {
+        baseline=accuracy(before.model),
+        findings=findings,
+        extended=extended,
+        noise_floor=relative * float(np.mean(table.force)),
+        unexplained=remains,
+        engines={"mujoco": mujoco, "exudyn": None, "reference": None},
+        verdict="",
+        parameters=values,
+        method={
             "split": f"held out: the points at {held} Hz",
             "held_out_samples": int(table.holdout.sum()),
         },
-        [],
-        shown,
+        curves=[],
+        points=shown,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.ndimage import median_filter
 
-from inerter.identify.bench import Run
-from inerter.identify.coordinates import LOWEST_TONE
+from inerter.catalogue.coordinates import LOWEST_TONE
 from inerter.identify.fit import Fit, Problem
+from inerter.identify.runs import BenchRun
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ _TONE = ("disturbance_amplitude", "disturbance_frequency")
 
 
 def strongest_line(
-    runs: Sequence[Run],
+    runs: Sequence[BenchRun],
     residual: Sequence[Array],
     masks: Sequence[NDArray[np.bool_]],
     lowest: float = LOWEST_TONE,

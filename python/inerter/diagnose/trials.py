@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.promise import Promise
-from inerter.identify.bench import head, head_size
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
+from inerter.identify.runs import head, head_size
 
 # share of the cost below which a step of a fit that is only compared changes nothing
 ROUGH = 1e-5
-# share of what is required that a candidate must be foretold to take away to be tried
-LIKELY = 0.7
 # share of the error that it must have taken away after a few evaluations to be followed, and how
 # near the second best start must come to the best to be followed too
 HOPELESS = 0.002
@@ -35,21 +35,19 @@ AT_LEAST = 1.5
 SAME = 1e-5
 # share of every run on which the starting points of a fit are compared
 STARTING_SHARE = 0.3
-# laws that are tried only where memory is to be seen
-RICH_LAWS = ("lugre", "bouc_wen")
+
+# effects that a friction law without memory is named as
+MEMORYLESS = {law.effect for law in FRICTION.values() if law.effect and not law.memory}
 
 # errors [N] of all fit data and of the part that starting points are compared on
 Limits = tuple[float, float]
 
 
 class Trials:
-    """The candidates of a search fitted to its data; what was fitted before is remembered.
+    """The candidates of a search fitted to its data; what was fitted before is remembered."""
 
-    required: the share of the error that one has to take away in the end.
-    """
-
-    def __init__(self, problem: Problem, required: float) -> None:
-        self.problem, self.required = problem, required
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
         self._part = Problem(
             [head(run, STARTING_SHARE) for run in problem.runs],
             [
@@ -124,15 +122,15 @@ class Trials:
         """
         masks = self.problem.masks
         limits = self._limits(current, 1 - HOPELESS)
-        likely = (1 - LIKELY * self.required) * current.rmse(masks)
+        likely = (1 - CRITERIA.likely * CRITERIA.gain) * current.rmse(masks)
         if aim:
             far = self._limits(aim, FAR)
             limits = min(limits[0], far[0]), min(limits[1], far[1])
             likely = min(likely, far[0])
         known = self._fitted_before(current)
         promise = Promise(self.problem, current, likely)
-        rich = [t for t in candidates if t.law in RICH_LAWS]
-        plain = [t for t in candidates if t.law not in RICH_LAWS]
+        rich = [t for t in candidates if t.is_rich]
+        plain = [t for t in candidates if not t.is_rich]
 
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
             new = [t for t in some if t.key not in known and promise.holds(t)]
@@ -149,9 +147,8 @@ class Trials:
         fitted += fits(plain)
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
         memory = error.get(("hysteretic_friction", "dahl"))
-        memoryless = ("coulomb_friction", "stribeck_friction")
-        others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in memoryless)]
-        if memory is None or memory < (1 - self.required) * min(others):
+        others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in MEMORYLESS)]
+        if memory is None or memory < (1 - CRITERIA.gain) * min(others):
             fitted += fits(rich)
         self._rounds.append((current, fitted))
         return sorted(fitted, key=lambda pair: pair[1].rmse(masks))

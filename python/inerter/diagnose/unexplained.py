@@ -17,14 +17,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.diagnose.remainder.battery import ORDER, Outcome, Remainder, battery, columns_of
+from inerter.diagnose.remainder.battery import ORDER, Remainder, Tested, battery, columns_of
 from inerter.diagnose.remainder.bursts import Bursts, bursts
 from inerter.diagnose.remainder.columns import sizes_of
-from inerter.diagnose.remainder.learning import Prediction, gather
+from inerter.diagnose.remainder.learning import LearntPart, gather
 from inerter.diagnose.remainder.proposal import propose
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import Unexplained
-from inerter.identify.bench import Run, on_clocks
+from inerter.identify.runs import BenchRun, on_clocks
 from inerter.identify.split import Split
 
 Array = NDArray[np.float64]
@@ -53,19 +53,19 @@ BLOWS = 5.0
 
 
 def unexplained(
-    runs: Sequence[Run],
+    runs: Sequence[BenchRun],
     split: Split,
     residual: Sequence[Array],
     floor: float,
     raw: float,
-    whole: Sequence[Run] = (),
+    whole: Sequence[BenchRun] = (),
     whole_residual: Sequence[Array] = (),
 ) -> Unexplained:
     """Describe the residual of a model.
 
     Parameters
     ----------
-    runs : sequence of Run
+    runs : sequence of BenchRun
         What was fitted.
     split : Split
         The parts of it.
@@ -137,10 +137,10 @@ def unexplained(
         _usual(whole, whole_residual, split, runs, raw),
     )
     return Unexplained(
-        significant,
-        fraction,
-        depends,
-        text,
+        significant=significant,
+        fraction=fraction,
+        depends_on=depends,
+        summary=text,
         structure=max(structure, no_noise) if significant else 0.0,
         tests=tests,
         false_alarm_rate=FALSE_ALARM,
@@ -155,7 +155,7 @@ def _taken(residual: Array, predicted: Array) -> float:
     return float(np.sqrt(max(np.mean(residual**2 - (residual - predicted) ** 2), 0.0)))
 
 
-def _remainder(runs: Sequence[Run], split: Split, residual: Sequence[Array]) -> Remainder:
+def _remainder(runs: Sequence[BenchRun], split: Split, residual: Sequence[Array]) -> Remainder:
     masks = [run.inner for run in runs]
     data = gather(
         residual, masks, split.holdout, [run.spacing for run in runs], [run.cutoff for run in runs]
@@ -165,7 +165,7 @@ def _remainder(runs: Sequence[Run], split: Split, residual: Sequence[Array]) -> 
 
 def _depends(
     remainder: Remainder, least: float
-) -> tuple[list[tuple[str, Prediction]], dict[str, str], Outcome, Outcome]:
+) -> tuple[list[tuple[str, LearntPart]], dict[str, str], Tested, Tested]:
     """What the residual goes with, one after another, the plainest of nearly equal ones first.
 
     Returns names with predictions, details in words, and the outcome of the tests on the whole
@@ -174,7 +174,7 @@ def _depends(
     columns = columns_of(remainder)
     power = remainder.data.power
     first = last = outcome = battery(remainder, columns)
-    chosen: list[tuple[str, Prediction]] = []
+    chosen: list[tuple[str, LearntPart]] = []
     details: dict[str, str] = {}
     while len(chosen) < MOST:
         required = FURTHER_SHARE if chosen else FIRST_SHARE
@@ -193,7 +193,7 @@ def _depends(
         chosen.append(
             (
                 name,
-                Prediction(
+                LearntPart(
                     prediction.values, gains[name] / power, prediction.share_held_out, prediction.p
                 ),
             )
@@ -210,7 +210,7 @@ def _depends(
     return chosen, details, first, last
 
 
-def _real(prediction: Prediction, tests: int) -> bool:
+def _real(prediction: LearntPart, tests: int) -> bool:
     # one more test than these: that of bursts
     return prediction.share > 0 and prediction.p < FALSE_ALARM / (tests + 1)
 
@@ -225,7 +225,7 @@ def _row(name: str, share: float, held_out: float, size: float, p: float) -> dic
     }
 
 
-def _rows(outcome: Outcome, power: float) -> list[dict[str, float | str]]:
+def _rows(outcome: Tested, power: float) -> list[dict[str, float | str]]:
     rows = [
         _row(name, p.share, p.share_held_out, float(np.sqrt(max(p.share, 0.0) * power)), p.p)
         for name, p in outcome.tests.items()
@@ -234,7 +234,7 @@ def _rows(outcome: Outcome, power: float) -> list[dict[str, float | str]]:
 
 
 def _above(
-    remainder: Remainder, found: Array, whole: Sequence[Run], residual: Sequence[Array]
+    remainder: Remainder, found: Array, whole: Sequence[BenchRun], residual: Sequence[Array]
 ) -> list[Array]:
     """The residual at the full rate without what was found in the band."""
     rest, begin = [], 0
@@ -248,7 +248,9 @@ def _above(
     return rest
 
 
-def _held_at(whole: Sequence[Run], runs: Sequence[Run], split: Split) -> list[NDArray[np.bool_]]:
+def _held_at(
+    whole: Sequence[BenchRun], runs: Sequence[BenchRun], split: Split
+) -> list[NDArray[np.bool_]]:
     """Held-out samples at the full rate."""
     return [
         np.interp(run.time, thin.time, out.astype(float)) > 0.5
@@ -257,10 +259,10 @@ def _held_at(whole: Sequence[Run], runs: Sequence[Run], split: Split) -> list[ND
 
 
 def _usual(
-    whole: Sequence[Run],
+    whole: Sequence[BenchRun],
     residual: Sequence[Array],
     split: Split,
-    runs: Sequence[Run],
+    runs: Sequence[BenchRun],
     raw: float,
 ) -> float | None:
     """Median size of the error [N] on held-out data, where few large ones make the rms."""

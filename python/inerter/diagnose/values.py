@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from inerter.catalogue.coordinates import CHANNEL_UNITS, parameter_names
+from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, parameters
 from inerter.diagnose.result import ParameterValue, StatedValue
-from inerter.identify.channel import UNITS
 from inerter.identify.fit import Fit, parameter_errors
 
 
@@ -16,11 +17,15 @@ def parameter_values(
     device: the user's own, if any; what it states stands beside what was found, and so does the
     delay of the force channel that is stated with it [s].
     """
-    units = {name: entry.unit for name, entry in parameters().items()} | dict(UNITS)
+    units = {name: entry.unit for name, entry in parameters().items()} | dict(CHANNEL_UNITS)
     found = parameter_errors(fit)
     if device is None:
         return {n: ParameterValue(value, error, units[n]) for n, (value, error) in found.items()}
     stated = {n: value for n, value in device.given.items() if not isinstance(value, str)}
+    # what a stated law leaves to its defaults is simulated too
+    for name in FRICTION[device.friction].set_free:
+        for parameter in parameter_names(name):
+            stated.setdefault(parameter, float(getattr(device, parameter)))
     if delay:
         stated["delay"] = delay
     return {

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.friction import FRICTION
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import by_weight, stand_ins, warning
-from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.result import (
     Diagnosis,
     Finding,
@@ -15,51 +18,6 @@ from inerter.diagnose.result import (
     Rival,
     StatedValue,
 )
-
-_NAMES = {
-    "coulomb_force": "sliding level f_c",
-    "static_force": "breakaway level f_s",
-    "stribeck_velocity": "Stribeck velocity v_s",
-    "bristle_stiffness": "bristle stiffness sigma0",
-    "bristle_damping": "bristle damping sigma1",
-    "friction_asymmetry": "asymmetry",
-    "friction_gradient": "gradient along the stroke",
-    "friction_curvature": "curvature along the stroke",
-    "load_friction": "mu",
-    "bw_stiffness": "Bouc-Wen stiffness k0",
-    "bw_beta": "beta",
-    "bw_gamma": "gamma",
-    "viscous": "c",
-    "stiffness": "k",
-    "quadratic_damping": "c2",
-    "force_offset": "offset",
-    "delay": "delay",
-    "inertance": "b",
-    "inertance_gradient": "gradient of b along the stroke",
-    "inertance_curvature": "curvature of b along the stroke",
-    "inertance_speed_gradient": "gradient of b along the speed",
-    "stiffness_cubic": "k3",
-    "series_stiffness": "series stiffness k_s",
-    "series_damping": "series damping c_s",
-    "backlash": "half of the free play eps",
-    "stop_upper": "upper stop",
-    "stop_lower": "lower stop",
-    "stop_stiffness": "stop stiffness k_e",
-    "stop_damping": "stop damping",
-    "gas_pressure": "pressure p0",
-    "gas_area": "piston area A",
-    "gas_volume": "volume V0",
-    "gas_exponent": "exponent gamma",
-    "force_drift": "drift",
-    "friction_drift": "drift of the friction level",
-    "force_maximum": "upper limit",
-    "force_minimum": "lower limit",
-    "disturbance_amplitude": "amplitude",
-    "disturbance_frequency": "frequency",
-    "bw_exponent": "n",
-    "bw_ratio": "elastic share A",
-}
-_LAWS = {"dahl": "Dahl", "lugre": "LuGre", "bouc_wen": "Bouc-Wen"}
 
 
 def quantity(value: ParameterValue) -> str:
@@ -76,10 +34,6 @@ def quantity(value: ParameterValue) -> str:
     seen = round(error, decimals)
     text = f"{seen:.{max(decimals, 0)}f}" if seen else f"{error:.1g}"
     return f"{round(number, decimals):.{max(decimals, 0)}f} ± {text}{unit}"
-
-
-# standard errors by which a stated value is contradicted
-CONTRADICTION = 3.0
 
 
 def value_in_words(name: str, value: ParameterValue) -> str:
@@ -103,12 +57,12 @@ def departure(value: ParameterValue) -> str:
 def _contradicts(value: ParameterValue) -> bool:
     """Whether a value is another than stated, by more than its error leaves open."""
     off = value.difference if isinstance(value, StatedValue) else None
-    return off is not None and abs(off) > CONTRADICTION * value.stderr
+    return off is not None and abs(off) > CRITERIA.contradiction * value.stderr
 
 
 def effect_in_words(finding: Finding) -> str:
     """Such as "friction with memory (Dahl)", "viscous friction other than stated"."""
-    law = f" ({_LAWS[finding.law]})" if finding.law in _LAWS else ""
+    law = _law(finding.law)
     other = finding.effect != "inertance_error" and _is_stated(finding)
     return EFFECTS[finding.effect].plain + law + (" other than stated" if other else "")
 
@@ -127,8 +81,12 @@ def is_missing(finding: Finding) -> bool:
 
 
 def _rival_in_words(rival: Rival) -> str:
-    law = f" ({_LAWS[rival.law]})" if rival.law in _LAWS else ""
-    return EFFECTS[rival.effect].plain + law
+    return EFFECTS[rival.effect].plain + _law(rival.law)
+
+
+def _law(name: str | None) -> str:
+    """A friction law in brackets, where it is one."""
+    return f" ({FRICTION[name].words})" if name in FRICTION else ""
 
 
 def _told_apart(effect: str, rival: Rival) -> str:
@@ -142,7 +100,8 @@ def _told_apart(effect: str, rival: Rival) -> str:
 def evidence(finding: Finding) -> str:
     """One sentence: values, and what the effect does to the error on held-out data."""
     values = ", ".join(
-        value_in_words(_NAMES.get(name, name), value) for name, value in finding.parameters.items()
+        value_in_words(PARAMETER_WORDS.get(name, name), value)
+        for name, value in finding.parameters.items()
     )
     if is_missing(finding):
         values = f"{EFFECTS[finding.effect].plain} as stated is not in these data"
@@ -155,15 +114,11 @@ def evidence(finding: Finding) -> str:
         f"{values}: the rms force error on {where} falls from {finding.rmse_before:.3g} N to "
         f"{finding.rmse_after:.3g} N ({100 * finding.gain:.0f} %)"
     )
-    likely = [rival for rival in finding.rivals if rival.confidence >= 0.05]
+    likely = [rival for rival in finding.rivals if rival.confidence >= CRITERIA.rival_told]
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
     return text + "."
-
-
-# a simulation that misses less of the force's variation than this can be called right
-RIGHT = 0.1
 
 
 def is_right(diagnosis: Diagnosis) -> bool:
@@ -171,7 +126,7 @@ def is_right(diagnosis: Diagnosis) -> bool:
     # the floor of a table is its own scatter, which says nothing for the model
     noise = 0.0 if diagnosis.points else 2 * diagnosis.noise_floor
     return not diagnosis.unexplained.significant and (
-        diagnosis.baseline.nrmse < RIGHT or diagnosis.baseline.rmse < noise
+        diagnosis.baseline.nrmse < CRITERIA.right or diagnosis.baseline.rmse < noise
     )
 
 
@@ -253,9 +208,9 @@ def _verdict(diagnosis: Diagnosis) -> str:
     doubtful = stand_ins(diagnosis.findings, diagnosis.unexplained.structure)
     text += warning([effect_in_words(finding) for finding in doubtful])
     contradicted = [
-        value_in_words(_NAMES.get(name, name), value)
+        value_in_words(PARAMETER_WORDS.get(name, name), value)
         for name, value in diagnosis.parameters.items()
-        if name != "transition_velocity" and _contradicts(value)
+        if name not in NUISANCES and _contradicts(value)
     ]
     contradicted += [
         f"{EFFECTS[finding.effect].plain}, of which they show nothing"
@@ -272,7 +227,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
         f"{_rival_in_words(finding.rivals[0])}" + _told_apart(finding.effect, finding.rivals[0])
         for finding in diagnosis.findings
         if finding.rivals
-        and finding.rivals[0].confidence >= 0.05
+        and finding.rivals[0].confidence >= CRITERIA.rival_told
         and finding.rivals[0].effect != finding.effect
     ]
     if doubts:

@@ -19,25 +19,16 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from inerter.catalogue.coordinates import CHANNEL_UNITS
 
-UNITS: Mapping[str, str] = {
-    "delay": "s",
-    "force_drift": "N/s",
-    "force_maximum": "N",
-    "force_minimum": "N",
-    "disturbance_amplitude": "N",
-    "disturbance_frequency": "Hz",
-    "friction_drift": "1/s",
-}
-"""Units of what is fitted beside the device's parameters."""
+Array = NDArray[np.float64]
 
 LIMITS = ("force_maximum", "force_minimum")
 
 
 def channel_values(values: Mapping[str, float]) -> dict[str, float]:
     """Those of some coordinates that belong to the channel, where they do anything."""
-    return {name: values[name] for name in UNITS if values.get(name)}
+    return {name: values[name] for name in CHANNEL_UNITS if values.get(name)}
 
 
 def clips(values: Mapping[str, float]) -> bool:

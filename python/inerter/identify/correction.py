@@ -31,7 +31,7 @@ def allowed_for(
     more = np.sqrt(np.maximum(1.0, shown / drawn))
     known = np.diag((noise.bias**2 + noise.smoothing**2) * units**2)
     covariance = covariance * np.outer(more, more) + known
-    flat = _flat(problem, fit.residual)
+    flat = problem.masked(fit.residual)
     naive = np.linalg.pinv(jacobian.T @ jacobian) * float(np.mean(flat**2))
     own = np.diag(naive) * units**2
     # a coordinate without effect has no variance of its own to compare with
@@ -48,7 +48,7 @@ def _moved(problem: Problem, fit: Fit, jacobian: Array, step: Array) -> Model:
     known worst is left out first.
     """
     directions = np.linalg.svd(jacobian, full_matrices=False)[2]
-    square = float(np.sum(_flat(problem, fit.residual) ** 2))
+    square = float(np.sum(problem.masked(fit.residual) ** 2))
     for count in range(len(directions), 0, -1):
         # all of them are the step itself
         part = directions[:count].T @ (directions[:count] @ step) if count < step.size else step
@@ -56,13 +56,9 @@ def _moved(problem: Problem, fit: Fit, jacobian: Array, step: Array) -> Model:
         try:
             model = problem.moved(fit.model, part)
             model.device()
-            found = float(np.sum(_flat(problem, problem.residual(model)) ** 2))
+            found = float(np.sum(problem.masked(problem.residual(model)) ** 2))
         except DeviceError:
             continue
         if found - square <= _BELIEVED * said + _WHOLE * square:
             return model
     return fit.model
-
-
-def _flat(problem: Problem, residual: list[Array]) -> Array:
-    return np.concatenate([r[m] for r, m in zip(residual, problem.masks, strict=True)])

@@ -16,30 +16,31 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from inerter.catalogue.coordinates import CHANNEL_UNITS, NUISANCES, parameters_of, search_range
+from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, parameters
-from inerter.identify.bench import Run, thin, whole
-from inerter.identify.coordinates import coordinate, device_values
 from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_correlation, parameter_errors
 from inerter.identify.identifiability import identifiability
-from inerter.identify.laws import LAWS, Law, law_named
-from inerter.identify.model import NUISANCES, Model
-from inerter.identify.multistart import Search, search
+from inerter.identify.laws import LAWS, FittedLaw, law_named
+from inerter.identify.model import Model
+from inerter.identify.multistart import Multistart, search
 from inerter.identify.nested import contains, embedded
 from inerter.identify.noise import effect_of_noise
-from inerter.identify.preparation import (
-    Preparation,
-    prepare,
-    prepare_again,
-    refuse_unusable,
-)
 from inerter.identify.profile import profile_interval
 from inerter.identify.result import Estimate, Figures, Identification, Identified
+from inerter.identify.runs import BenchRun, thin, whole
 from inerter.identify.split import Split, blocks, split
 from inerter.identify.turns import needs_turns, with_turns
 from inerter.records import Record
 from inerter.records.duplicates import without_copies
 from inerter.records.motion import Motion as BenchMotion
+from inerter.records.preparation import (
+    Preparation,
+    prepare,
+    prepare_again,
+    refuse_unusable,
+)
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -140,23 +141,34 @@ def prepared(
     raw = [whole(motion) for motion in preparation.motions]
     if turns:
         runs, raw = [with_turns(run) for run in runs], [with_turns(run) for run in raw]
-    return _Data(records, preparation, runs, split(runs, holdout), raw, fixed, holdout, turns)
+    return _Data(
+        records=records,
+        preparation=preparation,
+        runs=runs,
+        parted=split(runs, holdout),
+        raw=raw,
+        fixed=fixed,
+        holdout=holdout,
+        turns=turns,
+    )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Data:
     """What every law is fitted to."""
 
     records: Sequence[Record]
     preparation: Preparation
-    runs: Sequence[Run]
+    runs: Sequence[BenchRun]
     parted: Split
-    raw: Sequence[Run]
+    raw: Sequence[BenchRun]
     fixed: Mapping[str, float | str]
     holdout: Sequence[str]
     turns: bool
 
-    def fitted(self, law: Law, loss: str, starts: int | None, others: Sequence[_Fitted]) -> _Fitted:
+    def fitted(
+        self, law: FittedLaw, loss: str, starts: int | None, others: Sequence[_Fitted]
+    ) -> _Fitted:
         """The best fit of a law, where `others` are laws that were fitted before."""
         begin = time.perf_counter()
         simpler = [each for each in others if contains(law, each.law, limits=True)]
@@ -169,7 +181,7 @@ class _Data:
                 break
             data, fit = again, again._problem().fit(fit.model, _EVALUATIONS, loss)
             converged = fit.evaluations < _EVALUATIONS
-        fitted = _Fitted(law, data, found, fit, converged, begin)
+        fitted = _Fitted(law=law, data=data, found=found, fit=fit, converged=converged, begin=begin)
 
         # what a simpler law found at its own cut-off is the last start; robust fits are not for the
         # smallest error
@@ -217,7 +229,7 @@ class _Data:
         typical = float(np.median(inflation)) if inflation.size else 1.0
         judge = partial(self._figures, typical)
         model = better.model
-        device = Device(friction=law.friction, **device_values(model.values), **model.texts)
+        device = Device(friction=law.friction, **parameters_of(model.values), **model.texts)
         return Identified(
             law=law.name,
             device=_bare(device),
@@ -238,11 +250,15 @@ class _Data:
     def _figures(self, inflation: float, model: Model) -> Figures:
         """What is told of a model on these data; `inflation` as in `identifiability`."""
         told = identifiability(self._problem(), model, inflation, tuple(self.fixed))
+        rmse, low, high, nrmse = self._held_out(model)
         return Figures(
-            told.groups,
-            told.combinations,
-            self._raw_error(model, self.parted.fit)[0],
-            *self._held_out(model),
+            undetermined=told.groups,
+            combinations=told.combinations,
+            fit_rmse=self._raw_error(model, self.parted.fit)[0],
+            rmse=rmse,
+            low=low,
+            high=high,
+            nrmse=nrmse,
         )
 
     def _estimates(
@@ -258,7 +274,7 @@ class _Data:
             high: float | None = value + 1.96 * error
             if intervals == "profile" and error > 0:
                 low, high = _profile(problem, fit, name, value, error, typical)
-            unit = "s" if name == "delay" else parameters()[name].unit
+            unit = CHANNEL_UNITS.get(name) or parameters()[name].unit
             found[name] = Estimate(value, error, low, high, unit)
         return found, parameter_correlation(better, tuple(found))
 
@@ -294,13 +310,13 @@ class _Data:
         return value, float(low), float(high), value / (float(np.std(held)) or 1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Fitted:
     """A law's best fit, the data as smoothed for it, and when work on it began."""
 
-    law: Law
+    law: FittedLaw
     data: _Data
-    found: Search
+    found: Multistart
     fit: Fit
     converged: bool
     begin: float
@@ -344,7 +360,7 @@ def _profile(
     def quantity(model: Model) -> float:
         if name == "delay":
             return model.delay
-        return float(device_values(model.values)[name])
+        return float(parameters_of(model.values)[name])
 
     naive = parameter_errors(fit)[name][1]
     ratio = (error / naive) ** 2 if naive > 0 else 1.0
@@ -363,7 +379,7 @@ def _bare(device: Device) -> Device:
         or (
             value != 0
             and (not known[name].laws or device.friction in known[name].laws)
-            and not (name in NUISANCES and device.friction not in ("coulomb", "stribeck"))
+            and not (name in NUISANCES and not FRICTION[device.friction].smoothed)
         )
     }
     return Device(**kept)
@@ -374,7 +390,7 @@ def _notes(problem: Problem, fit: Fit, ends: tuple[float, ...]) -> list[str]:
     for name in fit.model.free:
         if name in NUISANCES:
             continue
-        how, value = coordinate(name, problem.scales), fit.model.values[name]
+        how, value = search_range(name, problem.scales), fit.model.values[name]
         words = name.replace("_", " ")
         if math.isfinite(how.upper) and value >= how.upper * (1 - 1e-4):
             notes.append(f"{words} is at the upper end of its range, {how.upper:.4g}")

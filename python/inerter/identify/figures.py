@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from inerter.identify.prediction import force_along
 from inerter.identify.result import Identification
-from inerter.report.palette import LIGHT
-from inerter.report.png import png
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.png import png
 
 Array = NDArray[np.float64]
 

@@ -7,37 +7,26 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, least_squares
 
-from inerter.identify.bench import Run, scales
-from inerter.identify.channel import (
-    UNITS,
-    clips,
-    delayed,
+from inerter.catalogue.coordinates import (
+    CHANNEL_UNITS,
+    COORDINATES,
+    ENTANGLED,
+    parameters_of,
+    search_range,
 )
-from inerter.identify.coordinates import LINEAR, Scales, coordinate, device_values
+from inerter.catalogue.scales import Scales
+from inerter.estimation.covariance import robust_weight, sandwich, usual_size
+from inerter.estimation.least_squares import Tolerances, minimise
+from inerter.estimation.variables import Variables
+from inerter.identify.channel import clips, delayed
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
-from inerter.identify.residual import robust_weight, sandwich
+from inerter.identify.runs import BenchRun, scales
 from inerter.records.motion import Shaft
 
 Array = NDArray[np.float64]
 Masks = Sequence[NDArray[np.bool_]]
-
-# with one of these the force is no longer the inertance times the acceleration
-ENTANGLED = (
-    "load_friction",
-    "inertance_gradient",
-    "inertance_curvature",
-    "inertance_speed_gradient",
-    "flywheel_viscous",
-    "gas_pressure",
-    "series_frequency",
-    "series_stiffness",
-    "series_damping",
-)
-# residuals beyond this many standard deviations count less in robust fits
-ROBUST = 1.345
 
 
 @dataclass(frozen=True)
@@ -75,14 +64,18 @@ def rms(residual: Sequence[Array], masks: Masks) -> float:
 
 def typical(residual: Sequence[Array], masks: Masks) -> float:
     """Size of a masked residual from which on a robust fit lets it count less [N]."""
-    flat = np.concatenate([r[m] for r, m in zip(residual, masks, strict=True)])
-    return ROBUST * 1.4826 * float(np.median(np.abs(flat))) + 1e-300
+    return usual_size(masked(residual, masks))
+
+
+def masked(arrays: Sequence[Array], masks: Masks) -> Array:
+    """The masked samples of all runs, one run after another."""
+    return np.concatenate([a[m] for a, m in zip(arrays, masks, strict=True)])
 
 
 class Problem:
     """Runs, and which of their samples count."""
 
-    def __init__(self, runs: Sequence[Run], masks: Masks, sizes: Scales | None = None) -> None:
+    def __init__(self, runs: Sequence[BenchRun], masks: Masks, sizes: Scales | None = None) -> None:
         self.runs = list(runs)
         self.masks = [mask & run.inner for mask, run in zip(masks, runs, strict=True)]
         self.scales = sizes or scales(runs)
@@ -103,84 +96,72 @@ class Problem:
         ]
 
     def weighted(self, arrays: Sequence[Array], shaft: Shaft | None = None) -> list[Array]:
-        """Arrays of every run as they count, see `Run.weighted`."""
+        """Arrays of every run as they count, see `BenchRun.weighted`."""
         everything = zip(self.runs, arrays, self.masks, strict=True)
         return [run.weighted(values, mask, shaft) for run, values, mask in everything]
 
-    def _masked(self, arrays: Sequence[Array]) -> Array:
-        return np.concatenate([a[m] for a, m in zip(arrays, self.masks, strict=True)])
+    def masked(self, arrays: Sequence[Array]) -> Array:
+        """What counts of arrays of every run, one run after another."""
+        return masked(arrays, self.masks)
 
-    def _column(self, name: str, model: Model, variables: Array, base: list[Array]) -> Array:
+    def _column(self, name: str, model: Model, point: Array, base: list[Array]) -> Array:
         """Derivative of the residual by one search variable, over all samples of all runs."""
         index = model.free.index(name)
-        how = coordinate(name, self.scales)
+        how = search_range(name, self.scales)
+        linear = COORDINATES[name].column
         if (
-            name in LINEAR
+            linear
             # a state begins where the first force puts it, and so hangs on every term
             and not model.device().nstate
             and not clips(model.values)
             and all(np.isinf(run.far) for run in self.runs)
             and not (name == "inertance" and any(other in model.values for other in ENTANGLED))
         ):
+            rest = model.values.get("rest_length", 0.0)
             columns = []
             for run in self.runs:
-                v = run.velocity
-                stretch = run.displacement - model.values.get("rest_length", 0.0)
-                column = {
-                    "inertance": run.acceleration,
-                    "viscous": v,
-                    "stiffness": stretch,
-                    "stiffness_cubic": stretch**3,
-                    "force_offset": np.ones_like(v),
-                    "quadratic_damping": v * np.abs(v),
-                    "force_drift": run.elapsed,
-                }[name]
+                stretch = run.displacement - rest
+                column = linear(stretch, run.velocity, run.acceleration, run.elapsed)
                 columns.append(-delayed(column, model.delay, run.spacing) * how.size)
             return np.concatenate(self.weighted(columns))
         step = 1e-4
-        if variables[index] + step > how.bounds[1]:
+        if point[index] + step > how.bounds[1]:
             step = -step
-        moved = variables.copy()
+        moved = point.copy()
         moved[index] += step
         there = self.residual(self._decode(model, moved))
         return (np.concatenate(there) - np.concatenate(base)) / step
 
-    def variables(self, model: Model) -> Array:
-        """The search variables of the model's free coordinates, shape (p,)."""
-        how = [coordinate(name, self.scales) for name in model.free]
-        return np.array([c.encode(model.values[n]) for c, n in zip(how, model.free, strict=True)])
+    def variables(self, model: Model) -> Variables:
+        """The search variables of the model's free coordinates."""
+        return Variables.of(model.free, self.scales)
 
     def jacobian(self, model: Model, names: Sequence[str] | None = None) -> Array:
         """Derivatives of the residual [N] by the search variables, shape (n, p).
 
         `names` are the free coordinates asked for, by default all.
         """
-        here, base = self.variables(model), self.residual(model)
-        selected = np.concatenate(self.masks)
+        here, base = self.variables(model).encode(model.values), self.residual(model)
         wanted = model.free if names is None else names
-        columns = [self._column(name, model, here, base)[selected] for name in wanted]
+        return self._columns(model, here, base, wanted)
+
+    def _columns(
+        self, model: Model, point: Array, base: list[Array], names: Sequence[str]
+    ) -> Array:
+        selected = np.concatenate(self.masks)
+        columns = [self._column(name, model, point, base)[selected] for name in names]
         return np.column_stack(columns) if columns else np.zeros((int(selected.sum()), 0))
 
     def moved(self, model: Model, step: Array) -> Model:
         """The model with its search variables moved, within their bounds."""
-        return self._decode(model, self.variables(model) + step)
+        return self._decode(model, self.variables(model).encode(model.values) + step)
 
     def units(self, model: Model) -> Array:
         """Coordinate per search variable, shape (p,)."""
-        how = [coordinate(name, self.scales) for name in model.free]
-        return np.array(
-            [
-                model.values[name] if each.logarithmic else each.size
-                for name, each in zip(model.free, how, strict=True)
-            ]
-        )
+        return self.variables(model).units(model.values)
 
-    def _decode(self, model: Model, variables: Array) -> Model:
-        values = {
-            name: coordinate(name, self.scales).decode(variable)
-            for name, variable in zip(model.free, variables, strict=True)
-        }
-        return replace(model, values={**model.values, **values})
+    def _decode(self, model: Model, point: Array) -> Model:
+        return replace(model, values={**model.values, **self.variables(model).decode(point)})
 
     def fit(
         self,
@@ -196,63 +177,43 @@ class Problem:
         search ends where a step lowers the cost by less than `tolerance` of it, or where `give_up`
         says so of the evaluations so far and the rms of the masked residual [N].
         """
-        how = [coordinate(name, self.scales) for name in model.free]
-        start = self.variables(model)
-        lower, upper = np.array([c.bounds for c in how]).reshape(-1, 2).T
         if not model.free:
             return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
-        size = self.scales.force
+        variables, size = self.variables(model), self.scales.force
         cache: dict[bytes, list[Array]] = {}
 
-        def at(variables: Array) -> list[Array]:
-            key = variables.tobytes()
+        def at(point: Array) -> list[Array]:
+            key = point.tobytes()
             if key not in cache:
                 cache.clear()
-                cache[key] = self.residual(self._decode(model, variables))
+                cache[key] = self.residual(self._decode(model, point))
             return cache[key]
 
-        def jacobian(variables: Array) -> Array:
-            base, here = at(variables), self._decode(model, variables)
-            selected = np.concatenate(self.masks)
-            return (
-                np.column_stack(
-                    [self._column(name, here, variables, base)[selected] for name in model.free]
-                )
-                / size
-            )
+        def jacobian(point: Array) -> Array:
+            base, here = at(point), self._decode(model, point)
+            return self._columns(here, point, base, model.free) / size
 
-        def watch(intermediate_result: OptimizeResult) -> None:
-            error = size * float(np.sqrt(np.mean(intermediate_result.fun**2)))
-            if give_up and give_up(intermediate_result.nfev, error):
-                raise StopIteration
+        def hopeless(done: int, error: float) -> bool:
+            return bool(give_up and give_up(done, size * error))
 
-        # strictly inside the bounds, as the trust region needs
-        inside = np.clip(
-            start,
-            np.where(np.isfinite(lower), lower + 1e-9, lower),
-            np.where(np.isfinite(upper), upper - 1e-9, upper),
-        )
-        solution = least_squares(
-            lambda variables: self._masked(at(variables)) / size,
-            inside,
-            jac=jacobian,  # pyright: ignore[reportArgumentType]
-            bounds=(lower, upper),
+        solution = minimise(
+            lambda point: self.masked(at(point)) / size,
+            variables.encode(model.values),
+            variables.bounds,
+            jacobian,
+            tolerances=Tolerances(1e-7, tolerance, 1e-10),
+            evaluations=evaluations,
             loss=loss,
-            f_scale=typical(at(inside), self.masks) / size if loss != "linear" else 1.0,
-            xtol=1e-7,
-            ftol=tolerance,
-            gtol=1e-10,
-            max_nfev=evaluations,
-            callback=watch if give_up else None,
+            give_up=hopeless if give_up else None,
         )
-        fitted = self._decode(model, solution.x)
-        residual = at(solution.x)
-        flat = self._masked(residual)
-        weight = robust_weight(flat, typical(residual, self.masks), loss)
+        fitted = self._decode(model, solution.variables)
+        residual = at(solution.variables)
+        flat = self.masked(residual)
+        weight = robust_weight(flat, usual_size(flat), loss)
         # a robust loss scales the derivatives
-        columns = solution.jac if loss == "linear" else jacobian(solution.x)
+        columns = solution.jacobian if loss == "linear" else jacobian(solution.variables)
         covariance = self._covariance(fitted, columns * size, flat, weight)
-        return Fit(fitted, residual, covariance, int(solution.nfev), float(solution.cost))
+        return Fit(fitted, residual, covariance, solution.evaluations, solution.cost)
 
     def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
         """Covariance of the free coordinates, see `sandwich`."""
@@ -270,40 +231,38 @@ class Problem:
 
 def parameter_errors(fit: Fit) -> dict[str, tuple[float, float]]:
     """Value and standard error of every device parameter (and delay) that the fit decided."""
-    names = fit.model.free
-
-    def parameters(coordinates: Mapping[str, float]) -> dict[str, float]:
-        return device_values(coordinates) | {n: coordinates[n] for n in UNITS if n in coordinates}
-
-    here = parameters(fit.model.values)
-    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0))
-    gradients: dict[str, Array] = {name: np.zeros(len(names)) for name in here}
-    for i, name in enumerate(names):
-        value = fit.model.values[name]
-        step = 1e-6 * (abs(value) or errors[i] or 1.0)
-        there = parameters({**fit.model.values, name: value + step})
-        for key in here:
-            gradients[key][i] = (there[key] - here[key]) / step
-    return {
-        key: (value, float(np.sqrt(max(gradients[key] @ fit.covariance @ gradients[key], 0))))
-        for key, value in here.items()
-        if np.any(gradients[key] != 0)
+    here, gradient = _parameter_gradient(fit)
+    errors = {
+        name: float(np.sqrt(max(row @ fit.covariance @ row, 0)))
+        for name, row in zip(here, gradient, strict=True)
+        if np.any(row != 0)
     }
+    return {name: (here[name], error) for name, error in errors.items()}
 
 
 def parameter_correlation(fit: Fit, names: Sequence[str]) -> Array:
     """Correlation of the named device parameters (and the delay) of a fit, shape (names, names)."""
-
-    def parameters(values: Mapping[str, float]) -> Array:
-        found = device_values(values) | {"delay": values.get("delay", 0.0)}
-        return np.array([found[name] for name in names])
-
-    here = parameters(fit.model.values)
-    gradient = np.zeros((len(names), len(fit.model.free)))
-    for i, free in enumerate(fit.model.free):
-        value = fit.model.values[free]
-        step = 1e-6 * (abs(value) or np.sqrt(max(fit.covariance[i, i], 0.0)) or 1.0)
-        gradient[:, i] = (parameters({**fit.model.values, free: value + step}) - here) / step
-    covariance = gradient @ fit.covariance @ gradient.T
+    here, gradient = _parameter_gradient(fit)
+    rows = gradient[[list(here).index(name) for name in names]]
+    covariance = rows @ fit.covariance @ rows.T
     errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     return covariance / np.outer(errors, errors)
+
+
+def _parameter_gradient(fit: Fit) -> tuple[dict[str, float], Array]:
+    """Parameters of a fit by name, and their derivatives by its free coordinates."""
+    names = fit.model.free
+
+    def parameters(coordinates: Mapping[str, float]) -> dict[str, float]:
+        channel = {n: coordinates[n] for n in CHANNEL_UNITS if n in coordinates}
+        return parameters_of(coordinates) | channel
+
+    here = parameters(fit.model.values)
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0))
+    gradient = np.zeros((len(here), len(names)))
+    for i, name in enumerate(names):
+        value = fit.model.values[name]
+        step = 1e-6 * (abs(value) or errors[i] or 1.0)
+        there = parameters({**fit.model.values, name: value + step})
+        gradient[:, i] = [(there[key] - here[key]) / step for key in here]
+    return here, gradient

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.coordinates import NOT_OF_DEVICE, NUISANCES
 from inerter.core import DeviceError, parameters
-from inerter.identify.coordinates import NOT_OF_DEVICE
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
@@ -71,7 +71,7 @@ def identifiability(
         return Identifiability((), ())
     jacobian = np.column_stack([_column(problem, model, name) for name in names])
     residual = problem.residual(model)
-    flat = np.concatenate([r[m] for r, m in zip(residual, problem.masks, strict=True)])
+    flat = problem.masked(residual)
     variance = float(np.mean(flat**2)) * max(inflation, 1e-12) + 1e-300
     eigenvalues, vectors = np.linalg.eigh(jacobian.T @ jacobian / variance)
     errors = 1 / np.sqrt(np.maximum(eigenvalues, 1e-300))
@@ -97,7 +97,7 @@ def _names(model: Model, fixed: Sequence[str]) -> list[str]:
         if name in known
         and isinstance(value, float)
         and value != 0
-        and name not in (*fixed, "transition_velocity", "rest_length")
+        and name not in (*fixed, *NUISANCES, "rest_length")
         and (not known[name].laws or device.friction in known[name].laws)
     ]
     # a factor that fits set to 1
@@ -134,8 +134,7 @@ def _forces(problem: Problem, model: Model, given: dict[str, float | str]) -> Ar
     values = {name: v for name, v in given.items() if not isinstance(v, str)}
     values |= {name: model.values[name] for name in NOT_OF_DEVICE if name in model.values}
     changed = Model(model.friction, values, (), model.texts)
-    forces = [force_along(changed, run) for run in problem.runs]
-    return np.concatenate([f[m] for f, m in zip(forces, problem.masks, strict=True)])
+    return problem.masked([force_along(changed, run) for run in problem.runs])
 
 
 def _groups(names: Sequence[str], weak: Array) -> tuple[tuple[str, ...], ...]:

@@ -11,17 +11,15 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 
+from inerter.catalogue.coordinates import COORDINATES
+from inerter.catalogue.friction import BRISTLES, FRICTION, LEVEL_COORDINATES, FrictionLaw
 from inerter.core import DeviceError
-from inerter.identify.coordinates import Scales
-
-LEVEL = 0.1
-"""Friction level at which a search begins, per rms force."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Part:
     """One law or term.
 
@@ -33,9 +31,8 @@ class Part:
         The friction law that it brings; a model has one at most.
     linear
         Coordinates that enter the force in proportion.
-    starts
-        Other coordinates: lowest and highest start, in units of `unit_of`, between which starts are
-        spread by their logarithm, or evenly where the lowest is negative.
+    others
+        Further coordinates, in the order in which starts are spread over them.
     needs
         Parts that come with it.
     """
@@ -44,94 +41,81 @@ class Part:
     meaning: str
     friction: str | None = None
     linear: tuple[str, ...] = ()
-    starts: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    others: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
 
 
-_STRIBECK = {"stribeck_velocity": (0.03, 1.0), "static_excess": (0.03, 1.5)}
-_BRISTLE = {"presliding": (1e-3, 1.0)}
-_SERIES = {"series_frequency": (1.5, 30.0), "series_loss": (0.01, 1.0)}
+def _friction(law: FrictionLaw) -> Part:
+    return Part(
+        name=law.name, meaning=law.meaning, friction=law.name, linear=("viscous",),
+        others=law.spread,
+    )  # fmt: skip
 
-PARTS: Mapping[str, Part] = MappingProxyType(
-    {
-        part.name: part
-        for part in (
-            Part("ideal", "inertance alone"),
-            Part("viscous", "viscous damping", None, ("viscous",)),
-            Part("coulomb", "Coulomb friction", "coulomb", ("viscous",)),
-            Part("stribeck", "Stribeck friction", "stribeck", ("viscous",), _STRIBECK),
-            Part(
-                "brown_mcphee", "Brown-McPhee friction", "brown_mcphee", ("viscous",), _STRIBECK
-            ),
-            Part("dahl", "Dahl friction", "dahl", ("viscous",), _BRISTLE),
-            Part(
-                "lugre", "LuGre friction", "lugre", ("viscous",),
-                _STRIBECK | _BRISTLE | {"bristle_damping": (1e-3, 0.3)},
-            ),
-            Part(
-                "bouc_wen", "Bouc-Wen hysteresis", "bouc_wen", ("viscous",),
-                _BRISTLE | {"bw_shape": (0.3, 1.2), "bw_exponent": (1.05, 2.5)},
-            ),
-            # beta and gamma of any sign: hysteresis that hardens has no largest force
-            Part(
-                "bouc_wen_any", "Bouc-Wen hysteresis, softening or hardening", "bouc_wen",
-                ("viscous", "bw_stiffness"), {"bw_beta": (0.03, 3.0), "bw_gamma": (0.0, 0.0)},
-            ),
-            Part("series", "spring and damper in series with the inertance", None, (), _SERIES),
-            Part(
-                "backlash", "free play in series with the inertance", None, (),
-                {"backlash": (1e-3, 0.3)}, needs=("series",),
-            ),
-            # where in its play a run begins is as unknown as the play
-            Part(
-                "play", "free play before the friction", None, (),
-                {"friction_backlash": (1e-3, 0.3), "friction_place": (-0.75, 0.75)},
-            ),
-            Part(
-                "fluid", "fluid inerter: Brown-McPhee friction, compressible fluid, lossy channel",
-                "brown_mcphee", ("viscous",),
-                _STRIBECK | {"flywheel_viscous": (1e-3, 0.3), "series_hardening": (0.0, 0.0)},
-                needs=("series",),
-            ),
-            Part("offset", "constant force", None, ("force_offset",)),
-            # where x = 0 is, is the bench's choice: a spring comes with a constant force
-            Part("stiffness", "parallel spring", None, ("stiffness", "force_offset")),
-            Part(
-                "hardening", "cubic parallel spring", None,
-                ("stiffness", "stiffness_cubic", "force_offset"),
-            ),
-            Part("quadratic", "quadratic damping", None, ("quadratic_damping",)),
-            Part("load", "friction per inertance force", None, (), {"load_friction": (0.01, 0.05)}),
-            Part(
-                "asymmetry", "friction that differs between directions", None, (),
-                {"friction_asymmetry": (0.0, 0.0)},
-            ),
-            Part(
-                "position", "friction that changes along the stroke", None, (),
-                {"friction_gradient": (0.0, 0.0), "friction_curvature": (0.0, 0.0)},
-            ),
-            Part(
-                "variable", "inertance that changes along the stroke", None, (),
-                {"inertance_gradient": (0.0, 0.0), "inertance_curvature": (0.0, 0.0)},
-            ),
-            Part("delay", "force channel late", None, (), {"delay": (0.0, 0.0)}),
-        )
-    }
+
+_ALL = (
+    Part(name="ideal", meaning="inertance alone"),
+    Part(name="viscous", meaning="viscous damping", linear=("viscous",)),
+    *(_friction(law) for law in FRICTION.values() if law.effect),
+    # beta and gamma of any sign: hysteresis that hardens has no largest force
+    Part(
+        name="bouc_wen_any", meaning="Bouc-Wen hysteresis, softening or hardening",
+        friction="bouc_wen", linear=("viscous", "bw_stiffness"), others=("bw_beta", "bw_gamma"),
+    ),
+    Part(
+        name="series", meaning="spring and damper in series with the inertance",
+        others=("series_frequency", "series_loss"),
+    ),
+    Part(
+        name="backlash", meaning="free play in series with the inertance", others=("backlash",),
+        needs=("series",),
+    ),
+    # where in its play a run begins is as unknown as the play
+    Part(
+        name="play", meaning="free play before the friction",
+        others=("friction_backlash", "friction_place"),
+    ),
+    Part(
+        name="fluid", friction="brown_mcphee", linear=("viscous",), needs=("series",),
+        meaning="fluid inerter: Brown-McPhee friction, compressible fluid, lossy channel",
+        others=(*FRICTION["brown_mcphee"].spread, "flywheel_viscous", "series_hardening"),
+    ),
+    Part(name="offset", meaning="constant force", linear=("force_offset",)),
+    # where x = 0 is, is the bench's choice: a spring comes with a constant force
+    Part(name="stiffness", meaning="parallel spring", linear=("stiffness", "force_offset")),
+    Part(
+        name="hardening", meaning="cubic parallel spring",
+        linear=("stiffness", "stiffness_cubic", "force_offset"),
+    ),
+    Part(name="quadratic", meaning="quadratic damping", linear=("quadratic_damping",)),
+    Part(name="load", meaning="friction per inertance force", others=("load_friction",)),
+    Part(
+        name="asymmetry", meaning="friction that differs between directions",
+        others=("friction_asymmetry",),
+    ),
+    Part(
+        name="position", meaning="friction that changes along the stroke",
+        others=("friction_gradient", "friction_curvature"),
+    ),
+    Part(
+        name="variable", meaning="inertance that changes along the stroke",
+        others=("inertance_gradient", "inertance_curvature"),
+    ),
+    Part(name="delay", meaning="force channel late", others=("delay",)),
 )  # fmt: skip
+
+PARTS: Mapping[str, Part] = MappingProxyType({part.name: part for part in _ALL})
 """Every law and term by its name."""
 
 LAWS = ("ideal", "viscous", "coulomb", "stribeck", "brown_mcphee", "dahl", "lugre", "bouc_wen")
 """What is tried unless something is asked for."""
 
-BRISTLES = ("dahl", "lugre", "bouc_wen")
-"""Friction laws with a state."""
-
 
 @dataclass(frozen=True)
-class Law:
+class FittedLaw:
     """What is to be identified: `name` as given, its friction law, and its coordinates.
 
-    `linear` and `starts` as in `Part`, of all parts together.
+    `linear` as in `Part`, of all parts together; `starts`: the other coordinates, each with the
+    lowest and highest value at which a search begins, see `Coordinate`.
     """
 
     name: str
@@ -140,7 +124,7 @@ class Law:
     starts: Mapping[str, tuple[float, float]]
 
 
-def law_named(text: str) -> Law:
+def law_named(text: str) -> FittedLaw:
     """A law and further parts, joined by "+".
 
     Raises
@@ -166,10 +150,8 @@ def law_named(text: str) -> Law:
         )
     friction = frictions[0] if frictions else "none"
     linear = dict.fromkeys(("inertance", *(name for part in parts for name in part.linear)))
-    starts = {name: ends for part in parts for name, ends in part.starts.items()}
-    if any(name in starts for name in ("friction_asymmetry", "friction_gradient")) and (
-        friction in ("none", "bouc_wen")
-    ):
+    starts = {name: COORDINATES[name].start for part in parts for name in part.others}
+    if any(name in starts for name in LEVEL_COORDINATES) and not FRICTION[friction].varies:
         raise DeviceError(
             f"law {text!r} varies a friction level, but has none: add coulomb, stribeck, dahl or "
             "lugre"
@@ -180,21 +162,4 @@ def law_named(text: str) -> Law:
             f"{', '.join(BRISTLES[:-1])} or {BRISTLES[-1]} (backlash is the free play in series "
             "with the inertance)"
         )
-    return Law("+".join(names), friction, tuple(linear), MappingProxyType(starts))
-
-
-def unit_of(name: str, sizes: Scales) -> float:
-    """What the starts of a coordinate are counted in."""
-    slow = (sizes.acceleration / sizes.displacement) ** 0.5 / 6.283185307179586
-    return {
-        "stribeck_velocity": sizes.velocity,
-        # of the friction level
-        "static_excess": LEVEL * sizes.force,
-        "presliding": sizes.displacement,
-        "bristle_damping": sizes.force / sizes.velocity,
-        "flywheel_viscous": sizes.force / sizes.velocity,
-        "series_frequency": slow,
-        "backlash": sizes.displacement,
-        "friction_backlash": sizes.displacement,
-        "bw_beta": 1 / sizes.displacement,
-    }.get(name, 1.0)
+    return FittedLaw("+".join(names), friction, tuple(linear), MappingProxyType(starts))

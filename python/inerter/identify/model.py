@@ -8,22 +8,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
+from inerter.catalogue.coordinates import JUMPS, NUISANCES, parameters_of
+from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, DeviceError, parameters
 from inerter.identify.channel import clips
-from inerter.identify.coordinates import device_values
 from inerter.records.motion import Shaft
-
-# free coordinates that make up for how a law is smoothed or how a run begins, and name no effect
-NUISANCES = ("transition_velocity", "friction_place")
-# parameters beside those of the friction laws by which a force is not smooth in the motion
-JUMPS = (
-    "load_friction",
-    "backlash",
-    "stop_upper",
-    "stop_lower",
-    "stop_stiffness",
-    "stop_damping",
-)
 
 
 @dataclass(frozen=True)
@@ -72,7 +61,7 @@ class Model:
     # worked out once, for all runs
     @cached_property
     def _device(self) -> Device:
-        values = {name: float(value) for name, value in device_values(self.values).items()}
+        values = {name: float(value) for name, value in parameters_of(self.values).items()}
         return Device(friction=self.friction, **values, **self.texts)
 
     @cached_property
@@ -139,6 +128,6 @@ def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
 
 
 def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
-    # only laws without memory read the width of sign(v), only those with one begin in a play
-    unread = "friction_place" if friction in ("coulomb", "stribeck") else "transition_velocity"
+    # a law that reads the width of sign(v) has no bristle that begins in a play
+    unread = "friction_place" if FRICTION[friction].smoothed else "transition_velocity"
     return tuple(name for name in free if name != unread)

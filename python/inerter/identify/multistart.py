@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 from scipy.stats import qmc
 
+from inerter.catalogue.coordinates import COORDINATES, FRICTION_SHARE, NUISANCES
+from inerter.catalogue.friction import FRICTION
 from inerter.core import DeviceError
-from inerter.identify.coordinates import coordinate
+from inerter.estimation.variables import Variables
 from inerter.identify.fit import Fit, Problem
-from inerter.identify.laws import LEVEL, Law, unit_of
-from inerter.identify.model import NUISANCES, Model
+from inerter.identify.laws import FittedLaw
+from inerter.identify.model import Model
 from inerter.identify.nested import embedded
 from inerter.identify.prediction import force_along
 
@@ -39,7 +41,7 @@ _TRANSITION = 0.005
 
 
 @dataclass(frozen=True)
-class Search:
+class Multistart:
     """`best` fit, and the rms errors [N] that the fits from the other starts ended at.
 
     `converged`: the best fit ended because no step lowered the error, not because it took too long.
@@ -52,13 +54,13 @@ class Search:
 
 def search(
     problem: Problem,
-    law: Law,
+    law: FittedLaw,
     fixed: Mapping[str, float | str],
     *,
     loss: str = "linear",
     starts: int | None = None,
     simpler: Sequence[Model] = (),
-) -> Search:
+) -> Multistart:
     """The best fit of a law.
 
     Parameters
@@ -98,11 +100,11 @@ def search(
     order = sorted(range(len(fits)), key=lambda i: fits[i].cost)
     best = problem.fit(fits[order[0]].model, _THOROUGH, loss)
     ends = tuple(fits[i].rmse(problem.masks) for i in order)
-    return Search(best, ends, best.evaluations < _THOROUGH)
+    return Multistart(best, ends, best.evaluations < _THOROUGH)
 
 
 def _starts(
-    problem: Problem, law: Law, fixed: Mapping[str, float | str], count: int | None
+    problem: Problem, law: FittedLaw, fixed: Mapping[str, float | str], count: int | None
 ) -> list[Model]:
     """Models at the points of the sequence, linear coordinates fitted."""
     sizes = problem.scales
@@ -115,9 +117,10 @@ def _starts(
         points = qmc.Halton(len(spread), scramble=False).random(number + 1)[1:]
     models = []
     for point in points:
-        values = {name: low * unit_of(name, sizes) for name, (low, _) in free.items()}
+        units = {name: COORDINATES[name].start_unit(sizes) for name in free}
+        values = {name: low * units[name] for name, (low, _) in free.items()}
         for name, share in zip(spread, point, strict=True):
-            low, high = np.array(free[name]) * unit_of(name, sizes)
+            low, high = np.array(free[name]) * units[name]
             if low < 0:
                 values[name] = float(low + share * (high - low))
             else:
@@ -127,36 +130,27 @@ def _starts(
     return models
 
 
-_FIXES = {
-    "presliding": "bristle_stiffness",
-    "static_excess": "static_force",
-    "series_frequency": "series_stiffness",
-    "series_loss": "series_damping",
-}
-
-
 def _is_fixed(name: str, fixed: Mapping[str, float | str]) -> bool:
     """Whether what is known leaves nothing for this coordinate to say."""
-    return name in fixed or _FIXES.get(name) in fixed
+    return name in fixed or any(parameter in fixed for parameter in COORDINATES[name].words)
 
 
 def _with_linear(
-    problem: Problem, law: Law, values: dict[str, float], fixed: Mapping[str, float | str]
+    problem: Problem, law: FittedLaw, values: dict[str, float], fixed: Mapping[str, float | str]
 ) -> Model:
     """The model at these values, with inertance, damping and friction level fitted to the data."""
     sizes = problem.scales
     numbers = {name: float(v) for name, v in fixed.items() if not isinstance(v, str)}
     texts = {name: v for name, v in fixed.items() if isinstance(v, str)}
-    level = {"none": None, "bouc_wen": "bw_level"}.get(law.friction, "coulomb_force")
-    level = None if "bw_stiffness" in law.linear else level
+    level = None if "bw_stiffness" in law.linear else FRICTION[law.friction].level or None
     start = {"inertance": sizes.force / sizes.acceleration, **values, **numbers}
-    if law.friction in ("coulomb", "stribeck"):
+    if FRICTION[law.friction].smoothed:
         start.setdefault("transition_velocity", max(1e-4, _TRANSITION * sizes.velocity))
         values = {**values, "transition_velocity": start["transition_velocity"]}
     start.update({name: 0.0 for name in law.linear if name not in start})
     names = [name for name in law.linear if name not in fixed]
     if level and level not in fixed:
-        start[level] = LEVEL * sizes.force
+        start[level] = FRICTION_SHARE * sizes.force
         names.append(level)
     free = dict.fromkeys((*names, *values))
     model = Model(law.friction, start, tuple(n for n in free if n not in fixed), texts)
@@ -168,13 +162,8 @@ def _solved(problem: Problem, model: Model, names: Sequence[str], level: str | N
     if not names:
         return model
     sizes = problem.scales
-    # what is proportional to the friction level, to the inertance
-    along = {
-        level or "": ("static_excess", "bristle_damping"),
-        "inertance": ("flywheel_viscous",),
-    }
-    lower, upper = np.array([coordinate(name, sizes).bounds for name in names]).T
-    units = np.array([coordinate(name, sizes).size for name in names])
+    variables = Variables.of(names, sizes)
+    units = variables.units(model.values)
     try:
         base = _masked(problem, _only(model, names, None))
         columns = [_masked(problem, _only(model, names, name)) - base for name in names]
@@ -182,21 +171,24 @@ def _solved(problem: Problem, model: Model, names: Sequence[str], level: str | N
         return model
     matrix = np.column_stack(columns)
     size = np.array([model.values[n] or 1.0 for n in names]) / units
-    target = np.concatenate([r.force[m] for r, m in zip(problem.runs, problem.masks, strict=True)])
+    target = problem.masked([run.force for run in problem.runs])
     if not np.isfinite(matrix).all():
         return model
     # where its reflected step meets no bound SciPy multiplies 0 by infinity and takes another step
     with np.errstate(invalid="ignore"):
-        found = lsq_linear(matrix / size, target - base, (lower, upper), lsmr_tol="auto").x * units
+        found = (
+            lsq_linear(matrix / size, target - base, variables.bounds, lsmr_tol="auto").x * units
+        )
     values = dict(model.values)
-    for name, value in zip(names, found, strict=True):
-        how = coordinate(name, sizes)
+    for name, how, value in zip(names, variables.ranges, found, strict=True):
         # a bound is no place to start from
         least = 0.02 * how.size if how.lower >= 0 else -math.inf
         value = max(float(value), least)
         before = values[name] or 1.0
-        for other in along.get(name, ()):
-            if other in model.free:
+        for other in model.free:
+            # what is proportional to the friction level, to the inertance
+            of = COORDINATES[other].proportional_to
+            if of and name == (level if of == "level" else of):
                 values[other] *= value / before
         values[name] = value
     return replace(model, values=values)
@@ -213,16 +205,16 @@ def _only(model: Model, names: Sequence[str], chosen: str | None) -> Model:
             )
             values[name] = 1e-9 * (values[name] or 1.0) if tiny else 0.0
             if tiny and name == "coulomb_force":
-                for other in {"static_excess", "bristle_damping"} & values.keys():
-                    values[other] *= 1e-9
+                for other in values:
+                    if other in COORDINATES and COORDINATES[other].proportional_to == "level":
+                        values[other] *= 1e-9
         elif values[name] == 0.0:
             values[name] = 1.0
     return replace(model, values=values)
 
 
 def _masked(problem: Problem, model: Model) -> Array:
-    forces = [force_along(model, run) for run in problem.runs]
-    return np.concatenate([f[m] for f, m in zip(forces, problem.masks, strict=True)])
+    return problem.masked([force_along(model, run) for run in problem.runs])
 
 
 def _error(problem: Problem, model: Model) -> float:
@@ -244,7 +236,7 @@ def _first(pair: tuple[float, Model]) -> float:
     return pair[0]
 
 
-def _distinct(models: Sequence[Model], law: Law) -> list[Model]:
+def _distinct(models: Sequence[Model], law: FittedLaw) -> list[Model]:
     """Models that differ in a nonlinear coordinate, in their order."""
     names = [name for name in law.starts if name in models[0].free and name not in NUISANCES]
     kept: list[Array] = []

@@ -12,44 +12,27 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from inerter.catalogue.coordinates import COORDINATES, search_range
+from inerter.catalogue.friction import FRICTION
+from inerter.catalogue.scales import Scales
 from inerter.core import DeviceError
-from inerter.identify.coordinates import Scales, coordinate
-from inerter.identify.laws import PARTS, Law
+from inerter.identify.laws import FittedLaw
 from inerter.identify.model import Model
-
-CONTAINED = {
-    "none": ("none",),
-    "coulomb": ("none", "coulomb"),
-    "stribeck": ("none", "coulomb", "stribeck"),
-    "brown_mcphee": ("none", "brown_mcphee"),
-    "dahl": ("none", "dahl"),
-    "lugre": ("none", "dahl", "lugre"),
-    "bouc_wen": ("none", "dahl", "bouc_wen"),
-}
-"""Friction laws that are a friction law with some of its parameters at certain values."""
-
-LIMITS = {"brown_mcphee": ("coulomb",), "dahl": ("coulomb",), "lugre": ("coulomb",),
-          "bouc_wen": ("coulomb",)}  # fmt: skip
-"""Friction laws that a friction law comes near to."""
 
 # distances over which a bristle yields that stands for none, per rms displacement
 _SHORT = (2e-5, 2e-4)
 # a friction level that stands for none, per rms force
 _FAINT = 1e-5
-# how a part begins that is not there
+# no value of these means that a shaft is rigid
 _RIGID = ("series_frequency", "series_loss")
 # of the friction laws themselves
-_OWN = {
-    name
-    for part in PARTS.values()
-    if part.friction and part.name != "fluid"
-    for name in (*part.starts, "bw_stiffness")
-}
+_OWN = {name for law in FRICTION.values() for name in law.coordinates if name != law.level}
 
 
-def contains(law: Law, other: Law, limits: bool = False) -> bool:
+def contains(law: FittedLaw, other: FittedLaw, limits: bool = False) -> bool:
     """Whether a law is another one at certain values of its parameters, or comes near to it."""
-    inner = CONTAINED[law.friction] + (LIMITS.get(law.friction, ()) if limits else ())
+    own = FRICTION[law.friction]
+    inner = (law.friction, *own.contains, *(own.limits if limits else ()))
     if law == other or other.friction not in inner:
         return False
     terms = {name for each in (law, other) for name in each.starts if name not in _OWN}
@@ -84,14 +67,14 @@ def _values(model: Model, other: Model, sizes: Scales) -> Iterator[dict[str, flo
     inside = {
         name: value
         for name in model.free
-        if (value := _neutral(name, sizes)) is not None and name not in other.values
+        if (value := COORDINATES[name].neutral(sizes)) is not None and name not in other.values
     }
     inside |= {name: value for name, value in other.values.items() if name in model.free}
     if model.friction in ("none", other.friction):
         yield inside
         return
     if model.friction == "brown_mcphee":
-        inside["stribeck_velocity"] = coordinate("stribeck_velocity", sizes).lower
+        inside["stribeck_velocity"] = search_range("stribeck_velocity", sizes).lower
     level = other.values.get("coulomb_force", _FAINT * sizes.force)
     inside["coulomb_force"] = inside["bw_level"] = level
     if "presliding" in other.values:
@@ -109,15 +92,3 @@ def _values(model: Model, other: Model, sizes: Scales) -> Iterator[dict[str, flo
         }
         if "presliding" not in model.free and "bw_beta" not in model.free:
             return
-
-
-def _neutral(name: str, sizes: Scales) -> float | None:
-    """Where a coordinate has no effect, within its range; None where it takes another to say."""
-    how = coordinate(name, sizes)
-    if name == "friction_backlash":
-        return how.lower
-    if name in ("inertance", "transition_velocity", *_RIGID) or name in _OWN - {
-        "static_excess", "bristle_damping",
-    }:  # fmt: skip
-        return None
-    return max(0.0, how.lower)

@@ -18,13 +18,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.bench import Run, thin, whole
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
-from inerter.identify.preparation import Preparation
+from inerter.identify.runs import BenchRun, thin, whole
 from inerter.records import Record
 from inerter.records.motion import smooth, white_noise
+from inerter.records.preparation import Preparation
 
 Array = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def effect_of_noise(
     preparation: Preparation,
     records: Sequence[Record],
     used: Sequence[int],
-    changed: Callable[[Run], Run] | None = None,
+    changed: Callable[[BenchRun], BenchRun] | None = None,
     draws: int = DRAWS,
 ) -> NoiseEffect:
     """Bias and covariance of the free search variables that the channels' noise brings.
@@ -101,7 +101,7 @@ def _smoothing(
     preparation: Preparation,
     records: Sequence[Record],
     used: Sequence[int],
-    change: Callable[[Run], Run],
+    change: Callable[[BenchRun], BenchRun],
 ) -> Array:
     """How far one Gauss-Newton step goes on the records at neighbouring cut-offs, rms (p,)."""
     steps = []
@@ -126,7 +126,7 @@ class _Truth:
     record: Record
     noise: dict[str, float]
 
-    def drawn(self, random: np.random.Generator, preparation: Preparation) -> Run:
+    def drawn(self, random: np.random.Generator, preparation: Preparation) -> BenchRun:
         noisy = {
             name: getattr(self.record, name) + size * random.standard_normal(self.record.samples)
             for name, size in self.noise.items()
@@ -136,7 +136,7 @@ class _Truth:
 
 
 def _truth(
-    model: Model, record: Record, preparation: Preparation, change: Callable[[Run], Run]
+    model: Model, record: Record, preparation: Preparation, change: Callable[[BenchRun], BenchRun]
 ) -> _Truth:
     """The record that the model would leave along the smoothed motion."""
     motion = smooth(record, preparation.cutoff, preparation.channels)
@@ -153,7 +153,7 @@ def _truth(
     return _Truth(Record(name=record.name, time=motion.time, **channels), noise)
 
 
-def _flat(problem: Problem, model: Model, runs: Sequence[Run]) -> Array:
+def _flat(problem: Problem, model: Model, runs: Sequence[BenchRun]) -> Array:
     """Measured minus predicted force on the samples that count, shape (n,)."""
     parts = [
         (run.force - force_along(model, run))[mask]

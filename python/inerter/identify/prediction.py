@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.identify.bench import Run, forces_along
 from inerter.identify.channel import delayed, through_channel, without_limits, without_tone
 from inerter.identify.model import Model
-from inerter.identify.residual import without_transient
+from inerter.identify.runs import BenchRun, forces_along
+from inerter.identify.transient import without_transient
 
 Array = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ _TELLING = 0.1
 RUNAWAY = 1e30
 
 
-def first_state(device: Device, run: Run, place: float = 0.0) -> float | Array:
+def first_state(device: Device, run: BenchRun, place: float = 0.0) -> float | Array:
     """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
     A force near 0 does not tell where in a free play before the friction a run begins: that is
@@ -59,7 +59,7 @@ def _held(device: Device) -> float:
     return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
 
 
-def force_along(model: Model, run: Run) -> Array:
+def force_along(model: Model, run: BenchRun) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,).
 
     What is not smooth in the motion has to pass the low-pass of the measured force: only what it
@@ -110,7 +110,7 @@ def _states_of(part: Device, device: Device, state: float | Array) -> float | Ar
     return np.atleast_1d(state)[kept]
 
 
-def with_late_motion(model: Model, run: Run) -> tuple[Run, dict[str, float]]:
+def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, float]]:
     """A run and coordinates whose delay is in the motion, where it has to be; else as they are.
 
     A flywheel that lands has a force between samples that none of them shows: a delayed force would
@@ -157,7 +157,7 @@ def _without_load(device: Device) -> Device:
     return Device(**given)
 
 
-def settled(model: Model, run: Run, residual: Array, mask: NDArray[np.bool_]) -> Array:
+def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_]) -> Array:
     """A residual without what only the record itself can tell, read off its masked samples.
 
     That is how the flywheel turned as the record began, and the phase of a tone. Of a run left out

@@ -14,11 +14,10 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 from scipy.stats import chi2
 
 from inerter.core import DeviceError
-from inerter.identify.coordinates import coordinate
+from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 
@@ -125,8 +124,8 @@ def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> 
     DeviceError
         No variable brings the quantity to the value.
     """
-    how = [coordinate(name, problem.scales) for name in model.free]
-    lower, upper = np.array([each.bounds for each in how]).T
+    search = problem.variables(model)
+    how, (lower, upper) = search.ranges, search.bounds
     slope = _slope(problem, model, quantity)
     # logarithmic ones first: they reach far
     order = sorted(range(len(how)), key=lambda i: (not how[i].logarithmic, -abs(slope[i])))
@@ -140,7 +139,7 @@ def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> 
     if len(how) == 1:
         return start
     others = np.array([i for i in range(len(how)) if i != pivot])
-    base, size = problem.variables(start), problem.scales.force
+    base, size = search.encode(start.values), problem.scales.force
 
     def at(variables: Array) -> Model | None:
         step = np.zeros(len(how))
@@ -151,8 +150,7 @@ def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> 
         here = at(variables)
         if here is None:
             return np.full(count, 1e3)
-        parts = [r[m] / size for r, m in zip(problem.residual(here), problem.masks, strict=True)]
-        return np.nan_to_num(np.concatenate(parts), nan=1e3)
+        return np.nan_to_num(problem.masked(problem.residual(here)) / size, nan=1e3)
 
     def jacobian(variables: Array) -> Array:
         here = at(variables) or start
@@ -161,13 +159,11 @@ def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> 
         return np.nan_to_num(whole[:, others] + np.outer(whole[:, pivot], along))
 
     count = sum(int(mask.sum()) for mask in problem.masks)
-    inside = np.clip(base[others], lower[others] + 1e-9, upper[others] - 1e-9)
-    found = least_squares(
-        residual, inside, jac=jacobian,  # pyright: ignore[reportArgumentType]
-        bounds=(lower[others], upper[others]), xtol=1e-8, ftol=1e-8, gtol=1e-10,
-        max_nfev=_EVALUATIONS,
+    found = minimise(
+        residual, base[others], (lower[others], upper[others]), jacobian,
+        tolerances=Tolerances(1e-8, 1e-8, 1e-10), evaluations=_EVALUATIONS,
     )  # fmt: skip
-    return at(found.x) or start
+    return at(found.variables) or start
 
 
 def _slope(problem: Problem, model: Model, quantity: Quantity) -> Array:

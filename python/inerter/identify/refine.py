@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from inerter.catalogue.coordinates import NUISANCES
 from inerter.identify.fit import Fit, parameter_correlation, parameter_errors
-from inerter.identify.model import NUISANCES, Model
-from inerter.identify.result import Estimate, Identification, Identified, Motion
+from inerter.identify.model import Model
+from inerter.identify.result import Estimate, Identification, Identified, SimulatedErrors
 from inerter.identify.simulated import (
     SimulatedFit,
     Simulator,
@@ -92,7 +93,7 @@ class _Bench:
         moved = np.concatenate([record.displacement for record in result.used])
         self.variation = float(np.std(moved))
 
-    def fitted(self, start: Model) -> tuple[SimulatedFit, Motion]:
+    def fitted(self, start: Model) -> tuple[SimulatedFit, SimulatedErrors]:
         """A fit to the runs that are not held out, and its displacement errors."""
         fit = fit_simulated([self.runs[i] for i in self.used], start, self.until, TRIES)
         if self.until is None:
@@ -105,7 +106,7 @@ class _Bench:
             rest = (run.record.displacement - fit.displacement[0])[part]
             error = float(np.sqrt(np.mean(rest**2)))
         relative = error / self.variation if self.variation else math.nan
-        return fit, Motion(fit.error, error, relative)
+        return fit, SimulatedErrors(fit.error, error, relative)
 
 
 def _parameters(fit: SimulatedFit, best: Identified) -> dict[str, Any]:

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.identify.bench import Run
 from inerter.identify.identifiability import Combination
 from inerter.identify.model import Model
-from inerter.identify.preparation import Preparation
+from inerter.identify.runs import BenchRun
 from inerter.identify.split import Split
 from inerter.records import Record
 from inerter.records.duplicates import repeats_another, without_copies
+from inerter.records.preparation import Preparation
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class Motion:
+class SimulatedErrors:
     """Of a fit by simulation: rms displacement error [m] on the data fitted and on those held out.
 
     `relative` is the latter per standard deviation of the displacement.
@@ -44,7 +44,7 @@ class Motion:
     relative: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Figures:
     """What is told of a device's parameters on the records.
 
@@ -69,7 +69,7 @@ class Figures:
     nrmse: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Identified(Figures):
     """A law fitted to data, with its figures.
 
@@ -116,9 +116,9 @@ class Identified(Figures):
     seconds: float
     model: Model = field(repr=False)
     cutoff: float
-    runs: tuple[Run, ...] = field(repr=False)
+    runs: tuple[BenchRun, ...] = field(repr=False)
     judge: Callable[[Model], Figures] = field(repr=False)
-    motion: Motion | None = None
+    motion: SimulatedErrors | None = None
     worse_than: tuple[str, ...] = ()
 
     def json(self) -> dict[str, Any]:

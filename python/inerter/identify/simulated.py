@@ -23,17 +23,19 @@ import mujoco
 import numpy as np
 from mujoco import batch
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
+from inerter.catalogue.coordinates import NOT_OF_DEVICE, parameters_of
+from inerter.catalogue.scales import Scales
 from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
-from inerter.identify.bench import scales, thin
-from inerter.identify.coordinates import NOT_OF_DEVICE, Scales, coordinate, device_values
+from inerter.estimation.covariance import sandwich
+from inerter.estimation.least_squares import Tolerances, inside, minimise
+from inerter.estimation.variables import Variables
 from inerter.identify.model import Model
-from inerter.identify.preparation import prepare
-from inerter.identify.residual import sandwich
+from inerter.identify.runs import scales, thin
 from inerter.mjspec import add_device
 from inerter.records import Record
+from inerter.records.preparation import prepare
 
 Array = NDArray[np.float64]
 Progress = Callable[[str], None]
@@ -47,7 +49,7 @@ _CARRIAGE = 1e-6
 _FIRST = 8
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SimulatedFit:
     """A model fitted by simulation.
 
@@ -234,21 +236,21 @@ def fit_simulated(
         Nothing is left to fit, or the start does not lead to a finite motion.
     """
     sizes = _sizes([simulator.record for simulator in simulators])
-    how = [coordinate(name, sizes) for name in start.free]
-    free, runs = len(how), len(simulators)
+    device = Variables.of(start.free, sizes)
+    free, runs = len(device), len(simulators)
     unit = float(np.std(np.concatenate([s.record.displacement for s in simulators])))
     units = np.array([unit, sizes.velocity])
     count = 0
 
     # search variables: coordinates of the device, then displacement and velocity of each run
-    first = np.array([c.encode(start.values[n]) for c, n in zip(how, start.free, strict=True)])
-    first = np.concatenate([first, *(simulator.begin[0] / units for simulator in simulators)])
-    lower, upper = np.array([each.bounds for each in how] + 2 * runs * [(-np.inf, np.inf)]).T
+    begins_at = [simulator.begin[0] / units for simulator in simulators]
+    first = np.concatenate([device.encode(start.values), *begins_at])
+    endless = np.full(2 * runs, np.inf)
+    lower = np.concatenate([device.bounds[0], -endless])
+    upper = np.concatenate([device.bounds[1], endless])
 
     def at(point: Array) -> tuple[Model, Array]:
-        pairs = zip(start.free, how, point[:free], strict=True)
-        values = {name: each.decode(value) for name, each, value in pairs}
-        model = replace(start, values={**start.values, **values})
+        model = replace(start, values={**start.values, **device.decode(point[:free])})
         return model, point[free:].reshape(runs, 2) * units
 
     def of_run(run: int, points: Sequence[Array]) -> Array:
@@ -282,32 +284,27 @@ def fit_simulated(
             tables.append(table)
         return np.nan_to_num(np.concatenate(tables))
 
-    inside = np.clip(first, lower + 1e-9, upper - 1e-9)
-    if not all(np.isfinite(of_run(run, [inside])).all() for run in range(runs)):
+    begin = inside(first, (lower, upper))
+    if not all(np.isfinite(of_run(run, [begin])).all() for run in range(runs)):
         raise ValueError("the start does not lead to a finite motion; start from a better fit")
-    found = least_squares(
-        residual, inside, jac=jacobian,  # pyright: ignore[reportArgumentType]
-        bounds=(lower, upper), x_scale="jac", xtol=_ENOUGH, ftol=_ENOUGH, max_nfev=evaluations,
+    found = minimise(
+        residual, first, (lower, upper), jacobian, scaled=True, evaluations=evaluations,
+        tolerances=Tolerances(_ENOUGH, _ENOUGH, 1e-8),
     )  # fmt: skip
-    model, begins = at(found.x)
-    factor = np.array(
-        [
-            model.values[name] if each.logarithmic else each.size
-            for name, each in zip(start.free, how, strict=True)
-        ]
-    )
-    rest = unit * np.concatenate([of_run(run, [found.x])[0] for run in range(runs)])
-    spread = sandwich(found.jac * unit, rest, np.ones_like(rest))[:free, :free]
+    model, begins = at(found.variables)
+    factor = device.units(model.values)
+    rest = unit * np.concatenate([of_run(run, [found.variables])[0] for run in range(runs)])
+    spread = sandwich(found.jacobian * unit, rest, np.ones_like(rest))[:free, :free]
     both = list(zip(simulators, begins, strict=True))
     errors = [each.residuals([model], begin[None], until)[0] for each, begin in both]
     return SimulatedFit(
-        model,
-        begins,
-        [each.displacements([model], begin[None])[0] for each, begin in both],
-        float(np.sqrt(np.mean(np.concatenate(errors) ** 2))),
-        spread * np.outer(factor, factor),
-        count,
-        found.status > 0,
+        model=model,
+        begins=begins,
+        displacement=[each.displacements([model], begin[None])[0] for each, begin in both],
+        error=float(np.sqrt(np.mean(np.concatenate(errors) ** 2))),
+        covariance=spread * np.outer(factor, factor),
+        evaluations=count,
+        converged=found.ended,
     )
 
 
@@ -318,8 +315,7 @@ def _sizes(records: Sequence[Record]) -> Scales:
 def _in_the_middle(force: Array, finer: int, late: float = 0.0) -> Array:
     """Force in the middle of each of `finer` steps between samples, `late` samples on.
 
-    It is band-limited;
-    The record is continued backwards in time, so that its ends meet.
+    It is band-limited, and the record is continued backwards in time, so that its ends meet.
     """
     n = force.size
     wave = np.concatenate([force, force[-2:0:-1]])
@@ -362,4 +358,4 @@ def start_from(model: Model) -> Model:
 
 def device_from(fit: SimulatedFit) -> Device:
     """The device of a fit."""
-    return Device(friction=fit.model.friction, **device_values(fit.model.values), **fit.model.texts)
+    return Device(friction=fit.model.friction, **parameters_of(fit.model.values), **fit.model.texts)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.bench import Run
+from inerter.identify.runs import BenchRun
 
 Mask = NDArray[np.bool_]
 
@@ -34,12 +34,12 @@ class Split:
         return "fit" if self.fit[i].any() else "holdout"
 
 
-def split(runs: Sequence[Run], holdout: Sequence[str] = ()) -> Split:
+def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
     """Hold out whole runs where there are several, else blocks of the one.
 
     Parameters
     ----------
-    runs : sequence of Run
+    runs : sequence of BenchRun
         Every run.
     holdout : sequence of str
         Names of runs to hold out; by default the run whose motion is nearest to the others', so
@@ -98,7 +98,7 @@ def may_be_held(sizes: Sequence[int]) -> NDArray[np.intp]:
     return enough if enough.size else np.array([int(np.argmin(np.abs(share - LEAST_HELD)))])
 
 
-def _most_typical(runs: Sequence[Run]) -> int:
+def _most_typical(runs: Sequence[BenchRun]) -> int:
     """The run whose amplitudes (displacement, velocity, acceleration) are nearest to the median."""
     able = may_be_held([int(run.inner.sum()) for run in runs])
     channels = ("displacement", "velocity", "acceleration")
@@ -109,7 +109,7 @@ def _most_typical(runs: Sequence[Run]) -> int:
     return int(able[np.argmin(distance[able])])
 
 
-def _folds(runs: Sequence[Run], fit: list[Mask]) -> list[list[Mask]]:
+def _folds(runs: Sequence[BenchRun], fit: list[Mask]) -> list[list[Mask]]:
     """Masks of what each fold leaves out: a run each, or spread blocks where there are few runs."""
     used = [i for i, mask in enumerate(fit) if mask.any()]
     if len(used) >= 3:

@@ -16,19 +16,20 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.bench import Run
-from inerter.identify.laws import BRISTLES, Law
+from inerter.catalogue.friction import BRISTLES
+from inerter.identify.laws import FittedLaw
+from inerter.identify.runs import BenchRun
 
 Array = NDArray[np.float64]
 
 
-def needs_turns(law: Law, fixed: Mapping[str, float | str]) -> bool:
+def needs_turns(law: FittedLaw, fixed: Mapping[str, float | str]) -> bool:
     """Whether a law follows the path of the motion and nothing but that."""
     series = {"series_frequency", "series_stiffness"} & {*law.starts, *fixed}
     return law.friction in BRISTLES and not series
 
 
-def with_turns(run: Run) -> Run:
+def with_turns(run: BenchRun) -> BenchRun:
     """The run with its turning points in the path that a bristle follows."""
     if run.measured is None:
         return replace(run, displacement=turned(run.displacement, run.velocity, run.spacing))

@@ -100,8 +100,13 @@ class _Growing:
                 columns.append(pl.Series(name, np.concatenate(numbers)))
         lines = partial(_data_lines_of, self.path)
         return RawTable(
-            self.path, self.header, tuple(columns), tuple(comments), self.odd, lines
-        )  # fmt: skip
+            path=self.path,
+            header=self.header,
+            columns=tuple(columns),
+            comments=tuple(comments),
+            odd=self.odd,
+            lines=lines,
+        )
 
 
 # --- text --------------------------------------------------------------------------------------

@@ -85,7 +85,7 @@ def read_mat(path: Path, most_rows: int) -> RawTable:
         pl.Series(name, v.tolist() if v.dtype.kind in "OU" else v.astype(np.float64), strict=False)
         for name, v in vectors.items()
     )
-    return RawTable(path, header, columns)
+    return RawTable(path=path, header=header, columns=columns)
 
 
 def _mat_73(path: Path) -> str:

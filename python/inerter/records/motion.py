@@ -38,7 +38,7 @@ LEAST_LOSS = 0.01
 NOISE_SEGMENT = 64
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Motion:
     """A smoothed motion on a uniform clock, and the force beside it.
 
@@ -265,17 +265,19 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     for i in np.flatnonzero(steps > max(0.5 / cutoff, 3 * np.median(steps))):
         begin, end = (int((t - record.time[0]) / spacing) for t in record.time[i : i + 2])
         inner[max(begin - edge, 0) : end + edge] = False
+    velocity_noise, acceleration_noise = _derivative_noise(x, spacing, cutoff)
     return Motion(
-        record.name,
-        float(record.time[0]),
-        spacing,
-        displacement,
-        velocity,
-        acceleration,
-        channels["force"],
-        cutoff,
-        inner,
-        *_derivative_noise(x, spacing, cutoff),
+        name=record.name,
+        start=float(record.time[0]),
+        spacing=spacing,
+        displacement=displacement,
+        velocity=velocity,
+        acceleration=acceleration,
+        force=channels["force"],
+        cutoff=cutoff,
+        inner=inner,
+        velocity_noise=velocity_noise,
+        acceleration_noise=acceleration_noise,
     )
 
 

@@ -25,7 +25,7 @@ class OddCell:
     cells: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RawTable:
     """Columns as they stand in one file.
 

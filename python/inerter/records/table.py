@@ -66,4 +66,4 @@ def _read_parquet(path: Path) -> RawTable:
         raise
     except (pyarrow.ArrowException, pl.exceptions.PolarsError, OSError, ValueError, TypeError):
         raise RecordError(f"{path}: not a readable Parquet file; write it again") from None
-    return RawTable(path, names, columns)
+    return RawTable(path=path, header=names, columns=columns)

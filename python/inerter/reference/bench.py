@@ -51,7 +51,7 @@ class NoiseLevels:
     displacement: float = 1e-6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class HiddenRun:
     """One run: what the sensors saw, arrays of shape (n,), and the truth behind it."""
 
@@ -64,7 +64,7 @@ class HiddenRun:
     truth: Response = field(repr=False)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class HiddenCase:
     """Runs of one device and what was hidden in them.
 
@@ -234,7 +234,15 @@ def record_case(
         clock = drive.time + run.start
         name = f"run_{number + 1}"
         seen.append(
-            HiddenRun(name, drive.kind, drive.rate, clock, displacement, force, truth=final)
+            HiddenRun(
+                name=name,
+                kind=drive.kind,
+                sample_rate=drive.rate,
+                time=clock,
+                displacement=displacement,
+                force=force,
+                truth=final,
+            )
         )
     return HiddenCase(
         share=rms(forces - _bare(ideal, runs)) / rms(forces),

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 SWING_IN = 2.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Channel:
     """The force channel and the clock; every default leaves the force as it is."""
 

@@ -36,7 +36,7 @@ class Drawn:
     stated: dict[str, float] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Unit:
     """An effect of unit size; `scaling` lists what grows with it, `share` bounds what is drawn."""
 
@@ -66,7 +66,7 @@ def draw_effect(
     elif effect == "hysteretic_friction":
         travels = [float(np.max(abs(drive.displacement))) for drive in drives]
         device, scaling, names = _unit_hysteresis(draw, str(law), ideal, min(travels))
-        unit = _Unit(device, Channel(), scaling, names)
+        unit = _Unit(device=device, channel=Channel(), scaling=scaling, names=names)
     else:
         unit = _plain(draw, effect, ideal)
 
@@ -141,13 +141,20 @@ def _stribeck(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
         stribeck_velocity=rounded(speed * draw.uniform(0.1, 0.4)),
     )
     scaling = ("coulomb_force", "static_force")
-    return _Unit(unit, Channel(), scaling, (*scaling, "stribeck_velocity"))
+    return _Unit(
+        device=unit, channel=Channel(), scaling=scaling, names=(*scaling, "stribeck_velocity")
+    )
 
 
 def _asymmetric(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
     asymmetry = rounded(draw.uniform(0.2, 0.6) * draw.choice([-1.0, 1.0]))
     unit = replace(ideal, friction="coulomb", coulomb_force=1.0, friction_asymmetry=asymmetry)
-    return _Unit(unit, Channel(), ("coulomb_force",), ("coulomb_force", "friction_asymmetry"))
+    return _Unit(
+        device=unit,
+        channel=Channel(),
+        scaling=("coulomb_force",),
+        names=("coulomb_force", "friction_asymmetry"),
+    )
 
 
 def _position(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
@@ -160,7 +167,7 @@ def _position(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
         friction_curvature=curvature,
     )
     names = ("coulomb_force", "friction_gradient", "friction_curvature")
-    return _Unit(unit, Channel(), ("coulomb_force",), names)
+    return _Unit(device=unit, channel=Channel(), scaling=("coulomb_force",), names=names)
 
 
 def _friction_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
@@ -169,7 +176,12 @@ def _friction_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situatio
     whole = runs[-1].start + float(runs[-1].drive.time[-1])
     channel = Channel(friction_drift=rounded(max(change, -0.95) / whole))
     unit = replace(ideal, friction="coulomb", coulomb_force=1.0)
-    return _Unit(unit, channel, ("coulomb_force",), ("coulomb_force", "friction_drift"))
+    return _Unit(
+        device=unit,
+        channel=channel,
+        scaling=("coulomb_force",),
+        names=("coulomb_force", "friction_drift"),
+    )
 
 
 def _gas(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
@@ -184,7 +196,7 @@ def _gas(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Uni
         gas_exponent=rounded(draw.uniform(1.05, 1.38)),
     )
     names = ("gas_pressure", "gas_area", "gas_volume", "gas_exponent")
-    return _Unit(unit, Channel(), ("gas_pressure",), names)
+    return _Unit(device=unit, channel=Channel(), scaling=("gas_pressure",), names=names)
 
 
 def _end_stop(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
@@ -201,7 +213,9 @@ def _end_stop(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
     damping = rounded(draw.uniform(0.1, 0.5) / float(np.max(abs(v))))
     unit = replace(ideal, **stops, stop_stiffness=1.0, stop_damping=damping)
     names = (*stops, "stop_stiffness", "stop_damping")
-    return _Unit(unit, Channel(), ("stop_stiffness",), names, (0.10, 0.40))
+    return _Unit(
+        device=unit, channel=Channel(), scaling=("stop_stiffness",), names=names, share=(0.10, 0.40)
+    )
 
 
 def _variable(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
@@ -224,7 +238,14 @@ def _variable(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
     part = 0.1 / len(names)
     signs = [sign, float(draw.choice([-1.0, 1.0]))]
     values = {n: s * part / ends[n] for n, s in zip(names, signs, strict=False)}
-    return _Unit(replace(ideal, **values), Channel(), names, names, (0.05, 0.30), largest=7.0)
+    return _Unit(
+        device=replace(ideal, **values),
+        channel=Channel(),
+        scaling=names,
+        names=names,
+        share=(0.05, 0.30),
+        largest=7.0,
+    )
 
 
 def _tone(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
@@ -236,12 +257,17 @@ def _tone(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Un
             break
     channel = Channel(disturbance_amplitude=1.0, disturbance_frequency=frequency)
     names = ("disturbance_amplitude", "disturbance_frequency")
-    return _Unit(ideal, channel, names[:1], names)
+    return _Unit(device=ideal, channel=channel, scaling=names[:1], names=names)
 
 
 def _force_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
     names = ("force_drift",)
-    return _Unit(ideal, Channel(force_drift=float(draw.choice([-1.0, 1.0]))), names, names)
+    return _Unit(
+        device=ideal,
+        channel=Channel(force_drift=float(draw.choice([-1.0, 1.0]))),
+        scaling=names,
+        names=names,
+    )
 
 
 def _plain(draw: Generator, effect: str, ideal: ReferenceDevice) -> _Unit:
@@ -251,7 +277,12 @@ def _plain(draw: Generator, effect: str, ideal: ReferenceDevice) -> _Unit:
     friction = "coulomb" if effect == "coulomb_friction" else "none"
     # load friction is linear only up to 1, so its unit stays below
     size = 0.5 if effect == "load_dependent_friction" else sign
-    return _Unit(replace(ideal, friction=friction, **{key: size}), Channel(), (key,), (key,))
+    return _Unit(
+        device=replace(ideal, friction=friction, **{key: size}),
+        channel=Channel(),
+        scaling=(key,),
+        names=(key,),
+    )
 
 
 _SIZES = {

@@ -46,7 +46,7 @@ class Motion:
     kinks: Sequence[float] = field(default=())
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """A device's answer, arrays of shape (times,).
 
@@ -104,7 +104,7 @@ def marked_speeds(device: ReferenceDevice) -> list[float]:
     over a Stribeck curve or a change of direction much narrower than its step.
     """
     flanks: list[float] = []
-    if device.friction == "lugre" and device.static_force != device.coulomb_force:
+    if device.friction == "lugre" and device.breakaway_force != device.coulomb_force:
         flanks += [device.stribeck_velocity, 4.0 * device.stribeck_velocity]
     if device.friction in ("dahl", "lugre") and device.friction_asymmetry != 0.0:
         flanks += [device.transition_velocity, 10.0 * device.transition_velocity]
@@ -162,7 +162,9 @@ def response(
     force = np.asarray(device.force(x, v, a, device.state_argument(states)), dtype=np.float64)
     friction = "friction_state" in device.state_names
     state = states[:, 0].copy() if friction else np.zeros(at.shape)
-    return Response(at, x, v, a, state, force, states)
+    return Response(
+        time=at, displacement=x, velocity=v, acceleration=a, state=state, force=force, states=states
+    )
 
 
 def state_scales(device: ReferenceDevice) -> NDArray[np.float64]:
@@ -185,7 +187,7 @@ def state_scale(device: ReferenceDevice) -> float:
         if narrowing > 0.0:
             return min(1e-3, (device.bw_alpha / narrowing) ** (1.0 / device.bw_exponent))
         return 1e-3
-    level = max(device.coulomb_force, device.static_force if device.friction == "lugre" else 0.0)
+    level = max(device.coulomb_force, device.breakaway_force if device.friction == "lugre" else 0.0)
     return level / device.bristle_stiffness
 
 

@@ -33,7 +33,7 @@ from .strut import LAYOUTS, Strut
 __all__ = ["LAYOUTS", "QuarterCar", "QuarterCarResult"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class QuarterCarResult:
     """A run of the quarter-car, arrays of shape (times,), SI units.
 

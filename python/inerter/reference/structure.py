@@ -43,7 +43,7 @@ class RunOptions(TypedDict, total=False):
     breakpoints: Sequence[float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class StructureRun:
     """A run: arrays of shape (times, coordinates) or (times, struts), SI units.
 
@@ -226,7 +226,15 @@ class Structure:
             for where, strut in zip(self.slices, self.struts, strict=True)
         )
         return StructureRun(
-            at, path[:, :nq], path[:, nq : 2 * nq], acceleration, *rows, device_states=states
+            time=at,
+            position=path[:, :nq],
+            velocity=path[:, nq : 2 * nq],
+            acceleration=acceleration,
+            strut_force=rows[0],
+            device_displacement=rows[1],
+            device_velocity=rows[2],
+            device_force=rows[3],
+            device_states=states,
         )
 
     def _elongations(self, state: Array) -> tuple[list[float], list[float]]:

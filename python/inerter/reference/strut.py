@@ -29,7 +29,7 @@ LAYOUTS = ("S1", "S2", "S3")
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class StrutPoint:
     """What a strut does at one moment.
 
@@ -93,7 +93,14 @@ class Strut:
         spring = self.stiffness * x
         if self.layout == "S1":
             return StrutPoint(
-                spring + self.damping * v, 0.0, 0.0, 0.0, np.empty(0), 0.0, 0.0, np.empty(0)
+                known=spring + self.damping * v,
+                mass=0.0,
+                rest=0.0,
+                share=0.0,
+                rates=np.empty(0),
+                device_displacement=0.0,
+                device_velocity=0.0,
+                device_state=np.empty(0),
             )
         z = self.device.state_argument(own[self.own_motion :])
         if self.layout == "S2":
@@ -117,7 +124,16 @@ class Strut:
         if not self.device.has_series:
             motion.append(float(self.device.acceleration(y, speed, through, z)))
         rates = np.concatenate((motion, self._device_rates(y, speed, z, contact)))
-        return StrutPoint(spring + through, 0.0, 0.0, 0.0, rates, y, speed, z)
+        return StrutPoint(
+            known=spring + through,
+            mass=0.0,
+            rest=0.0,
+            share=0.0,
+            rates=rates,
+            device_displacement=y,
+            device_velocity=speed,
+            device_state=z,
+        )
 
     def device_terminals(
         self, x: float, v: float, own: Array, contact: int | None = None

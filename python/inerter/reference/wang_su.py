@@ -28,7 +28,7 @@ WANG_SU_DEVICE = ReferenceDevice(
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WangSuBench:
     """One record: what the sensors saw, arrays of shape (n,), and the device behind it."""
 

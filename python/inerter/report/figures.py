@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 
 from inerter.diagnose.result import Diagnosis, RunCurves
 from inerter.folder import write_files
-from inerter.report import text, thinning
-from inerter.report.palette import LIGHT
+from inerter.pictures import thinning
+from inerter.pictures.palette import LIGHT
+from inerter.report import text
 from inerter.report.runs import judged, pictured
 
 # cycles of the motion that the picture shows

@@ -9,8 +9,8 @@ import numpy as np
 import plotly.graph_objects as go
 
 from inerter.diagnose.result import TablePoints
-from inerter.report.palette import LIGHT
-from inerter.report.plotting import figure, line, log_axis, points, positive
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.plotting import figure, line, log_axis, points, positive
 
 
 def table_plots(table: TablePoints) -> dict[str, go.Figure]:

@@ -22,10 +22,10 @@ from inerter.diagnose.result import (
     TablePoints,
 )
 from inerter.diagnose.wording import departure, is_right
+from inerter.pictures.palette import DARK, LIGHT
+from inerter.pictures.plotting import to_script
 from inerter.report import text
 from inerter.report.other_plots import cutoff_plot, table_plots
-from inerter.report.palette import DARK, LIGHT
-from inerter.report.plotting import to_script
 from inerter.report.run_plots import LOOP_CYCLES, run_plots
 from inerter.report.runs import part_held_out, pictured, rmse, role
 from inerter.report.subject import subject

@@ -9,11 +9,11 @@ import plotly.graph_objects as go
 from scipy.signal import welch
 
 from inerter.diagnose.result import RunCurves
-from inerter.report import thinning
-from inerter.report.palette import LIGHT
-from inerter.report.plotting import figure, line, points, positive, two_over_time
+from inerter.pictures import thinning
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.plotting import figure, line, points, positive, two_over_time
+from inerter.pictures.thinning import Mask
 from inerter.report.runs import judged
-from inerter.report.thinning import Mask
 
 # samples per line when there are few runs
 TIME_SAMPLES = 3000

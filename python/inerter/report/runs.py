@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from inerter.diagnose.result import Diagnosis, RecordSummary, RunCurves
-from inerter.report.thinning import Mask
+from inerter.pictures.thinning import Mask
 
 # more runs than these would make the page too large to pass on
 PICTURED_RUNS = 12

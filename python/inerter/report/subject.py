@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from inerter.diagnose.result import Diagnosis
-from inerter.diagnose.system.outcome import SystemDiagnosis
+from inerter.diagnose.vehicle.outcome import SystemDiagnosis
 from inerter.report import text
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Subject:
     """The words of a page that differ between devices and models.
 
@@ -33,25 +33,29 @@ class Subject:
 
 
 _BENCH = Subject(
-    "simulation against bench data",
-    "rms force error",
-    "expected of the noise of force and motion",
-    "Force",
-    "The same device, following the measured motion anew in each engine. Figures that agree mean "
+    kind="simulation against bench data",
+    error="rms force error",
+    noise="expected of the noise of force and motion",
+    quantity="Force",
+    engines="The same device, following the measured motion anew in each engine. Figures "
+    "that agree mean "
     "that the finding does not hang on one implementation.",
-    "Root of the mean square of measured minus simulated force over the held-out samples, the "
+    glossary="Root of the mean square of measured minus simulated force over the held-out "
+    "samples, the "
     "simulation following the measured motion. For runs that were fitted, over their own samples.",
-    False,
+    share=False,
 )
 _MODEL = Subject(
-    "a model against records of the whole system",
-    "rms error of the channels, per their spread,",
-    "expected of the noise of the channels",
-    "Channel",
-    "The extended model as written below, simulated once more. The other engines do not run MJCF.",
-    "Root of the mean square of measured minus simulated channels over the held-out samples, each "
+    kind="a model against records of the whole system",
+    error="rms error of the channels, per their spread,",
+    noise="expected of the noise of the channels",
+    quantity="Channel",
+    engines="The extended model as written below, simulated once more. The other engines do "
+    "not run MJCF.",
+    glossary="Root of the mean square of measured minus simulated channels over the held-out "
+    "samples, each "
     "channel per its noise-free spread; the model is driven by the recorded inputs.",
-    True,
+    share=True,
 )
 
 

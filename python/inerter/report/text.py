@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import re
 
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
-from inerter.diagnose.effects import EFFECTS
 from inerter.diagnose.result import Finding, ParameterValue
-from inerter.diagnose.system.named import KNOWN
 from inerter.diagnose.wording import effect_in_words
 
 _SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ")

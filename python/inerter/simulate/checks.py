@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import mujoco
 import numpy as np
 
-from inerter.simulate.errors import SimulationError
+from inerter.engine_errors import SimulationError
 from inerter.simulate.inputs import Inputs
 from inerter.simulate.load import integrator_name
 from inerter.simulate.sample import DeviceRun

@@ -28,11 +28,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.engine_errors import SimulationError
 from inerter.records import RecordError
 from inerter.records.raw_table import RawTable
 from inerter.records.table import read_table
 from inerter.records.units import LENGTH, QUANTITIES, Quantity, split_header
-from inerter.simulate.errors import SimulationError
 from inerter.simulate.load import scalar_joints
 from inerter.simulate.quantities import quantity_of_control, quantity_of_joint
 from inerter.unit_text import parse_unit, unit_registry
@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 _AXES = ("x", "y", "z")
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Inputs:
     """What drives a model.
 
@@ -145,7 +145,7 @@ def read_inputs(path: Path, model: mujoco.MjModel) -> Inputs:
     if len(times) < 2 or not (np.diff(times) > 0).all():
         row = int(np.argmax(np.diff(times) <= 0)) + 1 if len(times) > 1 else 0
         raise SimulationError(f"{path}: {table.place(row)}: time does not increase; sort the rows")
-    inputs = Inputs(times - times[0])
+    inputs = Inputs(times=times - times[0])
     for index, (name, unit) in enumerate(headers):
         if index != clock:
             _connect(inputs, model, table, index, name, unit)

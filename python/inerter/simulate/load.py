@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 
 from inerter.device_in_model import PLUGIN, devices_of
+from inerter.engine_errors import SimulationError, engine_text
 from inerter.plugin import load_plugin
-from inerter.simulate.errors import SimulationError, engine_text
 
 INTEGRATORS = {
     "euler": mujoco.mjtIntegrator.mjINT_EULER,

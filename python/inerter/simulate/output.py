@@ -7,11 +7,11 @@ from pathlib import Path
 from inerter.folder import json_text, write_files
 from inerter.simulate.page import render_page
 from inerter.simulate.record import device_csv, device_names, vehicle_csv
-from inerter.simulate.run import Run
+from inerter.simulate.run import SimulatedRun
 from inerter.simulate.summary import summary
 
 
-def write_run(run: Run, folder: Path) -> list[str]:
+def write_run(run: SimulatedRun, folder: Path) -> list[str]:
     """Write DEVICE.csv per device, vehicle/record.csv, simulation.json and simulation.html.
 
     Everything is written into a temporary folder first and moved when complete. The vehicle's

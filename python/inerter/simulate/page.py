@@ -10,10 +10,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import inerter.report
+from inerter.pictures.palette import DARK, LIGHT
+from inerter.pictures.plotting import figure, to_script
 from inerter.report import page as report_page
 from inerter.report import text
-from inerter.report.palette import DARK, LIGHT
-from inerter.report.plotting import figure, to_script
 from inerter.simulate.plots import (
     MOST_JOINTS,
     device_plots,
@@ -21,11 +21,11 @@ from inerter.simulate.plots import (
     model_plots,
     parameter_rows,
 )
-from inerter.simulate.run import Run
+from inerter.simulate.run import SimulatedRun
 from inerter.simulate.summary import summary
 
 
-def render_page(run: Run) -> str:
+def render_page(run: SimulatedRun) -> str:
     """The page of a run as HTML text."""
     # devices take the place of the report's runs; all of them have the same places for plots
     states = list(dict.fromkeys(name for device in run.devices for name in device.place.act))

@@ -8,9 +8,9 @@ import numpy as np
 import plotly.graph_objects as go
 
 from inerter.core import parameters
-from inerter.report import thinning
-from inerter.report.plotting import figure, line, two_over_time
-from inerter.simulate.run import Run
+from inerter.pictures import thinning
+from inerter.pictures.plotting import figure, line, two_over_time
+from inerter.simulate.run import SimulatedRun
 from inerter.simulate.sample import DeviceRun
 
 TIME_SAMPLES = 3000
@@ -28,7 +28,7 @@ STATE_UNITS = {
 }
 
 
-def device_plots(run: Run, device: DeviceRun) -> dict[str, go.Figure]:
+def device_plots(run: SimulatedRun, device: DeviceRun) -> dict[str, go.Figure]:
     """Every plot of a device, by the name of its place in the page."""
     columns = device.columns
     plots = {
@@ -44,7 +44,7 @@ def device_plots(run: Run, device: DeviceRun) -> dict[str, go.Figure]:
     return plots
 
 
-def model_plots(run: Run) -> dict[str, go.Figure]:
+def model_plots(run: SimulatedRun) -> dict[str, go.Figure]:
     """Plots of what is not a device: the vehicle's columns and the joints."""
     plots = {}
     units = {"body_acceleration": "m/s²", "wheel_acceleration": "m/s²", "tyre_force": "N"}
@@ -63,7 +63,7 @@ def model_plots(run: Run) -> dict[str, go.Figure]:
     return plots
 
 
-def _forces_and_motion(run: Run, device: DeviceRun) -> go.Figure:
+def _forces_and_motion(run: SimulatedRun, device: DeviceRun) -> go.Figure:
     """Forces above, displacement below, one time axis."""
     plot = two_over_time("force [N]", "displacement [m]")
     columns = device.columns
@@ -92,7 +92,7 @@ def _loop(columns: dict[str, np.ndarray], name: str, title: str) -> go.Figure:
     return plot
 
 
-def _energy(run: Run, device: DeviceRun) -> go.Figure:
+def _energy(run: SimulatedRun, device: DeviceRun) -> go.Figure:
     plot = figure("time [s]", "energy [J]")
     for name, color in (("stored_energy", INERTANCE), ("dissipated_energy", FRICTION)):
         _over_time(plot, run.time, device.columns[name], color, name.split("_")[0])
@@ -112,7 +112,7 @@ def _over_time(
     line(plot, time[keep], values[keep], color, name, width, **options)
 
 
-def parameter_rows(run: Run, device: DeviceRun) -> list[tuple[str, str, str]]:
+def parameter_rows(run: SimulatedRun, device: DeviceRun) -> list[tuple[str, str, str]]:
     """Name, value and meaning of what a device was given."""
     rows = []
     for name, value in device.place.stated(run.model).items():

@@ -16,16 +16,16 @@ import inerter
 from inerter.core import parameters
 from inerter.folder import file_names
 from inerter.printable import printable
-from inerter.simulate.run import Run
+from inerter.simulate.run import SimulatedRun
 from inerter.simulate.sample import DeviceRun
 
 
-def device_names(run: Run) -> list[str]:
+def device_names(run: SimulatedRun) -> list[str]:
     """File names, without extension, of the devices: what a file may be called, all different."""
     return file_names([device.place.name for device in run.devices], "device")
 
 
-def device_csv(run: Run, device: DeviceRun) -> str:
+def device_csv(run: SimulatedRun, device: DeviceRun) -> str:
     """Text of a device's record."""
     place = device.place
     given = ", ".join(
@@ -50,12 +50,12 @@ def _is_hinge(model: mujoco.MjModel, actuator: int) -> bool:
     return model.jnt_type[model.actuator_trnid[actuator, 0]] == mujoco.mjtJoint.mjJNT_HINGE
 
 
-def vehicle_csv(run: Run) -> str:
+def vehicle_csv(run: SimulatedRun) -> str:
     """Text of the vehicle record."""
     return _csv([f"vehicle of {run.path.name}", *_origin(run)], run.vehicle)
 
 
-def _origin(run: Run) -> list[str]:
+def _origin(run: SimulatedRun) -> list[str]:
     steps = "step" if run.every == 1 else f"{run.every} steps"
     return [
         f"simulated by inerter {inerter.__version__} with MuJoCo {mujoco.mj_versionString()}, "

@@ -11,8 +11,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.engine_errors import SimulationError
 from inerter.simulate.checks import engine_warnings, refuse_divergence, warnings_of
-from inerter.simulate.errors import SimulationError
 from inerter.simulate.inputs import Inputs, read_inputs
 from inerter.simulate.load import integrator_name, load_model, start
 from inerter.simulate.sample import DeviceRun, Sampler
@@ -25,8 +25,8 @@ DEFAULT_RATE = 1000.0
 MAX_SAMPLES = 2_000_000
 
 
-@dataclass(frozen=True)
-class Run:
+@dataclass(frozen=True, kw_only=True)
+class SimulatedRun:
     """A finished run.
 
     time: [s], (samples,). vehicle: columns of a vehicle record, empty where the model has none.
@@ -63,7 +63,7 @@ def run_model(
     rate: float | None = None,
     frame_rate: float = 0.0,
     progress: Progress = lambda share: None,
-) -> Run:
+) -> SimulatedRun:
     """Run a model file.
 
     Parameters
@@ -132,7 +132,7 @@ def _plan(
     return _Plan(data, inputs, steps, every)
 
 
-def _march(path: Path, plan: _Plan, frame_rate: float, progress: Progress) -> Run:
+def _march(path: Path, plan: _Plan, frame_rate: float, progress: Progress) -> SimulatedRun:
     """Step from the start to the end."""
     data, inputs, steps, every = plan.data, plan.inputs, plan.steps, plan.every
     model = data.model
@@ -169,7 +169,7 @@ def _march(path: Path, plan: _Plan, frame_rate: float, progress: Progress) -> Ru
     # the engine adds up its time with rounding errors
     instants = np.asarray([round(t0 + h * every * k, 12) for k in range(steps // every + 1)])
     devices = sampler.devices(instants)
-    return Run(
+    return SimulatedRun(
         path=path,
         model=model,
         time=instants,

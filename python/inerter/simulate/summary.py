@@ -13,13 +13,13 @@ from rich.text import Text
 from inerter.printable import printable
 from inerter.report import text
 from inerter.simulate.record import device_names
-from inerter.simulate.run import Run
+from inerter.simulate.run import SimulatedRun
 from inerter.simulate.sample import DeviceRun
 
 SCHEMA = "inerter.simulation/1"
 
 
-def summary(run: Run) -> dict[str, Any]:
+def summary(run: SimulatedRun) -> dict[str, Any]:
     """Figures of a run, ready for JSON; SI units."""
     spacing = run.every * float(run.model.opt.timestep)
     return {
@@ -63,7 +63,7 @@ def _spread(values: np.ndarray) -> dict[str, float]:
     }
 
 
-def print_run(run: Run, console: Console) -> None:
+def print_run(run: SimulatedRun, console: Console) -> None:
     """Print the figures of a run."""
     found = summary(run)
     seconds = f"{found['duration']:.6g} s simulated in {run.wall:.2g} s"

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.simulate.errors import SimulationError
+from inerter.engine_errors import SimulationError
 
 FRAME_RATE = 25  # frames per second; a GIF counts in hundredths of a second
 WIDTH, HEIGHT = 640, 480

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import minimum_filter
 
 from inerter.suspension.h_infinity_norm import squared_polynomials
-from inerter.suspension.problem import Array, Problem
+from inerter.suspension.problem import Array, SuspensionProblem
 
 _PER_DECADE = {1: 24, 2: 7, 3: 3}
 _SLICE = 0.5
@@ -31,7 +31,7 @@ _CHUNK = 1024
 _FREQUENCIES = 160
 
 
-def starting_points(problem: Problem) -> Array:
+def starting_points(problem: SuspensionProblem) -> Array:
     """Logarithms of the starting points, best first, shape (n, variables).
 
     Those left out are 1 % worse than the best after looking closer, or close to a better one.
@@ -44,7 +44,7 @@ def starting_points(problem: Problem) -> Array:
     return chosen[: _MOST[problem.objective.smooth]]
 
 
-def coarse_values(problem: Problem, points: Array) -> Array:
+def coarse_values(problem: SuspensionProblem, points: Array) -> Array:
     """The index of each point; J5 from a grid of frequencies."""
     if problem.objective.smooth:
         return problem.value(points)
@@ -53,7 +53,7 @@ def coarse_values(problem: Problem, points: Array) -> Array:
     return np.concatenate([_sampled_gain(problem, part, powers) for part in parts])
 
 
-def _axes(problem: Problem) -> list[Array]:
+def _axes(problem: SuspensionProblem) -> list[Array]:
     bounds = problem.bounds
     per_decade = _PER_DECADE[len(bounds)]
     decades = (bounds[:, 1] - bounds[:, 0]) / math.log(10.0)
@@ -79,7 +79,7 @@ def _candidates(values: Array, axes: list[Array]) -> NDArray[np.bool_]:
     return chosen
 
 
-def _closer(problem: Problem, points: Array, axes: list[Array]) -> Array:
+def _closer(problem: SuspensionProblem, points: Array, axes: list[Array]) -> Array:
     """Each point moved to the best of finer and finer grids around it."""
     size = np.array([axis[1] - axis[0] for axis in axes])
     low, high = problem.bounds.T
@@ -102,7 +102,7 @@ def _distinct(points: Array, values: Array) -> Array:
     return np.array(kept)
 
 
-def _squared_frequencies(problem: Problem) -> NDArray[np.float64]:
+def _squared_frequencies(problem: SuspensionProblem) -> NDArray[np.float64]:
     """Squared frequencies [(rad/s)^2] from far below the body mode to far above wheel hop."""
     car, k = problem.car, problem.stiffness
     both = 1.0 / (1.0 / k + 1.0 / car.tyre_stiffness)
@@ -111,7 +111,7 @@ def _squared_frequencies(problem: Problem) -> NDArray[np.float64]:
     return np.concatenate([[0.0], np.geomspace(low, high, _FREQUENCIES) ** 2])
 
 
-def _sampled_gain(problem: Problem, points: Array, x: NDArray[np.float64]) -> Array:
+def _sampled_gain(problem: SuspensionProblem, points: Array, x: NDArray[np.float64]) -> Array:
     top, below = squared_polynomials(problem.load_function(points))
     unit = x[-1]
     order = max(top.shape[-1], below.shape[-1])

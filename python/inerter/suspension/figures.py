@@ -13,12 +13,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from plotly.subplots import make_subplots
 
-from inerter.report.palette import LIGHT
-from inerter.report.plotting import FONT
-from inerter.report.png import png
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.plotting import FONT
+from inerter.pictures.png import png
 from inerter.suspension.indices import INDICES
 from inerter.suspension.results import Curve, curves, improvements
-from inerter.suspension.sweep import Row
+from inerter.suspension.sweep import SweepRow
 
 # colour is the layout, dashes are the series pair
 _COLOURS = {
@@ -38,7 +38,7 @@ _OTHER_DASHES: tuple[str, Any] = ("dashdot", "-.")
 _SCALES = {"J5": (1e5, "1e-5 m/N")}
 
 
-def picture(rows: list[Row]) -> bytes:
+def picture(rows: list[SweepRow]) -> bytes:
     """The panels as a PNG."""
     indices = _indices(rows)
     figure = Figure(
@@ -74,7 +74,7 @@ def picture(rows: list[Row]) -> bytes:
     return png(figure)
 
 
-def page(rows: list[Row]) -> str:
+def page(rows: list[SweepRow]) -> str:
     """The panels as one HTML file that needs no network."""
     indices = _indices(rows)
     titles = [
@@ -113,17 +113,17 @@ def page(rows: list[Row]) -> str:
     return plot.to_html(include_plotlyjs=True, full_html=True)
 
 
-def _abscissa(rows: list[Row]) -> str:
+def _abscissa(rows: list[SweepRow]) -> str:
     if all(row.case.rear is None for row in rows):
         return "stiffness k [kN/m]"
     return "front stiffness k [kN/m], the rear in proportion"
 
 
-def _indices(rows: list[Row]) -> list[str]:
+def _indices(rows: list[SweepRow]) -> list[str]:
     return list(dict.fromkeys(row.case.index for row in rows))
 
 
-def _values(rows: list[Row], index: str) -> dict[tuple[str, str], Curve]:
+def _values(rows: list[SweepRow], index: str) -> dict[tuple[str, str], Curve]:
     scale = _SCALES.get(index, (1.0, ""))[0]
     lines = curves(rows, index).items()
     return {name: (k, [scale * value for value in values]) for name, (k, values) in lines}

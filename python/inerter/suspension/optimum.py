@@ -19,13 +19,13 @@ import numpy as np
 from inerter.suspension.coarse_search import starting_points
 from inerter.suspension.polish_peaks import local_peaks, polish_peaks
 from inerter.suspension.polish_smooth import polish_smooth
-from inerter.suspension.problem import Array, Problem
+from inerter.suspension.problem import Array, SuspensionProblem
 
 # relative: what counts as equal to the lower bound of J5
 _EQUAL = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Optimum:
     """The best design.
 
@@ -58,7 +58,7 @@ class Optimum:
         return design
 
 
-def optimise(problem: Problem) -> Optimum:
+def optimise(problem: SuspensionProblem) -> Optimum:
     """Minimise an index over all designs of a layout."""
     best, value, point = problem, *_best(problem)
     # without inertance counts as a design where the strut still is one
@@ -88,7 +88,7 @@ def optimise(problem: Problem) -> Optimum:
     )
 
 
-def _best(problem: Problem) -> tuple[float, Array]:
+def _best(problem: SuspensionProblem) -> tuple[float, Array]:
     polish = polish_smooth if problem.objective.smooth else polish_peaks
     best, at = np.inf, np.empty(0)
     for start in starting_points(problem):
@@ -107,11 +107,11 @@ def _rounded(value: float) -> float:
     return float(f"{value:.13g}")
 
 
-def _static(problem: Problem) -> float:
+def _static(problem: SuspensionProblem) -> float:
     return problem.car.static_compliance(problem.stiffness)
 
 
-def _softest(problem: Problem, start: Array) -> Array:
+def _softest(problem: SuspensionProblem, start: Array) -> Array:
     """The design with the smallest J1 among those whose J5 is the static compliance."""
     comfort = replace(problem, index="J1")
     limit = _static(problem) * (1.0 + _EQUAL)
@@ -133,13 +133,13 @@ def _softest(problem: Problem, start: Array) -> Array:
     return point
 
 
-def _peaks(problem: Problem, point: Array) -> tuple[tuple[float, float], ...]:
+def _peaks(problem: SuspensionProblem, point: Array) -> tuple[tuple[float, float], ...]:
     frequency, gain = local_peaks(problem.load_function(point))
     pairs = zip(frequency / (2.0 * np.pi), gain, strict=True)
     return tuple((float(f), float(g)) for f, g in pairs)
 
 
-def _at_bounds(problem: Problem, point: Array) -> list[str]:
+def _at_bounds(problem: SuspensionProblem, point: Array) -> list[str]:
     notes = []
     for name, at, (low, high) in zip(problem.variables, point, problem.bounds, strict=True):
         word = name.replace("_", " ")

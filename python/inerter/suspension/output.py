@@ -11,15 +11,15 @@ from inerter.folder import write_files
 from inerter.suspension.figures import page, picture
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.study import Study
-from inerter.suspension.sweep import Row
+from inerter.suspension.sweep import SweepRow
 
 
-def rows_json(rows: list[Row]) -> str:
+def rows_json(rows: list[SweepRow]) -> str:
     """The list that --json prints."""
     return json.dumps([row.json() for row in rows], indent=2, allow_nan=False) + "\n"
 
 
-def write_sweep(study: Study, rows: list[Row], folder: Path) -> list[str]:
+def write_sweep(study: Study, rows: list[SweepRow], folder: Path) -> list[str]:
     """Write optimum.json and, where stiffness was varied, optimum.png and .html; their names.
 
     Raises
@@ -33,7 +33,7 @@ def write_sweep(study: Study, rows: list[Row], folder: Path) -> list[str]:
     return write_files(folder, files)
 
 
-def _full(study: Study, rows: list[Row]) -> dict[str, Any]:
+def _full(study: Study, rows: list[SweepRow]) -> dict[str, Any]:
     equal = {} if isinstance(study.car, QuarterCar) else {"equal": study.equal}
     return {
         "schema": "inerter.suspension/1",

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from inerter.suspension.h_infinity_norm import gain_squared, peaks
-from inerter.suspension.problem import Array, Problem
+from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.rational import Rational
 
 _ROUNDS = 6
@@ -24,7 +24,7 @@ _GAINED = 1e-11
 _SAME = 1e-8
 
 
-def polish_peaks(problem: Problem, start: Array, known: float) -> tuple[float, Array]:
+def polish_peaks(problem: SuspensionProblem, start: Array, known: float) -> tuple[float, Array]:
     """Value and point of the local minimum that a start leads to, within the bounds.
 
     A minimum of value `known` has been found before: on the way to it there is no need to arrive.
@@ -60,7 +60,7 @@ def local_peaks(function: Rational) -> tuple[Array, Array]:
     return frequency[best], gain[top][best]
 
 
-def _solve(problem: Problem, start: Array) -> Array:
+def _solve(problem: SuspensionProblem, start: Array) -> Array:
     function = problem.load_function(start)
     edges = _edges(function)
     level = float(np.log(peaks(function)[1].max()))
@@ -100,7 +100,9 @@ def _edges(function: Rational) -> NDArray[np.float64]:
     return np.array(edges)
 
 
-def _levels(problem: Problem, point: Array, edges: NDArray[np.float64]) -> tuple[Array, Array]:
+def _levels(
+    problem: SuspensionProblem, point: Array, edges: NDArray[np.float64]
+) -> tuple[Array, Array]:
     """Logarithm of the largest gain in each interval, and its gradient."""
     function = problem.load_function(point)
     x, gain = peaks(function, refine=False)

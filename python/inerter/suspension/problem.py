@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 _COMPLEX_STEP = 1e-30
 
 
-@dataclass(frozen=True)
-class Problem:
+@dataclass(frozen=True, kw_only=True)
+class SuspensionProblem:
     """What is to be minimised over which designs.
 
     A point is the logarithms of `variables`; arrays of points have shape (n, variables).
@@ -78,7 +78,7 @@ class Problem:
         chosen = (ranges[name] for name in self.variables)
         return np.log([[unit * low, unit * high] for unit, low, high in chosen])
 
-    def without(self) -> Problem:
+    def without(self) -> SuspensionProblem:
         """The same without inertance."""
         return replace(self, massless=True)
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from inerter.suspension.sweep import Row
+from inerter.suspension.sweep import SweepRow
 
 Curve = tuple[list[float], list[float]]
 
 
-def curves(rows: Iterable[Row], index: str) -> dict[tuple[str, str], Curve]:
+def curves(rows: Iterable[SweepRow], index: str) -> dict[tuple[str, str], Curve]:
     """Stiffness [N/m] and value of each (layout, series), ascending; S1 once, its series none."""
     found: dict[tuple[str, str], dict[float, float]] = {}
     for row in rows:
@@ -20,7 +20,7 @@ def curves(rows: Iterable[Row], index: str) -> dict[tuple[str, str], Curve]:
     return {name: (sorted(p), [p[k] for k in sorted(p)]) for name, p in found.items()}
 
 
-def improvements(rows: Iterable[Row], index: str) -> dict[tuple[str, str], Curve]:
+def improvements(rows: Iterable[SweepRow], index: str) -> dict[tuple[str, str], Curve]:
     """Stiffness and improvement over S1 in per cent of each other (layout, series)."""
     lines = curves(rows, index)
     base = lines.pop(("S1", "none"), None)
@@ -32,7 +32,7 @@ def improvements(rows: Iterable[Row], index: str) -> dict[tuple[str, str], Curve
     }
 
 
-def improvement(rows: Iterable[Row]) -> dict[int, float]:
+def improvement(rows: Iterable[SweepRow]) -> dict[int, float]:
     """Improvement over S1 in per cent of each row by its place, where S1 was asked for too."""
     listed = list(rows)
     base = {
@@ -48,7 +48,7 @@ def improvement(rows: Iterable[Row]) -> dict[int, float]:
     }
 
 
-def notes(rows: Iterable[Row]) -> list[str]:
+def notes(rows: Iterable[SweepRow]) -> list[str]:
     """Each remark once, with what it is about."""
     about: dict[str, dict[str, list[float]]] = {}
     for row in rows:

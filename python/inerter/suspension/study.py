@@ -10,7 +10,7 @@ import numpy as np
 
 from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, SeriesPair
-from inerter.suspension.problem import Problem
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.problem import VehicleProblem
@@ -23,7 +23,7 @@ class StudyError(ValueError):
     """What is asked for cannot be computed: one sentence with the value and what is allowed."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Case:
     """One optimum that is asked for: its name in the results and the problem behind it.
 
@@ -34,11 +34,11 @@ class Case:
     index: str
     stiffness: float
     series: str
-    problem: Problem | VehicleProblem
+    problem: SuspensionProblem | VehicleProblem
     rear: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Study:
     """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
 
@@ -74,12 +74,36 @@ class Study:
         if isinstance(self.car, QuarterCar):
             if isinstance(stiffness, tuple):
                 raise StudyError("stiffness: a quarter-car has one, not front and rear")
-            problem = Problem(self.car, self.road, layout, index, stiffness, pair)
-            return Case(layout, index, stiffness, name, problem)
+            problem = SuspensionProblem(
+                car=self.car,
+                road=self.road,
+                layout=layout,
+                index=index,
+                stiffness=stiffness,
+                pair=pair,
+            )
+            return Case(
+                layout=layout, index=index, stiffness=stiffness, series=name, problem=problem
+            )
         if not isinstance(stiffness, tuple):
             raise StudyError("stiffness: a half- or full car has two, front and rear")
-        problem = VehicleProblem(self.car, self.road, layout, index, stiffness, pair, self.equal)
-        return Case(layout, index, stiffness[0], name, problem, stiffness[1])
+        problem = VehicleProblem(
+            car=self.car,
+            road=self.road,
+            layout=layout,
+            index=index,
+            stiffnesses=stiffness,
+            pair=pair,
+            equal=self.equal,
+        )
+        return Case(
+            layout=layout,
+            index=index,
+            stiffness=stiffness[0],
+            series=name,
+            problem=problem,
+            rear=stiffness[1],
+        )
 
 
 def read_names(text: str, known: Iterable[str], what: str) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from inerter.parallel import Progress, run_all
 from inerter.suspension.optimum import Optimum, optimise
-from inerter.suspension.problem import Problem
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.study import Case, Study
 from inerter.suspension.vehicle.optimum import VehicleOptimum, optimise_vehicle
 from inerter.suspension.vehicle.problem import VehicleProblem
@@ -20,7 +20,7 @@ _WORTH_PROCESSES_VEHICLE = 4
 
 
 @dataclass(frozen=True)
-class Row:
+class SweepRow:
     """One optimum and what it was asked for."""
 
     case: Case
@@ -47,7 +47,7 @@ def sweep(
     jobs: int | None = None,
     scheduler: str | None = None,
     progress: Progress = lambda share: None,
-) -> list[Row]:
+) -> list[SweepRow]:
     """Every optimum of a study, in the order of its cases, the same wherever it is sought.
 
     Parameters
@@ -75,10 +75,10 @@ def sweep(
         jobs = 1
     optima = run_all(_optimum, problems, jobs=jobs, scheduler=scheduler, progress=progress)
     found = dict(zip(problems, optima, strict=True))
-    return [Row(case, found[case.problem]) for case in cases]
+    return [SweepRow(case, found[case.problem]) for case in cases]
 
 
-def _optimum(problem: Problem | VehicleProblem) -> Optimum | VehicleOptimum:
+def _optimum(problem: SuspensionProblem | VehicleProblem) -> Optimum | VehicleOptimum:
     # threads would fight over matrices of seven rows, and change the last digits
     with threadpool_limits(1):
         if isinstance(problem, VehicleProblem):

@@ -8,12 +8,12 @@ from rich.text import Text
 
 from inerter.suspension.indices import INDICES
 from inerter.suspension.results import improvement, notes
-from inerter.suspension.sweep import Row
+from inerter.suspension.sweep import SweepRow
 from inerter.suspension.vehicle.optimum import VehicleOptimum
 from inerter.suspension.vehicle.strut import VehicleStrut
 
 
-def print_rows(rows: list[Row], console: Console) -> None:
+def print_rows(rows: list[SweepRow], console: Console) -> None:
     """Print a table of the optima, the peaks of J5 where they are few, and the remarks.
 
     Struts of a half- or full car stand one below the other, the front's first.
@@ -61,7 +61,7 @@ def print_rows(rows: list[Row], console: Console) -> None:
         console.print(Text(note), soft_wrap=True)
 
 
-def _struts(row: Row) -> tuple[VehicleStrut, ...]:
+def _struts(row: SweepRow) -> tuple[VehicleStrut, ...]:
     """The strut of a quarter-car, or those of both axles."""
     best = row.optimum
     if isinstance(best, VehicleOptimum):
@@ -70,7 +70,7 @@ def _struts(row: Row) -> tuple[VehicleStrut, ...]:
     return (VehicleStrut(k, best.damping, best.inertance, best.relaxation_stiffness),)
 
 
-def _names(row: Row) -> tuple[str, ...]:
+def _names(row: SweepRow) -> tuple[str, ...]:
     return row.case.problem.network.variables
 
 
@@ -78,6 +78,6 @@ def _lines(springs: list[float | None]) -> str:
     return "\n".join("" if spring is None else f"{spring / 1e3:.5g}" for spring in springs)
 
 
-def _peaks(row: Row) -> str:
+def _peaks(row: SweepRow) -> str:
     found = ", ".join(f"{g:.5g} at {f:.3g} Hz" for f, g in row.optimum.peaks)
     return f"{row.case.layout} {row.case.series}, peaks of J5 [m/N]: {found}"

@@ -26,7 +26,7 @@ import math
 from collections.abc import Mapping
 
 from inerter.validate.case import Case
-from inerter.validate.run import QUANTITIES, Run, errors
+from inerter.validate.run import QUANTITIES, ValidationRun, errors
 from inerter.validate.truth import force_change, stepped
 
 AGREEMENT = 1e-6
@@ -39,7 +39,7 @@ HIGH_ORDER = 4.0
 Figures = Mapping[str, float | None]
 
 
-def sensitivity(case: Case, step: float, true: Run) -> dict[str, float]:
+def sensitivity(case: Case, step: float, true: ValidationRun) -> dict[str, float]:
     """The law's own sensitivity to a step [s], by quantity; 0 for smooth laws.
 
     `true` is the reference at the case's sample times.
@@ -58,7 +58,7 @@ def bound(
     order: float | None,
     own: Mapping[str, float],
     change: Figures,
-    true: Run,
+    true: ValidationRun,
 ) -> dict[str, float | None]:
     """Largest admissible error of each quantity; None where there is no bound.
 

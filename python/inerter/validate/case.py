@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inerter.reference import ReferenceDevice
 from inerter.validate.inputs import Signal, signal
 from inerter.validate.laws import LAWS, Kind, in_units
-from inerter.validate.models import Model, models
+from inerter.validate.models import ValidationModel, models
 
 PUBLISHED = "published"
 """The law's name where a model keeps the device that it is shipped with."""
@@ -36,7 +36,7 @@ class Case:
     headline: bool = False
 
     @property
-    def setup(self) -> Model:
+    def setup(self) -> ValidationModel:
         """The model."""
         return models()[self.model]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from inerter.models import exudyn_model
 from inerter.validate.case import SAMPLE, Case
-from inerter.validate.run import Array, Run, RunError
+from inerter.validate.run import Array, RunError, ValidationRun
 
 ORDERS = {"RK44": 4.0, "DOPRI5": None, "RK67": 6.0, "GeneralizedAlpha": 2.0}
 """The integrators and their nominal orders; a method with adaptive steps has none."""
@@ -41,7 +41,7 @@ def is_late(case: Case, integrator: str) -> bool:
     return "load_friction" in device and rigid and integrator != "GeneralizedAlpha"
 
 
-def run_exudyn(case: Case, integrator: str, step: float) -> Run:
+def run_exudyn(case: Case, integrator: str, step: float) -> ValidationRun:
     """Run a case.
 
     Parameters
@@ -100,7 +100,7 @@ def run_exudyn(case: Case, integrator: str, step: float) -> Run:
 
     time = read(next(iter(motion.values())), -1)
     nothing = np.empty((time.size, 0))
-    run = Run(
+    run = ValidationRun(
         time=np.clip(time, 0.0, case.duration),
         displacement=coordinates("Coordinates"),
         velocity=coordinates("Coordinates_t"),

@@ -51,8 +51,8 @@ class Input:
     delay: float = 0.0
 
 
-@dataclass(frozen=True)
-class Model:
+@dataclass(frozen=True, kw_only=True)
+class ValidationModel:
     """A model in one layout.
 
     Attributes
@@ -123,7 +123,7 @@ class Model:
 
 
 @cache
-def models() -> dict[str, Model]:
+def models() -> dict[str, ValidationModel]:
     """Every model and layout by its key."""
     found = [
         *(_quarter_car(layout) for layout in ("S1", "S2", "S3")),
@@ -141,14 +141,14 @@ def models() -> dict[str, Model]:
 _TABLE_1 = {"S1": (4981.0, 0.0), "S2": (3705.4, 128.57), "S3": (7544.2, 366.52)}
 
 
-def _quarter_car(layout: str) -> Model:
+def _quarter_car(layout: str) -> ValidationModel:
     damping, inertance = _TABLE_1[layout]
     car = QuarterCar(layout=layout, damping=damping, device=ReferenceDevice(inertance=inertance))
     # the same car twice: bodies nested, or side by side in the world
     files = {"quarter_car": _file(layout)}
     if layout == "S2":
         files["quarter_car_siblings"] = "model_siblings.xml"
-    return Model(
+    return ValidationModel(
         name="quarter_car",
         layout=layout,
         structure=car.structure,
@@ -163,14 +163,14 @@ def _quarter_car(layout: str) -> Model:
     )
 
 
-def _half_car(layout: str) -> Model:
+def _half_car(layout: str) -> ValidationModel:
     corners = {name: corner_of(axle, layout) for name, axle in
                (("front", HALF_CAR.front), ("rear", HALF_CAR.rear))}  # fmt: skip
     car = HalfCar(front=corners["front"], rear=corners["rear"])
     return _vehicle("half_car", layout, car.structure, ("heave", "pitch"), corners)
 
 
-def _full_car(layout: str) -> Model:
+def _full_car(layout: str) -> ValidationModel:
     corners = {
         f"{axle}_{side}": corner_of(getattr(FULL_CAR, axle), layout)
         for axle in ("front", "rear")
@@ -191,7 +191,7 @@ def _vehicle(
     structure: Structure,
     body: tuple[str, ...],
     corners: Mapping[str, Corner],
-) -> Model:
+) -> ValidationModel:
     """Roads of different height, the rear ones later: every motion of the body is there."""
     heights = dict(zip(corners, (1.0, 0.6, 0.8, 0.5), strict=False))
     inputs: dict[str, Input] = {}
@@ -201,7 +201,7 @@ def _vehicle(
         delay = 0.0 if where.startswith("front") else 0.1
         inputs[f"road_{where}"] = Input(push, heights[where], delay)
     wheels = {f"wheel_{where}": (f"wheel_{where}",) for where in corners}
-    return Model(
+    return ValidationModel(
         name=name,
         layout=layout,
         structure=structure,
@@ -217,9 +217,9 @@ def _vehicle(
     )
 
 
-def _frame(layout: str, lower: int, upper: int, file: str) -> Model:
+def _frame(layout: str, lower: int, upper: int, file: str) -> ValidationModel:
     frame = ShearFrame(devices=(FloorDevice(lower=lower, upper=upper, device=FRAME_DEVICE),))
-    return Model(
+    return ValidationModel(
         name="tuned_inerter_damper",
         layout=layout,
         structure=frame.structure,
@@ -236,7 +236,7 @@ def _frame(layout: str, lower: int, upper: int, file: str) -> Model:
     )
 
 
-def _fluid(layout: str) -> Model:
+def _fluid(layout: str) -> ValidationModel:
     dry = layout == "dry"
     structure = Structure(
         mass=np.array([[FLUID_INERTER.piston_mass]]),
@@ -245,7 +245,7 @@ def _fluid(layout: str) -> Model:
         directions=np.ones((1, 1)),
         struts=(Strut(layout="S2", device=dry_device() if dry else complete_device()),),
     )
-    return Model(
+    return ValidationModel(
         name="fluid_inerter",
         layout=layout,
         structure=structure,

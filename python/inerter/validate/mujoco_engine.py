@@ -21,7 +21,7 @@ from inerter.plugin import load_plugin
 from inerter.simulate.checks import engine_warnings
 from inerter.validate.case import SAMPLE, Case
 from inerter.validate.inputs import Signal
-from inerter.validate.run import Array, Run, RunError
+from inerter.validate.run import Array, RunError, ValidationRun
 
 ORDERS = {"Euler": 1.0, "implicit": 1.0, "implicitfast": 1.0, "discrete": 1.0, "RK4": 4.0}
 """The integrators and their nominal orders."""
@@ -38,7 +38,7 @@ class Beside:
     device: Device
 
 
-def run_mujoco(case: Case, file: str, integrator: str, step: float) -> Run:
+def run_mujoco(case: Case, file: str, integrator: str, step: float) -> ValidationRun:
     """Run a case.
 
     Parameters
@@ -119,7 +119,7 @@ def control(model: Any, signals: Mapping[str, Signal]) -> Iterator[None]:
         mujoco.set_mjcb_control(before)
 
 
-def _sampled(case: Case, model: Any, data: Any, beside: list[Beside]) -> Run:
+def _sampled(case: Case, model: Any, data: Any, beside: list[Beside]) -> ValidationRun:
     """Step through the case; at each sample everything is evaluated at that instant."""
     setup, times = case.setup, case.times
     every = round(SAMPLE / model.opt.timestep)
@@ -164,7 +164,7 @@ def _run(
     joints: list[list[int]],
     rows: tuple[Array, Array, Array, Array],
     beside: list[Beside],
-) -> Run:
+) -> ValidationRun:
     """In the words of the comparison, at the size of the reference's motion."""
     qpos, qvel, acts, devices = rows
     size = case.setup.scale
@@ -176,7 +176,7 @@ def _run(
         first = model.actuator(name).actadr[0]
         for column, state_name in enumerate(part.device.state_names):
             state[i, state_name] = acts[:, first + column] / size
-    return Run(
+    return ValidationRun(
         time=case.times,
         displacement=np.column_stack([qpos[:, at].sum(axis=1) for at in joints]) / size,
         velocity=np.column_stack([qvel[:, at].sum(axis=1) for at in joints]) / size,

@@ -10,15 +10,15 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from inerter.report.palette import LIGHT
-from inerter.report.png import png
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.png import png
 from inerter.validate.bounds import AGREEMENT
 from inerter.validate.case import PUBLISHED
 from inerter.validate.laws import LAWS
 from inerter.validate.plan import ENGINES
 from inerter.validate.result import Validation, largest
 from inerter.validate.run import QUANTITIES
-from inerter.validate.task import Row
+from inerter.validate.task import ValidationRow
 
 _LOWEST, _HIGHEST = 1e-10, 1e-1
 _ENGINES = {"mujoco": "MuJoCo", "exudyn": "Exudyn"}
@@ -43,7 +43,7 @@ def picture(validation: Validation) -> bytes:
     return png(figure)
 
 
-def _laws(figure: Figure, axes: Any, rows: list[Row], laws: list[str]) -> None:
+def _laws(figure: Figure, axes: Any, rows: list[ValidationRow], laws: list[str]) -> None:
     there = {(row.engine, row.integrator) for row in rows}
     columns = [(engine, name) for engine, names in ENGINES.items() for name in names]
     columns = [column for column in columns if column in there]
@@ -120,5 +120,5 @@ def _models(validation: Validation) -> list[str]:
     return list(dict.fromkeys(_name(row) for row in validation.headline))
 
 
-def _name(row: Row) -> str:
+def _name(row: ValidationRow) -> str:
     return f"{row.model.replace('_', ' ')} {row.layout}"

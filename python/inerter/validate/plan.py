@@ -10,7 +10,7 @@ from inerter.validate import exudyn_engine, mujoco_engine
 from inerter.validate.case import PUBLISHED, Case
 from inerter.validate.inputs import INPUTS
 from inerter.validate.laws import LAWS
-from inerter.validate.models import Model, models
+from inerter.validate.models import ValidationModel, models
 from inerter.validate.task import Task, Wanted
 
 ENGINES = {"mujoco": mujoco_engine.INTEGRATORS, "exudyn": exudyn_engine.INTEGRATORS}
@@ -130,7 +130,7 @@ def _wanted(case: Case, selection: Selection, exudyn: bool) -> Iterable[Wanted]:
                     yield Wanted(engine, integrator, name)
 
 
-def _asked(setup: Model, name: str, asked: Sequence[str]) -> bool:
+def _asked(setup: ValidationModel, name: str, asked: Sequence[str]) -> bool:
     """Whether a row is asked for: by its name, or by a model with all its files."""
     return name in asked or setup.key in asked or setup.name in asked
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from inerter.validate.plan import ENGINES, Selection
 from inerter.validate.run import QUANTITIES
-from inerter.validate.task import Row
+from inerter.validate.task import ValidationRow
 
 SCHEMA = "inerter.validation/1"
 
@@ -19,28 +19,28 @@ class Validation:
     """Rows of all cases that were selected, and the wall time [s]."""
 
     selection: Selection
-    all_rows: list[Row]
+    all_rows: list[ValidationRow]
     seconds: float
 
     @property
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[ValidationRow]:
         """The cases at two steps, sorted by what they are."""
         return sorted((row for row in self.all_rows if not row.headline), key=_place)
 
     @property
-    def headline(self) -> list[Row]:
+    def headline(self) -> list[ValidationRow]:
         """The long runs."""
         return sorted((row for row in self.all_rows if row.headline), key=_place)
 
     @property
-    def missed(self) -> list[Row]:
+    def missed(self) -> list[ValidationRow]:
         """Rows outside their bounds, or without a result."""
         return [row for row in self.all_rows if not row.within]
 
     @cached_property
     def summary(self) -> list[dict[str, Any]]:
         """For each engine, integrator and kind of law: largest errors, range of orders."""
-        groups: dict[tuple[str, str, str], list[Row]] = {}
+        groups: dict[tuple[str, str, str], list[ValidationRow]] = {}
         for row in self.rows:
             kind = "smooth" if row.kind == "smooth" else "not smooth"
             groups.setdefault((row.engine, row.integrator, kind), []).append(row)
@@ -72,13 +72,13 @@ def versions() -> dict[str, str | None]:
     return found
 
 
-def largest(rows: list[Row], quantity: str) -> float | None:
+def largest(rows: list[ValidationRow], quantity: str) -> float | None:
     """Largest error of some rows; None where none has that quantity."""
     values = [row.errors[quantity] for row in rows]
     return max((value for value in values if value is not None), default=None)
 
 
-def _group(engine: str, integrator: str, kind: str, rows: list[Row]) -> dict[str, Any]:
+def _group(engine: str, integrator: str, kind: str, rows: list[ValidationRow]) -> dict[str, Any]:
     orders = [row.order for row in rows if row.order is not None]
     return {
         "engine": engine,
@@ -91,5 +91,5 @@ def _group(engine: str, integrator: str, kind: str, rows: list[Row]) -> dict[str
     }
 
 
-def _place(row: Row) -> tuple[int, str, str, str, str]:
+def _place(row: ValidationRow) -> tuple[int, str, str, str, str]:
     return list(ENGINES).index(row.engine), row.model, row.layout, row.law, row.input

@@ -17,8 +17,8 @@ class RunError(RuntimeError):
     """An engine could not finish a run; the text says why."""
 
 
-@dataclass(frozen=True)
-class Run:
+@dataclass(frozen=True, kw_only=True)
+class ValidationRun:
     """Samples of a run; arrays of shape (times, columns), SI units.
 
     Attributes
@@ -45,10 +45,10 @@ class Run:
     energy: Array
     device_motion: tuple[Array, Array] | None = None
 
-    def at(self, rows: NDArray[np.intp]) -> Run:
+    def at(self, rows: NDArray[np.intp]) -> ValidationRun:
         """Some of the samples."""
         motion = self.device_motion
-        return Run(
+        return ValidationRun(
             time=self.time[rows],
             displacement=self.displacement[rows],
             velocity=self.velocity[rows],
@@ -59,7 +59,7 @@ class Run:
         )
 
 
-def columns(run: Run, quantity: str, names: list[tuple[int, str]]) -> Array:
+def columns(run: ValidationRun, quantity: str, names: list[tuple[int, str]]) -> Array:
     """A quantity as an array (times, columns); of the states those that are named."""
     if quantity != "state":
         return np.asarray(getattr(run, quantity), dtype=np.float64)
@@ -67,7 +67,7 @@ def columns(run: Run, quantity: str, names: list[tuple[int, str]]) -> Array:
     return np.column_stack(found) if found else np.empty((run.time.size, 0))
 
 
-def errors(found: Run, true: Run) -> dict[str, float | None]:
+def errors(found: ValidationRun, true: ValidationRun) -> dict[str, float | None]:
     """Relative error of each quantity; None where the case has none of it or it stays 0.
 
     Largest difference over the largest value of the truth, column by column; then the worst

@@ -9,7 +9,7 @@ from rich.text import Text
 from inerter.validate import bounds
 from inerter.validate.result import Validation
 from inerter.validate.run import QUANTITIES
-from inerter.validate.task import Row
+from inerter.validate.task import ValidationRow
 
 _ENGINES = {"mujoco": "MuJoCo", "exudyn": "Exudyn"}
 
@@ -71,7 +71,7 @@ def _add_numbers(table: Table, *more: str) -> None:
         table.add_column(name, justify="right", no_wrap=True)
 
 
-def _missed(row: Row) -> Text:
+def _missed(row: ValidationRow) -> Text:
     where = f"{row.model} {row.layout}, {row.law}, {row.input}, {_ENGINES[row.engine]} "
     where += f"{row.integrator}: "
     if not row.bound:

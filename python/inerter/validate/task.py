@@ -12,7 +12,7 @@ import numpy as np
 
 from inerter.validate import bounds, exudyn_engine, mujoco_engine
 from inerter.validate.case import Case
-from inerter.validate.run import QUANTITIES, Run, RunError, errors
+from inerter.validate.run import QUANTITIES, RunError, ValidationRun, errors
 from inerter.validate.truth import truth
 
 
@@ -33,8 +33,8 @@ class Task:
     wanted: tuple[Wanted, ...]
 
 
-@dataclass
-class Row:
+@dataclass(kw_only=True)
+class ValidationRow:
     """A line of the result; see `validation.json` in docs/accuracy.md."""
 
     model: str
@@ -58,7 +58,7 @@ class Row:
         return asdict(self)
 
 
-def run_task(task: Task) -> list[Row]:
+def run_task(task: Task) -> list[ValidationRow]:
     """Run a task; an engine that fails makes a row with a note and without errors."""
     case = task.case
     with _quiet():
@@ -79,7 +79,7 @@ def _quiet() -> Iterator[None]:
         yield
 
 
-def _runs(case: Case, wanted: Wanted) -> list[Run] | str:
+def _runs(case: Case, wanted: Wanted) -> list[ValidationRun] | str:
     """Runs at the step and at half of it (the long runs: only that), or what went wrong."""
     steps = [case.step / 2.0] if case.headline else [case.step, case.step / 2.0]
     try:
@@ -94,21 +94,25 @@ def _runs(case: Case, wanted: Wanted) -> list[Run] | str:
 class _Truth:
     """The reference at every time that a run of a task has samples at."""
 
-    def __init__(self, case: Case, runs: dict[Wanted, list[Run] | str]) -> None:
+    def __init__(self, case: Case, runs: dict[Wanted, list[ValidationRun] | str]) -> None:
         found = [case.times]
         for several in runs.values():
             found += [] if isinstance(several, str) else [run.time for run in several]
         self._times = np.unique(np.concatenate(found))
         self._run = truth(case, self._times)
 
-    def at(self, times: np.ndarray) -> Run:
+    def at(self, times: np.ndarray) -> ValidationRun:
         """The reference at some of these times."""
         return self._run.at(np.searchsorted(self._times, times))
 
 
 def _row(
-    case: Case, wanted: Wanted, found: list[Run] | str, true: _Truth, own: dict[str, float]
-) -> Row:
+    case: Case,
+    wanted: Wanted,
+    found: list[ValidationRun] | str,
+    true: _Truth,
+    own: dict[str, float],
+) -> ValidationRow:
     if isinstance(found, str):
         return _failed(case, wanted, found)
     nominal, note = _nominal(case, wanted)
@@ -122,7 +126,7 @@ def _row(
         order = bounds.observed_order(coarse, fine, floor)
         change = errors(*found)
     limits = bounds.bound(case, nominal, own, change, true.at(case.times))
-    return Row(
+    return ValidationRow(
         **_names(case, wanted),
         errors=figures[-1],
         order=order,
@@ -141,9 +145,11 @@ def _nominal(case: Case, wanted: Wanted) -> tuple[float | None, str | None]:
     return exudyn_engine.ORDERS[wanted.integrator], None
 
 
-def _failed(case: Case, wanted: Wanted, why: str) -> Row:
+def _failed(case: Case, wanted: Wanted, why: str) -> ValidationRow:
     nothing: dict[str, float | None] = dict.fromkeys(QUANTITIES)
-    return Row(**_names(case, wanted), errors=nothing, order=None, bound={}, within=False, note=why)
+    return ValidationRow(
+        **_names(case, wanted), errors=nothing, order=None, bound={}, within=False, note=why
+    )
 
 
 def _names(case: Case, wanted: Wanted) -> dict[str, Any]:

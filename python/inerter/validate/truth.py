@@ -15,12 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.reference import Structure, StructureRun
 from inerter.validate.case import SAMPLE, Case
-from inerter.validate.run import Run
+from inerter.validate.run import ValidationRun
 
 Array = NDArray[np.float64]
 
 
-def truth(case: Case, times: ArrayLike) -> Run:
+def truth(case: Case, times: ArrayLike) -> ValidationRun:
     """The reference at `times` [s], increasing from 0."""
     structure = case.setup.with_device(case.reference_device())
     method = case.setup.method
@@ -30,7 +30,7 @@ def truth(case: Case, times: ArrayLike) -> Run:
     return run_of(structure, run)
 
 
-def stepped(case: Case, step: float, phase: float) -> Run:
+def stepped(case: Case, step: float, phase: float) -> ValidationRun:
     """The reference's equations by classical Runge-Kutta steps, at the sample times.
 
     Parameters
@@ -76,7 +76,7 @@ def forces_of(case: Case) -> Callable[[float], Array]:
     return forces
 
 
-def run_of(structure: Structure, run: StructureRun) -> Run:
+def run_of(structure: Structure, run: StructureRun) -> ValidationRun:
     """A run of the reference in the words of the comparison."""
     force: list[Array] = []
     energy: list[Array] = []
@@ -94,7 +94,7 @@ def run_of(structure: Structure, run: StructureRun) -> Run:
         for column, name in enumerate(device.state_names):
             state[i, name] = states[:, column]
     nothing = np.empty((run.time.size, 0))
-    return Run(
+    return ValidationRun(
         time=run.time,
         displacement=run.position,
         velocity=run.velocity,
@@ -108,7 +108,7 @@ def run_of(structure: Structure, run: StructureRun) -> Run:
     )
 
 
-def force_change(case: Case, true: Run, displacement: float, velocity: float) -> float:
+def force_change(case: Case, true: ValidationRun, displacement: float, velocity: float) -> float:
     """By how much the devices' forces differ at most for a motion that is off, relative.
 
     Parameters

@@ -78,9 +78,15 @@ def design_ball_screw(measured: str | None = None, **inputs: float | str) -> Des
     }
     figures = _figures(losses, mu, force) + (_fit_figures(comparison) if comparison else ())
     return Design(
-        "ball-screw", values, figures, device, comments, panels, tables,
-        _notes(values, comparison),
-    )  # fmt: skip
+        kind="ball-screw",
+        inputs=values,
+        figures=figures,
+        device=device,
+        comments=comments,
+        panels=panels,
+        tables=tables,
+        notes=_notes(values, comparison),
+    )
 
 
 def _device(losses: Losses) -> tuple[Device, float, float]:
@@ -158,9 +164,9 @@ def _fit_figures(comparison: Comparison) -> tuple[Figure, ...]:
 def _over_frequency(losses: Losses, frequency: np.ndarray) -> Panel:
     ideal = np.full(len(frequency), losses.inertance)
     return Panel(
-        "inertance", f"Inertance at {1e3 * losses.values.number('amplitude'):.3g} mm",
-        "frequency [Hz]", "inertance [kg]",
-        (
+        name="inertance", title=f"Inertance at {1e3 * losses.values.number('amplitude'):.3g} mm",
+        x_title="frequency [Hz]", y_title="inertance [kg]",
+        curves=(
             Curve("ideal, b", frequency.tolist(), ideal.tolist(), dashed=True),
             Curve(
                 "b (eta_2 - eta_1)", frequency.tolist(), over_frequency(losses, frequency).tolist()
@@ -181,9 +187,14 @@ def _over_load(losses: Losses) -> Panel:
     rolling = [1.0 - losses.rolling_efficiency] * len(loads)
     curves.append(Curve("1 - eta_2", loads.tolist(), rolling))
     return Panel(
-        "losses", "Share of the load that is lost", "axial load [N]", "share [-]", curves,
-        log_x=True, log_y=True,
-    )  # fmt: skip
+        name="losses",
+        title="Share of the load that is lost",
+        x_title="axial load [N]",
+        y_title="share [-]",
+        curves=curves,
+        log_x=True,
+        log_y=True,
+    )
 
 
 def _over_acceleration(losses: Losses, comparison: Comparison | None) -> Panel:
@@ -213,7 +224,12 @@ def _over_acceleration(losses: Losses, comparison: Comparison | None) -> Panel:
             Curve("measured", x, points.inertance.tolist(), marks=True),
         ]
     return Panel(
-        "acceleration", title, "acceleration [m/s^2]", "inertance [kg]", curves, log_x=True
+        name="acceleration",
+        title=title,
+        x_title="acceleration [m/s^2]",
+        y_title="inertance [kg]",
+        curves=curves,
+        log_x=True,
     )
 
 
@@ -225,7 +241,13 @@ def _trend_panel(found: Any, frequency: np.ndarray) -> Panel:
         for value, curve in zip(found.values, found.curves, strict=True)
     ]
     title = f"{found.name.replace('_', ' ')} ({PAPER_TRENDS[found.name][0]} of the paper)"
-    return Panel(f"trend_{found.name}", title, "frequency [Hz]", "inertance [kg]", curves)
+    return Panel(
+        name=f"trend_{found.name}",
+        title=title,
+        x_title="frequency [Hz]",
+        y_title="inertance [kg]",
+        curves=curves,
+    )
 
 
 def _notes(values: Values, comparison: Comparison | None) -> tuple[str, ...]:

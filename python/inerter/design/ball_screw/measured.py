@@ -45,7 +45,7 @@ class Points:
         return self.force / self.acceleration
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Comparison:
     """Measured points with what was fitted to them; errors are relative, (n,).
 
@@ -126,9 +126,16 @@ def compare(points: Points, losses: Losses) -> Comparison:
         )
     constant = _scale(points.inertance, np.ones(len(fitted)))
     return Comparison(
-        points, losses, fit[0], fit[1], fitted, fitted / points.inertance - 1.0, left_out,
-        constant, constant / points.inertance - 1.0,
-    )  # fmt: skip
+        points=points,
+        losses=losses,
+        inertance=fit[0],
+        preload=fit[1],
+        fitted=fitted,
+        errors=fitted / points.inertance - 1.0,
+        left_out=left_out,
+        constant=constant,
+        constant_errors=constant / points.inertance - 1.0,
+    )
 
 
 def _shares(losses: Losses, preload: float, loads: Sequence[float] | Array) -> Array:

@@ -46,10 +46,14 @@ def design_fluid(**inputs: float | str) -> Design:
     figures = (*_liquid(channel), *_losses(values, channel), *_cavitation(values, channel, limit))
     speed = values.number("speed")
     return Design(
-        "fluid", values, (*figures, *elastic), device, _comments(channel),
-        (_loss_panel(channel, speed), _limit_panel(values, channel, limit)),
+        kind="fluid",
+        inputs=values,
+        figures=(*figures, *elastic),
+        device=device,
+        comments=_comments(channel),
+        panels=(_loss_panel(channel, speed), _limit_panel(values, channel, limit)),
         notes=_notes(values, channel, limit),
-    )  # fmt: skip
+    )
 
 
 def _liquid(channel: Channel) -> list[Figure]:
@@ -166,18 +170,24 @@ def _loss_panel(channel: Channel, speed: float) -> Panel:
     turbulent = speeds[channel.reynolds(1.0) * speeds > 3000.0]
     x = speeds.tolist()
     return Panel(
-        "loss", "Losses at constant speed", "speed of the piston [m/s]", "force [N]",
-        (
+        name="loss",
+        title="Losses at constant speed",
+        x_title="speed of the piston [m/s]",
+        y_title="force [N]",
+        curves=(
             Curve("walls and ends, as simulated", x, channel.force(speeds).tolist()),
             Curve("bends and ends", x, [channel.ends(v) for v in x]),
             Curve("laminar walls", x, (channel.laminar_damping * speeds).tolist(), dashed=True),
             Curve(
-                "smooth turbulent walls", turbulent.tolist(), channel.blasius(turbulent).tolist(),
+                "smooth turbulent walls",
+                turbulent.tolist(),
+                channel.blasius(turbulent).tolist(),
                 dashed=True,
             ),
         ),
-        log_x=True, log_y=True,
-    )  # fmt: skip
+        log_x=True,
+        log_y=True,
+    )
 
 
 def _limit_panel(values: Values, channel: Channel, limit: float) -> Panel:
@@ -187,13 +197,17 @@ def _limit_panel(values: Values, channel: Channel, limit: float) -> Panel:
     inertial = 1e3 * limit / channel.inertance / (2.0 * math.pi * frequencies) ** 2
     x = frequencies.tolist()
     return Panel(
-        "cavitation", "Amplitude at which the liquid boils", "frequency [Hz]", "amplitude [mm]",
-        (
+        name="cavitation",
+        title="Amplitude at which the liquid boils",
+        x_title="frequency [Hz]",
+        y_title="amplitude [mm]",
+        curves=(
             Curve("inertance and losses", x, found.tolist()),
             Curve("inertance alone", x, inertial.tolist(), dashed=True),
         ),
-        log_x=True, log_y=True,
-    )  # fmt: skip
+        log_x=True,
+        log_y=True,
+    )
 
 
 def _comments(channel: Channel) -> dict[str, str]:

@@ -22,7 +22,7 @@ class Properties:
     bulk_modulus: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Liquid:
     """Functions of the temperature [K], valid between `lowest` and `highest`."""
 
@@ -36,20 +36,28 @@ class Liquid:
 
 def _oil(oil: oils.Oil) -> Liquid:
     return Liquid(
-        oil.lowest, oil.highest, oil.density, oil.viscosity,
-        lambda temperature: oil.vapour_pressure, lambda temperature: oil.bulk_modulus,
-    )  # fmt: skip
+        lowest=oil.lowest,
+        highest=oil.highest,
+        density=oil.density,
+        viscosity=oil.viscosity,
+        vapour_pressure=lambda temperature: oil.vapour_pressure,
+        bulk_modulus=lambda temperature: oil.bulk_modulus,
+    )
 
 
 LIQUIDS: Mapping[str, Liquid] = MappingProxyType(
     {
         "water": Liquid(
-            water.LOWEST, water.HIGHEST, water.density, water.viscosity, water.vapour_pressure,
-            water.bulk_modulus,
+            lowest=water.LOWEST,
+            highest=water.HIGHEST,
+            density=water.density,
+            viscosity=water.viscosity,
+            vapour_pressure=water.vapour_pressure,
+            bulk_modulus=water.bulk_modulus,
         ),
     }
     | {name: _oil(oil) for name, oil in oils.OILS.items()}
-)  # fmt: skip
+)
 
 
 def properties(name: str, temperature: float) -> Properties:

@@ -139,9 +139,15 @@ def design_rack_pinion(
         ]
     }  # fmt: skip
     return Design(
-        "rack-pinion", values, tuple(figures), Device(**device), comments, panels, tables,
-        tuple(notes),
-    )  # fmt: skip
+        kind="rack-pinion",
+        inputs=values,
+        figures=tuple(figures),
+        device=Device(**device),
+        comments=comments,
+        panels=panels,
+        tables=tables,
+        notes=tuple(notes),
+    )
 
 
 def _over_frequency(inertance: float, resonance: float, highest: float) -> Panel:
@@ -152,11 +158,13 @@ def _over_frequency(inertance: float, resonance: float, highest: float) -> Panel
     felt = np.where(distance > 0.01, inertance / np.maximum(distance, 0.01), np.nan)
     x = frequency.tolist()
     return Panel(
-        "inertance", "Force per acceleration, no losses, no play", "frequency [Hz]",
-        "inertance [kg]",
-        (
+        name="inertance",
+        title="Force per acceleration, no losses, no play",
+        x_title="frequency [Hz]",
+        y_title="inertance [kg]",
+        curves=(
             Curve("with elastic shafts", x, felt.tolist()),
             Curve("rigid", x, [inertance] * len(x), dashed=True),
         ),
         log_y=True,
-    )  # fmt: skip
+    )

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.bench import Run
+from inerter.identify.runs import BenchRun
 
 from . import columns as c
-from .learning import Data, Prediction, predict, share
+from .learning import LearntPart, Samples, predict, share
 from .lines import Lines, lines
 from .periodic import Period, along_stroke
 
@@ -47,13 +47,13 @@ class Remainder:
         Time per run [s], from the beginning of the records where they share a clock.
     """
 
-    runs: Sequence[Run]
+    runs: Sequence[BenchRun]
     residual: Sequence[Array]
-    data: Data
+    data: Samples
     sizes: c.Sizes
     clock: Sequence[Array]
 
-    def flat(self, make: Callable[[Run], Array]) -> Array:
+    def flat(self, make: Callable[[BenchRun], Array]) -> Array:
         """A function of every run on the samples that count, (n,) or (n, m)."""
         return self.data.flat([make(run) for run in self.runs])
 
@@ -71,10 +71,10 @@ class Remainder:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Tested:
     """Every test's prediction, and what some of them found besides."""
 
-    tests: Mapping[str, Prediction]
+    tests: Mapping[str, LearntPart]
     periods: Mapping[str, Period]
     lines: Lines
 
@@ -114,7 +114,7 @@ def columns_of(remainder: Remainder) -> dict[str, Array]:
     }
 
 
-def battery(remainder: Remainder, columns: Mapping[str, Array]) -> Outcome:
+def battery(remainder: Remainder, columns: Mapping[str, Array]) -> Tested:
     """Every test on a remainder; `columns` from `columns_of`."""
     data, runs = remainder.data, remainder.runs
     tests = {
@@ -135,5 +135,5 @@ def battery(remainder: Remainder, columns: Mapping[str, Array]) -> Outcome:
     flat = data.flat(found.values)
     held = data.fold == 0
     shares = found.share, share(data.residual[held], flat[held])
-    tests["frequency"] = Prediction(flat, *shares, found.p)
-    return Outcome(tests, periods, found)
+    tests["frequency"] = LearntPart(flat, *shares, found.p)
+    return Tested(tests, periods, found)

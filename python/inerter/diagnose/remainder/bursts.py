@@ -14,7 +14,7 @@ import numpy as np
 from numpy.fft import rfft, rfftfreq
 from numpy.typing import NDArray
 
-from inerter.identify.bench import Run
+from inerter.identify.runs import BenchRun
 
 from . import columns as c
 from .learning import gather, predict
@@ -28,7 +28,7 @@ CLASSES = 5
 FEWEST = 16
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Bursts:
     """How the residual's loudness changes.
 
@@ -53,7 +53,7 @@ class Bursts:
 
 
 def bursts(
-    runs: Sequence[Run], residual: Sequence[Array], held: Sequence[NDArray], sizes: c.Sizes
+    runs: Sequence[BenchRun], residual: Sequence[Array], held: Sequence[NDArray], sizes: c.Sizes
 ) -> Bursts:
     """Look for bursts in residuals (n_i,) [N] at the rate of the records.
 
@@ -77,7 +77,9 @@ def bursts(
         steps.append(length * run.spacing)
     if sum(int(mask.sum()) for mask in masks) < FEWEST:
         # short and fast runs
-        return Bursts(0.0, 0.0, 1.0, 0.0, 0.0, False)
+        return Bursts(
+            share=0.0, share_held_out=0.0, p=1.0, size=0.0, frequency=0.0, after_reversals=False
+        )
     mean = float(np.mean(np.concatenate([q[m] for q, m in zip(loud, masks, strict=True)])))
     data = gather([q - mean for q in loud], masks, out, steps, [1 / s for s in steps])
     clocks = _classes(data.flat(since), np.array(c.SINCE))
@@ -92,12 +94,12 @@ def bursts(
     quiet = float(np.quantile(level, 0.1))
     size = float(np.sqrt(np.mean(np.maximum(level**2 - quiet**2, 0))))
     return Bursts(
-        full.share,
-        full.share_held_out,
-        full.p,
-        size,
-        _pitch(runs, residual),
-        alone.share > 0.6 * full.share,
+        share=full.share,
+        share_held_out=full.share_held_out,
+        p=full.p,
+        size=size,
+        frequency=_pitch(runs, residual),
+        after_reversals=alone.share > 0.6 * full.share,
     )
 
 
@@ -106,7 +108,7 @@ def _classes(values: Array, edges: Array) -> Array:
     return (np.digitize(values, edges)[:, None] == np.arange(edges.size + 1)).astype(float)
 
 
-def _pitch(runs: Sequence[Run], residual: Sequence[Array]) -> float:
+def _pitch(runs: Sequence[BenchRun], residual: Sequence[Array]) -> float:
     """Frequency of most power in the run with the loudest residual [Hz]."""
     i = int(np.argmax([np.mean(r[run.inner] ** 2) for run, r in zip(runs, residual, strict=True)]))
     r = np.where(runs[i].inner, residual[i], 0)

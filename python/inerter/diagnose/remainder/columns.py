@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 from scipy.signal import lfilter
 
-from inerter.identify.bench import Run
+from inerter.identify.runs import BenchRun
 from inerter.records.motion import band_response, filtered
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class Sizes:
     force: float
 
 
-def sizes_of(runs: Sequence[Run]) -> Sizes:
+def sizes_of(runs: Sequence[BenchRun]) -> Sizes:
     """Rms of the channels over the samples that count."""
 
     def rms(name: str) -> float:
@@ -52,13 +52,13 @@ def sizes_of(runs: Sequence[Run]) -> Sizes:
     return Sizes(rms("displacement"), rms("velocity"), rms("acceleration"), rms("force"))
 
 
-def through_band(run: Run, columns: Array) -> Array:
+def through_band(run: BenchRun, columns: Array) -> Array:
     """Columns (n, m) through the low-pass of the fitted force."""
     gain = band_response(len(columns), run.spacing, run.cutoff)
     return np.column_stack([filtered(column, gain) for column in columns.T])
 
 
-def direction(run: Run, sizes: Sizes) -> Array:
+def direction(run: BenchRun, sizes: Sizes) -> Array:
     """Sign of the velocity, smooth where it is small, (n,)."""
     return np.tanh(run.velocity / (TRANSITION * sizes.v))
 
@@ -76,7 +76,7 @@ def edges_of(values: Array, count: int = KNOTS) -> Array:
     return found if found.size > 1 else np.array([found[0] - 1.0, found[0] + 1.0])
 
 
-def powers(run: Run, sizes: Sizes) -> Array:
+def powers(run: BenchRun, sizes: Sizes) -> Array:
     """Products of x, v and a up to the third degree that are no powers of one alone, (n, 13)."""
     x, v, a = run.displacement / sizes.x, run.velocity / sizes.v, run.acceleration / sizes.a
     pairs = [x * v, x * a, v * a, x * x * v, x * x * a, v * v * x, v * v * a, a * a * x, a * a * v]
@@ -109,7 +109,7 @@ def play(x: Array, half: float) -> Array:
     return out
 
 
-def past(run: Run, sizes: Sizes) -> Array:
+def past(run: BenchRun, sizes: Sizes) -> Array:
     """What went before: fading means of velocity and direction, and plays of the displacement."""
     way = direction(run, sizes)
     columns = []
@@ -126,7 +126,7 @@ def past(run: Run, sizes: Sizes) -> Array:
     return np.column_stack(columns)
 
 
-def since_reversal(run: Run, sizes: Sizes) -> tuple[Array, Array]:
+def since_reversal(run: BenchRun, sizes: Sizes) -> tuple[Array, Array]:
     """Time since the velocity last changed sign, and how long it had rested then [s], (n,) each."""
     slow = 0.02 * sizes.v
     sign = np.where(np.abs(run.velocity) > slow, np.sign(run.velocity), 0.0)
@@ -145,7 +145,7 @@ def since_reversal(run: Run, sizes: Sizes) -> tuple[Array, Array]:
     return since, rested
 
 
-def after_reversals(run: Run, sizes: Sizes) -> Array:
+def after_reversals(run: BenchRun, sizes: Sizes) -> Array:
     """Direction within classes of time since a reversal, alone and with the rest before, (n, m)."""
     since, rested = since_reversal(run, sizes)
     way = direction(run, sizes)
@@ -157,7 +157,7 @@ def after_reversals(run: Run, sizes: Sizes) -> Array:
     return through_band(run, np.column_stack(columns))
 
 
-def amplitude(run: Run, sizes: Sizes) -> Array:
+def amplitude(run: BenchRun, sizes: Sizes) -> Array:
     """Rms velocity over about the second around a sample, per rms of all runs, (n,)."""
     square = (run.velocity / sizes.v) ** 2
     ahead = filtered_past(square[::-1], run.spacing, 0.5)[::-1]

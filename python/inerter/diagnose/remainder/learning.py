@@ -27,7 +27,7 @@ PENALTIES = (1e-6, 1e-3, 1e-2, 1e-1)
 
 
 @dataclass(frozen=True)
-class Data:
+class Samples:
     """The residual on the samples that count, in one column.
 
     Attributes
@@ -58,7 +58,7 @@ class Data:
 
 
 @dataclass(frozen=True)
-class Prediction:
+class LearntPart:
     """What columns predict of the residual, out of sample.
 
     Attributes
@@ -83,7 +83,7 @@ def gather(
     held: Sequence[Mask],
     spacing: Sequence[float],
     cutoff: Sequence[float],
-) -> Data:
+) -> Samples:
     """Arrange residuals of runs (n_i,) [N] into folds and stretches; `held`: held-out samples."""
     folds, stretches, count = [], [], 0
     for r, mask, out, step, limit in zip(residual, masks, held, spacing, cutoff, strict=True):
@@ -96,10 +96,10 @@ def gather(
         stretches.append((count + short)[mask])
         count += int(short[-1]) + 1
     flat = np.concatenate([r[m] for r, m in zip(residual, masks, strict=True)])
-    return Data(flat, np.concatenate(folds), np.concatenate(stretches), list(masks))
+    return Samples(flat, np.concatenate(folds), np.concatenate(stretches), list(masks))
 
 
-def predict(data: Data, columns: Array, target: Array | None = None) -> Prediction:
+def predict(data: Samples, columns: Array, target: Array | None = None) -> LearntPart:
     """Predict the residual, or another `target` (n,), from columns (n, m), out of sample."""
     y = data.residual if target is None else target
     sizes = np.sqrt(np.mean(columns**2, axis=0))
@@ -116,7 +116,7 @@ def predict(data: Data, columns: Array, target: Array | None = None) -> Predicti
             limit = float(np.max(np.abs(y[np.isin(data.fold, learnt)]), initial=0.0))
             raw = matrix[part] @ _ridge(grams, rights, squares, learnt)
             values[part] = np.clip(raw, -limit, limit)
-    return Prediction(
+    return LearntPart(
         values,
         share(y, values),
         share(y[parts[0]], values[parts[0]]),

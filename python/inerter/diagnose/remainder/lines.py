@@ -29,7 +29,7 @@ ONE_TONE = 0.9
 NEAR = 0.03
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Lines:
     """Lines of all runs together.
 
@@ -80,11 +80,18 @@ def lines(
     predicted = np.concatenate([v[m] for v, m in zip(values, masks, strict=True)])
     p = chance(r, predicted, np.concatenate(numbers))
     if not strongest:
-        return Lines(values, 0.0, 0, 0.0, 0.0, 1.0)
+        return Lines(values=values, frequency=0.0, multiple=0, amplitude=0.0, share=0.0, p=1.0)
     power, frequency, force, step, mask = max(strongest, key=lambda line: line[0])
     multiple = _multiple(frequency, force, step, mask)
     amplitude = float(np.sqrt(2 * power))
-    return Lines(values, frequency, multiple, amplitude, share(r, predicted), p)
+    return Lines(
+        values=values,
+        frequency=frequency,
+        multiple=multiple,
+        amplitude=amplitude,
+        share=share(r, predicted),
+        p=p,
+    )
 
 
 def _learn(r: Array, step: float, mask: Mask) -> list[tuple[float, float, float]]:

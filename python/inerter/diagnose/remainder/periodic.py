@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .learning import FOLDS, Data, Prediction, chance, share
+from .learning import FOLDS, LearntPart, Samples, chance, share
 
 Array = NDArray[np.float64]
 
@@ -26,15 +26,15 @@ class Period:
     """A period along the stroke [m], and what a force of that period predicts."""
 
     length: float
-    prediction: Prediction
+    prediction: LearntPart
 
 
-def along_stroke(data: Data, x: Array, factor: Array) -> Period:
+def along_stroke(data: Samples, x: Array, factor: Array) -> Period:
     """The force factor(x) times a sine of x that takes most out of the residual.
 
     Parameters
     ----------
-    data : Data
+    data : Samples
         The residual.
     x : ndarray (n,)
         Displacement [m] on the samples that count.
@@ -59,7 +59,7 @@ def along_stroke(data: Data, x: Array, factor: Array) -> Period:
         values[part] = columns[part] @ weights
         picked.append((int(part.sum()), number))
     r, held = data.residual, data.fold == 0
-    prediction = Prediction(
+    prediction = LearntPart(
         values,
         share(r, values),
         share(r[held], values[held]),
@@ -73,7 +73,7 @@ def _pair(x: Array, factor: Array, number: float) -> Array:
     return np.column_stack([factor * np.sin(phase), factor * np.cos(phase)])
 
 
-def _moments(data: Data, x: Array, factor: Array, numbers: Array) -> Array:
+def _moments(data: Samples, x: Array, factor: Array, numbers: Array) -> Array:
     """Per fold and wave number: sums of s s, s c, c c, s r, c r, shape (folds, numbers, 5)."""
     found = np.empty((FOLDS + 1, numbers.size, 5))
     square = factor**2

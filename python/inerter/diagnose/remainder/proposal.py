@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .battery import Remainder
-from .learning import FOLDS, Data, chance, share
+from .learning import FOLDS, Samples, chance, share
 from .library import Term, library
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ REQUIRED_CHANCE = 1e-3
 class _Regression:
     """Least squares on subsets of a library by its Gram matrices, one per fold."""
 
-    def __init__(self, data: Data, terms: Sequence[Term]) -> None:
+    def __init__(self, data: Samples, terms: Sequence[Term]) -> None:
         self.data, self.terms = data, terms
         blocks = [term.columns for term in terms]
         self.owner = np.repeat(np.arange(len(terms)), [block.shape[1] for block in blocks])
@@ -165,7 +165,7 @@ def _judged(regression: _Regression, chosen: frozenset[int]) -> dict[str, Any] |
     return {"text": text, "terms": rows, "share": shares[1], "note": NOTE}
 
 
-def _errors(matrix: Array, left: Array, data: Data) -> Array:
+def _errors(matrix: Array, left: Array, data: Samples) -> Array:
     """Standard errors (m,), robust against residuals that are correlated within stretches."""
     learnt = data.fold > 0
     count = int(data.stretch.max()) + 1

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 METHODS = ("emd", "savgol", "lowpass", "spline", "none")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Denoised:
     """A denoised channel and how it came about.
 
@@ -95,8 +95,16 @@ def denoise(
         "emd": lambda: _by_modes(values, level, rule),
         "savgol": lambda: _by_savgol(values, level),
         "lowpass": lambda: _by_lowpass(values, spacing, level, cutoff),
-        "spline": lambda: Denoised(filters.spline(values), "spline", level, {}, None),
-        "none": lambda: Denoised(values.copy(), "none", level, {}, 1.0),
+        "spline": lambda: Denoised(
+            values=filters.spline(values),
+            method="spline",
+            noise=level,
+            strength={},
+            noise_gain=None,
+        ),
+        "none": lambda: Denoised(
+            values=values.copy(), method="none", noise=level, strength={}, noise_gain=1.0
+        ),
     }
     if method not in ways:
         raise ValueError(
@@ -107,15 +115,25 @@ def denoise(
 
 def _by_modes(values: Array, noise: float, rule: Rule) -> Denoised:
     modes = selected(values, noise, rule)
-    return Denoised(modes.denoised, "emd", noise, {}, None, modes)
+    return Denoised(
+        values=modes.denoised, method="emd", noise=noise, strength={}, noise_gain=None, modes=modes
+    )
 
 
 def _by_savgol(values: Array, noise: float) -> Denoised:
     smooth, window = filters.savgol(values, noise)
-    return Denoised(smooth, "savgol", noise, {"window": window}, filters.savgol_gain(window))
+    return Denoised(
+        values=smooth,
+        method="savgol",
+        noise=noise,
+        strength={"window": window},
+        noise_gain=filters.savgol_gain(window),
+    )
 
 
 def _by_lowpass(values: Array, spacing: float, noise: float, cutoff: float | None) -> Denoised:
     smooth, cutoff = filters.lowpassed(values, spacing, noise, cutoff)
     gain = filters.lowpass_gain(spacing, cutoff)
-    return Denoised(smooth, "lowpass", noise, {"cutoff": cutoff}, gain)
+    return Denoised(
+        values=smooth, method="lowpass", noise=noise, strength={"cutoff": cutoff}, noise_gain=gain
+    )

@@ -35,8 +35,8 @@ WAYS = (
 )
 
 
-@dataclass(frozen=True)
-class Row:
+@dataclass(frozen=True, kw_only=True)
+class DenoisingRow:
     """One way to denoise.
 
     Attributes
@@ -66,7 +66,7 @@ class Row:
     inertance: float
 
 
-def compare(draws: int = DRAWS, noise: float = NOISE, seed: int = 0) -> list[Row]:
+def compare(draws: int = DRAWS, noise: float = NOISE, seed: int = 0) -> list[DenoisingRow]:
     """A row for each of `WAYS`; `draws` noises of rms `noise` [N]."""
     time = np.arange(int(PERIODS * RATE / FREQUENCY)) / RATE
     turn = 2 * np.pi * FREQUENCY
@@ -95,7 +95,9 @@ def compare(draws: int = DRAWS, noise: float = NOISE, seed: int = 0) -> list[Row
     return rows
 
 
-def _row(name: str, forces: Array, fits: Array, truth: Array, phase: Array, inner: slice) -> Row:
+def _row(
+    name: str, forces: Array, fits: Array, truth: Array, phase: Array, inner: slice
+) -> DenoisingRow:
     mean = forces.mean(axis=0)
     period = int(RATE / FREQUENCY)
     # the mean cycle, where the true one is within 2 % of its peak
@@ -103,15 +105,15 @@ def _row(name: str, forces: Array, fits: Array, truth: Array, phase: Array, inne
     top = true > 0.98 * true.max()
     wave = np.exp(-1j * phase[inner])
     late = -np.angle(np.sum(mean[inner] * wave) / np.sum(truth[inner] * wave))
-    return Row(
-        name,
-        float(np.mean(cycle[top]) / np.mean(true[top]) - 1),
-        float(np.degrees(late)),
-        float(np.sqrt(np.mean(np.var(forces[:, inner], axis=0, ddof=1)))),
-        float(np.sqrt(np.mean((forces[:, inner] - truth[inner]) ** 2))),
-        float(fits[:, 1].mean() - FRICTION),
-        float(fits[:, 1].std(ddof=1)),
-        float(fits[:, 0].mean() - INERTANCE),
+    return DenoisingRow(
+        name=name,
+        peak_bias=float(np.mean(cycle[top]) / np.mean(true[top]) - 1),
+        phase=float(np.degrees(late)),
+        noise=float(np.sqrt(np.mean(np.var(forces[:, inner], axis=0, ddof=1)))),
+        error=float(np.sqrt(np.mean((forces[:, inner] - truth[inner]) ** 2))),
+        friction=float(fits[:, 1].mean() - FRICTION),
+        friction_error=float(fits[:, 1].std(ddof=1)),
+        inertance=float(fits[:, 0].mean() - INERTANCE),
     )
 
 

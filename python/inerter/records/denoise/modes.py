@@ -52,7 +52,7 @@ CONFIDENCE = 0.99
 WORTH = 2.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Modes:
     """A channel as a sum of modes, fastest first, and a residue.
 
@@ -137,4 +137,12 @@ def selected(values: Array, noise: float, rule: Rule = "noise") -> Modes:
     crossings = np.sum(np.diff(np.signbit(modes), axis=1), axis=1)
     with np.errstate(divide="ignore"):
         period = 2 * values.size / crossings.astype(float)
-    return Modes(modes, residue, energy, expected, threshold, period, kept)
+    return Modes(
+        modes=modes,
+        residue=residue,
+        energy=energy,
+        expected=expected,
+        threshold=threshold,
+        period=period,
+        kept=kept,
+    )

@@ -16,7 +16,7 @@ from inerter.folder import write_files
 from inerter.printable import printable
 from inerter.records.prepare.options import Options
 from inerter.records.prepare.picture import picture
-from inerter.records.prepare.pipeline import Prepared
+from inerter.records.prepare.pipeline import PreparedRecord
 from inerter.records.record import RecordError, TimeRecord
 
 SCHEMA = "inerter.preparation/1"
@@ -24,7 +24,9 @@ FILE = "preparation.json"
 Format = Literal["csv", "parquet"]
 
 
-def summary(prepared: Sequence[Prepared], options: Options, form: Format = "csv") -> dict[str, Any]:
+def summary(
+    prepared: Sequence[PreparedRecord], options: Options, form: Format = "csv"
+) -> dict[str, Any]:
     """What was asked, done and found, for JSON."""
     rows = []
     for p, name in zip(prepared, file_names(prepared), strict=True):
@@ -57,7 +59,7 @@ def _warnings(record: TimeRecord) -> list[dict[str, str]]:
     return [{"code": w.code, "text": w.text} for w in record.warnings]
 
 
-def file_names(prepared: Sequence[Prepared]) -> list[str]:
+def file_names(prepared: Sequence[PreparedRecord]) -> list[str]:
     """File names, without extension, of the records: what a file may be called, all different."""
     names: list[str] = []
     for i, p in enumerate(prepared):
@@ -74,7 +76,7 @@ def table(record: TimeRecord) -> pl.DataFrame:
     return pl.DataFrame({name: pl.Series(values) for name, values in columns.items()})
 
 
-def record_csv(prepared: Prepared) -> str:
+def record_csv(prepared: PreparedRecord) -> str:
     """Text of a prepared record; its comments say what was done."""
     notes = [*prepared.source.comments, *_history(prepared)]
     # names come from files: the text must be one that can be read again
@@ -82,7 +84,7 @@ def record_csv(prepared: Prepared) -> str:
     return head + table(prepared.record).write_csv()
 
 
-def _history(prepared: Prepared) -> list[str]:
+def _history(prepared: PreparedRecord) -> list[str]:
     found = prepared.found
     lines = [f"prepared by inerter {inerter.__version__} from {prepared.source.name}; SI units"]
     if found["delay"] and found["delay"]["applied"]:
@@ -101,7 +103,7 @@ def _history(prepared: Prepared) -> list[str]:
 
 
 def write_prepared(
-    prepared: Sequence[Prepared], options: Options, folder: Path, form: Format = "csv"
+    prepared: Sequence[PreparedRecord], options: Options, folder: Path, form: Format = "csv"
 ) -> list[str]:
     """Write NAME.csv (or .parquet) and NAME.png of every record, and preparation.json.
 
@@ -134,7 +136,7 @@ def write_prepared(
     return write_files(folder, files)
 
 
-def _content(prepared: Prepared, form: Format) -> bytes:
+def _content(prepared: PreparedRecord, form: Format) -> bytes:
     if form == "csv":
         return record_csv(prepared).encode("utf-8", "replace")
     target = BytesIO()

@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.signal import welch
 
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.png import png
+from inerter.pictures.thinning import extremes
 from inerter.records.denoise import Denoised
 from inerter.records.denoise.modes import Modes
-from inerter.records.prepare.pipeline import Prepared
-from inerter.report.palette import LIGHT
-from inerter.report.png import png
-from inerter.report.thinning import extremes
+from inerter.records.prepare.pipeline import PreparedRecord
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ _MOST_SAMPLES = 4000
 _CLOSE = 400
 
 
-def picture(prepared: Prepared) -> bytes:
+def picture(prepared: PreparedRecord) -> bytes:
     """A PNG: denoised channels before and after, their modes, and the derivatives."""
     denoised = prepared.denoised
     derived = (prepared.found["derivatives"] or {}).get("columns", [])
@@ -72,7 +72,7 @@ def picture(prepared: Prepared) -> bytes:
     return png(figure)
 
 
-def _title(prepared: Prepared) -> str:
+def _title(prepared: PreparedRecord) -> str:
     found = prepared.found
     parts = [prepared.source.name]
     for name, said in found["denoised"].items():

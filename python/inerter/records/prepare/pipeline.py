@@ -15,6 +15,7 @@ from inerter.records.band_limited import PASS_BAND, resampled, shifted
 from inerter.records.delay import Delay, force_delay, pooled
 from inerter.records.denoise import Denoised, denoise
 from inerter.records.motion import smooth, uniform_channels
+from inerter.records.preparation import prepare
 from inerter.records.prepare.checks import bench, over_time, refuse_cutoff
 from inerter.records.prepare.options import Options
 from inerter.records.quality import check_records
@@ -27,8 +28,8 @@ Array = NDArray[np.float64]
 LEAST = 0.3
 
 
-@dataclass(frozen=True)
-class Prepared:
+@dataclass(frozen=True, kw_only=True)
+class PreparedRecord:
     """A prepared record and how it came about.
 
     Attributes
@@ -53,7 +54,7 @@ class Prepared:
     found: dict[str, Any] = field(default_factory=dict)
 
 
-def prepare_records(records: Sequence[AnyRecord], options: Options) -> list[Prepared]:
+def prepare_records(records: Sequence[AnyRecord], options: Options) -> list[PreparedRecord]:
     """Prepare records over time, each by itself but for the delay, which all share.
 
     Raises
@@ -81,8 +82,6 @@ def prepare_records(records: Sequence[AnyRecord], options: Options) -> list[Prep
 
 def _cutoff(records: Sequence[Record]) -> float:
     """The cut-off of a diagnosis: whose motion predicts the force best."""
-    from inerter.identify.preparation import prepare
-
     try:
         return prepare(records).cutoff
     except ValueError as error:
@@ -113,7 +112,7 @@ def _prepare(
     cutoff: float | None,
     delays: Sequence[Delay] | None,
     index: int,
-) -> Prepared:
+) -> PreparedRecord:
     notes: list[str] = []
     channels = record.channels()
     extra = {name: values for name, values in record.extra.items() if np.isfinite(values).all()}
@@ -199,7 +198,9 @@ def _prepare(
         times = record.time[first : first + times.size]
     found["notes"] = notes
     made = dataclasses.replace(record, time=times, extra=others, warnings=(), **columns)
-    return Prepared(record, made, spacing, before, denoised, found)
+    return PreparedRecord(
+        source=record, record=made, spacing=spacing, before=before, denoised=denoised, found=found
+    )
 
 
 def _apart(extra: dict[str, Array]) -> dict[str, Array]:

@@ -35,7 +35,7 @@ def force(
     """Friction force [N], tension positive; arguments [m, m/s, -] broadcast together."""
     level = friction_level(parameters, displacement, velocity)
     speed = abs(velocity) / parameters.stribeck_velocity
-    excess = parameters.static_force - parameters.coulomb_force
+    excess = parameters.breakaway_force - parameters.coulomb_force
     peak = excess * speed / (speed * speed / 4.0 + 0.75) ** 2
     return level * (parameters.coulomb_force * np.tanh(4.0 * speed) + peak) * np.sign(velocity)
 

@@ -26,14 +26,15 @@ class DeviceParameters(FrictionParameters):
     inertance_gradient: float = parameter(0.0, "1/m", "relative rise of b per x")
     inertance_curvature: float = parameter(0.0, "1/m^2", "relative rise of b per x^2")
     inertance_speed_gradient: float = parameter(0.0, "s/m", "relative rise of b per |v|")
-    viscous: float = parameter(0.0, "N s/m", "linear damping c")
-    quadratic_damping: float = parameter(0.0, "N s^2/m^2", "quadratic damping c2")
+    viscous: float = parameter(0.0, "N s/m", "linear damping c", at_least=0.0)
+    quadratic_damping: float = parameter(0.0, "N s^2/m^2", "quadratic damping c2", at_least=0.0)
     stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
     stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
     rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")
     force_offset: float = parameter(0.0, "N", "constant force f0")
+    # at 1 the device locks: no force says what it accelerates by
     load_friction: float = parameter(
-        0.0, "-", "friction share mu of the inertance force", at_least=0.0
+        0.0, "-", "friction share mu of the inertance force", at_least=0.0, at_most=0.999
     )
 
     series_stiffness: float = parameter(0.0, "N/m", "spring in series k_s", at_least=0.0)
@@ -69,11 +70,6 @@ class DeviceParameters(FrictionParameters):
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
         super().__post_init__()
-        if self.load_friction >= 1.0:
-            raise ValueError(
-                f"load_friction: {self.load_friction} locks the device (no unique acceleration); "
-                "keep it below 1"
-            )
         self._check_channel()
         self._check_series()
         self._check_stops()
@@ -118,7 +114,7 @@ class DeviceParameters(FrictionParameters):
         if self.gas_pressure == 0.0:
             unused = {
                 "gas_law": self.gas_law != "polytropic",
-                "gas_area": not np.isnan(self.gas_area),
+                "gas_area": not np.isnan(self.gas_area) and self.gas_area != 0.0,
                 "gas_volume": self.gas_volume != 0.0,
                 "gas_exponent": self.gas_exponent != 1.4,
             }

@@ -35,7 +35,7 @@ def sliding_level(
 ) -> Quantity:
     """The Stribeck curve g(x, v) [N], positive; arguments [m, m/s] broadcast together."""
     shape = (abs(velocity) / parameters.stribeck_velocity) ** parameters.stribeck_exponent
-    excess = parameters.static_force - parameters.coulomb_force
+    excess = parameters.breakaway_force - parameters.coulomb_force
     curve = parameters.coulomb_force + excess * np.exp(-shape)
     return friction_level(parameters, displacement, velocity) * curve
 

@@ -60,27 +60,32 @@ class FrictionParameters:
     friction: str = "none"
 
     coulomb_force: float = parameter(0.0, "N", "friction force at speed, f_c", at_least=0.0)
-    static_force: float = parameter(0.0, "N", "friction force at break-away, f_s", at_least=0.0)
+    static_force: float = parameter(
+        UNSET, "N", "friction force at break-away, f_s >= f_c; not given: f_c", at_least=0.0
+    )
     stribeck_velocity: float = parameter(1e-2, "m/s", "speed scale of the fall", above=0.0)
-    stribeck_exponent: float = parameter(2.0, "-", "shape of the fall", above=0.0)
+    stribeck_exponent: float = parameter(2.0, "-", "shape of the fall", above=0.0, at_most=10.0)
     transition_velocity: float = parameter(1e-4, "m/s", "width of the smoothed sign", above=0.0)
 
     bristle_stiffness: float = parameter(1e5, "N/m", "pre-sliding stiffness sigma0", above=0.0)
     bristle_damping: float = parameter(0.0, "N s/m", "pre-sliding damping sigma1", at_least=0.0)
-    dahl_exponent: float = parameter(1.0, "-", "shape of the Dahl loop", above=0.0)
+    dahl_exponent: float = parameter(1.0, "-", "shape of the Dahl loop", at_least=0.0, at_most=10.0)
 
     bw_alpha: float = parameter(1.0, "-", "initial slope dz/dx", above=0.0)
     bw_beta: float = parameter(0.5, "m^-n", "loop width")
     bw_gamma: float = parameter(0.5, "m^-n", "loop shape")
-    bw_exponent: float = parameter(1.0, "-", "sharpness n of the yield", at_least=1.0)
-    bw_stiffness: float = parameter(0.0, "N/m", "stiffness k0")
+    bw_exponent: float = parameter(1.0, "-", "sharpness n of the yield", at_least=1.0, at_most=20.0)
+    bw_stiffness: float = parameter(0.0, "N/m", "stiffness k0", at_least=0.0)
     bw_ratio: float = parameter(0.0, "-", "share A of the elastic branch")
 
     friction_backlash: float = parameter(
         0.0, "m", "half of the free play before a bristle", at_least=0.0
     )
 
-    friction_asymmetry: float = parameter(0.0, "-", "level: difference between the directions")
+    # at 1 the level of one direction would be zero
+    friction_asymmetry: float = parameter(
+        0.0, "-", "level: difference between the directions", at_least=-0.999, at_most=0.999
+    )
     friction_gradient: float = parameter(0.0, "1/m", "level: slope along the stroke")
     friction_curvature: float = parameter(0.0, "1/m^2", "level: curvature along the stroke")
 
@@ -119,19 +124,30 @@ class FrictionParameters:
                     f"{declared.name}: {value} {unit} is above {at_most}; give at most that"
                 )
 
+        self._check_levels()
+
+    @property
+    def breakaway_force(self) -> float:
+        """f_s [N]: `static_force`, or `coulomb_force` where that is not given."""
+        return self.coulomb_force if np.isnan(self.static_force) else self.static_force
+
+    def _check_levels(self) -> None:
+        """A law slides at a level above zero, and breaks away at no less."""
+        if self.breakaway_force < self.coulomb_force:
+            raise ValueError(
+                f"static_force: {self.static_force} N is below coulomb_force "
+                f"{self.coulomb_force} N; give static_force >= coulomb_force"
+            )
+        if self.friction == "bouc_wen" and self.bw_stiffness == 0.0:
+            raise ValueError(
+                "bw_stiffness: 0 N/m leaves friction='bouc_wen' without a force; give "
+                "bw_stiffness > 0, or friction='none'"
+            )
         # a law with a bristle divides by its friction level
-        if self.friction in ("dahl", "lugre") and self.coulomb_force <= 0.0:
+        bristle = self.friction in ("dahl", "lugre")
+        level = self.coulomb_force if bristle else self.breakaway_force
+        if self.friction not in ("none", "bouc_wen") and level == 0.0:
             raise ValueError(
                 f"coulomb_force: {self.coulomb_force} N leaves friction='{self.friction}' without "
                 "a level to slide at; give coulomb_force > 0, or friction='none'"
-            )
-        if self.friction == "lugre" and self.static_force <= 0.0:
-            raise ValueError(
-                f"static_force: {self.static_force} N lets the LuGre bristle vanish at rest; "
-                "give static_force > 0 (equal to coulomb_force for no Stribeck fall)"
-            )
-        if abs(self.friction_asymmetry) >= 1.0:
-            raise ValueError(
-                f"friction_asymmetry: {self.friction_asymmetry} makes one direction's level "
-                "zero or negative; keep it between -1 and 1"
             )

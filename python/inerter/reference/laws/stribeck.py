@@ -5,7 +5,7 @@
 Symbols: f_c `coulomb_force` [N], f_s `static_force` [N], v_s `stribeck_velocity` [m/s],
 delta `stribeck_exponent` [-], v_t `transition_velocity` [m/s], level see `level.py`.
 Sign: tension positive; F v >= 0.
-Range: v_t << v_s, else the peak at break-away is rounded off. f_s < f_c (a rise) is allowed.
+Range: v_t << v_s, else the peak at break-away is rounded off.
 Source: the curve of Canudas de Wit et al., IEEE TAC 40(3), 1995, eq. (5), taken memoryless.
 Not modelled: pre-sliding displacement, rate-dependent break-away (see LuGre).
 """
@@ -32,7 +32,7 @@ def force(
     """Friction force [N], tension positive; arguments [m, m/s, -] broadcast together."""
     level = friction_level(parameters, displacement, velocity)
     shape = (abs(velocity) / parameters.stribeck_velocity) ** parameters.stribeck_exponent
-    excess = parameters.static_force - parameters.coulomb_force
+    excess = parameters.breakaway_force - parameters.coulomb_force
     magnitude = parameters.coulomb_force + excess * np.exp(-shape)
     return level * magnitude * np.tanh(velocity / parameters.transition_velocity)
 

@@ -8,8 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from inerter.report.palette import LIGHT
-from inerter.report.png import png
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.png import png
 from inerter.studies.fluid_rig.panels import Panel, Picture
 
 COLOURS = {"measured": LIGHT["measured"], "fitted": LIGHT["after"]}

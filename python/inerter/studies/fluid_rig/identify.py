@@ -10,7 +10,12 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.studies.fluid_rig.least_squares import Solution, polish, search
+from inerter.estimation.least_squares import (
+    Solution,
+    Tolerances,
+    polish,
+    search_in_batches,
+)
 from inerter.studies.fluid_rig.objective import OBJECTIVES, Measured, Objective
 from inerter.studies.fluid_rig.rig import Configuration, Rig
 from inerter.studies.fluid_rig.signals import Noise, Signals
@@ -31,6 +36,9 @@ _QUANTILE = 1.959964
 UNDETERMINED = 0.2
 # from here on two parameters are hardly told apart
 CORRELATED = 0.95
+# what ends a search from far, on the first part of the tests
+_FAR = Tolerances(1e-4, 1e-4, 1e-12)
+_EVALUATIONS = 15
 # a cost so many times what noise explains asks for another start
 _POOR = 2.0
 SEARCH_PART = {"dry": 16.0, "complete": 26.0}
@@ -45,8 +53,8 @@ class Held:
     covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
-@dataclass(frozen=True)
-class Identified:
+@dataclass(frozen=True, kw_only=True)
+class IdentifiedRig:
     """What a fit found.
 
     names, values, covariance: of the parameters, SI units, in one order. held: what was taken as
@@ -175,7 +183,7 @@ def identify(
     starts: Sequence[Mapping[str, float]],
     held: Held | None = None,
     threads: int = 0,
-) -> Identified:
+) -> IdentifiedRig:
     """Fit a configuration's parameters to its measured tests.
 
     Parameters
@@ -206,10 +214,12 @@ def identify(
     bounds, tried = fine.unknowns.bounds, 0
     for start in starts:
         tried += 1
-        found = search(coarse.residuals, fine.unknowns.encode(start), bounds)
-        if best is None or found.cost < best[0].cost:
+        found = search_in_batches(
+            coarse.residuals, fine.unknowns.encode(start), bounds, _FAR, _EVALUATIONS
+        )
+        if best is None or found.squares < best[0].squares:
             best = found, start
-        if best[0].cost < _POOR * part.expected_cost + _count(part):
+        if best[0].squares < _POOR * part.expected_cost + _count(part):
             break
     if best is None:
         raise ValueError("starts: give at least one set of parameters")
@@ -223,7 +233,7 @@ def identify(
     if held.values and held.covariance.size:
         effect = np.linalg.pinv(solution.jacobian) @ fine.effect_of_held(solution.variables)
     variables, signals, shift = _finer(fine, solution, bounds)
-    ratio = solution.cost / max(whole.expected_cost, 1e-300)
+    ratio = solution.squares / max(whole.expected_cost, 1e-300)
     covariance = covariance * max(1.0, ratio)
     if effect.size:
         covariance = covariance + effect @ held.covariance @ effect.T
@@ -233,7 +243,7 @@ def identify(
         for part in whole.parts
     }
     parameters = fine.unknowns.parameters(variables)
-    return Identified(
+    return IdentifiedRig(
         configuration=configuration,
         objective=objective,
         names=tuple(parameters),

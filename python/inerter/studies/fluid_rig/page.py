@@ -7,9 +7,9 @@ import html
 import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.plotting import FONT
 from inerter.report.page import plotly_script
-from inerter.report.palette import LIGHT
-from inerter.report.plotting import FONT
 from inerter.studies.fluid_rig.figures import COLOURS
 from inerter.studies.fluid_rig.panels import Picture, pictures
 from inerter.studies.fluid_rig.study import Study

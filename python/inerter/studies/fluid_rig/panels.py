@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.studies.fluid_rig.identify import Identified
+from inerter.studies.fluid_rig.identify import IdentifiedRig
 from inerter.studies.fluid_rig.objective import Measured
 from inerter.studies.fluid_rig.signals import Signals
 from inerter.studies.fluid_rig.spectra import spectra
@@ -68,7 +68,7 @@ def pictures(study: Study) -> tuple[Picture, ...]:
     )
 
 
-def _configuration(name: str, title: str, measured: Measured, fit: Identified) -> Picture:
+def _configuration(name: str, title: str, measured: Measured, fit: IdentifiedRig) -> Picture:
     columns = [
         _column(sweep.name, seen, fitted)
         for sweep, seen, fitted in zip(measured.sweeps, measured.signals, fit.signals, strict=True)

@@ -16,7 +16,7 @@ class StudyError(ValueError):
     """A study that cannot be: names the option, its value, what is allowed."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Settings:
     """Of a study.
 

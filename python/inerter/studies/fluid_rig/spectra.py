@@ -22,7 +22,7 @@ SEGMENT = 8.0
 """Length of a segment [s] if not said otherwise: bins of 0.125 Hz."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Spectra:
     """Spectra of one record or several, arrays of shape (..., frequencies).
 
@@ -51,12 +51,12 @@ class Spectra:
         """The bins from `low` to `high` [Hz], both included."""
         here = (self.frequency >= low - 1e-9) & (self.frequency <= high + 1e-9)
         return Spectra(
-            self.frequency[here],
-            self.receptance[..., here],
-            self.displacement_density[..., here],
-            self.force_density[..., here],
-            self.coherence[..., here],
-            self.segments,
+            frequency=self.frequency[here],
+            receptance=self.receptance[..., here],
+            displacement_density=self.displacement_density[..., here],
+            force_density=self.force_density[..., here],
+            coherence=self.coherence[..., here],
+            segments=self.segments,
         )
 
 

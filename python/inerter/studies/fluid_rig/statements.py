@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.studies.fluid_rig.identify import Identified
+from inerter.studies.fluid_rig.identify import IdentifiedRig
 from inerter.studies.fluid_rig.rig import Configuration
 from inerter.studies.fluid_rig.signals import Signals
 from inerter.studies.fluid_rig.spectra import Spectra, spectra
@@ -62,8 +62,8 @@ def statements(
     dry: Sequence[Sweep],
     complete: Sequence[Sweep],
     levels: Sequence[Sweep],
-    dry_fit: Identified,
-    complete_fit: Identified,
+    dry_fit: IdentifiedRig,
+    complete_fit: IdentifiedRig,
     level_fit: Signals,
 ) -> tuple[Statement, ...]:
     """The paper's statements about its tests, on the tests without noise and the fits shown."""
@@ -142,7 +142,7 @@ def _level_matters_less(
     )
 
 
-def _receptance_alone(dry_fit: Identified, complete_fit: Identified) -> Statement:
+def _receptance_alone(dry_fit: IdentifiedRig, complete_fit: IdentifiedRig) -> Statement:
     """How much larger the standard errors are with the receptance alone, near the minimum."""
     ratios = {}
     for fit in (dry_fit, complete_fit):

@@ -11,7 +11,7 @@ import numpy as np
 from inerter.model_parameters import FLUID_INERTER
 from inerter.parallel import run_all
 from inerter.rig import quiet
-from inerter.studies.fluid_rig.identify import Held, Identified, identify
+from inerter.studies.fluid_rig.identify import Held, IdentifiedRig, identify
 from inerter.studies.fluid_rig.objective import Measured
 from inerter.studies.fluid_rig.rig import Configuration, Rig
 from inerter.studies.fluid_rig.settings import Settings
@@ -31,16 +31,16 @@ Progress = Callable[..., None]
 
 
 @dataclass(frozen=True)
-class Run:
+class RigRun:
     """One seed and objective: the measured tests, and what was identified from them."""
 
     seed: int
     objective: str
-    dry: Identified
-    complete: Identified
+    dry: IdentifiedRig
+    complete: IdentifiedRig
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Study:
     """All of it.
 
@@ -52,13 +52,13 @@ class Study:
     settings: Settings
     truth: Truth
     measured: dict[Configuration, Measured]
-    runs: tuple[Run, ...]
+    runs: tuple[RigRun, ...]
     level: Signals
     statements: tuple[Statement, ...]
     seconds: tuple[float, float]
 
     @property
-    def shown(self) -> Run:
+    def shown(self) -> RigRun:
         """The run in the pictures: the first seed, the first objective."""
         return self.runs[0]
 
@@ -145,7 +145,7 @@ def outside(truth: Truth) -> dict[str, float]:
     }
 
 
-def _run(work: tuple[Settings, int, str, Truth, int | None]) -> Run:
+def _run(work: tuple[Settings, int, str, Truth, int | None]) -> RigRun:
     """One seed and objective, in a process of its own."""
     settings, seed, objective, truth, jobs = work
     measured = measured_tests(settings, seed, truth)
@@ -166,4 +166,4 @@ def _run(work: tuple[Settings, int, str, Truth, int | None]) -> Run:
         complete = identify(
             "complete", measured["complete"], objective, starts("complete"), held, threads
         )
-    return Run(seed, objective, dry, complete)
+    return RigRun(seed, objective, dry, complete)

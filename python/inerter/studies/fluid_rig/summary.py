@@ -9,13 +9,13 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from inerter.studies.fluid_rig.identify import Identified
+from inerter.studies.fluid_rig.identify import IdentifiedRig
 from inerter.studies.fluid_rig.study import Study, outside
 from inerter.studies.fluid_rig.unknowns import label, published, unit, water_limit
 
 
-@dataclass(frozen=True)
-class Row:
+@dataclass(frozen=True, kw_only=True)
+class ParameterRow:
     """One parameter of one fit; error: relative, low and high: 95 % interval."""
 
     seed: int
@@ -33,7 +33,7 @@ class Row:
     undetermined: bool
 
 
-def rows(study: Study) -> list[Row]:
+def rows(study: Study) -> list[ParameterRow]:
     """Every parameter of every fit."""
     return [
         row
@@ -43,10 +43,10 @@ def rows(study: Study) -> list[Row]:
     ]
 
 
-def _rows(study: Study, seed: int, objective: str, fit: Identified) -> list[Row]:
+def _rows(study: Study, seed: int, objective: str, fit: IdentifiedRig) -> list[ParameterRow]:
     true = published(fit.configuration, study.measured[fit.configuration].sweeps)
     return [
-        Row(
+        ParameterRow(
             seed=seed,
             objective=objective,
             configuration=fit.configuration,
@@ -155,7 +155,7 @@ def study_json(study: Study) -> dict[str, Any]:
     }
 
 
-def _fit_json(fit: Identified) -> dict[str, Any]:
+def _fit_json(fit: IdentifiedRig) -> dict[str, Any]:
     return {
         "names": list(fit.names),
         "values": fit.values.tolist(),

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.coordinates import Coordinate
+from inerter.catalogue.scales import Range
+from inerter.estimation.variables import Variables
 from inerter.model_parameters import FLUID_INERTER
 from inerter.studies.fluid_rig.rig import Configuration
 from inerter.studies.fluid_rig.signals import Signals
@@ -62,32 +64,32 @@ class Unknowns:
     preload only.
     """
 
-    coordinates: Mapping[str, Coordinate]
+    coordinates: Mapping[str, Range]
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the coordinates."""
         return tuple(self.coordinates)
 
+    @cached_property
+    def _variables(self) -> Variables:
+        return Variables.among(self.coordinates, self.coordinates)
+
     @property
     def bounds(self) -> tuple[Array, Array]:
         """Lower and upper bounds of the search variables, shape (p,) each."""
-        pairs = np.array([each.bounds for each in self.coordinates.values()])
-        return pairs[:, 0], pairs[:, 1]
+        return self._variables.bounds
 
     def encode(self, values: Mapping[str, float]) -> Array:
         """Parameters, as `parameters` gives them, to search variables, shape (p,)."""
         given = dict(values)
         if "static_excess" in self.coordinates:
             given["static_excess"] = given["static_force"] - given["coulomb_force"]
-        return np.array([how.encode(given[name]) for name, how in self.coordinates.items()])
+        return self._variables.encode(given)
 
     def parameters(self, variables: Array) -> dict[str, float]:
         """Search variables (p,) to parameters as they are reported: f_s itself, c_a by preload."""
-        found = {
-            name: how.decode(float(variable))
-            for (name, how), variable in zip(self.coordinates.items(), variables, strict=True)
-        }
+        found = self._variables.decode(variables)
         if "static_excess" in found:
             found["static_force"] = found["coulomb_force"] + found.pop("static_excess")
         return found
@@ -133,7 +135,7 @@ def unknowns(configuration: Configuration, sweeps: Sequence[Sweep]) -> Unknowns:
         values = {"coulomb_force": values["coulomb_force"], "static_excess": excess} | {
             key: values[key] for key in ("stribeck_velocity", "viscous")
         }
-    return Unknowns({name: _coordinate(name, value) for name, value in values.items()})
+    return Unknowns({name: _range(name, value) for name, value in values.items()})
 
 
 def label(name: str) -> str:
@@ -180,7 +182,7 @@ def _preloads(sweeps: Sequence[Sweep]) -> list[float]:
     return sorted({sweep.preload for sweep in sweeps if sweep.preload is not None})
 
 
-def _coordinate(name: str, value: float) -> Coordinate:
+def _range(name: str, value: float) -> Range:
     if name == "series_hardening":
-        return Coordinate(value, -_WIDE * value, _WIDE * value)
-    return Coordinate(value, value / _WIDE, value * _WIDE, logarithmic=True)
+        return Range(value, -_WIDE * value, _WIDE * value)
+    return Range(value, value / _WIDE, value * _WIDE, logarithmic=True)

@@ -31,7 +31,7 @@ LEVELS = ("coulomb_force", "bristle_stiffness")
 _ITERATIONS = 25
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Bias:
     """Mean error and scatter of estimates in one way to denoise, `draws` noises each.
 
@@ -120,10 +120,10 @@ def summarised(drawn: list[Drawn], settings: Settings) -> list[Bias]:
             table = {name: np.array([p.estimates[name] for p in part]) for name in truth}
             rows.append(
                 Bias(
-                    model, way, len(part), truth,
-                    {name: float(v.mean()) for name, v in table.items()},
-                    {name: float(v.std(ddof=1)) for name, v in table.items()},
-                    float(np.sqrt(np.mean([p.left**2 for p in part]))),
+                    model=model, way=way, draws=len(part), truth=truth,
+                    mean={name: float(v.mean()) for name, v in table.items()},
+                    scatter={name: float(v.std(ddof=1)) for name, v in table.items()},
+                    left=float(np.sqrt(np.mean([p.left**2 for p in part]))),
                 )
             )  # fmt: skip
     return rows

@@ -36,7 +36,7 @@ FITTERS: Mapping[str, str] = MappingProxyType(
 _LAWS = {"bouc_wen": "bouc_wen+stiffness"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Crossing:
     """A fit to some tests.
 
@@ -100,17 +100,17 @@ def cross(maker: str, fitter: str, fitted: tuple[float, ...], settings: Settings
     device = found.model.device()
     noisy = [measured(maker, test, s.noise, s.seed) for test, _ in data]
     return Crossing(
-        maker,
-        fitter,
-        fitted,
-        found.rmse(problem.masks),
-        tuple(true_error(device, test) for test, _ in data),
-        tuple(
+        maker=maker,
+        fitter=fitter,
+        fitted=fitted,
+        fit_error=found.rmse(problem.masks),
+        true_errors=tuple(true_error(device, test) for test, _ in data),
+        measured_errors=tuple(
             _rms(force_of(device, test) - force, test)
             for (test, _), force in zip(data, noisy, strict=True)
         ),
-        {k: v for k, v in device.given.items() if v != 0.0 or k == "bw_ratio"},
-        time.process_time() - begin,
+        device={k: v for k, v in device.given.items() if v != 0.0 or k == "bw_ratio"},
+        seconds=time.process_time() - begin,
     )
 
 

@@ -29,7 +29,7 @@ _STEP = 1e-4
 UNKNOWN = 1e3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Determined:
     """What tests at `frequencies` [Hz] tell of a model's identified parameters.
 
@@ -95,9 +95,14 @@ def determined(model: str, frequencies: tuple[float, ...], settings: Settings) -
     values = {k: v for k, v in paper.values(paper.identified).items() if not isinstance(v, str)}
     told = identifiability(problem, Model(paper.name, values, ()), 1.0)
     return Determined(
-        model, frequencies, dict(zip(paper.symbols, map(float, errors), strict=True)), along[::-1],
-        told.groups, told.combinations, _with_errors(model, s, vectors * along),
-    )  # fmt: skip
+        model=model,
+        frequencies=frequencies,
+        errors=dict(zip(paper.symbols, map(float, errors), strict=True)),
+        directions=along[::-1],
+        groups=told.groups,
+        combinations=told.combinations,
+        quantities=_with_errors(model, s, vectors * along),
+    )
 
 
 def invariants(model: str, vector: Array | tuple[float, ...], s: Settings) -> dict[str, float]:

@@ -13,7 +13,7 @@ from inerter.studies.hysteresis.virtual_tests import VirtualTest, cleaned_tests
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Decomposed:
     """EMD of one force.
 
@@ -57,10 +57,20 @@ def decomposed(maker: str, settings: Settings) -> list[Decomposed]:
         modes = ruled.modes
         assert modes is not None
         assert single.number is not None
-        counts = len(modes.modes), int(modes.kept.sum()), single.number
         ten = modes.modes[int(np.argmax(modes.energy))]
-        errors = (_off(test, each) for each in (raw.force, ruled.force, single.force, ten))
-        rows.append(Decomposed(maker, test.frequency, *counts, *errors))
+        rows.append(
+            Decomposed(
+                maker=maker,
+                frequency=test.frequency,
+                modes=len(modes.modes),
+                kept=int(modes.kept.sum()),
+                loudest=single.number,
+                before=_off(test, raw.force),
+                rule=_off(test, ruled.force),
+                single=_off(test, single.force),
+                single_ten=_off(test, ten),
+            )
+        )
     return rows
 
 

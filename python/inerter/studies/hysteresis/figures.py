@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from inerter.report.palette import LIGHT
-from inerter.report.png import png
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.png import png
 from inerter.studies.hysteresis.conclusions import held_out
 from inerter.studies.hysteresis.crossing import FITTERS
 from inerter.studies.hysteresis.panels import COLOURS, blank, style

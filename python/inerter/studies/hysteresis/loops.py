@@ -23,7 +23,7 @@ from inerter.studies.hysteresis.virtual_tests import VirtualTest
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Loop:
     """A settled loop at `frequency` [Hz]; the others as above, `peak` of the force [N]."""
 
@@ -52,6 +52,10 @@ def loop(test: VirtualTest, force: Array) -> Loop:
     # of one cycle: mean power times the period
     work = float(np.mean(f * v)) / test.frequency
     return Loop(
-        test.frequency, float(np.max(np.abs(f))), inertance, damping, work,
-        float(np.sqrt(np.mean(rest**2))),
-    )  # fmt: skip
+        frequency=test.frequency,
+        peak=float(np.max(np.abs(f))),
+        inertance=inertance,
+        damping=damping,
+        work=work,
+        rest=float(np.sqrt(np.mean(rest**2))),
+    )

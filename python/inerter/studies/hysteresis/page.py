@@ -13,8 +13,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.subplots import make_subplots
 
-from inerter.report.palette import LIGHT
-from inerter.report.plotting import FONT
+from inerter.pictures.palette import LIGHT
+from inerter.pictures.plotting import FONT
 from inerter.studies.hysteresis.figures import published_sets, title_of
 from inerter.studies.hysteresis.panels import COLOURS
 from inerter.studies.hysteresis.published import FREQUENCIES, MODELS

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from inerter.report.palette import LIGHT
+from inerter.pictures.palette import LIGHT
 
 COLOURS = {
     "ideal": LIGHT["measured"],

@@ -26,7 +26,7 @@ LAST = len(FREQUENCIES) - 1
 EQUAL = 0.01
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Prediction:
     """A model fitted at 4 Hz.
 
@@ -86,7 +86,7 @@ def predict(maker: str, model: str, which: str, settings: Settings) -> Predictio
     end = optimise(last, box, box.start, "sqp")
     errors = tuple(every.true_errors(end.vector))
     if which == "printed":
-        return Prediction(maker, model, which, end, errors)
+        return Prediction(maker=maker, model=model, box=which, end=end, true_errors=errors)
     starts = random_starts(box, s.random_starts, s.seed)
     ends = [end, *(optimise(last, box, start, "least_squares") for start in starts)]
     best = min(each.error for each in ends)
@@ -94,6 +94,14 @@ def predict(maker: str, model: str, which: str, settings: Settings) -> Predictio
     first = [every.true_errors(each.vector)[0] for each in equal]
     b = [float(each.vector[paper.names.index("inertance")]) for each in equal]
     return Prediction(
-        maker, model, which, end, errors, len(ends), len(equal), best,
-        (min(first), max(first)), (min(b), max(b)),
-    )  # fmt: skip
+        maker=maker,
+        model=model,
+        box=which,
+        end=end,
+        true_errors=errors,
+        starts=len(ends),
+        equal=len(equal),
+        best=best,
+        spread=(min(first), max(first)),
+        inertances=(min(b), max(b)),
+    )

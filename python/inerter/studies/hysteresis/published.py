@@ -52,7 +52,7 @@ class Box:
     mended: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PaperModel:
     """One of the three models.
 
@@ -120,40 +120,40 @@ _LOWEST_INERTANCE = 10.0
 MODELS: Mapping[str, PaperModel] = MappingProxyType(
     {
         "dahl": PaperModel(
-            "dahl",
-            "Dahl",
-            ("bristle_stiffness", "coulomb_force", "viscous", "inertance"),
-            ("k_s", "F_c", "c_s", "b"),
-            (1e5, 1000.0, 500.0, 50.0),
-            (0.0, 0.0, 0.0, 10.0),
-            (1e9, 2000.0, 2000.0, 250.0),
-            (4.29e4, 62.0, 10.2, 174.0),
+            name="dahl",
+            title="Dahl",
+            names=("bristle_stiffness", "coulomb_force", "viscous", "inertance"),
+            symbols=("k_s", "F_c", "c_s", "b"),
+            start=(1e5, 1000.0, 500.0, 50.0),
+            lower=(0.0, 0.0, 0.0, 10.0),
+            upper=(1e9, 2000.0, 2000.0, 250.0),
+            identified=(4.29e4, 62.0, 10.2, 174.0),
         ),
         "lugre": PaperModel(
-            "lugre",
-            "LuGre",
-            (
+            name="lugre",
+            title="LuGre",
+            names=(
                 "bristle_stiffness", "bristle_damping", "viscous", "static_force",
                 "coulomb_force", "stribeck_velocity", "stribeck_exponent", "inertance",
             ),
-            ("sigma_0", "sigma_1", "sigma_2", "F_s", "F_c", "v_s", "delta", "b"),
-            (200.0, 100.0, 100.0, 10.0, 10.0, 1e-3, 1.0, 50.0),
-            (0.0, 0.0, 0.0, 1.0, 1.0, 1e-3, 0.1, 10.0),
-            (1e5, 2000.0, 2000.0, 200.0, 180.0, 0.1, 2.0, 250.0),
-            (149.21, 443.35, 204.38, 1.43, 1.0, 4.19e-2, 1.98, 151.51),
+            symbols=("sigma_0", "sigma_1", "sigma_2", "F_s", "F_c", "v_s", "delta", "b"),
+            start=(200.0, 100.0, 100.0, 10.0, 10.0, 1e-3, 1.0, 50.0),
+            lower=(0.0, 0.0, 0.0, 1.0, 1.0, 1e-3, 0.1, 10.0),
+            upper=(1e5, 2000.0, 2000.0, 200.0, 180.0, 0.1, 2.0, 250.0),
+            identified=(149.21, 443.35, 204.38, 1.43, 1.0, 4.19e-2, 1.98, 151.51),
         ),
         "bouc_wen": PaperModel(
-            "bouc_wen",
-            "Bouc-Wen",
-            (
+            name="bouc_wen",
+            title="Bouc-Wen",
+            names=(
                 "bw_alpha", "bw_beta", "bw_gamma", "bw_exponent", "bw_ratio", "viscous",
                 "bw_stiffness", "inertance",
             ),
-            ("alpha", "beta", "gamma", "n", "A", "c_0", "k_0", "b"),
-            (1.0, 10.0, 10.0, 1.0, 50.0, 50.0, 0.5, 50.0),
-            (1.0, 1.0, 1.0, -5.0, 1.0, 1.0, 1.0, 250.0),
-            (50.0, 50.0, 50.0, 2.0, 1e3, 1e3, 10.0, 250.0),
-            (1.23, 1.61, 1.35, 1.0, 341.81, 132.0, 1.01, 154.36),
+            symbols=("alpha", "beta", "gamma", "n", "A", "c_0", "k_0", "b"),
+            start=(1.0, 10.0, 10.0, 1.0, 50.0, 50.0, 0.5, 50.0),
+            lower=(1.0, 1.0, 1.0, -5.0, 1.0, 1.0, 1.0, 250.0),
+            upper=(50.0, 50.0, 50.0, 2.0, 1e3, 1e3, 10.0, 250.0),
+            identified=(1.23, 1.61, 1.35, 1.0, 341.81, 132.0, 1.01, 154.36),
         ),
     }
 )  # fmt: skip

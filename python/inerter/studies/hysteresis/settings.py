@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from inerter.studies.hysteresis.denoising import WAYS
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Settings:
     """A study; equal settings give equal results.
 

@@ -32,7 +32,7 @@ Progress = Callable[[float], None]
 Piece = tuple[str, tuple[Any, ...], Settings]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Study:
     """Results; `loops`: of the published devices and the ideal one, four each."""
 
@@ -95,9 +95,16 @@ def study(
     starting, told = tuple(of("start")), tuple(of("determined"))
     bias = tuple(summarised([each for drawn in of("draw") for each in drawn], s))
     return Study(
-        s, loops, emd, predictions, crossings, starting, bias, told,
-        conclude(s, loops, emd, predictions, crossings, starting, told),
-    )  # fmt: skip
+        settings=s,
+        loops=loops,
+        emd=emd,
+        predictions=predictions,
+        crossings=crossings,
+        starting=starting,
+        bias=bias,
+        determined=told,
+        conclusions=conclude(s, loops, emd, predictions, crossings, starting, told),
+    )
 
 
 def published_loops(settings: Settings) -> dict[str, tuple[Loop, ...]]:

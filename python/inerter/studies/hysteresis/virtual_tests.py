@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.bench import Run
+from inerter.identify.runs import BenchRun
 from inerter.reference import ReferenceDevice, response, sine_motion
 from inerter.studies.hysteresis.denoising import Cleaned, clean
 from inerter.studies.hysteresis.published import (
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 EDGE = 1.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class VirtualTest:
     """One test at one frequency, arrays of shape (n,), SI units.
 
@@ -45,14 +45,21 @@ class VirtualTest:
     truth: Array
     settled: NDArray[np.bool_]
 
-    def run(self, cleaned: Cleaned) -> Run:
+    def run(self, cleaned: Cleaned) -> BenchRun:
         """The test as identification takes it, with a cleaned force."""
         first = max(1, round(0.01 / self.spacing))
-        return Run(
-            f"{self.frequency:g} Hz", 0.0, self.spacing, self.displacement, self.velocity,
-            self.acceleration, cleaned.force, self.settled, float(np.mean(cleaned.force[:first])),
-            np.inf,
-        )  # fmt: skip
+        return BenchRun(
+            name=f"{self.frequency:g} Hz",
+            start=0.0,
+            spacing=self.spacing,
+            displacement=self.displacement,
+            velocity=self.velocity,
+            acceleration=self.acceleration,
+            force=cleaned.force,
+            inner=self.settled,
+            first_force=float(np.mean(cleaned.force[:first])),
+            cutoff=np.inf,
+        )
 
 
 @lru_cache(maxsize=16)
@@ -74,8 +81,18 @@ def bench_tests(
     for amplitude, frequency in zip(AMPLITUDES, FREQUENCIES, strict=True):
         r = response(device, sine_motion(amplitude, frequency), time, rtol=1e-8)
         settled = (time >= EDGE) & (time < duration - EDGE)
-        motion = (r.displacement, r.velocity, r.acceleration)
-        tests.append(VirtualTest(frequency, 1 / rate, time, *motion, r.force, settled))
+        tests.append(
+            VirtualTest(
+                frequency=frequency,
+                spacing=1 / rate,
+                time=time,
+                displacement=r.displacement,
+                velocity=r.velocity,
+                acceleration=r.acceleration,
+                truth=r.force,
+                settled=settled,
+            )
+        )
     return tuple(tests)
 
 

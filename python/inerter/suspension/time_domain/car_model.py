@@ -47,7 +47,7 @@ class WheelPlace:
     behind: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class CarModel:
     """A compiled car.
 

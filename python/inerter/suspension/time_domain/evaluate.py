@@ -51,8 +51,19 @@ def evaluate(
     if scheduler is not None and plan.settings.jobs == 0:
         # a worker of the cluster has as many pieces at once as it has threads
         plan = replace(plan, settings=replace(plan.settings, jobs=1))
-    rows = [Piece(plan, *row) for row in plan.rows]
-    ideals = [Piece(plan, p.stiffness, p.index, p.layout, CASES["ideal"], own=True) for p in rows]
+    names = ("stiffness", "index", "layout", "case")
+    rows = [Piece(plan=plan, **dict(zip(names, row, strict=True))) for row in plan.rows]
+    ideals = [
+        Piece(
+            plan=plan,
+            stiffness=p.stiffness,
+            index=p.index,
+            layout=p.layout,
+            case=CASES["ideal"],
+            own=True,
+        )
+        for p in rows
+    ]
     # what several rows need is done once
     pieces = {piece.key: piece for piece in [*ideals, *rows]}
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import LAYOUTS, SeriesPair
 from inerter.suspension.optimum import optimise
-from inerter.suspension.problem import Problem
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.model import Car
@@ -74,7 +74,11 @@ def linear_optimum(
             inertance(front.inertance),
             rear=Design(rear.stiffness, rear.damping, inertance(rear.inertance)),
         )
-    found = optimise(Problem(car, road, layout, index, stiffness, pair))
+    found = optimise(
+        SuspensionProblem(
+            car=car, road=road, layout=layout, index=index, stiffness=stiffness, pair=pair
+        )
+    )
     return Design(stiffness, found.damping, inertance(found.inertance))
 
 

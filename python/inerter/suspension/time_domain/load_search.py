@@ -32,7 +32,7 @@ _DEPTH = 0.3
 _NET = 0.1
 
 
-@dataclass
+@dataclass(kw_only=True)
 class LoadSearch:
     """J5: the same over all frequencies. Peaks are simulated where the correction expects them."""
 

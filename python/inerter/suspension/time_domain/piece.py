@@ -16,7 +16,7 @@ from inerter.suspension.time_domain.samples import Samples, samples
 from inerter.suspension.time_domain.search import reoptimised
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Piece:
     """`case` of a layout; `own`: at its own linear optimum, whatever the plan says of designs."""
 

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
 
 
-@dataclass
+@dataclass(kw_only=True)
 class RoadSearch:
     """J1 or J3."""
 

@@ -67,9 +67,9 @@ def reoptimised(
     space = Space(start, model.layout)
     base = model.case.pair if like_case else pair
     search = (
-        LoadSearch(plan, model, space, base)
+        LoadSearch(plan=plan, model=model, space=space, base=base)
         if index == "J5"
-        else RoadSearch(plan, model, space, base, index)
+        else RoadSearch(plan=plan, model=model, space=space, base=base, index=index)
     )
     origin, limit = space.origin, math.log(REACH)
     first = search.start(origin)

@@ -73,7 +73,15 @@ def vehicle_optimum(
     equal
         The same damping, inertance and relaxation spring at both axles.
     """
-    problem = VehicleProblem(car, road or Road(), layout, index, stiffnesses, pair, equal)
+    problem = VehicleProblem(
+        car=car,
+        road=road or Road(),
+        layout=layout,
+        index=index,
+        stiffnesses=stiffnesses,
+        pair=pair,
+        equal=equal,
+    )
     return optimise_vehicle(problem)
 
 

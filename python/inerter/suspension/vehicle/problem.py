@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
-from inerter.suspension.problem import Array, Problem
+from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
@@ -26,7 +26,7 @@ from inerter.suspension.vehicle.strut import VehicleStrut, branch
 _COMPLEX_STEP = 1e-30
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class VehicleProblem:
     """What is to be minimised over which designs.
 
@@ -87,11 +87,19 @@ class VehicleProblem:
             front = rear = {name: 0.5 * (front[name] + rear[name]) for name in front}
         return np.array([(front, rear)[axle][name] for axle, name in self.variables])
 
-    def corners(self) -> tuple[Problem, Problem]:
+    def corners(self) -> tuple[SuspensionProblem, SuspensionProblem]:
         """The problems of the quarter-cars at the axles."""
         cars = self.car.side.corners()
         front, rear = (
-            Problem(car, self.road, self.layout, self.index, k, self.pair, no_inerter)
+            SuspensionProblem(
+                car=car,
+                road=self.road,
+                layout=self.layout,
+                index=self.index,
+                stiffness=k,
+                pair=self.pair,
+                massless=no_inerter,
+            )
             for car, k, no_inerter in zip(cars, self.stiffnesses, self.massless, strict=True)
         )
         return front, rear

@@ -26,7 +26,7 @@ from inerter.suspension.vehicle.strut import Branch
 Matrix = NDArray[Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class System:
     """Matrices of arrays of designs; n states.
 

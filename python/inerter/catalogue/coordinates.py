@@ -1,0 +1,461 @@
+"""Coordinates of a fit: what is searched over, and how it becomes the parameters of a device.
+
+Most coordinates are parameters. Where a parameter's effect depends on another one, the coordinate
+is the combination that the data see:
+
+    static_excess   static_force - coulomb_force                     [N]
+    presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
+    bw_level        largest hysteretic Bouc-Wen force (alpha = 1)                      [N]
+    bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
+    series_frequency  sqrt(series_stiffness / inertance) / 2 pi, of the inertance on its shaft  [Hz]
+    series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
+    gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
+    gas_reach       gas_volume / gas_area, the height of the gas                                [m]
+    friction_place  where in the free play before the friction a run begins, where its first force
+                    does not tell: -1 ... 1 of half the play   [-], not a device parameter
+
+What the force channel does (see `identify.channel`) has coordinates of its own, which are no
+parameters.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.catalogue.scales import Range, Scales
+from inerter.device_file import LARGEST_DELAY
+
+Array = NDArray[np.float64]
+Values = dict[str, float]
+OfScales = Callable[[Scales], float]
+
+LOWEST_TONE = 0.2
+"""Lowest frequency [Hz] that counts as a tone, and not as a drift or an offset."""
+GAS_AREA = 1e-3
+"""Piston area [m^2] that a gas is reported under where none is stated: a force has p0 A, V0 / A."""
+FRICTION_SHARE = 0.1
+"""Friction level at which a search begins, per rms force."""
+_INFINITY = math.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coordinate:
+    """One coordinate.
+
+    Attributes
+    ----------
+    name, unit
+        As in models and files.
+    words
+        Words of the device parameters that it stands for, by their names.
+    size, lower, upper
+        Typical size and bounds, of the sizes of the data.
+    logarithmic
+        Whether it is searched over its logarithm.
+    start, start_unit
+        Lowest and highest value at which searches begin, in that unit (1 by default). Starts are
+        spread by their logarithm, or evenly where the lowest is negative.
+    begin
+        Where a trial with it begins that is otherwise none: just off a bound at zero, where the
+        trust region would be stuck.
+    none
+        Value that means that it is not there, or the nearest within its bounds; None where it takes
+        another coordinate to say so.
+    column
+        What it multiplies in the force, of (stretch, velocity, acceleration, elapsed time), where
+        it enters linearly.
+    to_parameters
+        Puts parameters of a device in its place, where it is none itself.
+    of_device
+        Reads it off a device.
+    belongs_to
+        "device"; "channel", what stands between a device's force and the record; "run", how one
+        begins.
+    nuisance
+        Whether it makes up for how a law is smoothed or a run begins, and names no effect.
+    jumps
+        Whether the force that it brings is not smooth in the motion.
+    entangled
+        Whether with it the force is no longer the inertance times the acceleration.
+    proportional_to
+        Coordinate to which it grows in proportion: "level" (of the friction), "inertance".
+    """
+
+    name: str
+    unit: str
+    size: OfScales = lambda s: 1.0
+    lower: OfScales = lambda s: -_INFINITY
+    upper: OfScales = lambda s: _INFINITY
+    words: Mapping[str, str] = field(default_factory=dict)
+    logarithmic: bool = False
+    start: tuple[float, float] = (0.0, 0.0)
+    start_unit: OfScales = lambda s: 1.0
+    begin: OfScales = lambda s: 0.0
+    none: float | None = 0.0
+    column: Callable[[Array, Array, Array, Array], Array] | None = None
+    to_parameters: Callable[[Values], None] | None = None
+    of_device: Callable[[Any], float] | None = None
+    belongs_to: str = "device"
+    nuisance: bool = False
+    jumps: bool = False
+    entangled: bool = False
+    proportional_to: str = ""
+
+    def of(self, device: Any) -> float:
+        """Its value of a device, by its rule or as the parameter of its name."""
+        return float(self.of_device(device) if self.of_device else getattr(device, self.name))
+
+    def range(self, sizes: Scales) -> Range:
+        """How it is searched, given the sizes of the data's channels."""
+        return Range(self.size(sizes), self.lower(sizes), self.upper(sizes), self.logarithmic)
+
+    def neutral(self, sizes: Scales) -> float | None:
+        """Where it has no effect, within its bounds; None where it takes another to say so."""
+        return None if self.none is None else max(self.none, self.lower(sizes))
+
+
+def _zero(s: Scales) -> float:
+    return 0.0
+
+
+def _reach(s: Scales) -> float:
+    """A gas is not pressed to a twentieth of its height."""
+    low = s.travel[0]
+    least = 0.1 * s.displacement
+    return 1.05 * max(-low, least) if np.isfinite(low) else least
+
+
+# --- combinations of parameters ----------------------------------------------------------------
+
+
+def _gas(values: Values) -> None:
+    area = values.setdefault("gas_area", values.get("piston_area", GAS_AREA))
+    values["gas_pressure"] = values.pop("gas_push") / area
+    values["gas_volume"] = values.pop("gas_reach") * area
+
+
+def _shaft(values: Values) -> None:
+    rate, inertance = 2 * np.pi * values.pop("series_frequency"), values["inertance"]
+    values["series_stiffness"] = inertance * rate**2
+    if (loss := values.pop("series_loss", None)) is not None:
+        values["series_damping"] = 2 * loss * rate * inertance
+
+
+def _breakaway(values: Values) -> None:
+    values["static_force"] = values["coulomb_force"] + values.pop("static_excess")
+    if "presliding" in values or not {"transition_velocity", "stribeck_velocity"} <= values.keys():
+        return
+    # a rise wider than the fall would take breakaway away again
+    narrow = values["stribeck_velocity"] / 5
+    values["transition_velocity"] = min(values["transition_velocity"], narrow)
+
+
+def _bristle(values: Values) -> None:
+    distance = values.pop("presliding")
+    if "bw_level" not in values:
+        values["bristle_stiffness"] = values["coulomb_force"] / distance
+        return
+    level, shape = values.pop("bw_level"), values.pop("bw_shape")
+    limit = distance ** -values.get("bw_exponent", 1.0)
+    values["bw_stiffness"] = level / distance / (1 - values.get("bw_ratio", 0.0))
+    values["bw_beta"], values["bw_gamma"] = shape * limit, (1 - shape) * limit
+
+
+# --- every coordinate --------------------------------------------------------------------------
+
+_ALL = (
+    # linear terms
+    Coordinate(
+        name="inertance", unit="kg", words={"inertance": "b"}, none=None,
+        size=lambda s: s.force / s.acceleration, lower=_zero, column=lambda x, v, a, t: a,
+    ),
+    Coordinate(
+        name="viscous", unit="N*s/m", words={"viscous": "c"},
+        size=lambda s: s.force / s.velocity, lower=_zero,
+        begin=lambda s: 0.01 * s.force / s.velocity, column=lambda x, v, a, t: v,
+    ),
+    Coordinate(
+        name="stiffness", unit="N/m", words={"stiffness": "k"},
+        size=lambda s: s.force / s.displacement, column=lambda x, v, a, t: x,
+    ),
+    Coordinate(
+        name="stiffness_cubic", unit="N/m^3", words={"stiffness_cubic": "k3"},
+        size=lambda s: s.force / s.displacement**3, column=lambda x, v, a, t: x**3,
+    ),
+    Coordinate(
+        name="force_offset", unit="N", words={"force_offset": "offset"},
+        size=lambda s: s.force, column=lambda x, v, a, t: np.ones_like(v),
+    ),
+    Coordinate(
+        name="quadratic_damping", unit="N*s^2/m^2", words={"quadratic_damping": "c2"},
+        size=lambda s: s.force / s.velocity**2, lower=_zero,
+        begin=lambda s: 0.01 * s.force / s.velocity**2, column=lambda x, v, a, t: v * np.abs(v),
+    ),
+    # friction
+    Coordinate(
+        name="coulomb_force", unit="N", words={"coulomb_force": "sliding level f_c"},
+        size=lambda s: FRICTION_SHARE * s.force, lower=lambda s: 1e-6 * s.force,
+    ),
+    Coordinate(
+        name="static_excess", unit="N", words={"static_force": "breakaway level f_s"},
+        size=lambda s: 0.1 * s.force, lower=_zero, upper=lambda s: s.force,
+        start=(0.03, 1.5), start_unit=lambda s: FRICTION_SHARE * s.force,
+        to_parameters=_breakaway, proportional_to="level",
+        of_device=lambda d: max(d.static_force - d.coulomb_force, 0.0),
+    ),
+    Coordinate(
+        name="stribeck_velocity", unit="m/s", words={"stribeck_velocity": "Stribeck velocity v_s"},
+        size=lambda s: s.velocity, upper=lambda s: 3 * s.velocity, logarithmic=True, none=None,
+        lower=lambda s: min(max(5e-3 * s.velocity, s.speed_resolution), s.velocity),
+        start=(0.03, 1.0), start_unit=lambda s: s.velocity,
+    ),
+    Coordinate(
+        name="transition_velocity", unit="m/s", logarithmic=True, none=None, nuisance=True,
+        size=lambda s: s.velocity, lower=lambda s: 1e-4 * s.velocity,
+        upper=lambda s: 0.05 * s.velocity,
+    ),
+    Coordinate(
+        name="presliding", unit="m", words={"bristle_stiffness": "bristle stiffness sigma0"},
+        size=lambda s: s.displacement, lower=lambda s: 1e-5 * s.displacement,
+        upper=lambda s: 3 * s.displacement, logarithmic=True, none=None,
+        start=(1e-3, 1.0), start_unit=lambda s: s.displacement, to_parameters=_bristle,
+        of_device=lambda d: d.coulomb_force / d.bristle_stiffness,
+    ),
+    Coordinate(
+        name="bristle_damping", unit="N*s/m", words={"bristle_damping": "bristle damping sigma1"},
+        size=lambda s: 0.1 * s.force / s.velocity, lower=_zero, proportional_to="level",
+        start=(1e-3, 0.3), start_unit=lambda s: s.force / s.velocity,
+    ),
+    Coordinate(
+        name="bw_level", unit="N", size=lambda s: 0.1 * s.force, lower=lambda s: 1e-6 * s.force,
+    ),
+    Coordinate(
+        name="bw_shape", unit="1", size=lambda s: 0.5, lower=_zero, upper=lambda s: 5.0,
+        start=(0.3, 1.2), none=None,
+    ),
+    Coordinate(
+        name="bw_stiffness", unit="N/m", words={"bw_stiffness": "Bouc-Wen stiffness k0"},
+        size=lambda s: s.force / s.displacement, lower=lambda s: 1e-6 * s.force / s.displacement,
+        none=None,
+    ),
+    Coordinate(
+        name="bw_beta", unit="m^-n", words={"bw_beta": "beta"}, size=lambda s: 1 / s.displacement,
+        start=(0.03, 3.0), start_unit=lambda s: 1 / s.displacement, none=None,
+    ),
+    Coordinate(
+        name="bw_gamma", unit="m^-n", words={"bw_gamma": "gamma"}, none=None,
+        size=lambda s: 1 / s.displacement,
+    ),
+    Coordinate(
+        name="bw_ratio", unit="1", words={"bw_ratio": "elastic share A"}, size=lambda s: 0.1,
+        lower=lambda s: -0.5, upper=lambda s: 0.9,
+    ),
+    Coordinate(
+        name="bw_exponent", unit="1", words={"bw_exponent": "n"}, size=lambda s: 1.0,
+        lower=lambda s: 1.0, upper=lambda s: 6.0, start=(1.05, 2.5), none=None,
+    ),
+    Coordinate(
+        name="friction_backlash", unit="m", size=lambda s: s.displacement, logarithmic=True,
+        lower=lambda s: 1e-5 * s.displacement, upper=lambda s: 2 * s.displacement,
+        start=(1e-3, 0.3), start_unit=lambda s: s.displacement,
+    ),
+    Coordinate(
+        name="friction_place", unit="1", lower=lambda s: -1.0, upper=lambda s: 1.0,
+        start=(-0.75, 0.75), belongs_to="run", nuisance=True,
+    ),
+    Coordinate(
+        name="load_friction", unit="1", words={"load_friction": "mu"}, size=lambda s: 0.1,
+        lower=_zero, upper=lambda s: 0.95, begin=lambda s: 0.01, start=(0.01, 0.05),
+        jumps=True, entangled=True,
+    ),
+    # a friction level that varies
+    Coordinate(
+        name="friction_asymmetry", unit="1", words={"friction_asymmetry": "asymmetry"},
+        size=lambda s: 0.1, lower=lambda s: -0.95, upper=lambda s: 0.95,
+    ),
+    Coordinate(
+        name="friction_gradient", unit="1/m",
+        words={"friction_gradient": "gradient along the stroke"},
+        size=lambda s: 0.1 / s.displacement, lower=lambda s: -3 / s.displacement,
+        upper=lambda s: 3 / s.displacement,
+    ),
+    Coordinate(
+        name="friction_curvature", unit="1/m^2",
+        words={"friction_curvature": "curvature along the stroke"},
+        size=lambda s: 0.1 / s.displacement**2, lower=lambda s: -3 / s.displacement**2,
+        upper=lambda s: 3 / s.displacement**2,
+    ),
+    # an inertance that varies
+    Coordinate(
+        name="inertance_gradient", unit="1/m", entangled=True,
+        words={"inertance_gradient": "gradient of b along the stroke"},
+        size=lambda s: 0.1 / s.displacement, lower=lambda s: -3 / s.displacement,
+        upper=lambda s: 3 / s.displacement,
+    ),
+    Coordinate(
+        name="inertance_curvature", unit="1/m^2", entangled=True,
+        words={"inertance_curvature": "curvature of b along the stroke"},
+        size=lambda s: 0.1 / s.displacement**2, lower=lambda s: -3 / s.displacement**2,
+        upper=lambda s: 3 / s.displacement**2,
+    ),
+    Coordinate(
+        name="inertance_speed_gradient", unit="s/m", entangled=True,
+        words={"inertance_speed_gradient": "gradient of b along the speed"},
+        size=lambda s: 0.1 / s.velocity, lower=lambda s: -3 / s.velocity,
+        upper=lambda s: 3 / s.velocity,
+    ),
+    # between the terminal and the flywheel
+    Coordinate(
+        name="series_frequency", unit="Hz", words={"series_stiffness": "series stiffness k_s"},
+        size=lambda s: s.frequency, lower=lambda s: 0.1 * s.frequency,
+        upper=lambda s: 8 * s.highest_frequency, logarithmic=True, none=None, entangled=True,
+        start=(1.5, 30.0), start_unit=lambda s: s.frequency, to_parameters=_shaft,
+        of_device=lambda d: np.sqrt(d.series_stiffness / d.inertance) / (2 * np.pi),
+    ),
+    Coordinate(
+        name="series_loss", unit="1", words={"series_damping": "series damping c_s"},
+        size=lambda s: 0.1, lower=lambda s: 1e-4, upper=lambda s: 1e2, logarithmic=True, none=None,
+        start=(0.01, 1.0),
+        of_device=lambda d: d.series_damping / (2 * np.sqrt(d.series_stiffness * d.inertance)),
+    ),
+    Coordinate(
+        name="series_hardening", unit="1/m", size=lambda s: 0.1 / s.displacement,
+        lower=lambda s: -3 / s.displacement, upper=lambda s: 3 / s.displacement,
+    ),
+    Coordinate(
+        name="flywheel_viscous", unit="N*s/m", size=lambda s: s.force / s.velocity, lower=_zero,
+        start=(1e-3, 0.3), start_unit=lambda s: s.force / s.velocity, entangled=True,
+        proportional_to="inertance",
+    ),
+    Coordinate(
+        name="backlash", unit="m", words={"backlash": "half of the free play eps"},
+        size=lambda s: s.displacement, lower=lambda s: 1e-5 * s.displacement,
+        upper=lambda s: 2 * s.displacement, logarithmic=True, jumps=True,
+        start=(1e-3, 0.3), start_unit=lambda s: s.displacement,
+    ),
+    # stops
+    Coordinate(
+        name="stop_lower", unit="m", words={"stop_lower": "lower stop"}, jumps=True,
+        size=lambda s: s.displacement, lower=lambda s: s.travel[0],
+        upper=lambda s: s.middle - 1e-3 * s.displacement,
+    ),
+    Coordinate(
+        name="stop_upper", unit="m", words={"stop_upper": "upper stop"}, jumps=True,
+        size=lambda s: s.displacement, lower=lambda s: s.middle + 1e-3 * s.displacement,
+        upper=lambda s: s.travel[1],
+    ),
+    Coordinate(
+        name="stop_stiffness", unit="N/m", words={"stop_stiffness": "stop stiffness k_e"},
+        jumps=True, size=lambda s: s.force / s.displacement, logarithmic=True,
+        lower=lambda s: 0.01 * s.force / s.displacement,
+        upper=lambda s: 1e6 * s.force / s.displacement,
+    ),
+    Coordinate(
+        name="stop_damping", unit="s/m", words={"stop_damping": "stop damping"}, jumps=True,
+        size=lambda s: 1 / s.velocity, lower=_zero,
+    ),
+    # gas
+    Coordinate(
+        name="gas_push", unit="N",
+        words={"gas_pressure": "pressure p0", "gas_area": "piston area A"},
+        size=lambda s: s.force, lower=lambda s: 1e-4 * s.force, upper=lambda s: 1e4 * s.force,
+        logarithmic=True, to_parameters=_gas, of_device=lambda d: d.gas_pressure * d.gas_area,
+    ),
+    Coordinate(
+        name="gas_reach", unit="m", words={"gas_volume": "volume V0"},
+        size=lambda s: s.displacement, lower=_reach, upper=lambda s: 1e3 * s.displacement,
+        logarithmic=True, of_device=lambda d: d.gas_volume / d.gas_area,
+    ),
+    Coordinate(
+        name="gas_exponent", unit="1", words={"gas_exponent": "exponent gamma"},
+        size=lambda s: 1.0, lower=lambda s: 1.0, upper=lambda s: 1.7,
+    ),
+    # the force channel
+    Coordinate(
+        name="delay", unit="s", words={"delay": "delay"}, belongs_to="channel",
+        size=lambda s: 1e-3, lower=lambda s: -LARGEST_DELAY, upper=lambda s: LARGEST_DELAY,
+    ),
+    Coordinate(
+        name="force_drift", unit="N/s", words={"force_drift": "drift"}, belongs_to="channel",
+        size=lambda s: s.force / s.elapsed, column=lambda x, v, a, t: t,
+    ),
+    Coordinate(
+        name="force_maximum", unit="N", words={"force_maximum": "upper limit"},
+        belongs_to="channel", size=lambda s: s.force,
+    ),
+    Coordinate(
+        name="force_minimum", unit="N", words={"force_minimum": "lower limit"},
+        belongs_to="channel", size=lambda s: s.force,
+    ),
+    Coordinate(
+        name="disturbance_amplitude", unit="N", words={"disturbance_amplitude": "amplitude"},
+        belongs_to="channel", size=lambda s: 0.1 * s.force, lower=_zero,
+    ),
+    Coordinate(
+        name="disturbance_frequency", unit="Hz", words={"disturbance_frequency": "frequency"},
+        belongs_to="channel", size=lambda s: 1 / s.elapsed, lower=lambda s: LOWEST_TONE,
+    ),
+    Coordinate(
+        name="friction_drift", unit="1/s", words={"friction_drift": "drift of the friction level"},
+        size=lambda s: 0.5 / s.elapsed, lower=lambda s: -0.95 / s.elapsed, belongs_to="channel",
+    ),
+)  # fmt: skip
+
+COORDINATES: Mapping[str, Coordinate] = MappingProxyType({each.name: each for each in _ALL})
+"""Every coordinate by its name."""
+
+# a level that breaks away is told from the distance of a bristle before that is taken
+_CONVERTED = tuple(
+    COORDINATES[name] for name in ("gas_push", "series_frequency", "static_excess", "presliding")
+)
+
+CHANNEL_UNITS: Mapping[str, str] = MappingProxyType(
+    {each.name: each.unit for each in _ALL if each.belongs_to == "channel"}
+)
+"""Units of what the force channel does."""
+NOT_OF_DEVICE = tuple(each.name for each in _ALL if each.belongs_to != "device")
+"""Coordinates of the record: of its force channel, of where its runs begin."""
+NUISANCES = tuple(each.name for each in _ALL if each.nuisance)
+"""Coordinates that name no effect."""
+ENTANGLED = (
+    *(each.name for each in _ALL if each.entangled),
+    "gas_pressure", "series_stiffness", "series_damping",
+)  # fmt: skip
+"""With one of these the force is no longer the inertance times the acceleration."""
+JUMPS = tuple(each.name for each in _ALL if each.jumps)
+"""Beside the friction laws' own, those by which a force is not smooth in the motion."""
+PARAMETER_WORDS: Mapping[str, str] = MappingProxyType(
+    {name: words for each in _ALL for name, words in each.words.items()}
+)
+"""What the parameters of a finding are called in running text."""
+
+
+@functools.lru_cache(maxsize=512)
+def search_range(name: str, sizes: Scales) -> Range:
+    """How a coordinate is searched, given the sizes of the data's channels."""
+    return COORDINATES[name].range(sizes)
+
+
+def parameters_of(coordinates: Mapping[str, float]) -> Values:
+    """Parameters of the device that coordinates stand for (without what is none of the device)."""
+    values = {name: value for name, value in coordinates.items() if name not in NOT_OF_DEVICE}
+    for each in _CONVERTED:
+        if each.name in values and each.to_parameters:
+            each.to_parameters(values)
+    # of a law that is there no more
+    values.pop("bw_level", None)
+    return values
+
+
+def parameter_names(coordinate: str) -> tuple[str, ...]:
+    """Parameters that a coordinate stands for."""
+    known = COORDINATES.get(coordinate)
+    return tuple(known.words) if known and known.words else (coordinate,)

@@ -1,0 +1,290 @@
+"""The effects that a diagnosis can name on a bench: what each adds, its words, its traits.
+
+In the order in which they are read off a model, so that a name does not depend on the way that a
+search took.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from inerter.catalogue.coordinates import COORDINATES
+from inerter.catalogue.friction import LAW_COORDINATES
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect:
+    """An effect by its contract name.
+
+    Attributes
+    ----------
+    name
+        As in the contract.
+    kind
+        "law", a friction law; "level", one that varies; "shaft", elasticity before the flywheel;
+        "play", that with a gap; "term", whatever else.
+    coordinates
+        Those that come and go with it.
+    reported
+        Device parameters that a finding reports; those of the coordinates, where nothing else is
+        said.
+    telling
+        Coordinates whose being zero means that it is absent; the coordinates, where nothing else is
+        said, none where that cannot be told so.
+    stated_as
+        Parameters that a user states for what is searched for in other coordinates.
+    rank
+        How usual it is: where the data cannot tell two effects apart, the one with the smaller
+        number is named.
+    local
+        Whether it may show in few stretches, or in one run alone.
+    far
+        Whether one step from a starting point says little: what it cuts off, or remembers.
+    unlike_friction
+        Whether no friction law can stand in for it.
+    of_channel
+        Whether it is of the force channel, not of the device.
+    on_table
+        Whether amplitudes at a list of frequencies can show it.
+    tells_law
+        Whether a finding says by which law.
+    plain
+        The effect in running text.
+    meaning, cause
+        What it adds to F = b a, and what makes it in a real device.
+    taken_for, experiment
+        What it is easily taken for, and the experiment that tells them apart.
+    rivals
+        Effects among those that it is taken for.
+    """
+
+    name: str
+    plain: str
+    meaning: str
+    cause: str
+    taken_for: str
+    experiment: str
+    kind: str = "term"
+    coordinates: tuple[str, ...] = ()
+    reported: tuple[str, ...] = ()
+    telling: tuple[str, ...] | None = None
+    stated_as: tuple[str, ...] = ()
+    rank: int = 0
+    local: bool = False
+    far: bool = False
+    unlike_friction: bool = False
+    of_channel: bool = False
+    on_table: bool = False
+    tells_law: bool = False
+    rivals: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Device parameters that a finding reports."""
+        known = (COORDINATES[name] for name in self.coordinates if name in COORDINATES)
+        return self.reported or tuple(name for each in known for name in each.words)
+
+    @property
+    def amplitudes(self) -> tuple[str, ...]:
+        """Coordinates whose being zero means that it is absent."""
+        return self.coordinates if self.telling is None else self.telling
+
+
+_ALL = (
+    Effect(
+        name="coulomb_friction", rank=2, kind="law", coordinates=("coulomb_force",), on_table=True,
+        plain="Coulomb friction", meaning="f_c sign(v)",
+        cause="dry sliding in seals, guides and preloaded screws", taken_for="hysteretic friction",
+        experiment="dwell at mid-stroke and watch whether the force stays",
+        rivals=("hysteretic_friction",),
+    ),
+    Effect(
+        name="stribeck_friction", rank=11, kind="law",
+        coordinates=("coulomb_force", "static_excess", "stribeck_velocity"),
+        telling=("static_excess",), far=True, plain="Stribeck friction",
+        meaning="[f_c + (f_s - f_c) exp(-(v/v_s)^2)] sign(v)",
+        cause="lubricated contacts that lift off their asperities as the speed grows",
+        taken_for="Coulomb with viscous friction",
+        experiment="run slow strokes below the Stribeck velocity",
+        rivals=("coulomb_friction", "viscous_friction"),
+    ),
+    Effect(
+        name="hysteretic_friction", rank=8, kind="law", coordinates=LAW_COORDINATES,
+        telling=("coulomb_force", "bw_level", "bw_stiffness"), far=True, tells_law=True,
+        plain="friction with memory",
+        meaning="friction with memory: it builds up over a pre-sliding distance and stays at rest",
+        cause="elastic asperities, seals and preloaded balls that bend before they slide",
+        taken_for="parallel stiffness or backlash",
+        experiment="repeat with strokes shorter than the pre-sliding distance",
+        rivals=("parallel_stiffness", "backlash"),
+    ),
+    Effect(
+        name="asymmetric_friction", rank=10, kind="level", coordinates=("friction_asymmetry",),
+        reported=("coulomb_force", "friction_asymmetry"),
+        plain="friction that differs between the two directions",
+        meaning="friction level differs between the two directions",
+        cause="one-sided preload, a lip seal, a helical gear's thrust",
+        taken_for="a constant force", experiment="repeat with the device turned round",
+        rivals=("force_offset",),
+    ),
+    Effect(
+        name="position_dependent_friction", rank=12, kind="level",
+        coordinates=("friction_gradient", "friction_curvature"),
+        reported=("coulomb_force", "friction_gradient", "friction_curvature"),
+        plain="friction that changes along the stroke",
+        meaning="friction level changes along the stroke",
+        cause="a bent screw, tight guides, wear at mid-stroke", taken_for="parallel stiffness",
+        experiment=(
+            "look at slow strokes both ways, a spring's force does not change sign with "
+            "the direction"
+        ),
+        rivals=("parallel_stiffness",),
+    ),
+    Effect(
+        name="friction_drift", rank=16, kind="level", coordinates=("friction_drift",),
+        reported=("coulomb_force", "friction_drift"),
+        plain="a friction level that changes with time",
+        meaning="friction level times 1 + friction_drift t",
+        cause="lubricant that warms up, seals that run in, wear",
+        taken_for="load-dependent friction, where the motion grows in time",
+        experiment="repeat the first run last", rivals=("load_dependent_friction",),
+    ),
+    Effect(
+        name="hardening_stiffness", rank=14, coordinates=("stiffness_cubic",), local=True,
+        unlike_friction=True, plain="a stiffness that grows with the stroke", meaning="k3 x^3",
+        cause="rubber, guides that bind, a spring that stacks", taken_for="an end stop",
+        experiment="repeat with half the stroke, k3 x^3 falls to an eighth", rivals=("end_stop",),
+    ),
+    Effect(
+        name="gas_spring", rank=20, coordinates=("gas_push", "gas_reach", "gas_exponent"),
+        telling=("gas_push",), stated_as=("gas_pressure", "gas_volume"), local=True,
+        unlike_friction=True, plain="a gas spring", meaning="p0 A (1 - (1 + A x / V0)^-gamma)",
+        cause="trapped air, an accumulator", taken_for="a parallel stiffness",
+        experiment="repeat with more compression, a gas stiffens on one side only",
+        rivals=("parallel_stiffness",),
+    ),
+    Effect(
+        name="end_stop", rank=19,
+        coordinates=("stop_upper", "stop_lower", "stop_stiffness", "stop_damping"), telling=(),
+        local=True, unlike_friction=True, plain="an end stop",
+        meaning="k_e (x - x_stop) beyond the stop",
+        cause="a bump stop, a nut that reaches its end", taken_for="hardening stiffness",
+        experiment="repeat with strokes that end just before the stop",
+        rivals=("hardening_stiffness",),
+    ),
+    Effect(
+        name="force_drift", rank=15, coordinates=("force_drift",), unlike_friction=True,
+        of_channel=True, plain="a force offset that grows in time",
+        meaning="an offset that grows steadily",
+        cause="a load cell that warms up, a charge amplifier that leaks",
+        taken_for="friction drift", experiment="that one changes sign with the velocity",
+        rivals=("friction_drift",),
+    ),
+    Effect(
+        name="sensor_saturation", rank=17, coordinates=("force_maximum", "force_minimum"),
+        telling=(), local=True, unlike_friction=True, far=True, of_channel=True,
+        plain="a force channel that clips", meaning="force beyond a limit is cut off",
+        cause="an amplifier or converter at the end of its range",
+        taken_for="less inertance in large motion", experiment="repeat with half the amplitude",
+    ),
+    Effect(
+        name="periodic_disturbance", rank=18,
+        coordinates=("disturbance_amplitude", "disturbance_frequency"),
+        telling=("disturbance_amplitude",), unlike_friction=True, of_channel=True,
+        plain="a tone that the motion does not contain", meaning="a sine of constant frequency",
+        cause="mains hum, a pump, a machine next door", taken_for="a resonance of the rig",
+        experiment="record with the device at rest",
+    ),
+    Effect(
+        name="viscous_friction", rank=3, coordinates=("viscous",), on_table=True,
+        plain="viscous friction", meaning="c v",
+        cause="lubricant shear in bearings, screw and seals", taken_for="sensor delay",
+        experiment=(
+            "repeat the stroke at twice the frequency, c v doubles and a delay's force "
+            "grows eightfold"
+        ),
+        rivals=("sensor_delay",),
+    ),
+    Effect(
+        name="load_dependent_friction", rank=9, coordinates=("load_friction",), on_table=True,
+        plain="friction that grows with the transmitted force", meaning="mu |b a| sign(v)",
+        cause="the flywheel's force pressed through screw threads or gear teeth",
+        taken_for="Coulomb friction", experiment="repeat with another flywheel",
+        rivals=("coulomb_friction",),
+    ),
+    Effect(
+        name="parallel_stiffness", rank=5, coordinates=("stiffness",), unlike_friction=True,
+        on_table=True, plain="a parallel stiffness", meaning="k x",
+        cause="a centring spring, a rubber mount, trapped air",
+        taken_for="a wrong inertance at one frequency", experiment="use at least two frequencies",
+        rivals=("inertance_error",),
+    ),
+    Effect(
+        name="force_offset", rank=4, coordinates=("force_offset",), plain="a constant force",
+        meaning="a constant force",
+        cause="weight of the flywheel, preload, a load cell that was not zeroed",
+        taken_for="asymmetric friction", experiment="a dwell shows the constant force alone",
+        rivals=("asymmetric_friction",),
+    ),
+    Effect(
+        name="sensor_delay", rank=6, coordinates=("delay",), of_channel=True,
+        plain="a delay between the force and the displacement channel",
+        meaning="the force channel is late by a constant time",
+        cause="filters or clocks that differ between the channels",
+        taken_for="series elasticity and viscous friction",
+        experiment="they change with amplitude or with frequency, a delay does not",
+        rivals=("series_elasticity", "viscous_friction"),
+    ),
+    Effect(
+        name="quadratic_damping", rank=7, coordinates=("quadratic_damping",), on_table=True,
+        plain="quadratic damping", meaning="c2 v |v|",
+        cause="turbulent flow, windage of the flywheel", taken_for="viscous friction",
+        experiment="repeat at twice the amplitude", rivals=("viscous_friction",),
+    ),
+    Effect(
+        name="variable_inertance", rank=13,
+        coordinates=("inertance_gradient", "inertance_curvature", "inertance_speed_gradient"),
+        reported=(
+            "inertance", "inertance_gradient", "inertance_curvature",
+            "inertance_speed_gradient",
+        ),
+        unlike_friction=True, plain="an inertance that is not constant",
+        meaning="b depends on displacement, b(x) a + b'(x) v^2 / 2, or on speed",
+        cause="a ratio that varies along the stroke: rack and pinion, eccentric gear, moving fluid",
+        taken_for="parallel stiffness",
+        experiment="repeat at twice the frequency, the inertance force grows fourfold",
+        rivals=("parallel_stiffness",),
+    ),
+    Effect(
+        name="backlash", rank=22, kind="play",
+        coordinates=("backlash", "series_frequency", "series_loss"), telling=(),
+        unlike_friction=True, far=True, plain="free play before the inertance is engaged",
+        meaning="free play of half-width eps in series with the inertance",
+        cause="worn screw or gear flanks, loose pins", taken_for="hysteretic friction",
+        experiment="repeat with strokes within the suspected play",
+        rivals=("hysteretic_friction",),
+    ),
+    Effect(
+        name="series_elasticity", rank=21, kind="shaft",
+        coordinates=("series_frequency", "series_loss"), telling=(),
+        stated_as=("series_stiffness", "series_damping"), unlike_friction=True,
+        plain="elasticity in series with the inertance",
+        meaning="spring k_s and damper c_s between the terminal and the inertance",
+        cause="shaft twist, bearing and mount flexibility, fluid compressibility",
+        taken_for="inertance or delay",
+        experiment="repeat at higher frequency, where the inertance resonates on it",
+        rivals=("inertance_error", "sensor_delay"),
+    ),
+    Effect(
+        name="inertance_error", rank=1, coordinates=("inertance",), telling=(), on_table=True,
+        plain="an inertance other than stated", meaning="b differs from what is stated",
+        cause="flywheel inertia, lead or gear ratio other than in the data sheet",
+        taken_for="a wrong force or displacement calibration",
+        experiment="check both against a known mass",
+    ),
+)  # fmt: skip
+
+EFFECTS: Mapping[str, Effect] = MappingProxyType({effect.name: effect for effect in _ALL})
+"""Every effect of a bench record by its name."""

@@ -1,0 +1,62 @@
+"""The effects of a vehicle that a diagnosis can name, beside those of the device."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from inerter.catalogue.effects import EFFECTS, Effect
+
+_ALL = (
+    Effect(
+        name="tyre_damping", reported=("tyre_damping",), plain="damping of the tyre",
+        meaning="c_t (road rate - wheel velocity), beside the tyre's stiffness",
+        cause="hysteresis of rubber and carcass", taken_for="friction of the suspension",
+        experiment="lock the suspension and drive the wheel alone",
+    ),
+    Effect(
+        name="tyre_liftoff", reported=("tyre_static_load",), plain="a tyre that leaves the road",
+        meaning="the tyre cannot pull: its force ends at the static load",
+        cause="a wheel without contact", taken_for="a softer tyre",
+        experiment="repeat at half the amplitude, where the wheel stays on the road",
+    ),
+    Effect(
+        name="tyre_stiffness_error", reported=("tyre_stiffness",),
+        plain="a tyre stiffness other than stated",
+        meaning="k_t differs from what the model states", cause="another pressure, load or tyre",
+        taken_for="wheel mass", experiment="weigh the wheel, or load the tyre statically",
+        rivals=("wheel_mass_error",),
+    ),
+    Effect(
+        name="damper_asymmetry", reported=("rebound_damping", "bump_damping"),
+        plain="a damper that differs between rebound and bump",
+        meaning="c_r v in rebound, c_b v in bump",
+        cause="valves with different openings in the two directions", taken_for="a constant force",
+        experiment="measure the damper alone, at several speeds", rivals=("force_offset",),
+    ),
+    Effect(
+        name="spring_hardening", reported=("stiffness_cubic",),
+        plain="a suspension spring that grows stiffer with its travel", meaning="k3 x^3",
+        cause="progressive winding, bump rubbers, air springs",
+        taken_for="hardening of the device itself",
+        experiment="the same force between the same bodies, test the device alone",
+    ),
+    Effect(
+        name="body_mass_error", reported=("body_mass",), plain="a body mass other than stated",
+        meaning="the sprung mass differs from what the model states",
+        cause="payload, fuel, equipment that the model leaves out",
+        taken_for="suspension stiffness", experiment="weigh the vehicle",
+    ),
+    Effect(
+        name="wheel_mass_error", reported=("wheel_mass",),
+        plain="a wheel mass other than stated",
+        meaning="the unsprung mass differs from what the model states",
+        cause="brake, hub and links that the model leaves out", taken_for="tyre stiffness",
+        experiment="weigh the wheel", rivals=("tyre_stiffness_error",),
+    ),
+)  # fmt: skip
+
+VEHICLE_EFFECTS: Mapping[str, Effect] = MappingProxyType({effect.name: effect for effect in _ALL})
+"""Every effect of a vehicle by its name."""
+KNOWN: Mapping[str, Effect] = MappingProxyType({**EFFECTS, **VEHICLE_EFFECTS})
+"""Every effect."""

@@ -1,0 +1,80 @@
+"""Records smoothed at one cut-off, and what of them is fitted and held out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from inerter.diagnose.play import forgiving, from_contact
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun, on_clocks, scales, thin, whole
+from inerter.identify.split import Split, split
+from inerter.records import Record
+from inerter.records.preparation import Preparation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Data:
+    """Records as a diagnosis works on them; another band of the motion is another object.
+
+    Attributes
+    ----------
+    records, preparation
+        What was smoothed, and how.
+    runs, split
+        In the band of the motion, thinned, and how they are divided.
+    whole, full
+        At the measured rate with the force as measured, and how they are divided.
+    band, raw
+        The held-out samples of each.
+    """
+
+    records: Sequence[Record]
+    preparation: Preparation
+    runs: list[BenchRun]
+    split: Split
+    whole: list[BenchRun]
+    full: Split
+    band: Problem
+    raw: Problem
+
+    @property
+    def held(self) -> list[str]:
+        """Names of the runs that are held out."""
+        return [r.name for i, r in enumerate(self.runs) if self.split.role(i) == "holdout"]
+
+    @property
+    def learnt(self) -> Problem:
+        """The fit data at the measured rate with the force as measured."""
+        return Problem(self.whole, self.full.fit, self.band.scales)
+
+    @property
+    def followed(self) -> Problem:
+        """The same, each run followed from a contact on."""
+        learnt = self.learnt
+        return Problem([from_contact(run) for run in learnt.runs], learnt.masks, learnt.scales)
+
+    def in_band(self, preparation: Preparation) -> Data:
+        """The same records, smoothed otherwise."""
+        return divided(self.records, preparation, self.held)
+
+    def with_play(self, play: Model) -> Data:
+        """Runs followed from contacts on, where what is far off behind a play counts little."""
+        followed = [from_contact(run) for run in self.whole]
+        raw = Problem(followed, self.full.holdout, self.band.scales)
+        return replace(self, whole=followed, raw=forgiving(raw, play))
+
+
+def divided(records: Sequence[Record], preparation: Preparation, holdout: Sequence[str]) -> Data:
+    """Runs and splits of smoothed records; `holdout` as in `identify.split.split`."""
+    runs = on_clocks([thin(motion) for motion in preparation.motions])
+    raw = on_clocks([whole(motion) for motion in preparation.motions])
+    parted = split(runs, holdout)
+    held = [run.name for i, run in enumerate(runs) if parted.role(i) == "holdout"]
+    full = split(raw, held)
+    band = Problem(runs, parted.holdout, scales(runs))
+    return Data(
+        records=records, preparation=preparation, runs=runs, split=parted, whole=raw, full=full,
+        band=band, raw=Problem(raw, full.holdout, band.scales),
+    )  # fmt: skip

@@ -1,0 +1,202 @@
+"""Diagnosis of bench records: displacement in, force out, what does the simulation lack?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from inerter.catalogue.effects import EFFECTS
+from inerter.core import Device
+from inerter.diagnose import wording
+from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.doubt import doubted
+from inerter.diagnose.engines import simulate_engines
+from inerter.diagnose.parallel import helped
+from inerter.diagnose.result import (
+    Accuracy,
+    Diagnosis,
+    Finding,
+    ParameterValue,
+    RecordSummary,
+    RunCurves,
+)
+from inerter.diagnose.stages import (
+    Confirmed,
+    Given,
+    confirmed,
+    prepared,
+    searched,
+    settled,
+)
+from inerter.diagnose.statistics import gain_interval
+from inerter.diagnose.unexplained import unexplained
+from inerter.diagnose.values import parameter_values
+from inerter.identify.channel import channel_values
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along
+from inerter.identify.prediction import settled as without_nuisances
+from inerter.records import Record
+from inerter.records.duplicates import repeats_another
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+
+def diagnose_bench(
+    records: Sequence[Record],
+    device: Device | None = None,
+    holdout: Sequence[str] = (),
+    progress: Progress = lambda text: None,
+    delay: float = 0.0,
+) -> Diagnosis:
+    """What a simulation of the device lacks, on data it has not seen.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        One or several runs.
+    device : Device, optional
+        The user's own device; its stated parameters are held until the data contradict them. By
+        default the baseline is the ideal inerter with unknown inertance.
+    holdout : sequence of str
+        Names of runs to hold out.
+    progress : callable
+        Told what is being done, a line each.
+    delay : float
+        Time by which the force channel is known to be late [s].
+
+    Raises
+    ------
+    ValueError
+        Runs that cannot be split or do not move.
+    """
+    given = Given(
+        records=list(records), device=device, holdout=holdout, progress=progress, delay=delay
+    )
+    # predictions of models that are only tried may run away
+    quiet = np.errstate(over="ignore", invalid="ignore")
+    with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
+        return diagnosis_of(confirmed(settled(searched(prepared(given)))))
+
+
+def diagnosis_of(stands: Confirmed) -> Diagnosis:
+    """What is said of a model that stands: findings, figures, what remains."""
+    data, judge, final = stands.searched.data, stands.searched.judge, stands.fit.model
+    given = stands.searched.prepared.given
+    baseline, extended = _accuracy(stands, stands.before.model), _accuracy(stands, final)
+    floor = judge.noise_left(final)
+    remains = unexplained(
+        data.runs, data.split, data.band.residual(final), floor, extended.rmse, data.whole,
+        data.raw.errors(final),
+    )  # fmt: skip
+    values = parameter_values(
+        stands.fit, given.device, stands.searched.prepared.baseline.values.get("delay", 0.0)
+    )
+    findings = [doubted(finding, remains.structure) for finding in _findings(stands, values)]
+    given.progress("simulating the extended device in MuJoCo")
+    squares = [judge.error_squares(fit.model) for fit in (stands.before, stands.fit)]
+    diagnosis = Diagnosis(
+        records=_summaries(stands),
+        baseline=baseline,
+        findings=findings,
+        extended=extended,
+        noise_floor=floor,
+        unexplained=remains,
+        engines=simulate_engines(final, data.whole, data.raw.masks),
+        verdict="",
+        parameters=values,
+        method=_method(stands),
+        curves=_curves(stands),
+        gain_interval=gain_interval(*squares),
+    )
+    return replace(diagnosis, verdict=wording.verdict(diagnosis))
+
+
+def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Finding]:
+    findings = []
+    for link in stands.chain:
+        known = stands.standings.get(link.effect)
+        finding = Finding(
+            effect=link.effect,
+            law=link.law,
+            confidence=known.confidence if known else 0.5,
+            parameters={n: values[n] for n in EFFECTS[link.effect].parameters if n in values},
+            rmse_before=link.rmse_before,
+            rmse_after=link.rmse_after,
+            evidence="",
+            rivals=[
+                rival
+                for rival in (known.rivals if known else ())
+                if rival.confidence >= CRITERIA.rival_kept
+            ],
+            seen_in_blocks=link.seen_in_blocks,
+            gain_interval=link.interval,
+        )
+        findings.append(replace(finding, evidence=wording.evidence(finding)))
+    return sorted(findings, key=lambda finding: -finding.gain)
+
+
+def _accuracy(stands: Confirmed, model: Model) -> Accuracy:
+    judge = stands.searched.judge
+    rmse, spread = judge.rmse(model), float(np.std(judge.force))
+    return Accuracy(model.stated(), rmse, rmse / (spread or 1.0), channel_values(model.values))
+
+
+def _summaries(stands: Confirmed) -> list[RecordSummary]:
+    data = stands.searched.data
+    names = [record.name for record in data.records]
+    return [
+        RecordSummary(
+            record.name,
+            record.samples,
+            record.sample_rate,
+            "unused" if repeats_another(record) else data.split.role(names.index(record.name)),
+            [vars(w) for w in record.warnings],
+        )
+        for record in stands.searched.prepared.given.records
+    ]
+
+
+def _method(stands: Confirmed) -> dict:
+    data = stands.searched.data
+    band = data.preparation
+    return {
+        "cutoff": band.cutoff,
+        "cutoffs_tried": [float(value) for value in band.cutoffs],
+        # infinite where too little of a short record is left to judge a cut-off by
+        "force_error_at_cutoffs": [float(value) for value in band.errors],
+        "channels": ["displacement", *band.channels],
+        "one_tone": data.band.scales.one_tone,
+        "split": data.split.description,
+        "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
+    }
+
+
+def _curves(stands: Confirmed) -> list[RunCurves]:
+    data = stands.searched.data
+
+    def predicted(model: Model, i: int) -> Array:
+        run = data.whole[i]
+        rest = run.force - force_along(model, run)
+        return run.force - without_nuisances(model, run, rest, run.inner)
+
+    return [
+        RunCurves(
+            name=run.name,
+            role=data.split.role(i),
+            time=run.time,
+            displacement=run.displacement,
+            velocity=run.velocity,
+            acceleration=run.acceleration,
+            force=run.force,
+            baseline=predicted(stands.before.model, i),
+            extended=predicted(stands.fit.model, i),
+            holdout=data.full.holdout[i],
+            inner=run.inner,
+        )
+        for i, run in enumerate(data.whole)
+    ]

@@ -1,0 +1,333 @@
+"""The stages of a diagnosis of bench records, each made of the one before and changed no more.
+
+    Given -> Prepared -> Searched -> Settled -> Confirmed
+
+prepare    smoothing; what is held out; the baseline
+search     the effects that predict best, in the band in which the model found predicts best
+settle     each effect against what else could explain the data
+confirm    each effect on data that no fit has seen
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from inerter.catalogue.effects import EFFECTS
+from inerter.core import Device
+from inerter.diagnose.band import best_band, narrower_band, wider_band
+from inerter.diagnose.baseline import baseline_of
+from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
+from inerter.diagnose.composition import effects_of, has_series, simpler_laws, submodel
+from inerter.diagnose.data import Data, divided
+from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.judge import Judge
+from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
+from inerter.diagnose.rivals import Standing, standing
+from inerter.diagnose.search import Scored, Search
+from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
+from inerter.identify.fit import Fit, Problem
+from inerter.identify.model import Model
+from inerter.identify.runs import on_clocks, thin
+from inerter.identify.split import split
+from inerter.records import Record
+from inerter.records.duplicates import without_copies
+from inerter.records.preparation import Preparation, prepare, refuse_unusable, weighed
+
+Progress = Callable[[str], None]
+
+# effects that take away the rigid drive of the flywheel
+_DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """What a diagnosis is asked.
+
+    Attributes
+    ----------
+    records
+        All runs, copies of others among them.
+    device
+        The user's own; None: the ideal inerter with unknown inertance.
+    holdout
+        Names of runs to hold out.
+    progress
+        Told what is being done, a line each.
+    delay
+        Time by which the force channel is known to be late [s].
+    """
+
+    records: Sequence[Record]
+    device: Device | None = None
+    holdout: Sequence[str] = ()
+    progress: Progress = lambda text: None
+    delay: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prepared:
+    """Records divided, and where the search starts.
+
+    Attributes
+    ----------
+    data
+        In the band in which a broad linear model predicts all the data best.
+    plain, weighed
+        In that in which it predicts the fit data best; the same where errors count by the motion's
+        noise.
+    baseline
+        The ideal inerter, or what the user states.
+    """
+
+    given: Given
+    data: Data
+    plain: Preparation
+    weighed: Preparation
+    baseline: Model
+
+
+@dataclass(frozen=True, kw_only=True)
+class Searched:
+    """What a search found, and the data that it ended with."""
+
+    prepared: Prepared
+    data: Data
+    search: Search
+    final: Scored
+
+    @cached_property
+    def judge(self) -> Judge:
+        """The held-out data."""
+        search, data = self.search, self.data
+        counted = Problem(search.runs, search.split.holdout, search.problem.scales)
+        return Judge(data.band, data.raw, counted, data.preparation, self.prepared.baseline)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settled:
+    """The same with each effect compared to its rivals; `before`: the baseline fitted."""
+
+    searched: Searched
+    final: Scored
+    before: Fit
+    standings: Mapping[str, Standing]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Confirmed:
+    """What stands on data that no fit has seen: the extended model, its effects one by one."""
+
+    searched: Searched
+    before: Fit
+    fit: Fit
+    chain: tuple[Link, ...]
+    standings: Mapping[str, Standing]
+
+
+# --- Given -> Prepared ---------------------------------------------------------------------------
+
+
+def prepared(given: Given) -> Prepared:
+    """Smoothed and divided records, and the baseline.
+
+    Raises
+    ------
+    ValueError
+        Runs that cannot be split or do not move.
+    """
+    records = without_copies(given.records, given.holdout)
+    refuse_unusable(records)
+    given.progress("smoothing: choosing the cut-off")
+    data = divided(records, prepare(records), given.holdout)
+    # what is held out has no say in the smoothing of what is fitted: its own motion may be faster,
+    # and is smoothed as the force that it makes tells
+    plain = prepare(records, data.full.fit)
+    baseline = baseline_of(given.device, data.band.scales)
+    if given.delay:
+        baseline = replace(baseline, values={**baseline.values, "delay": given.delay})
+    return Prepared(
+        given=given, data=data, plain=plain, baseline=baseline,
+        weighed=weighed(records, plain, data.full.fit),
+    )  # fmt: skip
+
+
+# --- Prepared -> Searched ------------------------------------------------------------------------
+
+
+def searched(start: Prepared) -> Searched:
+    """The plainest model that predicts best.
+
+    Where the model found predicts the force better in a wider band, the search goes on there.
+    """
+    data, band = start.data, start.weighed
+    search = _search_in(start, band)
+    final = search.run(until="backlash")
+    for _ in range(CRITERIA.more_bands):
+        wider = _wider(data, band, final.model)
+        if "backlash" in final.model.free or wider is None:
+            break
+        band, search = wider, _search_in(start, wider)
+        final = search.run(final.model, until="backlash")
+    if calmer := _calmer(start, band, final.model):
+        search, plainer = calmer
+        final = search.run(plainer, until="backlash")
+    if "backlash" in final.model.free:
+        start.given.progress("free play: fitting it to the force as measured")
+    elif raw := _wider(data, data.preparation, final.model):
+        data = data.in_band(raw)
+    found = Searched(prepared=start, data=data, search=search, final=final)
+    if play := _play(found):
+        return _with_play(found, play)
+    return _in_narrower_band(found)
+
+
+def _search_in(start: Prepared, band: Preparation) -> Search:
+    """A search in which errors count by the noise of the motion."""
+    runs = [
+        replace(run, corner=band.corner)
+        for run in on_clocks([thin(motion) for motion in band.motions])
+    ]
+    return Search(runs, split(runs, start.data.held), start.baseline, start.given.progress)
+
+
+def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:
+    return wider_band(data.records, band, data.full.fit, model, data.band.scales)
+
+
+def _calmer(start: Prepared, band: Preparation, model: Model) -> tuple[Search, Model] | None:
+    """A plainer friction law that predicts the fit data better in the band of the plain fits.
+
+    In a wider band the noise of a slow motion turns its velocity about, and a law with memory
+    serves as a filter of it. The search is taken back to the narrower band where there is one.
+    """
+    laws = [] if model.friction == start.baseline.friction else simpler_laws(model)
+    if not laws or band.cutoff <= start.plain.cutoff:
+        return None
+    search = _search_in(start, replace(start.plain, corner=band.corner))
+    masks = search.split.fit
+    best = min(map(search.problem.fit, laws), key=lambda fit: fit.rmse(masks))
+    if best.rmse(masks) > (1 - CRITERIA.band_gain) * search.problem.fit(model).rmse(masks):
+        return None
+    return search, best.model
+
+
+def _play(found: Searched) -> Model | None:
+    """The model with free play fitted to the force as measured, if it has one or needs one."""
+    baseline, model = found.prepared.baseline, found.final.model
+    starts: list[Model] = []
+    if not has_series(baseline):
+        kept = [name for name, _ in effects_of(model, baseline) if name not in _DRIVE]
+        rigid = submodel(model, kept, baseline)
+        starts = [rigid] if rigid.free == baseline.free else [rigid, baseline]
+    return play_of(found.data.followed, model, starts, found.judge.noise_floor(model))
+
+
+def _with_play(found: Searched, play: Model) -> Searched:
+    """The search from a model with free play on, with the force as measured."""
+    data, start = found.data, found.prepared
+    for _ in range(CRITERIA.more_bands):
+        far = forgiving(data.followed, play).runs[0].far
+        band = best_band(
+            data.records, data.preparation, data.full.fit, play, data.band.scales, far
+        )  # fmt: skip
+        if band is data.preparation:
+            break
+        data = data.in_band(band)
+        play = fit_play(data.followed, play)
+    data = data.with_play(play)
+    learnt = forgiving(data.learnt, play)
+    search = Search(learnt.runs, data.full, start.baseline, start.given.progress)
+    return Searched(prepared=start, data=data, search=search, final=search.run(play))
+
+
+def _in_narrower_band(found: Searched) -> Searched:
+    """Judged in the band in which the held-out data tell more of a shaft, if any."""
+    data, before = found.data, found.search.baseline_fit().model
+    narrow = narrower_band(
+        data.records, data.preparation, data.full.holdout, before, found.final.model,
+        data.band.scales,
+    )  # fmt: skip
+    return replace(found, data=data.in_band(narrow)) if narrow else found
+
+
+# --- Searched -> Settled -------------------------------------------------------------------------
+
+
+def settled(found: Searched) -> Settled:
+    """Every effect compared with its rivals; where they are equal, the usual one is named."""
+    final = _plainest_law(found)
+    before = found.search.baseline_fit()
+    final, standings = compared(found.search, found.prepared.baseline, final)
+    return Settled(searched=found, final=final, before=before, standings=standings)
+
+
+def compared(
+    search: Search, baseline: Model, final: Scored, exchanges: int = CRITERIA.exchanges
+) -> tuple[Scored, dict[str, Standing]]:
+    """A model with the standing of its effects; where one's rival is to be named, with that."""
+    standings: dict[str, Standing] = {}
+    for effect, _ in effects_of(final.model, baseline):
+        standings[effect] = standing(search, final, effect)
+        better = standings[effect].better
+        if exchanges and better is not None:
+            return compared(search, baseline, better, exchanges - 1)
+    return final, standings
+
+
+def _plainest_law(found: Searched) -> Scored:
+    """The simplest friction law from which the one found does not differ visibly."""
+    final, judge = found.final, found.judge
+    if final.model.friction == found.prepared.baseline.friction:
+        return final
+    for model in simpler_laws(final.model):
+        fit = found.search.problem.fit(model)
+        apart = judge.difference(fit.model, final.model)
+        if not judge.visible(apart, 0.0, final.model):
+            return found.search.score("", None, fit)
+    return final
+
+
+# --- Settled -> Confirmed ------------------------------------------------------------------------
+
+
+def confirmed(start: Settled) -> Confirmed:
+    """What helps on data that no fit has seen; the rest is dropped."""
+    found, final = start.searched, start.final
+    search, judge, baseline = found.search, found.judge, found.prepared.baseline
+    progress = found.prepared.given.progress
+    progress("measuring the gain of each effect")
+    chain = chain_of(search, judge, final.model)
+    while weak := weakest(chain, judge, final.model):
+        progress(f"{weak} is not confirmed on held-out data: dropped")
+        rest = [name for name, _ in effects_of(final.model, baseline) if name != weak]
+        fit = search.problem.fit(submodel(final.model, rest, baseline))
+        final = search.score("", None, fit)
+        chain = chain_of(search, judge, final.model)
+    # where nothing stands the baseline is left, fitted as it was
+    fit, tone = _with_tone(found, final.fit if chain else start.before)
+    standings = dict(start.standings)
+    if tone:
+        link, confidence = tone
+        chain.append(link)
+        standings[link.effect] = Standing(confidence, [], None)
+    if "backlash" in fit.model.free:
+        progress("free play: how far other data would lead")
+        spread = jackknife(search.problem, found.data.full.folds, fit.model)
+        fit = replace(fit, covariance=fit.covariance + spread)
+    return Confirmed(
+        searched=found, before=start.before, fit=fit, chain=tuple(chain), standings=standings
+    )
+
+
+def _with_tone(found: Searched, fit: Fit) -> tuple[Fit, tuple[Link, float] | None]:
+    """The fit with its tone as the raw force has it, and one that the low-pass hides, if any."""
+    learnt = found.data.learnt
+    fit = with_tone_from_raw(learnt, fit)
+    lowest = CRITERIA.tones_from * found.data.preparation.cutoff
+    after = with_tone_above(learnt, fit, lowest)
+    if after is None:
+        return fit, None
+    link, confidence = tone_link(found.judge, fit, after)
+    return (after, (link, confidence)) if link.stands else (fit, None)

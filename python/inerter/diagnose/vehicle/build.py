@@ -1,0 +1,388 @@
+"""The user's MJCF with a diagnosis' changes in it: edits of an MjSpec, so that it can be written.
+
+ELEMENT.NAME                what changes (tyre:ACTUATOR, tendon:, joint: or body:NAME)
+DEVICE.*                    the configuration of the inerter.device (`identify.coordinates`)
+TYRE.tyre_stiffness         gain of the road's position actuator [N/m]
+TYRE.tyre_damping           a further velocity actuator, whose control is the road's rate [N s/m]
+TYRE.tyre_static_load       force range of the road's actuator: it cannot pull by more [N]
+DEVICE.rebound_damping, DEVICE.bump_damping   the suspension's damper: the smaller one stays
+                            where the user has it, the rest acts in its direction alone [N s/m]
+LINK.stiffness, LINK.stiffness_cubic, LINK.damping   of a joint or tendon
+BODY.mass                   of a body, its inertia in proportion [kg]
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import mujoco
+import numpy as np
+
+from inerter.catalogue.coordinates import parameters_of
+from inerter.catalogue.friction import FRICTION, LAW_COORDINATES, law_coordinates
+from inerter.core import Device, DeviceError, parameters
+from inerter.device_in_model import DeviceInModel, devices_of
+from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.parts import Parts, Suspension, Tyre, VehicleLink, find_parts
+from inerter.plugin import load_plugin
+
+_FAR = 1e12  # a force that no one-sided actuator reaches [N]
+
+
+@dataclass(kw_only=True)
+class UserModel:
+    """A user's model file, its devices and the parts of its vehicle.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    spec : MjSpec
+        As read; never changed.
+    model : MjModel
+        As compiled.
+    devices : list of DeviceInModel
+        With names, in the order of the actuators.
+    parts : Parts
+        Of the vehicle; set by `with_roads`.
+    """
+
+    path: Path
+    spec: mujoco.MjSpec
+    model: mujoco.MjModel
+    devices: list[DeviceInModel]
+    parts: Parts = field(default_factory=Parts)
+    roads: list[int] = field(default_factory=list)
+
+    def with_roads(self, roads: list[int]) -> None:
+        """Say which actuators the records drive."""
+        self.roads = roads
+        self.parts = find_parts(self.model, roads)
+
+    def with_timestep(self, step: float) -> UserModel:
+        """The same model with another timestep."""
+        spec = self.spec.copy()
+        spec.option.timestep = step
+        model = spec.copy().compile()
+        return UserModel(
+            path=self.path,
+            spec=spec,
+            model=model,
+            devices=devices_of(model),
+            parts=self.parts,
+            roads=self.roads,
+        )
+
+    @cached_property
+    def stated(self) -> dict[str, float]:
+        """Coordinates of everything stated that a diagnosis may change."""
+        found: dict[str, float] = {}
+        for device in self.devices:
+            for name, value in stated_coordinates(device, self.model).items():
+                found[f"{device.name}.{name}"] = value
+        for tyre in self.parts.tyres:
+            found[f"{tyre.element}.tyre_stiffness"] = tyre.stiffness
+        for part in self.parts.suspensions:
+            for body in (part.wheel, part.body):
+                found[f"{self.body(body)}.mass"] = float(self.model.body_mass[body])
+            for link, names in ((part.spring, ("stiffness",)), (part.damper, ("damping",))):
+                if link is not None and link.kind != "device":
+                    for name in names:
+                        found[f"{link.element}.{name}"] = self._of_link(link, name)
+        return found
+
+    def _of_link(self, link: VehicleLink, name: str) -> float:
+        if link.kind == "tendon":
+            return float(getattr(self.model, f"tendon_{name}")[link.index])
+        if name == "stiffness":
+            return float(self.model.jnt_stiffness[link.index])
+        return float(self.model.dof_damping[self.model.jnt_dofadr[link.index]])
+
+    def damping(self, part: Suspension) -> float:
+        """Stated damping of a suspension's damper [N s/m]."""
+        assert part.damper is not None
+        if part.damper.kind == "device":
+            return self.stated[f"{part.device}.viscous"]
+        return self._of_link(part.damper, "damping")
+
+    def body(self, index: int) -> str:
+        """A body's name in coordinates."""
+        return f"body:{self.model.body(index).name or index}"
+
+    def device(self, name: str) -> DeviceInModel:
+        """A device by name."""
+        return next(d for d in self.devices if d.name == name)
+
+    def device_of(self, name: str, change: VehicleModel) -> Device:
+        """A device with the changes of a model."""
+        found = self.device(name)
+        given = found.stated(self.model)
+        values = {
+            k: v for k, v in change.of(name).items() if k not in ("rebound_damping", "bump_damping")
+        }
+        law = change.friction.get(name, found.device.friction)
+        if not values and law == found.device.friction:
+            base = Device(**given)
+        else:
+            texts = {k: v for k, v in given.items() if isinstance(v, str) and k != "friction"}
+            coordinates = {**stated_coordinates(found, self.model), **values}
+            own = FRICTION[law]
+            # what another law has is none of this one's
+            for name in {*LAW_COORDINATES} - {
+                *own.coordinates,
+                *own.constants,
+                "friction_backlash",
+            }:
+                coordinates.pop(name, None)
+            base = Device(friction=law, **parameters_of(coordinates), **texts)
+        low = self._lower_damping(name, change)
+        return base if low is None else base.replace(viscous=low)
+
+    def _lower_damping(self, name: str, change: VehicleModel) -> float | None:
+        """What stays in a device's `viscous` where its damper differs by direction."""
+        part = next((p for p in self.parts.suspensions if p.device == name), None)
+        split = _split_damping(name, change)
+        if split is None or part is None or part.damper is None or part.damper.kind != "device":
+            return None
+        return min(split)
+
+    def build(self, change: VehicleModel) -> mujoco.MjSpec:
+        """The spec with the changes of a model in it."""
+        spec = self.spec.copy()
+        states = False
+        for device in self.devices:
+            if change.of(device.name) or device.name in change.friction:
+                states |= self._configure(spec, device, self.device_of(device.name, change))
+        for part in self.parts.suspensions:
+            self._change_suspension(spec, part, change)
+        for tyre in self.parts.tyres:
+            _change_tyre(spec, tyre, change.of(tyre.element))
+        for index in {b for p in self.parts.suspensions for b in (p.wheel, p.body)}:
+            if (mass := change.of(self.body(index)).get("mass")) is not None:
+                self._weigh(spec, index, mass)
+        if states:
+            # a keyframe that states the device's states has too few of them now
+            for keyframe in spec.keys:
+                keyframe.act = []
+        return spec
+
+    def compile(self, change: VehicleModel) -> mujoco.MjModel:
+        """The compiled model with changes.
+
+        Raises
+        ------
+        ValueError
+            MuJoCo refuses it.
+        """
+        return self.build(change).compile()
+
+    def xml(self, change: VehicleModel) -> str:
+        """The extended model as MJCF; its asset folders are absolute, it may lie anywhere."""
+        spec = self.build(change)
+        folder = self.path.resolve().parent
+        for name in ("meshdir", "texturedir"):
+            if getattr(spec, name) or _has_files(spec):
+                setattr(spec, name, str(folder / getattr(spec, name)))
+        spec.compile()
+        # the compiler states a device's inertance and damping twice, in fewer digits
+        names = "|".join(re.escape(escape(device.name)) for device in self.devices)
+        return re.sub(
+            rf'<plugin name="({names})"[^>]*>',
+            lambda found: re.sub(r' (armature|damping)="[^"]*"', "", found.group()),
+            spec.to_xml(),
+        )
+
+    def _configure(self, spec: mujoco.MjSpec, found: DeviceInModel, device: Device) -> bool:
+        """Write a device into its actuator or instance; whether its number of states changes."""
+        actuator = spec.actuators[found.actuator]
+        holder = actuator.plugin
+        if holder.name:
+            holder = spec.plugin(holder.name)
+        config = {k: str(v) for k, v in device.given.items() if np.isfinite(_number(v))}
+        holder.config = config
+        for name, value in config.items():
+            if (numeric := spec.numeric(f"{found.name}.{name}")) is not None:
+                numeric.data = [float(value)]
+        # what a saved model states beside the keys
+        if actuator.armature:
+            actuator.armature = 0.0
+        if actuator.damping[0]:
+            actuator.damping = np.zeros_like(actuator.damping)
+        if device.nstate == found.device.nstate:
+            return False
+        actuator.actdim = device.nstate if device.nstate else -1
+        return True
+
+    def _change_suspension(
+        self, spec: mujoco.MjSpec, part: Suspension, change: VehicleModel
+    ) -> None:
+        for link in {part.spring, part.damper} - {None}:
+            if link is None or link.kind == "device":
+                continue
+            element = (spec.tendons if link.kind == "tendon" else spec.joints)[link.index]
+            values = change.of(link.element)
+            for name, place in (("stiffness", 0), ("stiffness_cubic", 2)):
+                if name in values:
+                    column = np.array(element.stiffness)
+                    column[place] = values[name]
+                    element.stiffness = column
+            if "damping" in values:
+                column = np.array(element.damping)
+                column[0] = values["damping"]
+                element.damping = column
+        split = _split_damping(part.device, change)
+        if split is None or part.damper is None:
+            return
+        rebound, bump = split
+        link = part.damper
+        if link.kind != "device":
+            element = (spec.tendons if link.kind == "tendon" else spec.joints)[link.index]
+            column = np.array(element.damping)
+            column[0] = min(split)
+            element.damping = column
+        _add_one_sided(spec, link, rebound, bump)
+
+    def _weigh(self, spec: mujoco.MjSpec, index: int, mass: float) -> None:
+        body, model = spec.bodies[index], self.model
+        spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_AUTO
+        body.explicitinertial = True
+        body.mass = mass
+        body.inertia = model.body_inertia[index] * mass / model.body_mass[index]
+        body.ipos, body.iquat = model.body_ipos[index], model.body_iquat[index]
+        body.fullinertia = np.full(6, np.nan)
+
+
+def read_model(path: Path) -> UserModel:
+    """A user's model with the devices in it.
+
+    Raises
+    ------
+    DeviceError
+        It cannot be read or compiled, or there is no device in it.
+    """
+    load_plugin()
+    if not path.is_file():
+        raise DeviceError(f"{path}: no such file; check the path")
+    try:
+        # the engine looks up attached models wrongly where the path is relative
+        spec = mujoco.MjSpec.from_file(str(path.absolute()))
+        model = spec.copy().compile()
+    except ValueError as error:
+        raise DeviceError(f"{path}: {' '.join(str(error).split())}") from None
+    devices = devices_of(model)
+    if not devices:
+        raise DeviceError(
+            f"{path}: no inerter.device in the model; add one (docs: an actuator with "
+            'plugin="inerter.device"), or diagnose bench records without --model'
+        )
+    unnamed = [d.actuator for d in devices if not d.name]
+    if unnamed:
+        raise DeviceError(
+            f"{path}: the inerter.device on actuator {unnamed[0]} has no name; name the actuator"
+        )
+    return UserModel(path=path, spec=spec, model=model, devices=devices)
+
+
+def model_of_text(text: str, path: Path) -> UserModel:
+    """A model from the text of an MJCF; path: where it is said to come from."""
+    spec = mujoco.MjSpec.from_string(text)
+    model = spec.copy().compile()
+    return UserModel(path=path, spec=spec, model=model, devices=devices_of(model))
+
+
+def stated_coordinates(device: DeviceInModel, model: mujoco.MjModel) -> dict[str, float]:
+    """A device's stated numbers as coordinates of a fit."""
+    numbers = {
+        name: float(value)
+        for name, value in device.stated(model).items()
+        if not isinstance(value, str) and name in parameters()
+    }
+    # of a law also what is left to its defaults, for the simulation has it
+    law = FRICTION[device.device.friction].of_device(device.device)
+    return {**law, **law_coordinates(device.device, numbers)}
+
+
+def _number(value: float | str) -> float:
+    return 0.0 if isinstance(value, str) else value
+
+
+def _has_files(spec: mujoco.MjSpec) -> bool:
+    return any(getattr(each, "file", "") for kind in (spec.meshes, spec.textures, spec.hfields)
+               for each in kind)  # fmt: skip
+
+
+def _split_damping(device: str, change: VehicleModel) -> tuple[float, float] | None:
+    values = change.of(device)
+    if "rebound_damping" not in values:
+        return None
+    return values["rebound_damping"], values["bump_damping"]
+
+
+def _add_one_sided(spec: mujoco.MjSpec, link: VehicleLink, rebound: float, bump: float) -> None:
+    """The part of a damper that acts in one direction: a velocity actuator that is cut at zero."""
+    extra = abs(rebound - bump)
+    # the force on the length is -extra v: negative while it grows
+    growing = (rebound > bump) == (link.direction > 0)
+    limits = [-_FAR, 0.0] if growing else [0.0, _FAR]
+    if link.kind == "tendon":
+        target, kind = spec.tendons[link.index].name, mujoco.mjtTrn.mjTRN_TENDON
+        gear = [1.0, 0, 0, 0, 0, 0]
+    elif link.kind == "joint":
+        target, kind = spec.joints[link.index].name, mujoco.mjtTrn.mjTRN_JOINT
+        gear = [1.0, 0, 0, 0, 0, 0]
+    else:
+        own = spec.actuators[link.index]
+        target, kind, gear = own.target, own.trntype, list(own.gear)
+    bias = np.zeros(10)
+    bias[2] = -extra
+    actuator = spec.add_actuator(
+        name=f"{link.name}_{'rebound' if rebound > bump else 'bump'}",
+        target=target,
+        trntype=kind,
+        gear=gear,
+        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+        biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        forcelimited=True,
+        forcerange=limits,
+    )
+    actuator.gainprm = np.zeros_like(actuator.gainprm)
+    actuator.biasprm = bias
+
+
+def _change_tyre(spec: mujoco.MjSpec, tyre: Tyre, values: dict[str, float]) -> None:
+    actuator = spec.actuators[tyre.actuator]
+    if "tyre_stiffness" in values:
+        gain, bias = np.array(actuator.gainprm), np.array(actuator.biasprm)
+        gain[0], bias[1] = values["tyre_stiffness"], -values["tyre_stiffness"]
+        actuator.gainprm, actuator.biasprm = gain, bias
+    if "tyre_static_load" in values:
+        load = values["tyre_static_load"]
+        actuator.forcelimited = True
+        actuator.forcerange = [-load, _FAR] if tyre.pull > 0 else [-_FAR, load]
+    if "tyre_damping" in values:
+        extra = spec.add_actuator(
+            name=rate_actuator(tyre),
+            target=actuator.target,
+            trntype=actuator.trntype,
+            gear=list(actuator.gear),
+            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        )
+        gain, bias = np.zeros(10), np.zeros(10)
+        gain[0], bias[2] = values["tyre_damping"], -values["tyre_damping"]
+        extra.gainprm, extra.biasprm = gain, bias
+        spec.add_sensor(
+            name=rate_actuator(tyre),
+            type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
+            objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
+            objname=rate_actuator(tyre),
+        )
+
+
+def rate_actuator(tyre: Tyre) -> str:
+    """Name of the actuator of a tyre's damping; its control is the road's rate [m/s]."""
+    return f"{tyre.name}_rate"

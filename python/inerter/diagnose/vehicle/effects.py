@@ -1,0 +1,492 @@
+"""The effects that are tried in a user's model: what they are, and where their fits start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from inerter.catalogue.coordinates import COORDINATES
+from inerter.catalogue.friction import FRICTION
+from inerter.catalogue.scales import Range, Scales
+from inerter.diagnose.vehicle.build import UserModel
+from inerter.diagnose.vehicle.model import Added, VehicleModel, key
+from inerter.diagnose.vehicle.parts import Suspension, Tyre
+
+_GRAVITY = 9.81
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scale:
+    """Of one device along the recorded road: force [N], displacement, velocity, acceleration.
+
+    largest, smallest: displacement [m]; step: of the model [s]; explicit: its integrator does not
+    resolve a force law that is steeper than a step.
+    """
+
+    force: float
+    x: float
+    v: float
+    a: float
+    largest: float
+    smallest: float
+    step: float
+    explicit: bool
+
+    @property
+    def of_data(self) -> Scales:
+        """The same as sizes of a data set's channels."""
+        return Scales(
+            force=self.force, displacement=self.x, velocity=self.v, acceleration=self.a
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class VehicleCandidate:
+    """A model to try: an effect, its coordinates, where fits start, what a start's size is.
+
+    starts: values by coordinate. amplitudes: coordinates that a start is strong or weak by.
+    telling: amplitudes of which one has to differ from none; all by default.
+    """
+
+    added: Added
+    starts: tuple[Mapping[str, float], ...]
+    amplitudes: tuple[str, ...]
+    sizes: Mapping[str, Range]
+    friction: str | None = None
+    telling: tuple[str, ...] = ()
+
+    def model(self, base: VehicleModel, start: Mapping[str, float]) -> VehicleModel:
+        """The base with the effect at a start."""
+        return base.adding(self.added, start, self.friction)
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Everything that can be tried in a user's model.
+
+    scales: by device; total: sprung and unsprung mass on each tyre by its element [kg].
+    """
+
+    user: UserModel
+    scales: Mapping[str, Scale]
+    loads: Mapping[str, float] = field(default_factory=dict)
+
+    def candidates(self, model: VehicleModel) -> Iterator[VehicleCandidate]:
+        """Every effect that a model does not have yet."""
+        done = {(added.effect, added.element, added.law) for added in model.effects}
+        for found in self._all(model):
+            added = found.added
+            if (added.effect, added.element, added.law) not in done and not self._doubled(added):
+                yield found
+
+    def _all(self, model: VehicleModel) -> Iterator[VehicleCandidate]:
+        for device in self.user.devices:
+            for build in _DEVICE:
+                yield from build(self, device.name, model)
+        for build in _VEHICLE:
+            yield from build(self, model)
+
+    def _doubled(self, added: Added) -> bool:
+        """Whether the vehicle's own spring or damper says the same between the same bodies."""
+        part = next((p for p in self.user.parts.suspensions if p.device == added.element), None)
+        if part is None:
+            return False
+        spring, damper = part.spring, part.damper
+        return (
+            (added.effect == "hardening_stiffness" and spring is not None)
+            or (
+                added.effect == "parallel_stiffness"
+                and spring is not None
+                and spring.kind != "device"
+            )
+            or (
+                added.effect == "viscous_friction"
+                and damper is not None
+                and damper.kind != "device"
+            )
+        )
+
+    def stated(self, name: str, model: VehicleModel) -> float:
+        """A coordinate as it stands in a model; 0 where nobody states it."""
+        return model.values.get(name, self.user.stated.get(name, 0.0))
+
+    def damping(self, device: str, model: VehicleModel) -> float:
+        """The damping of a suspension's damper as it stands [N s/m]."""
+        part = next(p for p in self.user.parts.suspensions if p.device == device)
+        assert part.damper is not None
+        if part.damper.kind == "device":
+            return self.stated(f"{device}.viscous", model)
+        return self.stated(f"{part.damper.element}.damping", model)
+
+    def law(self, device: str, model: VehicleModel) -> str:
+        """A device's friction law."""
+        return model.friction.get(device, self.user.device(device).device.friction)
+
+    def stated_law(self, device: str, model: VehicleModel) -> str:
+        """The friction law that a device states and a model still has; "none" where it has not."""
+        stated = self.user.device(device).device.friction
+        return stated if self.law(device, model) == stated else "none"
+
+
+Builder = Callable[[Effects, str, VehicleModel], Iterator[VehicleCandidate]]
+
+
+def _candidate(
+    effect: str,
+    element: str,
+    starts: list[dict[str, float]],
+    sizes: dict[str, Range],
+    amplitudes: tuple[str, ...],
+    friction: str | None = None,
+    law: str | None = None,
+    telling: tuple[str, ...] = (),
+) -> VehicleCandidate:
+    names = tuple(sizes)
+    return VehicleCandidate(
+        added=Added(effect, element, key(element, names), law),
+        starts=tuple({f"{element}.{n}": v for n, v in start.items()} for start in starts),
+        amplitudes=key(element, amplitudes),
+        sizes={f"{element}.{n}": size for n, size in sizes.items()},
+        friction=friction,
+        telling=key(element, telling or amplitudes),
+    )
+
+
+# --- inside the device -----------------------------------------------------------------------
+
+
+def _stated(effect: str, name: str, unit: str) -> Builder:
+    """A linear term: a stated value that is wrong, or one that is missing."""
+
+    def build(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+        scale = effects.scales[device]
+        full = f"{device}.{name}"
+        if full in model.free or (name == "viscous" and f"{device}.bump_damping" in model.free):
+            return
+        size = scale.force / getattr(scale, unit)
+        now = effects.stated(full, model)
+        lower = -np.inf if name == "stiffness" else 0.0
+        start = now + 0.05 * max(size, now)
+        sizes = {name: Range(max(size, now), lower)}
+        yield _candidate(effect, device, [{name: start}], sizes, (name,))
+
+    return build
+
+
+def _coulomb(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    scale, law = effects.scales[device], effects.law(device, model)
+    level = Range(0.1 * scale.force, 0.0)
+    if law == "none":
+        start = {"coulomb_force": 0.05 * scale.force, **_width(scale)}
+        yield _candidate(
+            "coulomb_friction", device, [start],
+            {"coulomb_force": level, "transition_velocity": _widths(scale)},
+            ("coulomb_force",), "coulomb",
+        )  # fmt: skip
+    elif law == "coulomb":
+        now = effects.stated(f"{device}.coulomb_force", model)
+        yield _candidate(
+            "coulomb_friction", device, [{"coulomb_force": now + 0.03 * scale.force}],
+            {"coulomb_force": level}, ("coulomb_force",),
+        )  # fmt: skip
+
+
+def _width(scale: Scale) -> dict[str, float]:
+    # sign(v) no sharper than a step of the model resolves
+    return {"transition_velocity": 0.02 * scale.v}
+
+
+def _widths(scale: Scale) -> Range:
+    return Range(scale.v, 0.005 * scale.v, 0.08 * scale.v, logarithmic=True)
+
+
+def _presliding(scale: Scale) -> Range:
+    # a bristle relaxes within presliding / speed, which an explicit step has to resolve
+    least = 2.5 * scale.v * scale.step if scale.explicit else 2e-3 * scale.x
+    return Range(scale.x, least, max(3 * scale.x, 2 * least), logarithmic=True)
+
+
+def _stribeck(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    scale = effects.scales[device]
+    if effects.law(device, model) not in ("none", "coulomb"):
+        return
+    level = effects.stated(f"{device}.coulomb_force", model) or 0.05 * scale.force
+    sizes = {
+        "coulomb_force": Range(0.1 * scale.force, 1e-6 * scale.force),
+        "static_excess": Range(0.1 * scale.force, 0.0),
+        "stribeck_velocity": Range(scale.v, 0.05 * scale.v, 2 * scale.v, logarithmic=True),
+        "transition_velocity": _widths(scale),
+    }
+    starts = [
+        {"coulomb_force": level, "static_excess": 0.6 * level, "stribeck_velocity": r * scale.v,
+         **_width(scale)} for r in (0.1, 0.4)
+    ]  # fmt: skip
+    yield _candidate(
+        "stribeck_friction", device, starts, sizes, ("coulomb_force", "static_excess"), "stribeck",
+        telling=("static_excess",),
+    )  # fmt: skip
+
+
+def _hysteretic(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    scale, law = effects.scales[device], effects.law(device, model)
+    if law not in ("none", "coulomb", "dahl"):
+        return
+    level = effects.stated(f"{device}.coulomb_force", model) or 0.05 * scale.force
+    sizes = {
+        "coulomb_force": Range(0.1 * scale.force, 1e-6 * scale.force),
+        "presliding": _presliding(scale),
+    }
+    if law != "dahl":
+        starts = [{"coulomb_force": level, "presliding": r * scale.x} for r in (0.02, 0.15, 0.6)]
+        yield _candidate(
+            "hysteretic_friction", device, starts, sizes, ("coulomb_force",), "dahl", "dahl"
+        )
+    if law == "dahl":
+        presliding = effects.stated(f"{device}.presliding", model)
+        more = {
+            "static_excess": Range(0.1 * scale.force, 0.0),
+            "stribeck_velocity": Range(scale.v, 0.02 * scale.v, 2 * scale.v, logarithmic=True),
+        }
+        start = {"coulomb_force": level, "presliding": presliding, "static_excess": 0.5 * level}
+        yield _candidate(
+            "hysteretic_friction", device, [{**start, "stribeck_velocity": 0.2 * scale.v}],
+            {**sizes, **more}, ("static_excess",), "lugre", "lugre",
+        )  # fmt: skip
+
+
+def _law_sizes(scale: Scale) -> dict[str, Range]:
+    """How the coordinates of friction laws are searched in a vehicle."""
+    force, stiffness = scale.force, scale.force / scale.x
+    return {
+        "coulomb_force": Range(0.1 * force, 1e-6 * force),
+        "static_excess": Range(0.1 * force, 0.0),
+        "stribeck_velocity": Range(scale.v, 0.02 * scale.v, 2 * scale.v, logarithmic=True),
+        "presliding": _presliding(scale),
+        "bristle_damping": Range(0.1 * force / scale.v, 0.0),
+        "bw_stiffness": Range(stiffness, 1e-6 * stiffness),
+        "bw_beta": Range(1 / scale.x),
+        "bw_gamma": Range(1 / scale.x),
+        "bw_exponent": Range(1.0, 1.0, 6.0),
+        "bw_ratio": Range(0.1, -0.5, 0.9),
+    }
+
+
+def _stated_law(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    """The friction law that the user states, all of it, stated or left to its defaults."""
+    law, scale = FRICTION[effects.stated_law(device, model)], effects.scales[device]
+    names = law.set_free
+    # of one whose level is all that is a candidate already
+    if names in ((), (law.level,)) or f"{device}.{names[-1]}" in model.free:
+        return
+    of = effects.user.device(device).device
+    own, data = _law_sizes(scale), scale.of_data
+    sizes = {name: own.get(name) or COORDINATES[name].range(data) for name in names}
+    stated = effects.user.stated
+    now = {name: stated.get(f"{device}.{name}", COORDINATES[name].of(of)) for name in sizes}
+    starts = []
+    for name, size in sizes.items():
+        moved = 1.3 * now[name] if size.logarithmic else now[name] + 0.3 * (now[name] or size.size)
+        starts.append({**now, name: moved})
+    amplitudes = tuple(name for name, size in sizes.items() if not size.logarithmic)
+    told = law.name if law.memory else None
+    yield _candidate(
+        law.effect, device, starts, sizes, amplitudes, law.name, told, telling=tuple(sizes)
+    )  # fmt: skip
+
+
+def _added(effect: str, size: Callable[[Scale], dict[str, Range]], share: float) -> Builder:
+    """Further terms of the device, each of which alone may be what is missing."""
+
+    def build(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+        sizes = size(effects.scales[device])
+        now = {name: effects.stated(f"{device}.{name}", model) for name in sizes}
+        starts = []
+        for name, each in sizes.items():
+            starts.append({**now, name: now[name] + share * each.size})
+        yield _candidate(effect, device, starts, sizes, tuple(sizes))
+
+    return build
+
+
+def _series(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    scale = effects.scales[device]
+    if not effects.stated(f"{device}.inertance", model) > 0:
+        return
+    stated = effects.stated(f"{device}.series_stiffness", model) > 0
+    known = model.values.get(f"{device}.series_frequency")
+    slow = np.sqrt(scale.a / scale.x) / (2 * np.pi)
+    fast = 1.0 / (2 * np.pi * scale.step)
+    sizes = {
+        "series_frequency": Range(slow, 0.3 * slow, fast, logarithmic=True),
+        "series_loss": Range(0.1, 1e-3, 3.0, logarithmic=True),
+    }
+    if known is None and not stated:
+        starts = [
+            {"series_frequency": min(r * slow, 0.9 * fast), "series_loss": 0.2}
+            for r in (1.5, 3.0, 8.0)
+        ]
+        yield _candidate("series_elasticity", device, starts, sizes, ())
+    gap = Range(scale.x, 1e-3 * scale.x, 3 * scale.x, logarithmic=True)
+    if effects.stated(f"{device}.backlash", model) > 0 or stated:
+        return
+    starts = [
+        {"backlash": r * scale.x, "series_frequency": frequency, "series_loss": 0.1}
+        for r in (0.03, 0.1, 0.3, 1.0)
+        for frequency in ([known] if known else [4 * slow, min(10 * slow, 0.7 * fast)])
+    ]
+    yield _candidate("backlash", device, starts, {"backlash": gap, **sizes}, ())
+
+
+def _gas(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    scale = effects.scales[device]
+    if effects.stated(f"{device}.gas_pressure", model) > 0:
+        return
+    # only pressure times area and volume per area act: the area is a choice
+    area, pressure = 1e-3, 0.2 * scale.force / 1e-3
+    length = max(-scale.smallest, scale.x)
+    starts = [
+        {"gas_area": area, "gas_pressure": r * pressure, "gas_volume": area * r * 2 * length}
+        for r in (1.0, 3.0)
+    ]
+    sizes = {
+        "gas_pressure": Range(pressure, 1e-3 * pressure, 1e3 * pressure, logarithmic=True),
+        "gas_volume": Range(area * length, 0.3 * area * length, 1e2 * area * length, True),
+    }
+    yield _candidate("gas_spring", device, starts, sizes, ("gas_pressure",))
+
+
+def _stops(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    scale = effects.scales[device]
+    stiff = Range(1.0, 0.3 * scale.force / scale.x, 1e3 * scale.force / scale.x, logarithmic=True)
+    for name, reach in (("stop_upper", scale.largest), ("stop_lower", scale.smallest)):
+        if reach == 0 or f"{device}.{name}" in effects.user.stated:
+            continue
+        place = Range(abs(reach), min(0.2 * reach, 1.2 * reach), max(0.2 * reach, 1.2 * reach))
+        starts = [
+            {name: r * reach, "stop_stiffness": s * scale.force / scale.x}
+            for r, s in ((0.5, 2.0), (0.75, 8.0))
+        ]
+        yield _candidate("end_stop", device, starts, {name: place, "stop_stiffness": stiff}, ())
+
+
+_DEVICE: tuple[Builder, ...] = (
+    _stated("inertance_error", "inertance", "a"),
+    _stated("viscous_friction", "viscous", "v"),
+    _stated("parallel_stiffness", "stiffness", "x"),
+    _coulomb,
+    _stribeck,
+    _hysteretic,
+    _stated_law,
+    _added("hardening_stiffness", lambda s: {"stiffness_cubic": Range(s.force / s.x**3)}, 0.02),
+    _added("quadratic_damping", lambda s: {"quadratic_damping": Range(s.force / s.v**2, 0)}, 0.02),
+    _added("load_dependent_friction", lambda s: {"load_friction": Range(0.1, 0.0, 0.95)}, 0.5),
+    _added("force_offset", lambda s: {"force_offset": Range(0.1 * s.force)}, 0.5),
+    _added(
+        "variable_inertance",
+        lambda s: {
+            "inertance_gradient": Range(0.1 / s.x, -0.5 / s.x, 0.5 / s.x),
+            "inertance_curvature": Range(0.1 / s.x**2, -0.2 / s.x**2, 3 / s.x**2),
+        },
+        0.5,
+    ),
+    _series,
+    _gas,
+    _stops,
+)  # fmt: skip
+
+
+# --- around it: the vehicle --------------------------------------------------------------------
+
+
+def _tyres(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    for tyre in effects.user.parts.tyres:
+        stiffness = effects.stated(f"{tyre.element}.tyre_stiffness", model)
+        rate = _wheel_rate(effects, tyre)
+        yield _candidate(
+            "tyre_damping", tyre.element, [{"tyre_damping": 0.03 * stiffness / rate}],
+            {"tyre_damping": Range(0.1 * stiffness / rate, 0.0)}, ("tyre_damping",),
+        )  # fmt: skip
+        yield _candidate(
+            "tyre_stiffness_error", tyre.element, [{"tyre_stiffness": 1.05 * stiffness}],
+            {"tyre_stiffness": Range(stiffness, 0.02 * stiffness)}, ("tyre_stiffness",),
+        )  # fmt: skip
+        load = _GRAVITY * effects.loads.get(tyre.element, 0.0)
+        if load > 0:
+            # without gravity in the model, forces count from the static load
+            weightless = not np.any(effects.user.model.opt.gravity)
+            size = Range(load, 1e-3 * load if weightless else -0.5 * load, 5 * load, weightless)
+            starts = (1.0, 0.6, 0.3) if weightless else (0.0, 0.1)
+            yield _candidate(
+                "tyre_liftoff", tyre.element, [{"tyre_static_load": r * load} for r in starts],
+                {"tyre_static_load": size}, (),
+            )  # fmt: skip
+
+
+def _wheel_rate(effects: Effects, tyre: Tyre) -> float:
+    """Wheel hop [rad/s]."""
+    part = next((p for p in effects.user.parts.suspensions if p.tyre == tyre), None)
+    if part is None:
+        return 60.0
+    return float(np.sqrt(tyre.stiffness / effects.user.model.body_mass[part.wheel]))
+
+
+def _suspensions(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    user = effects.user
+    bodies = set()
+    for part in user.parts.suspensions:
+        yield from _damper(effects, part, model)
+        yield from _spring(effects, part, model)
+        bodies |= {(part.body, "body_mass_error"), (part.wheel, "wheel_mass_error")}
+    for index, effect in sorted(bodies, key=lambda pair: pair[1]):
+        element = user.body(index)
+        mass = user.stated[f"{element}.mass"]
+        yield _candidate(
+            effect, element, [{"mass": 1.05 * effects.stated(f"{element}.mass", model)}],
+            {"mass": Range(mass, 0.05 * mass)}, ("mass",),
+        )  # fmt: skip
+
+
+def _damper(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    if part.damper is None:
+        return
+    link = part.damper
+    now = effects.damping(part.device, model)
+    sizes = {"rebound_damping": Range(now, 0.0), "bump_damping": Range(now, 0.0)}
+    starts = [
+        {"rebound_damping": r * now, "bump_damping": b * now} for r, b in ((1.1, 0.9), (1.1, 1.0))
+    ]
+    yield _candidate(
+        "damper_asymmetry", part.device, starts, sizes, ("rebound_damping", "bump_damping")
+    )
+    if link.kind != "device":
+        yield _candidate(
+            "viscous_friction", link.element, [{"damping": 1.05 * now}],
+            {"damping": Range(now, 0.0)}, ("damping",),
+        )  # fmt: skip
+
+
+def _spring(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    if part.spring is None:
+        return
+    link, scale = part.spring, effects.scales[part.device]
+    name = f"{link.element}.stiffness"
+    now = effects.stated(name, model)
+    cubic = Range(max(now, 0.1 * scale.force / scale.x) / scale.x**2)
+    before = effects.stated(f"{link.element}.stiffness_cubic", model)
+    yield _candidate(
+        "spring_hardening", link.element, [{"stiffness_cubic": before + 0.02 * cubic.size}],
+        {"stiffness_cubic": cubic}, ("stiffness_cubic",),
+    )  # fmt: skip
+    if link.kind != "device":
+        yield _candidate(
+            "parallel_stiffness", link.element, [{"stiffness": 1.05 * now}],
+            {"stiffness": Range(now, 0.0)}, ("stiffness",),
+        )  # fmt: skip
+
+
+_VEHICLE: tuple[Callable[[Effects, VehicleModel], Iterator[VehicleCandidate]], ...] = (
+    _tyres,
+    _suspensions,
+)

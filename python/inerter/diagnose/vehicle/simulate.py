@@ -1,0 +1,235 @@
+"""The user's model in the loop: many variants along the recorded inputs, in batches.
+
+A step holds the input of its middle, so that the motion follows the input to second order. Sensors
+are read at the beginning of a step, with the input of the middle: what the difference does directly
+to an acceleration or a force is taken out again (`_through`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from mujoco import batch
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from inerter.diagnose.vehicle.build import UserModel, rate_actuator
+from inerter.diagnose.vehicle.drive import RecordedDrive
+from inerter.diagnose.vehicle.mapping import Channels, Output
+from inerter.diagnose.vehicle.model import VehicleModel
+
+Array = NDArray[np.float64]
+_CHUNK = 2_000_000  # numbers recorded at once
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a simulation starts: positions and velocities; None: at rest."""
+
+    qpos: Array
+    qvel: Array | None = None
+
+
+class VehicleSimulator:
+    """Simulated outputs of variants of a user's model.
+
+    Parameters
+    ----------
+    user, channels
+        The model and the mapping.
+    threads : int
+        0 for every processor.
+    """
+
+    def __init__(self, user: UserModel, channels: Channels, threads: int = 0) -> None:
+        self.user, self.channels, self.threads = user, channels, threads
+        self.count = 0
+
+    def compiled(self, model: VehicleModel) -> mujoco.MjModel | None:
+        """A variant, compiled; None if MuJoCo refuses it."""
+        try:
+            return self.user.compile(model)
+        except ValueError:
+            return None
+
+    def outputs(
+        self,
+        models: Sequence[VehicleModel],
+        drive: RecordedDrive,
+        starts: Sequence[Start] | None = None,
+    ) -> Array:
+        """Outputs of every variant at a drive's samples, shape (models, n, outputs).
+
+        NaN where a variant cannot be built or its simulation fails. starts: one for each model;
+        by default at rest in equilibrium (`start`).
+        """
+        found = np.full((len(models), drive.time.size, len(self.channels.outputs)), np.nan)
+        compiled = [self.compiled(model) for model in models]
+        self.count += len(models)
+        groups: dict[tuple[int, ...], list[int]] = {}
+        for i, each in enumerate(compiled):
+            if each is not None:
+                layout = (each.nq, each.na, each.nactuator, each.nsensordata)
+                groups.setdefault(layout, []).append(i)
+        for members in groups.values():
+            group = [compiled[i] for i in members]
+            own = [starts[i] for i in members] if starts is not None else None
+            found[members] = self._group([m for m in group if m is not None], drive, own)
+        return found
+
+    def start(self, model: mujoco.MjModel, drive: RecordedDrive) -> Start:
+        """At rest: in the first keyframe, else in static equilibrium with the first input."""
+        if model.nkey:
+            return Start(model.key_qpos[0].copy())
+        return Start(_equilibrium(model, self._controls(model, drive)[0]))
+
+    def device_motion(
+        self, model: VehicleModel, drive: RecordedDrive
+    ) -> dict[str, tuple[Array, Array]]:
+        """Displacement and velocity [m, m/s] of every device on the steps, by name."""
+        compiled = self.user.compile(model)
+        worlds = self._worlds([compiled], drive, None)
+        wanted = ("actuator_length", "actuator_velocity")
+        run = worlds.rollout(drive.steps, self._controls(compiled, drive)[None], record=wanted)
+        found = {}
+        for device in self.user.devices:
+            rest = device.rest_length(self.user.model)
+            x, v = (run[name][0, :, device.actuator] for name in wanted)
+            found[device.name] = (x - rest, v)
+        return found
+
+    def _worlds(
+        self, models: list[mujoco.MjModel], drive: RecordedDrive, starts: list[Start] | None
+    ) -> batch.Batch:
+        worlds = batch.Batch(models[0], len(models), self.threads)
+        worlds.set_models(models)
+        own = starts if starts is not None else [self.start(m, drive) for m in models]
+        worlds.bind("qpos")[:] = np.array([start.qpos for start in own])
+        worlds.bind("qvel")[:] = np.array(
+            [np.zeros(models[0].nv) if start.qvel is None else start.qvel for start in own]
+        )
+        return worlds
+
+    def _group(
+        self, models: list[mujoco.MjModel], drive: RecordedDrive, starts: list[Start] | None
+    ) -> Array:
+        worlds = self._worlds(models, drive, starts)
+        first, size = models[0], len(models)
+        own = starts if starts is not None else [Start(q) for q in worlds.bind("qpos").copy()]
+        addresses = [self._addresses(first, output) for output in self.channels.outputs]
+        controls = self._controls(first, drive)
+        roads = self._roads(first)
+        clipped = [i for i in roads if any(m.actuator_forcelimited[i] for m in models)]
+        wanted = ("sensordata", "actuator_force") if clipped else ("sensordata",)
+        parts = []
+        chunk = max(_CHUNK // (size * max(first.nsensordata, 1)), 64)
+        for begin in range(0, drive.steps, chunk):
+            part = controls[begin : begin + chunk]
+            inputs = np.broadcast_to(part, (size, *part.shape))
+            run = worlds.rollout(len(part), inputs, record=wanted)
+            data = run["sensordata"]
+            values = np.stack([data[:, :, at].sum(axis=2) for at in addresses], axis=2)
+            wrong = self._difference(first, drive)[begin : begin + chunk]
+            free = np.ones((size, len(part)), dtype=bool)
+            for i in clipped:
+                force = run["actuator_force"][:, :, first.actuator_outadr[i]]
+                limits = np.array(
+                    [m.actuator_forcerange[i] if m.actuator_forcelimited[i] else (-np.inf, np.inf)
+                     for m in models]
+                )  # fmt: skip
+                free &= (force > limits[:, None, 0]) & (force < limits[:, None, 1])
+            for k, model in enumerate(models):
+                direct = _through(model, own[k], controls[0], addresses)
+                values[k] -= free[k][:, None] * (wrong @ direct.T)
+            parts.append(values)
+        found = drive.at_samples(np.concatenate(parts, axis=1))
+
+        # a simulation that the engine stopped is no simulation of this model
+        done = worlds.bind("time").reshape(size)
+        found[np.abs(done - drive.steps * drive.step) > 0.5 * drive.step] = np.nan
+        return found
+
+    def _addresses(self, model: mujoco.MjModel, output: Output) -> list[int]:
+        """Places in `sensordata` whose sum is an output."""
+        sensor = model.sensor(output.sensor)
+        found = [int(sensor.adr[0]) + output.component]
+        for tyre in self.user.parts.tyres if output.load else ():
+            # a tyre's damper, where there is one, has a sensor of its own
+            more = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, rate_actuator(tyre))
+            if more >= 0 and int(model.sensor_objid[sensor.id]) == tyre.actuator:
+                found.append(int(model.sensor_adr[more]))
+        return found
+
+    def _roads(self, model: mujoco.MjModel) -> list[int]:
+        """Actuators that the record drives, in the order of the inputs."""
+        return [model.actuator(name).id for name in self.channels.inputs.values()]
+
+    def _controls(self, model: mujoco.MjModel, drive: RecordedDrive) -> Array:
+        """Controls of every step, (steps, nu)."""
+        base = np.tile(_first_controls(model), (drive.steps, 1))
+        return self._fill(model, base, drive.ahead, drive.rate)
+
+    def _difference(self, model: mujoco.MjModel, drive: RecordedDrive) -> Array:
+        """Controls of a step less those at its beginning, (steps, nu)."""
+        base = np.zeros((drive.steps, model.nu))
+        return self._fill(model, base, drive.ahead - drive.now, drive.rate - drive.rate_now)
+
+    def _fill(self, model: mujoco.MjModel, base: Array, inputs: Array, rates: Array) -> Array:
+        for column, actuator in enumerate(self._roads(model)):
+            base[:, model.actuator_ctrladr[actuator]] = inputs[:, column]
+            for tyre in self.user.parts.tyres:
+                name = rate_actuator(tyre)
+                if tyre.actuator == actuator:
+                    extra = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, name)
+                    if extra >= 0:
+                        base[:, model.actuator_ctrladr[extra]] = rates[:, column]
+        return base
+
+
+def _first_controls(model: mujoco.MjModel) -> Array:
+    return model.key_ctrl[0] if model.nkey else np.zeros(model.nu)
+
+
+def _through(model: mujoco.MjModel, start: Start, controls: Array, addresses: list) -> Array:
+    """What controls do to outputs at once, (outputs, nu)."""
+    data = mujoco.MjData(model)
+    data.qpos[:] = start.qpos
+    found = np.zeros((len(addresses), model.nu))
+
+    def read(values: Array) -> Array:
+        data.ctrl[:] = values
+        mujoco.mj_forward(model, data)
+        return np.array([data.sensordata[at].sum() for at in addresses])
+
+    for i in range(model.nu):
+        move = np.zeros(model.nu)
+        move[i] = 1e-4
+        found[:, i] = (read(controls + move) - read(controls - move)) / 2e-4
+    return found
+
+
+def _equilibrium(model: mujoco.MjModel, controls: Array) -> Array:
+    """Positions at which nothing accelerates; the initial ones where there are none such."""
+    data = mujoco.MjData(model)
+    data.ctrl[:] = controls
+    initial = data.qpos.copy()
+
+    def acceleration(move: Array) -> Array:
+        data.qpos[:] = initial
+        mujoco.mj_integratePos(model, data.qpos, move, 1.0)
+        data.qvel[:] = 0.0
+        mujoco.mj_forward(model, data)
+        return data.qacc.copy()
+
+    at_rest = np.zeros(model.nv)
+    size = float(np.max(np.abs(acceleration(at_rest)), initial=0.0))
+    if size < 1e-9:
+        return initial
+    found = least_squares(acceleration, at_rest, method="lm" if model.nv else "trf", max_nfev=200)
+    if np.max(np.abs(found.fun)) > 1e-3 * size:
+        return initial
+    acceleration(found.x)
+    return data.qpos.copy()

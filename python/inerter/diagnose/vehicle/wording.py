@@ -1,0 +1,94 @@
+"""The sentences of a diagnosis of a user's model."""
+
+from __future__ import annotations
+
+from inerter.catalogue.vehicle import KNOWN
+from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.doubt import explained, stand_ins, warning
+from inerter.diagnose.result import Finding, Unexplained
+from inerter.diagnose.vehicle.outcome import SystemAccuracy
+from inerter.diagnose.wording import value_in_words
+
+# the same force between the same bodies: no record of the vehicle can tell these apart
+EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
+
+
+def in_words(effect: str, law: str | None = None) -> str:
+    """An effect in running text."""
+    text = KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+    return f"{text} ({law})" if law else text
+
+
+def evidence(finding: Finding, place: str) -> str:
+    """One sentence: values, stated ones beside them, and what the effect does to the error."""
+    values = ", ".join(
+        value_in_words(name.replace("_", " "), value) for name, value in finding.parameters.items()
+    )
+    where = f" in {place}" if place else ""
+    text = (
+        f"{values}{where}: the error on held-out data falls from "
+        f"{100 * finding.rmse_before:.3g} % of the channels' spread to "
+        f"{100 * finding.rmse_after:.3g} %"
+    )
+    twin = EQUIVALENT.get(finding.effect)
+    if twin:
+        text += (
+            f"; {in_words(twin)} would be the same force between the same bodies, which these "
+            "records cannot tell apart: test the device alone"
+        )
+    if finding.effect == "force_offset":
+        text += "; a sensor whose zero is displaced may look the same: check it at rest"
+    if finding.effect == "tyre_damping":
+        text += "; in model.xml its actuator is driven by the rate of the road [m/s]"
+    likely = [r for r in finding.rivals if r.confidence >= CRITERIA.rival_told and r.effect != twin]
+    if likely:
+        others = " or ".join(in_words(r.effect, r.law) for r in likely[:2])
+        text += f"; {others} would explain these data nearly as well"
+    return text + "."
+
+
+def verdict(
+    before: SystemAccuracy,
+    after: SystemAccuracy,
+    findings: list[Finding],
+    places: list[str],
+    remains: Unexplained,
+    unknown: list[str],
+) -> str:
+    """One paragraph in plain words.
+
+    places: of each finding, empty where there is no doubt; unknown: what was not tried.
+    """
+    error = (
+        f"{100 * before.rmse:.3g} % of the channels' spread on held-out data ({_channels(before)})"
+    )
+    if not findings:
+        start = "The simulation is right as far as these records can tell"
+        if before.rmse > 0.1:
+            start = "No effect that was tried explains what the simulation misses"
+        text = f"{start}: its error is {error}. {remains.summary}"
+    else:
+        weighed = sorted(
+            zip(findings, places, strict=True), key=lambda pair: explained(pair[0]), reverse=True
+        )
+        names = [
+            in_words(f.effect, f.law) + (f" in {place}" if place else "") for f, place in weighed
+        ]
+        others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
+        text = (
+            f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "
+            f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
+            f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains.summary}"
+        )
+        doubtful = stand_ins(findings, remains.structure)
+        text += warning([in_words(finding.effect, finding.law) for finding in doubtful])
+    if unknown:
+        text += " Not tried: " + "; ".join(unknown) + "."
+    return text
+
+
+def _channels(accuracy: SystemAccuracy) -> str:
+    return ", ".join(
+        f"{name.replace('_', ' ')} {error.rmse:.3g} {error.unit}".rstrip()
+        for name, error in accuracy.channels.items()
+    )

@@ -1,0 +1,321 @@
+"""Bench data as a fit needs them: smoothed motions, the force in the same band, and masks."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.catalogue.scales import Scales
+from inerter.checked_motion import checked_motion
+from inerter.core import Device
+from inerter.records.motion import (
+    Motion,
+    Shaft,
+    apply_weight,
+    band_response,
+    filtered,
+    lowpass,
+    response,
+    weight_above,
+)
+
+Array = NDArray[np.float64]
+
+# samples per period of the cut-off that a fit works on; more add time and no information
+SAMPLES_PER_PERIOD = 8
+# a velocity within this many standard deviations of its noise may be none
+REST = 4
+# squared correlation of displacement and acceleration from which they count as proportional
+ONE_TONE = 0.98
+
+
+@dataclass(frozen=True, kw_only=True)
+class BenchRun:
+    """One run, thinned to what its band needs.
+
+    Attributes
+    ----------
+    spacing : float
+        Sample spacing [s].
+    displacement, velocity, acceleration, force : ndarray (n,)
+        Smoothed motion, and the measured force through the same low-pass.
+    inner : ndarray of bool (n,)
+        False near the ends.
+    measured : tuple of ndarray (m,), optional
+        Displacement, velocity, acceleration at the measured rate; the velocity is 0 in rests, where
+        it would be noise.
+    thinned : int
+        Measured samples per sample here.
+    first_force : float
+        Mean measured force over 10 ms [N] at the sample `first`, which tells the state there.
+    first : int
+        The first sample at which the motion is known; the device is followed from there.
+    clock : float
+        Time from which slow changes count [s].
+    corner : float
+        Frequency [Hz] above which the motion's noise outweighs the force's; residuals count less
+        there.
+    shaft : tuple of float, optional
+        Resonance [Hz] and damping ratio of a series element, which amplifies the motion's noise.
+    far : float
+        Size [N] beyond which a residual counts little, see `weighted`.
+    """
+
+    name: str
+    start: float
+    spacing: float
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    force: Array
+    inner: NDArray[np.bool_]
+    first_force: float
+    cutoff: float
+    measured: tuple[Array, Array, Array] | None = None
+    thinned: int = 1
+    first: int = 0
+    clock: float = 0.0
+    corner: float = np.inf
+    shaft: Shaft | None = None
+    far: float = np.inf
+
+    def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
+        """Forces of a device at the measured rate [N], shape (m,) each.
+
+        Friction jumps where the velocity changes sign. At the instants of the measured samples a
+        jump falls between the same two samples as in the record; elsewhere it would be misplaced,
+        and other effects would be found to make up for that.
+        """
+        if self.measured is None:
+            raise ValueError(f"{self.name}: a run at the measured rate has no band")
+        spacing, size = self.spacing / self.thinned, self.measured[0].size
+        return forces_along(device, spacing, self._followed_finely, state, size)
+
+    def in_band(self, values: Array) -> Array:
+        """Values at the measured rate through the low-pass of the measured force, thinned."""
+        return filtered(values, self._response)[:: self.thinned]
+
+    def weighted(self, values: Array, mask: NDArray[np.bool_], shaft: Shaft | None = None) -> Array:
+        """Masked values as they count against noise, shape (n,); 0 elsewhere is taken for them.
+
+        White noise of the displacement becomes one of b a whose power grows with the fourth power
+        of the frequency: below the corner a residual counts in full, above ever less. Without that
+        a model would win by predicting less of this noise. Near the resonance of a shaft a right
+        model makes more of it than one without the shaft, and would lose by that; and a fit would
+        find more damping than there is, to make less of it. So a model's own `shaft` sets what
+        counts, in a run that has one: its weights are as large in the mean, and no model wins by
+        the noise that it makes (the likelihood of a noise whose size is not known).
+
+        What is beyond `far` counts by its logarithm: the sum of the squares is the Cauchy loss.
+        """
+        if np.isfinite(self.corner) and np.isfinite(values).all():
+            weight = self._weight if shaft is None else self._weight_of(shaft)
+            values = apply_weight(np.where(mask, values, 0.0), weight)
+        if np.isfinite(self.far):
+            share = values / self.far
+            values = self.far * np.sign(share) * np.sqrt(np.log1p(share**2))
+        return values
+
+    # checked once, for the many devices that are tried along it
+    @cached_property
+    def followed(self) -> list[Array]:
+        """Displacement, velocity, acceleration from the sample `first` on."""
+        channels = (self.displacement, self.velocity, self.acceleration)
+        return checked_motion(self.spacing, *(channel[self.first :] for channel in channels))
+
+    @cached_property
+    def _followed_finely(self) -> list[Array]:
+        begin = self.first * self.thinned
+        x, v, a = (channel[begin:] for channel in self.measured or ())
+        return checked_motion(self.spacing / self.thinned, x, v, a)
+
+    @cached_property
+    def _response(self) -> Array:
+        size = self.force.size if self.measured is None else self.measured[0].size
+        return band_response(size, self.spacing / self.thinned, self.cutoff)
+
+    @cached_property
+    def _weight(self) -> Array:
+        return weight_above(self.force.size, self.spacing, self.corner, self.shaft)
+
+    def _weight_of(self, shaft: Shaft) -> Array:
+        if self.shaft is None or shaft == self.shaft:
+            return self._weight
+        weight = weight_above(self.force.size, self.spacing, self.corner, shaft)
+        return weight * np.exp(self._mean_logarithm(self._weight) - self._mean_logarithm(weight))
+
+    def _mean_logarithm(self, weight: Array) -> float:
+        """Mean over the band of a weight's logarithm."""
+        frequency = np.linspace(0.0, 0.5 / self.spacing, weight.size)
+        return float(np.average(np.log(weight), weights=response(frequency, self.cutoff) ** 2))
+
+    def gain(self, frequency: float) -> float:
+        """What the low-pass leaves of a tone."""
+        if np.isinf(self.cutoff):
+            return 1.0
+        return float(response(np.array([frequency]), self.cutoff)[0])
+
+    @property
+    def elapsed(self) -> Array:
+        """Time since the clock began [s], shape (n,)."""
+        return self.time - self.clock
+
+    @property
+    def fine_elapsed(self) -> Array:
+        """The same at the measured rate, shape (m,)."""
+        size = self.force.size if self.measured is None else self.measured[0].size
+        return self.start - self.clock + self.spacing / self.thinned * np.arange(size, dtype=float)
+
+    @property
+    def time(self) -> Array:
+        """Times of the samples [s], shape (n,)."""
+        return self.start + self.spacing * np.arange(self.force.size, dtype=float)
+
+
+def thin(motion: Motion, rate: float | None = None) -> BenchRun:
+    """A run for fitting: force low-passed like the motion, thinned to the rate its band needs.
+
+    `rate` [Hz] overrides the rate; None takes `SAMPLES_PER_PERIOD` times the cut-off.
+    """
+    rate = rate or SAMPLES_PER_PERIOD * motion.cutoff
+    step = max(1, int(1 / (rate * motion.spacing)))
+    first = int(np.argmax(motion.inner[::step]))
+    force = lowpass(motion.force, motion.spacing, motion.cutoff)
+    velocity = np.where(_resting(motion), 0.0, motion.velocity)
+    return BenchRun(
+        name=motion.name,
+        start=motion.start,
+        spacing=motion.spacing * step,
+        displacement=np.ascontiguousarray(motion.displacement[::step]),
+        velocity=np.ascontiguousarray(motion.velocity[::step]),
+        acceleration=np.ascontiguousarray(motion.acceleration[::step]),
+        force=np.ascontiguousarray(force[::step]),
+        inner=motion.inner[::step],
+        first_force=_force_at(motion, first * step),
+        cutoff=motion.cutoff,
+        measured=(motion.displacement, velocity, motion.acceleration),
+        thinned=step,
+        first=first,
+        clock=motion.start,
+    )
+
+
+def forces_along(
+    device: Device, spacing: float, motion: Sequence[Array], state: float | Array, size: int
+) -> dict[str, Array]:
+    """Total and friction force of a device along a checked motion that may begin late, (size,)."""
+    x, v, a = motion
+    found = device.along_checked(spacing, x, v, a, state)
+    return {name: held(found[name], size) for name in ("total", "friction")}
+
+
+def held(values: Array, count: int) -> Array:
+    """Values that begin late, the first one held before them, shape (count,)."""
+    missing = count - values.size
+    return np.concatenate([np.full(missing, values[0]), values]) if missing else values
+
+
+def _force_at(motion: Motion, index: int) -> float:
+    """Mean measured force over 10 ms [N], at the beginning from it on, else around the sample."""
+    width = max(1, round(0.01 / motion.spacing))
+    begin = max(0, index - width // 2) if index else 0
+    return float(np.mean(motion.force[begin : begin + width]))
+
+
+def _resting(motion: Motion) -> NDArray[np.bool_]:
+    """Stretches longer than the smoother's memory in which the velocity is within its noise."""
+    slow = np.abs(motion.velocity) < REST * motion.velocity_noise
+    edges = np.flatnonzero(np.diff(np.r_[False, slow, False].astype(int)))
+    resting = np.zeros(slow.size, bool)
+    for begin, end in edges.reshape(-1, 2):
+        resting[begin:end] = (end - begin) * motion.spacing > 1 / motion.cutoff
+    return resting
+
+
+def whole(motion: Motion) -> BenchRun:
+    """A run at the record's own rate with the force as measured: what figures are reported on."""
+    first = int(np.argmax(motion.inner))
+    return BenchRun(
+        name=motion.name,
+        start=motion.start,
+        spacing=motion.spacing,
+        displacement=motion.displacement,
+        velocity=motion.velocity,
+        acceleration=motion.acceleration,
+        force=motion.force,
+        inner=motion.inner,
+        first_force=_force_at(motion, first),
+        cutoff=np.inf,
+        first=first,
+        clock=motion.start,
+    )
+
+
+def from_first(run: BenchRun) -> BenchRun:
+    """The part of a run at the measured rate whose motion is known from the beginning."""
+    arrays = ("displacement", "velocity", "acceleration", "force", "inner")
+    part = {name: getattr(run, name)[run.first :] for name in arrays}
+    return replace(run, **part, start=run.start + run.first * run.spacing, first=0)
+
+
+def head_size(run: BenchRun, share: float) -> int:
+    """Number of samples in the first part of a run, counted from where it is followed on."""
+    left = run.force.size - run.first
+    return run.first + max(int(share * left), min(200, left))
+
+
+def head(run: BenchRun, share: float) -> BenchRun:
+    """The first part of a run."""
+    n = head_size(run, share)
+    arrays = ("displacement", "velocity", "acceleration", "force", "inner")
+    part = {name: getattr(run, name)[:n] for name in arrays}
+    if run.measured is not None:
+        x, v, a = (channel[: (n - 1) * run.thinned + 1] for channel in run.measured)
+        part["measured"] = (x, v, a)
+    return replace(run, **part)
+
+
+def scales(runs: Sequence[BenchRun]) -> Scales:
+    """Typical sizes of the channels over all runs."""
+
+    def size(channel: str) -> float:
+        # across a gap the motion is a guess, and may swing far out
+        values = np.concatenate([getattr(run, channel)[run.inner] for run in runs])
+        return float(np.std(values)) or 1.0 if values.size else 1.0
+
+    x, a = (
+        np.concatenate([getattr(run, name)[run.inner] for run in runs])
+        for name in ("displacement", "acceleration")
+    )
+    correlation = float(np.corrcoef(x, a)[0, 1]) if np.ptp(x) > 0 and np.ptp(a) > 0 else 0.0
+    travel, forces = (
+        (float(min(np.min(c) for c in channels)), float(max(np.max(c) for c in channels)))
+        for channels in (
+            [getattr(run, name)[run.inner] for run in runs if run.inner.any()]
+            for name in ("displacement", "force")
+        )
+    )
+    return Scales(
+        force=size("force"),
+        displacement=size("displacement"),
+        velocity=size("velocity"),
+        acceleration=size("acceleration"),
+        cutoff=min(run.cutoff for run in runs),
+        one_tone=correlation**2 > ONE_TONE,
+        travel=travel,
+        elapsed=max(float(run.elapsed[-1]) for run in runs),
+        force_range=forces,
+    )
+
+
+def on_clocks(runs: Sequence[BenchRun]) -> list[BenchRun]:
+    """Runs that share one clock where their times do not overlap, else each with its own."""
+    order = sorted(runs, key=lambda run: run.start)
+    apart = all(a.time[-1] <= b.start for a, b in itertools.pairwise(order))
+    origin = order[0].start
+    return [replace(run, clock=origin if apart else run.start) for run in runs]

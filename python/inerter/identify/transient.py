@@ -1,0 +1,66 @@
+"""What the unknown first state of a series element leaves in a residual: a decay."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+
+Array = NDArray[np.float64]
+
+
+# squared rms residual per squared size that a transient is expected to have
+TIMID = 1e-2
+# exponent of a decay that leaves nothing
+_DECAYED = 60.0
+
+
+def without_transient(
+    device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_]
+) -> Array:
+    """A residual without the decay of the series element's unknown first state, shape (n,).
+
+    Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
+    oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0; the share of the
+    masked samples that has this form is taken out. Its size at the beginning is held near what the
+    residual is large, for where the beginning is masked, its faint rest tells nothing of it.
+    """
+    b = device.inertance
+    damping = device.series_damping + device.flywheel_viscous
+    roots = _roots(b, damping, device.series_stiffness)
+    if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
+        return residual
+    # what is below rounding by then has no share
+    slowest = float(np.max(roots.real)) * spacing
+    count = residual.size if slowest >= 0 else min(residual.size, int(_DECAYED / -slowest) + 2)
+    with np.errstate(under="ignore"):
+        if abs(roots[0].imag) > 0:
+            wave = _decay(roots[0] * spacing, count)
+            basis = np.array([wave.real, wave.imag])
+        else:
+            basis = np.array([_decay(root * spacing, count).real for root in roots])
+    basis /= np.max(np.abs(basis), axis=1, keepdims=True) + 1e-300
+    if not np.isfinite(basis).all():
+        return residual
+    # normal equations do: what holds the size back keeps them well conditioned
+    seen = basis * mask[:count]
+    share = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen @ residual[:count])
+    rest = residual.copy()
+    rest[:count] -= share @ basis
+    return rest
+
+
+def _roots(b: float, damping: float, stiffness: float) -> NDArray[np.complex128]:
+    """Both roots of b s^2 + damping s + stiffness; of damping >= 0, without cancellation."""
+    far = -0.5 * (damping + np.emath.sqrt(damping**2 - 4 * b * stiffness))
+    return np.array([far / b, stiffness / far], dtype=np.complex128)
+
+
+def _decay(step: complex, count: int) -> NDArray[np.complex128]:
+    """exp(step k) for k = 0 ... count - 1, as products of coarse and fine powers."""
+    fine = math.isqrt(count) + 1
+    coarse = np.exp(step * fine * np.arange(count // fine + 1))
+    return np.multiply.outer(coarse, np.exp(step * np.arange(fine))).ravel()[:count]

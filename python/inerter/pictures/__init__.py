@@ -1,0 +1,1 @@
+"""How pictures are drawn: colours, PNGs, interactive figures, curves thinned to what is seen."""

@@ -1,0 +1,72 @@
+"""The files of a diagnosis."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from inerter.core import Device
+from inerter.device_file import device_text
+from inerter.diagnose.result import Diagnosis
+from inerter.diagnose.vehicle.outcome import SystemDiagnosis
+from inerter.folder import file_names, write_files
+from inerter.report.page import render_report
+from inerter.rig import device_mjcf
+
+
+def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
+    """Write diagnosis.json, report.html, device.toml and model.xml.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be written.
+    """
+    if isinstance(diagnosis, SystemDiagnosis):
+        _write_system(diagnosis, folder)
+        return
+    device = Device(**diagnosis.extended.device)
+    names = ", ".join(record.name for record in diagnosis.records)
+    comments = {
+        name: f"{value.unit} (standard error {value.stderr:.2g})".removeprefix("1 ")
+        for name, value in diagnosis.parameters.items()
+    }
+    rest_length = {"rest_length": diagnosis.rest_length} if diagnosis.rest_length else {}
+    toml = device_text(
+        device.replace(**rest_length),
+        comments,
+        diagnosis.extended.delay,
+        f"identified by inerter diagnose from {names}",
+    )
+    model = device_mjcf(device, "identified_device")
+    write_files(
+        folder,
+        {
+            "diagnosis.json": json.dumps(diagnosis.json(), indent=2, allow_nan=False) + "\n",
+            "device.toml": toml,
+            "model.xml": model,
+            "report.html": render_report(diagnosis, toml, model),
+        },
+    )
+
+
+def _write_system(diagnosis: SystemDiagnosis, folder: Path) -> None:
+    """The user's whole model extended, and its devices; the first one is device.toml."""
+    names = ", ".join(record.name for record in diagnosis.records)
+    tomls = {
+        name: device_text(device, {}, 0.0, f"{name}: identified by inerter diagnose from {names}")
+        for name, device in diagnosis.devices.items()
+    }
+    safe = file_names(list(tomls), "unnamed")
+    several = {f"device_{name}.toml": text for name, text in zip(safe, tomls.values(), strict=True)}
+    toml = next(iter(tomls.values()))
+    write_files(
+        folder,
+        {
+            "diagnosis.json": json.dumps(diagnosis.json(), indent=2, allow_nan=False) + "\n",
+            "device.toml": toml,
+            **(several if len(several) > 1 else {}),
+            "model.xml": diagnosis.model_xml,
+            "report.html": render_report(diagnosis, toml, diagnosis.model_xml),
+        },
+    )
