@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from hidden_vehicles import S2
 from inerter.diagnose.vehicle.build import model_of_text
 from inerter.diagnose.vehicle.effects import Effects, Scale
 from inerter.diagnose.vehicle.model import VehicleModel
@@ -36,10 +35,11 @@ def test_every_parameter_of_a_stated_law_is_set_free(law: str) -> None:
     keys, wanted = STATED[law]
     config = "".join(f'<config key="{k}" value="{v!r}"/>' for k, v in keys.items())
     path = model_path("quarter_car", "model.xml")
-    text = path.read_text(encoding="utf-8").replace(
-        '<config key="rest_length"',
-        f'<config key="friction" value="{law}"/>{config}<config key="rest_length"',
-    )
+    rest = '<config key="rest_length"'
+    text = path.read_text(encoding="utf-8")
+    text = text.replace(rest, f'<config key="friction" value="{law}"/>{config}{rest}')
+    if law != "brown_mcphee":
+        text = text.replace('tendon="strut"/>', 'tendon="strut" actdim="1"/>')
     user = model_of_text(text, path)
     user.with_roads([user.model.actuator("road").id])
     effects = Effects(user, {"strut": SCALE})
@@ -54,4 +54,3 @@ def test_every_parameter_of_a_stated_law_is_set_free(law: str) -> None:
     # each of its starts is a model that the engine takes
     for start in candidate.starts:
         user.compile(candidate.model(VehicleModel(), start))
-    assert S2.inertance > 0
