@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
+from inspect import signature
 from pathlib import Path
+from typing import get_type_hints
 
 import mujoco
 import numpy as np
@@ -12,6 +15,8 @@ import pytest
 from inerter import load_plugin
 from inerter.commands import app
 from inerter.device_file import read_device
+from inerter.identify.command import identify_command
+from inerter.identify.laws import PARTS
 from random_devices import Drawn, drawn
 from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
@@ -128,3 +133,9 @@ def test_a_table_is_not_a_record(tmp_path: Path) -> None:
     status, _, stderr = run(path, "--out", tmp_path / "o")
     assert status == 2
     assert "table.csv" in stderr
+
+
+def test_the_help_names_every_law_and_part() -> None:
+    (law,) = (p for p in signature(identify_command).parameters.values() if p.name == "law")
+    text = get_type_hints(identify_command, include_extras=True)[law.name].__metadata__[0].help
+    assert set(PARTS) <= set(re.findall(r"\w+", text))

@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 import pytest
-from inerter.core import parameters
+from inerter.core import Parameter, parameters
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r"^<!--\s*parameters\s*-->(.*?)(?:<!--\s*/parameters\s*-->|\Z)", re.S | re.M)
@@ -50,6 +50,13 @@ def same_number(text: str, value: float) -> bool:
         return math.isnan(value)
 
 
+def in_words(parameter: Parameter) -> str:
+    """Bounds such as ">= 0 <= 1", "> 0", "any"."""
+    lower, upper = parameter.lower, parameter.upper
+    words = [f"{'>' if parameter.lower_open else '>='} {lower:g}"] if math.isfinite(lower) else []
+    return " ".join([*words, *([f"<= {upper:g}"] if math.isfinite(upper) else [])]) or "any"
+
+
 def test_the_readme_of_the_plugin_has_a_table() -> None:
     assert "plugin_c/README.md" in blocks()
 
@@ -66,6 +73,10 @@ def test_table_equals_the_core(document: str) -> None:
             assert row["unit"].strip("`").replace("\\", "") == parameter.unit, name
         if "default" in row:
             assert same_number(row["default"].strip("`"), parameter.initial), name
+        if "range" in row:
+            assert row["range"] == in_words(parameter), name
+        if "friction laws" in row:
+            assert row["friction laws"].strip("-").split() == list(parameter.laws), name
         if "meaning" in row:
             assert row["meaning"].replace("\\", "").replace("`", "") == parameter.meaning, name
 
