@@ -93,7 +93,7 @@ class Criteria:
     handicap: float = _bound(
         0.03,
         SHARE,
-        "by which a rival with more parameters has to be better: by chance it is",
+        "what a rival with more parameters does better by chance",
     )
     rivals_checked: int = _bound(3, COUNT, "of rivals that are checked on data left out")
     exchanges: int = _bound(3, COUNT, "of rivals that take an effect's place, one after another")
