@@ -186,6 +186,19 @@ static void begin_all(const mjModel* m, const Solution* part, const mjtNum* W) {
   }
 }
 
+// acceleration of the last step, in its metric
+static const mjtNum* last_acceleration(const mjModel* m, mjData* d, const Solution* part,
+                                       const Group* group) {
+  if (!metric_moves_qacc(&part->metric)) {
+    return d->qacc_warmstart;
+  }
+  mjtNum* force = mj_stackAllocNum(d, m->nv);
+  mjtNum* moved = mj_stackAllocNum(d, m->nv);
+  mj_mulM(m, d, force, d->qacc_warmstart);
+  metric_solve(m, d, &part->metric, group->ndof, group->dof, force, moved);
+  return moved;
+}
+
 static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* group, mjtNum* W) {
   int n = part->n;
   find_mobilities(m, d, part, group, W);
@@ -210,9 +223,10 @@ static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* 
     monotone_solve_lines(n, start, rise, W, p, part->a, part->force, scratch + 2 * n);
     return 0;
   }
+  const mjtNum* last = last_acceleration(m, d, part, group);
   for (int i = 0; i < n; i++) {
     const Instance* self = part->all[i].self;
-    part->a[i] = instance_along(m, d, self, d->qacc_warmstart) + self->bias;
+    part->a[i] = instance_along(m, d, self, last) + self->bias;
   }
   return monotone_solve(law, part->all, n, W, p, part->a, part->force, scratch);
 }
