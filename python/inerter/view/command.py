@@ -42,8 +42,8 @@ def view_command(
 ) -> None:
     """Show a model and the loops of a device as they arise, with sliders for its parameters.
 
-    The page is in your browser; only this machine reaches it. Ctrl-C ends, and prints what was
-    changed.
+    The page is in your browser. Its address has a token, without which no other page or user of this
+    machine gets in. Ctrl-C ends, and prints what was changed.
     """
     from inerter.simulate.errors import SimulationError
     from inerter.view.picture import write_picture
@@ -86,8 +86,8 @@ def _serve(session: Session, device: str, shake: Shake | None, port: int) -> Non
     if not display:
         out.print(
             f"No display here. From the machine you sit at: ssh -L {port}:localhost:{port} "
-            f"{socket.gethostname()}, then open http://localhost:{port}; or write a picture: "
-            "--picture view.png"
+            f"{socket.gethostname()}, then open the address below in a browser there; or write a "
+            "picture: --picture view.png"
         )
     run(session, device, shake, port, open_page=display)
     for name, values in session.changes().items():
