@@ -95,9 +95,7 @@ def write_files(folder: Path, files: Mapping[str, bytes | str]) -> list[str]:
 def _existing(folder: Path) -> Path:
     """The deepest part of a path that is there: a folder, a file, or a link to nowhere."""
     return next(
-        path
-        for path in (folder, *folder.absolute().parents)
-        if path.exists() or path.is_symlink()
+        path for path in (folder, *folder.absolute().parents) if path.exists() or path.is_symlink()
     )
 
 

@@ -1,11 +1,11 @@
 """The folder beside results in which they are made, and what a run that was killed left of one.
 
-    .inerter-writing-XXXX/
-      lock       held as long as the run that made it lives
-      new/       what is to be put in place
-      old/       second names of what is replaced
-      commit     what is being moved: from here on it is carried on
-      undo       the same, where a move failed: from here on it is taken back
+.inerter-writing-XXXX/
+lock       held as long as the run that made it lives
+new/       what is to be put in place
+old/       second names of what is replaced
+commit     what is being moved: from here on it is carried on
+undo       the same, where a move failed: from here on it is taken back
 """
 
 from __future__ import annotations

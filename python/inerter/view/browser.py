@@ -80,6 +80,11 @@ class _LocalViewer(web_viewer.WebViewer):
     def _host(self, value: str) -> None:
         del value  # the wheel's viewer listens everywhere
 
+    def _start_server(self) -> None:
+        # heard before the address is told
+        self._http_sock.listen()
+        super()._start_server()
+
     def get_drop_file(self) -> str:
         """No model is taken from a page."""
         return ""

@@ -42,8 +42,8 @@ def view_command(
 ) -> None:
     """Show a model and the loops of a device as they arise, with sliders for its parameters.
 
-    The page is in your browser. Its address has a token, without which no other page or user of this
-    machine gets in. Ctrl-C ends, and prints what was changed.
+    The page is in your browser. Its address has a token, without which no other page or user of
+    this machine gets in. Ctrl-C ends, and prints what was changed.
     """
     from inerter.simulate.errors import SimulationError
     from inerter.view.picture import write_picture

@@ -119,7 +119,7 @@ class Guard:
         ).encode()
 
     def serve(self, serve: Callable[..., Any]) -> Callable[..., Any]:
-        """websockets' `serve`, behind this guard."""
+        """Websockets' `serve`, behind this guard."""
 
         def guarded(handler: Any, *, process_request: Any, process_response: Any, **more: Any):
             def ask(connection: Any, request: Request) -> Response | None:
