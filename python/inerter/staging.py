@@ -30,6 +30,8 @@ except ImportError:  # a system without POSIX: what was left there is cleared af
     fcntl = None
 
 LONGEST_NAME = 200  # bytes of a file's name, without its ending: file systems bear 255
+ABOVE = 3
+"""Folders above one of results in which a run may have made it: those between were not there."""
 _YOUNG = 60.0  # seconds in which a folder without a lock may be one that is being made
 
 
@@ -114,14 +116,14 @@ class Staging:
 
 
 def clear(folder: Path) -> None:
-    """End or clear what runs that were killed left in a folder, and beside it.
+    """End or clear what runs that were killed left in a folder, beside it or a little above.
 
     Raises
     ------
     OSError
         What was begun cannot be ended.
     """
-    for place in (folder, folder.absolute().parent):
+    for place in (folder, *folder.absolute().parents[:ABOVE]):
         try:
             found = sorted(place.glob(f"{Staging.PREFIX}*"))
         except OSError:

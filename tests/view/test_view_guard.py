@@ -293,7 +293,7 @@ def test_the_users_own_page_works(viewer: Served, tmp_path: Path) -> None:
     with browser(tmp_path) as tab:
         tab.go(viewer.address)
         tab.until("typeof currentModelCrc !== 'undefined' && currentModelCrc !== 0")
-        tab.until("Module.canvas.width > 300")
+        tab.until("Module.canvas.width > 200")
         assert [text for text in tab.console if "Failed to load" in text] == []
         # so that a page that is loaded again, as it is with another model, is let in again
         assert tab.value("location.search") == f"?token={viewer.token}"
