@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from io import TextIOWrapper
 
 from inerter import signals
 from inerter.printable import PLAIN
@@ -62,7 +63,7 @@ def _settle() -> None:
     sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
     # what cannot be shown is shown otherwise
     for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
+        if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors=PLAIN)
     # pictures are drawn into files: whatever window is wished for, none opens
     os.environ["MPLBACKEND"] = "agg"

@@ -244,7 +244,7 @@ def to_disk(path: Path) -> None:
     except PermissionError:
         return  # a folder that may be written and not read
     try:
-        if full is not None:
+        if fcntl is not None and full is not None:
             fcntl.fcntl(file, full)
         else:
             os.fsync(file)

@@ -80,10 +80,9 @@ def killed(root: Path, number: int, old: dict[str, str] | None) -> tuple[list[st
         if code == 4:
             wrong.append(f"{where}: an error")
         found = listing(out)
-        if number != signal.SIGKILL or old is None:
-            # a folder that is new is there as a whole or not at all, even before the next run
-            if found not in (before, after):
-                wrong.append(f"{where}: {found}")
+        # a folder that is new is there as a whole or not at all, even before the next run
+        if (number != signal.SIGKILL or old is None) and found not in (before, after):
+            wrong.append(f"{where}: {found}")
         if number != signal.SIGKILL and staged(root):
             wrong.append(f"{where}: left {staged(root)}")
         # the next run ends or clears it

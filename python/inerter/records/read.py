@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
+from .bounds import Wanted, everything
 from .quality import check_records
-from .raw_table import RawTable, explain_cell
+from .raw_table import RawTable, explain_cell, listed
 from .record import AnyRecord, Array, BenchTable, Record, RecordError, TimeRecord, VehicleRecord
 from .table import EXTENSIONS, read_table
 from .units import QUANTITIES, si_factor, split_header
@@ -52,28 +53,48 @@ _SYNONYMS = {
 
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Literal["bench"], *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Literal["bench"],
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[Record]: ...
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Literal["vehicle"], *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Literal["vehicle"],
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[VehicleRecord]: ...
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Literal["table"], *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Literal["table"],
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[BenchTable]: ...
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: None = None, *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: None = None,
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[AnyRecord]: ...
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Kind | None = None, *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Kind | None = None,
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> Sequence[AnyRecord]:
     """Read every run of the given files, folders and globs, in that order, in SI units.
 
     paths: one path or several; a folder stands for its .csv, .parquet and .mat files, sorted.
     kind: which records are wanted; None takes each file for what its columns say.
-    check: add the warnings of `check_records`.
+    check: add the warnings of `check_records`. others: read further columns too, into `extra`.
     Raises RecordError (a ValueError), one line, for anything that cannot be used.
     """
     listed = [paths] if isinstance(paths, str | Path) else list(paths)
@@ -81,14 +102,24 @@ def read_records(
         raise RecordError("no records given; name a file, a folder or a glob such as 'data/*.csv'")
     records: list[AnyRecord] = []
     for path in [file for entry in listed for file in _expand(entry)]:
-        records.extend(_read_file(path, kind))
+        records.extend(_read_file(path, kind, everything if others else _is_known))
     records = _name_apart(records)
     return check_records(records) if check else records
 
 
 def _expand(entry: str | Path) -> list[Path]:
     """The record files that one argument stands for; RecordError when there is none."""
-    path = Path(entry).expanduser()
+    try:
+        return _files(Path(entry).expanduser())
+    except (OSError, ValueError, RuntimeError) as error:
+        if isinstance(error, RecordError):
+            raise
+        # a folder that may not be entered, a name that no system bears
+        reason = getattr(error, "strerror", None) or str(error)
+        raise RecordError(f"{entry}: cannot be opened ({reason}); check the path") from None
+
+
+def _files(path: Path) -> list[Path]:
     wanted = ", ".join(EXTENSIONS)
     if path.is_dir():
         found = sorted(p for p in path.iterdir() if _is_record_file(p))
@@ -141,8 +172,14 @@ class _Columns:
     extra: dict[str, int]
 
 
-def _read_file(path: Path, kind: Kind | None) -> list[AnyRecord]:
-    table = read_table(path)
+def _is_known(header: str) -> bool:
+    """Whether a column has a name that records know."""
+    name = split_header(header)[0]
+    return name in QUANTITIES or name == "run"
+
+
+def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]:
+    table = read_table(path, wanted)
     found = _recognise(table)
     cls = _choose_kind(table, found, kind)
     _refuse_missing_columns(table, found, cls)
@@ -159,6 +196,7 @@ def _read_file(path: Path, kind: Kind | None) -> list[AnyRecord]:
     extra = {
         name: numbers
         for name, index in found.extra.items()
+        if index in table.columns
         for numbers, bad in (table.numbers(index),)
         if not len(bad) and np.isfinite(numbers).any()
     }
@@ -236,8 +274,9 @@ def _refuse_missing_columns(table: RawTable, found: _Columns, cls: type[AnyRecor
             f"rename {spare[match[0]]!r} to {_with_unit(name, spare[match[0]])!r}" if match
             else f"a {cls.kind} record needs the columns {', '.join(cls.required)}"
         )  # fmt: skip
-        columns = ", ".join(h.strip() or "(blank)" for h in table.header)
-        raise RecordError(f"{table.path}: no column {name!r} (found: {columns}); {advice}")
+        raise RecordError(
+            f"{table.path}: no column {name!r} (found: {listed(table.header)}); {advice}"
+        )
 
 
 def _with_unit(name: str, header: str) -> str:
