@@ -24,6 +24,7 @@ from .units import split_header
 
 BLOCK = 1 << 24  # bytes that are read at a time
 LONGEST_LINE = 1 << 22  # bytes
+LONGEST_PREAMBLE = 1 << 23  # bytes of blanks and comments above the header
 
 
 @dataclass(frozen=True)
@@ -39,17 +40,19 @@ def read_csv(path: Path, wanted: Wanted) -> RawTable:
     """The raw table of a CSV file; RecordError when it cannot be read or has too much."""
     comments: list[str] = []
     table: _Growing | None = None
+    above = 0
     for block in _blocks(path):
         start = 0
         if table is None:
             line, start = _find_header(path, block, comments)
-            if line is None and block.last:
-                continue
-            if line is None:
+            above += start
+            if line is None and above > LONGEST_PREAMBLE:
                 raise RecordError(
-                    f"{path}: no header in the first {BLOCK >> 20} MB, blanks and comments only; "
-                    "take them out"
+                    f"{path}: no header in the first {LONGEST_PREAMBLE >> 20} MB, blanks and "
+                    "comments only; take them out"
                 )
+            if line is None:
+                continue
             number = block.number + block.text.count(b"\n", 0, start) - 1
             body = block.text[start : start + 4096]
             header = _split_header_line(path, line, number, comments, body)
