@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import codecs
+import re
 import unicodedata
 
 PLAIN = "inerter.plain"
 """Name of the error handler with which a stream shows another character for one that it has not."""
+
+_TURNING = re.compile("[\u200e\u200f\u061c\u202a-\u202e\u2066-\u2069]")
+_TURNING_ESCAPED = re.compile(r"\\u(?:200[ef]|061c|202[a-e]|206[6-9])")
 
 # signs of ours for which a terminal may have no character
 _OTHERWISE = {
@@ -20,6 +24,22 @@ _OTHERWISE = {
 def printable(text: str) -> str:
     """The text without control sequences; line breaks and the blanks of numbers stay."""
     return "".join(c if c.isprintable() or c in "\n\u00a0\u202f" else "\ufffd" for c in text)
+
+
+def upright(value: object) -> object:
+    """What a template shows: of a text without the signs that turn the order of what follows.
+
+    A name with U+202E would show what stands behind it from right to left. What is marked as safe
+    is a program or data (`upright_json`), and stays.
+    """
+    if not isinstance(value, str) or hasattr(value, "__html__"):
+        return value
+    return _TURNING.sub("\ufffd", value)
+
+
+def upright_json(text: str) -> str:
+    """The same of a text in JSON, where those signs are escaped."""
+    return _TURNING_ESCAPED.sub(r"\\ufffd", text)
 
 
 def plain(text: str) -> str:

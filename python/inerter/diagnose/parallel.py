@@ -20,6 +20,7 @@ import numpy as np
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
+from inerter.input_file import whole_number
 from inerter.parallel import ONE_THREAD, deaf_children, end_with
 
 S = TypeVar("S")
@@ -65,6 +66,8 @@ def helped() -> Iterator[None]:
 
     There are as many as processors but this one's, LOKY_MAX_CPU_COUNT at most.
     """
+    # a text that is no number is an error of loky's, without the name of the variable
+    whole_number("LOKY_MAX_CPU_COUNT", 1)
     count = min(cpu_count(), MOST) - 1
     if _helpers.get() or not count:
         yield

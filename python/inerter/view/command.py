@@ -45,6 +45,7 @@ def view_command(
     The page is in your browser. Its address has a token, without which no other page or user of
     this machine gets in. Ctrl-C ends, and prints what was changed.
     """
+    from inerter.folder import refuse_file
     from inerter.simulate.errors import SimulationError
     from inerter.view.picture import write_picture
     from inerter.view.session import Session
@@ -57,7 +58,9 @@ def view_command(
             raise SimulationError(f"--device {device!r}: the model's devices are {listed}")
         shaken = usual_shake(session.model) if shake is None else read_shake(shake, session.model)
         first = device or next(iter(session.devices))
-        if picture is None:
+        if picture is not None:
+            refuse_file(picture)
+        else:
             _serve(session, first, shaken, port)
             return
         notes = write_picture(session, first, shaken, picture, duration, shown)
