@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
-from hostile_files import FILES, MEMORY, SECONDS, Hostile, cost
+from hostile_files import FILES, MEMORY, SECONDS, Hostile
 from inerter.models import data_path
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
@@ -33,7 +34,7 @@ def test_hostile_files_are_refused_within_bounds(tmp_path: Path) -> None:
             hostile.make(tmp_path / hostile.name)
             paths.append(tmp_path / hostile.name)
     found = run("read", *paths)
-    for name, (said, seconds) in found["told"].items():
+    for name, (said, seconds, _) in found["told"].items():
         assert said.startswith(name), said
         assert len(said) < 300 + len(name), said
         assert seconds < SECONDS, name
@@ -44,14 +45,16 @@ def test_hostile_files_are_refused_within_bounds(tmp_path: Path) -> None:
 def test_a_command_refuses_a_hostile_file(hostile: Hostile, tmp_path: Path, long_run: bool) -> None:
     if not long_run:
         pytest.skip("with --long")
-    hostile.make(tmp_path / hostile.name)
-    nothing = cost(["parameters"])
-    found = cost(hostile.command(tmp_path / hostile.name, str(data_path("bench_record.csv"))))
-    assert found.status == 2, found.said
-    assert found.said.startswith("inerter: "), found.said
-    assert found.said.count("\n") == 1, found.said
-    assert found.seconds - nothing.seconds < SECONDS
-    assert found.memory < MEMORY
+    done = subprocess.run(
+        [sys.executable, PROGRAM.with_name("hostile_files.py"), tmp_path, hostile.name],
+        capture_output=True, text=True, timeout=1500, check=True,
+    )  # fmt: skip
+    told = re.fullmatch(
+        r".*\n\S+ +[\d.]+ MB  status 2  +([\d.-]+) s more  +(\d+) MB  (inerter: .*)\n", done.stdout
+    )
+    assert told, done.stdout
+    assert float(told[1]) < SECONDS
+    assert int(told[2]) * 1e6 < MEMORY
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -62,7 +65,7 @@ def test_a_damaged_file_is_read_or_refused(seed: int, tmp_path: Path, long_run: 
     print(found)
     assert found["told"]["read"] + found["told"]["refused"] == count
     assert found["told"]["refused"] > 0.2 * count
-    assert found["memory"] < 2 * MEMORY
+    assert found["memory"] < MEMORY
 
 
 @pytest.mark.parametrize("text", ["abc", "0", "-5", "1e6", "9" * 30])
@@ -72,7 +75,7 @@ def test_a_bound_that_is_no_number_is_named(
     from inerter.records import RecordError, read_records
 
     monkeypatch.setenv("INERTER_MOST_ROWS", text)
-    with pytest.raises(RecordError, match="environment variable INERTER_MOST_ROWS is .*; give a w"):
+    with pytest.raises(RecordError, match=r"variable INERTER_MOST_ROWS is .*; give a whole"):
         read_records(data_path("bench_record.csv"))
 
 

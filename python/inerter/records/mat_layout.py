@@ -24,6 +24,7 @@ MOST_PARTS = 200_000
 
 # numbers of the format: kinds of elements, classes of matrices that hold others
 _MATRIX, _COMPRESSED = 14, 15
+_KINDS = (1, 2, 3, 4, 5, 6, 7, 9, 12, 13, 14, 16, 17, 18)
 _NO_NUMBERS = (1, 2, 3, 4, 5, 17)  # cell, struct, object, characters, sparse, opaque
 _HEAD = 512  # bytes in which class, dimensions and the beginning of the name stand
 _PIECE = 1 << 16
@@ -75,6 +76,8 @@ def variables(path: Path) -> Iterator[Variable]:
             start = file.tell()
             if start + size > end:
                 raise RecordError(f"{path}: the file is cut off; copy it again")
+            if kind != _COMPRESSED:
+                _refuse_kind(kind)
             if kind in (_COMPRESSED, _MATRIX):
                 data = file.read(min(size, _HEAD))
                 if kind == _COMPRESSED:
@@ -183,11 +186,18 @@ def _elements(data: _Data, order: Order, start: int) -> Iterator[tuple[int, int,
     data.skip(start)
     while len(tag := data.read(8)) == 8:
         kind, size = _tag(tag, order)
+        _refuse_kind(kind & 0xFFFF)
         if kind > 0xFFFF:
             continue  # a small element: its data stand in the tag
         yield data.passed, kind, size
         if kind != _MATRIX and data.skip(size + -size % 8) < size:
             raise ValueError(f"an element of {size} bytes is cut off")
+
+
+def _refuse_kind(kind: int) -> None:
+    """ValueError for a kind that there is not: scipy looks it up without asking."""
+    if kind not in _KINDS:
+        raise ValueError(f"an element of kind {kind}")
 
 
 def _tag(data: bytes, order: Any) -> tuple[int, int]:
@@ -200,6 +210,7 @@ def _described(data: bytes, order: Order) -> tuple[str, tuple[int, ...], bool]:
     place = 0
     while len(parts) < 3 and place + 8 <= len(data):
         kind, size = _tag(data[place : place + 8], order)
+        _refuse_kind(kind & 0xFFFF)
         if kind > 0xFFFF:
             size = kind >> 16
             parts.append(data[place + 4 : place + 4 + min(size, 4)])

@@ -192,7 +192,9 @@ def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]
         if name in names
     }
     values = {name: _numbers(table, found.own[name]) for name in names}
-    values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
+    # what overflows is refused with its row
+    with np.errstate(over="ignore"):
+        values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
     extra = {
         name: numbers
         for name, index in found.extra.items()
