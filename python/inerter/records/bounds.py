@@ -21,6 +21,10 @@ VALUES = Bound("INERTER_MOST_VALUES", 100_000_000, "values")
 # of the file as it lies on the disk
 BYTES = Bound("INERTER_MOST_BYTES", 4 << 30, "bytes")
 
+# of what is unpacked beside the file, beyond UNPACKED: what was measured does not pack so well
+PACKING = Bound("INERTER_MOST_PACKING", 30, "times its size when unpacked")
+UNPACKED = 100_000_000  # bytes
+
 LONGEST_NAME = 200  # characters of a column's name
 LONGEST_TEXT = 200  # characters of a cell that is a text: the name of a run
 
@@ -32,6 +36,7 @@ _ADVICE = {
     COLUMNS: "leave out those that are no channels",
     VALUES: "leave out columns, or give a part of it",
     BYTES: "give a part of it",
+    PACKING: "save it without compression",
 }
 
 
@@ -50,6 +55,12 @@ def refuse_more(path: Path, bound: Bound, found: float, slack: float = 1.0) -> N
         raise
     except ValueError as error:
         raise RecordError(str(error)) from None
+
+
+def refuse_packing(path: Path, unpacked: float) -> None:
+    """Raise RecordError for a small file with a large content [bytes]."""
+    if unpacked > UNPACKED:
+        refuse_more(path, PACKING, unpacked / max(path.stat().st_size, 1))
 
 
 def refuse_header(path: Path, header: Sequence[str]) -> None:

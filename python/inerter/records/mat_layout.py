@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, Literal
 
-from .bounds import VALUES, refuse_more
+from .bounds import VALUES, refuse_more, refuse_packing
 from .record import RecordError
 
 # matrices within matrices; scipy reads them by recursion, in which a stack has an end
@@ -102,7 +102,9 @@ def refuse_layout(path: Path, needed: Sequence[Variable]) -> None:
             depth = _Depth(path, parts + 1)
             for place, kind, size in _elements(data, variable.order, 8 if variable.packed else 0):
                 depth.see(place, kind, size)
-                refuse_more(path, VALUES, (total + place + size * (kind != _MATRIX)) / 8)
+                sofar = total + place + size * (kind != _MATRIX)
+                refuse_more(path, VALUES, sofar / 8)
+                refuse_packing(path, sofar)
             parts, total = depth.parts, total + data.passed
 
 

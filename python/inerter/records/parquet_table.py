@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import polars as pl
 
-from .bounds import LONGEST_TEXT, Wanted, refuse_header, refuse_table
+from .bounds import LONGEST_TEXT, Wanted, refuse_header, refuse_packing, refuse_table
 from .raw_table import RawTable
 from .record import RecordError
 
@@ -33,6 +33,7 @@ def read_parquet(path: Path, wanted: Wanted) -> RawTable:
             rows, names = file.metadata.num_rows, _names(file, path)
             kinds = {i: file.schema_arrow.field(i).type for i, n in enumerate(names) if wanted(n)}
             refuse_table(path, rows, len(kinds))
+            refuse_packing(path, 8.0 * rows * len(kinds))
         # texts as numbers of a list of texts: a column of one long text may be short in a file
         texts = [names[i] for i, kind in kinds.items() if _is_text(kind)]
         with pyarrow.parquet.ParquetFile(path, read_dictionary=texts) as file:
