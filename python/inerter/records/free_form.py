@@ -10,10 +10,10 @@ from typing import Any, ClassVar
 
 from inerter.unit_text import parse_unit, unit_registry
 
+from .files import record_files
 from .quality import check_records
 from .raw_table import RawTable, listed
 from .read import (
-    _expand,
     _name_apart,
     _numbers,
     _Part,
@@ -45,7 +45,7 @@ def column_names(paths: Sequence[str | Path]) -> list[str]:
     RecordError
         It cannot be read.
     """
-    file = next(file for entry in paths for file in _expand(entry))
+    file = next(file for entry in paths for file in record_files(entry))
     table = read_table(file, lambda header: _name(header) == "time")
     return [name for name in _names(table) if name not in ("time", "run")]
 
@@ -66,7 +66,7 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
         Anything that cannot be used, one line.
     """
     records: list[Any] = []
-    for path in [file for entry in paths for file in _expand(entry)]:
+    for path in [file for entry in paths for file in record_files(entry)]:
         table = read_table(path, lambda header: _name(header) in {"time", "run", *columns})
         at = _names(table)
         for name in ("time", *columns):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import glob
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,10 +15,11 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
 from .bounds import Wanted, everything
+from .files import record_files
 from .quality import check_records
 from .raw_table import RawTable, explain_cell, listed
 from .record import AnyRecord, Array, BenchTable, Record, RecordError, TimeRecord, VehicleRecord
-from .table import EXTENSIONS, read_table
+from .table import read_table
 from .units import QUANTITIES, si_factor, split_header
 
 MIN_SAMPLES = 50  # of a record over time
@@ -101,41 +101,10 @@ def read_records(
     if not listed:
         raise RecordError("no records given; name a file, a folder or a glob such as 'data/*.csv'")
     records: list[AnyRecord] = []
-    for path in [file for entry in listed for file in _expand(entry)]:
+    for path in [file for entry in listed for file in record_files(entry)]:
         records.extend(_read_file(path, kind, everything if others else _is_known))
     records = _name_apart(records)
     return check_records(records) if check else records
-
-
-def _expand(entry: str | Path) -> list[Path]:
-    """The record files that one argument stands for; RecordError when there is none."""
-    try:
-        return _files(Path(entry).expanduser())
-    except (OSError, ValueError, RuntimeError) as error:
-        if isinstance(error, RecordError):
-            raise
-        # a folder that may not be entered, a name that no system bears
-        reason = getattr(error, "strerror", None) or str(error)
-        raise RecordError(f"{entry}: cannot be opened ({reason}); check the path") from None
-
-
-def _files(path: Path) -> list[Path]:
-    wanted = ", ".join(EXTENSIONS)
-    if path.is_dir():
-        found = sorted(p for p in path.iterdir() if _is_record_file(p))
-        if not found:
-            raise RecordError(f"{path}: no records in this folder; put {wanted} files into it")
-        return found
-    if path.exists() or not glob.has_magic(str(path)):
-        return [path]
-    found = sorted(p for p in map(Path, glob.glob(str(path), recursive=True)) if _is_record_file(p))
-    if not found:
-        raise RecordError(f"{path}: no {wanted} file matches; check the pattern and the folder")
-    return found
-
-
-def _is_record_file(path: Path) -> bool:
-    return path.is_file() and path.suffix.lower() in EXTENSIONS and not path.name.startswith(".")
 
 
 def _name_apart(records: list[AnyRecord]) -> list[AnyRecord]:
