@@ -26,6 +26,11 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c in "\n\u00a0\u202f" else "\ufffd" for c in text)
 
 
+def text_of(name: str) -> str:
+    """A file's name as text: what of it is no UTF-8 is shown as U+FFFD, for pictures and files."""
+    return name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
 def upright(value: object) -> object:
     """What a template shows: of a text without the signs that turn the order of what follows.
 

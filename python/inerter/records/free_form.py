@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from inerter.printable import text_of
 from inerter.unit_text import parse_unit, unit_registry
 
 from .files import record_files
@@ -87,7 +88,7 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
             if lost:
                 raise RecordError(f"{path}: column {lost[0]!r} holds no number; record it")
             record = FreeRecord(
-                name=path.stem if run is None else f"{path.stem}:{run}",
+                name=text_of(path.stem) + ("" if run is None else f":{run}"),
                 source=path,
                 time=filled.pop("time"),
                 extra=filled,

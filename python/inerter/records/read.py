@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
+from inerter.printable import text_of
+
 from .bounds import Wanted, everything
 from .files import record_files
 from .quality import check_records
@@ -109,14 +111,14 @@ def read_records(
 
 def _name_apart(records: list[AnyRecord]) -> list[AnyRecord]:
     """Give records of one name different ones: file name, then folder and file, then a count."""
-    runs = [record.name.removeprefix(_source(record).stem) for record in records]
+    runs = [record.name.removeprefix(text_of(_source(record).stem)) for record in records]
     for folder in (False, True):
         count = Counter(record.name for record in records)
         for index, record in enumerate(records):
             if count[record.name] > 1:
                 source = _source(record)
                 base = f"{source.parent.name}/{source.name}" if folder else source.name
-                records[index] = dataclasses.replace(record, name=base + runs[index])
+                records[index] = dataclasses.replace(record, name=text_of(base) + runs[index])
     seen: Counter[str] = Counter()
     for index, record in enumerate(records):
         seen[record.name] += 1
@@ -161,8 +163,7 @@ def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]
         if name in names
     }
     values = {name: _numbers(table, found.own[name]) for name in names}
-    # what overflows is refused with its row
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore"):  # what overflows is refused with its row
         values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
     extra = {
         name: numbers
@@ -174,7 +175,7 @@ def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]
     records: list[AnyRecord] = []
     for run, rows in _split_runs(table, found.own.get("run")):
         part = _Part(table, run, rows)
-        name = path.stem if run is None else f"{path.stem}:{run}"
+        name = text_of(path.stem) + ("" if run is None else f":{run}")
         # long records are many: no copies of a file that is one run
         own = values if run is None else {n: v[rows] for n, v in values.items()}
         columns, rows, notes = part.complete(own, cls)
