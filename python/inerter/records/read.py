@@ -96,8 +96,8 @@ def read_records(
 
     paths: one path or several; a folder stands for its .csv, .parquet and .mat files, sorted.
     kind: which records are wanted; None takes each file for what its columns say.
-    check: add the warnings of `check_records`. others: read further columns too, into `extra`.
-    Raises RecordError (a ValueError), one line, for anything that cannot be used.
+    check: add `check_records`' warnings. others: read further columns too, into `extra`. Raises
+    RecordError (a ValueError), one line, for anything that cannot be used.
     """
     listed = [paths] if isinstance(paths, str | Path) else list(paths)
     if not listed:
@@ -281,8 +281,7 @@ def _split_runs(table: RawTable, column: int | None) -> list[tuple[str | None, R
             f"{table.path}: {table.place(row)}, column {table.header[column].strip()!r}: "
             "no run is named; fill the cell"
         )
-    # one stable sort in place of a search per run
-    order = np.argsort(member, kind="stable")
+    order = np.argsort(member, kind="stable")  # in place of a search per run
     parts = np.split(order, np.cumsum(np.bincount(member))[:-1])
     return [(str(labels[k]), parts[k]) for k in np.argsort(first)]
 
