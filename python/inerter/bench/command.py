@@ -27,7 +27,7 @@ def bench_command(
     from inerter.bench.machine import busy
     from inerter.bench.report import measure, print_bench
 
-    with refusing(out_dir):
+    with refusing(out_dir, "bench.json"):
         with progress_bar("measuring", as_json) as progress:
             result = measure(quick, progress)
         if remark := busy(result["machine"]):

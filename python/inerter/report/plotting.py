@@ -10,6 +10,7 @@ import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.printable import upright_json
 from inerter.report.palette import LIGHT
 
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
@@ -141,7 +142,7 @@ def to_script(data: Any) -> str:
     ValueError
         A number is not finite: JSON has no word for it.
     """
-    text = json.dumps(_plain(data), allow_nan=False, separators=(",", ":"))
+    text = upright_json(json.dumps(_plain(data), allow_nan=False, separators=(",", ":")))
     for character in "<>&\u2028\u2029":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return text

@@ -10,6 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import inerter.report
+from inerter.printable import upright
 from inerter.report import page as report_page
 from inerter.report import text
 from inerter.report.palette import DARK, LIGHT
@@ -56,6 +57,7 @@ def _template() -> Any:
     environment = Environment(
         loader=FileSystemLoader(folders),
         autoescape=True,
+        finalize=upright,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -13,6 +13,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.subplots import make_subplots
 
+from inerter.printable import upright
 from inerter.report.palette import LIGHT
 from inerter.report.plotting import FONT
 from inerter.studies.hysteresis.figures import published_sets, title_of
@@ -89,6 +90,7 @@ def _template() -> Any:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
+        finalize=upright,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
