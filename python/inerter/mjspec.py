@@ -11,6 +11,7 @@ import numpy as np
 
 from inerter.core import Device, DeviceError, parameters
 from inerter.device_in_model import PLUGIN, DeviceInModel, device_of
+from inerter.mjspec_blank import blank
 from inerter.plugin import load_plugin
 
 # a site by name or object, or a body and a position in it [m]
@@ -178,23 +179,22 @@ def _add(
     sensor: bool,
     is_joint: bool,
 ) -> None:
-    """Extension, instance, sites and tendon, actuator, sensor."""
+    """Extension, instance, sites and tendon, actuator, sensor; no default class reaches them."""
     spec.activate_plugin(PLUGIN)
     instance = spec.add_plugin(name=name, plugin_name=PLUGIN, active=True)
     instance.config = {key: str(value) for key, value in device.given.items()}
     if sites:
         _add_tendon(spec, target, sites)
-    actuator = spec.add_actuator(
-        name=name,
-        target=target,
-        trntype=mujoco.mjtTrn.mjTRN_JOINT if is_joint else mujoco.mjtTrn.mjTRN_TENDON,
-        gear=[gear, 0, 0, 0, 0, 0],
-    )
+    actuator = blank(spec.add_actuator(name=name))
+    actuator.target = target
+    actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT if is_joint else mujoco.mjtTrn.mjTRN_TENDON
+    actuator.gear = [gear, 0, 0, 0, 0, 0]
     if device.nstate:
         actuator.actdim = device.nstate
     readers = [actuator]
     if sensor:
-        readers.append(spec.add_sensor(name=name, type=mujoco.mjtSensor.mjSENS_PLUGIN))
+        readers.append(blank(spec.add_sensor(name=name)))
+        readers[-1].type = mujoco.mjtSensor.mjSENS_PLUGIN
     for element in readers:
         element.plugin.plugin_name = PLUGIN
         element.plugin.name = name
@@ -229,7 +229,7 @@ class _Site:
     def add(self, spec: mujoco.MjSpec) -> None:
         """Make the site where there is none."""
         if self.body is not None:
-            spec.body(self.body).add_site(name=self.name, pos=self.position)
+            blank(spec.body(self.body).add_site(name=self.name)).pos = self.position
 
     def __str__(self) -> str:
         if self.body is None:
@@ -251,7 +251,7 @@ def _place(spec: mujoco.MjSpec, pair: Sequence[Any]) -> tuple[str, np.ndarray]:
 
 
 def _add_tendon(spec: mujoco.MjSpec, name: str, sites: Sequence[_Site]) -> None:
-    tendon = spec.add_tendon(name=name)
+    tendon = blank(spec.add_tendon(name=name))
     for site in sites:
         site.add(spec)
         tendon.wrap_site(site.name)
@@ -346,11 +346,11 @@ def _initial_length(
     try:
         model = trial.compile()
     except ValueError as error:
-        text = " ".join(dict.fromkeys(str(error).split("\n")))
-        raise ValueError(
-            f'rest_length "initial" needs a model that compiles as it is: {text.strip()}; '
-            "or give a number"
-        ) from None
+        text = " ".join(dict.fromkeys(str(error).split("\n"))).strip()
+        needs = "a model that compiles as it is"
+        if sites and _compiles(spec):
+            needs = f"a line between {sites[0]} and {sites[1]}"
+        raise ValueError(f'rest_length "initial" needs {needs}: {text}; or give a number') from None
     data = mujoco.MjData(model)
     if is_joint:
         return float(data.qpos[model.joint(target).qposadr[0]])
@@ -362,3 +362,11 @@ def _initial_length(
             "direction; move one of them"
         )
     return length
+
+
+def _compiles(spec: mujoco.MjSpec) -> bool:
+    try:
+        spec.copy().compile()
+    except ValueError:
+        return False
+    return True
