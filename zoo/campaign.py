@@ -97,7 +97,8 @@ def run(
     log: a line of JSON per case, written as it ends. show: told how many cases have run, and the
     newest.
     """
-    results = [each for each in load(log) if each["seed"] == seed]
+    earlier = load(log)
+    results = [each for each in earlier if each["seed"] == seed]
     known = {each["number"] for each in results}
     empty = {each["path"] for each in results if each["status"] == "no_model"}
     count = sum(each["status"] != "no_model" for each in results)
@@ -125,8 +126,11 @@ def run(
     threads = [threading.Thread(target=work, daemon=True) for _ in range(jobs)]
     for thread in threads:
         thread.start()
+    # anew, as the last line may have been cut off
     log.parent.mkdir(parents=True, exist_ok=True)
-    with log.open("a") as file:
+    with log.open("w") as file:
+        file.writelines(json.dumps(each) + "\n" for each in earlier)
+        file.flush()
         alive = jobs
         while alive:
             if count >= cases:

@@ -50,8 +50,11 @@ def draw(
 ) -> Case:
     """One to four devices anywhere in a model that stands at the state of `data`."""
     case = Case(integrator=str(rng.choice(list(INTEGRATORS))), tight=bool(rng.random() < 0.7))
-    for number in range(int(rng.choice([1, 1, 2, 2, 3, 4]))):
-        place = _place(rng, spec, model, data, f"zoo_{number}")
+    wanted = int(rng.choice([1, 1, 2, 2, 3, 4]))
+    for _ in range(10 * wanted):
+        if len(case.devices) == wanted:
+            break
+        place = _place(rng, spec, model, data, f"zoo_{len(case.devices)}")
         if place is not None:
             mass = effective_mass(model, data, place)
             # a line that hardly lengthens shows a mass beside which nothing else counts
