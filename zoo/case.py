@@ -14,7 +14,7 @@ import numpy as np
 
 from zoo import checks
 from zoo.draw import INTEGRATORS, Case, Drawn, added, draw
-from zoo.models import NoModel, bad, bare, started
+from zoo.models import NoModelError, bad, bare, started
 
 STEPS = 30
 # what the plugin refuses for a reason that README and limits.md give
@@ -41,7 +41,7 @@ def run_case(path: Path, seed: int, number: int) -> dict[str, Any]:
     try:
         spec, small = bare(path)
         data = started(small, rng, int(rng.integers(0, 60)))
-    except NoModel as error:
+    except NoModelError as error:
         return {"status": "no_model", "reason": str(error)}
     case = draw(rng, spec, small, data)
     if not case.devices:
@@ -133,7 +133,9 @@ def _kept_energy(
     """Energy of the model without motors, constraints and losses, devices with inertance alone."""
     if any(isinstance(each, Drawn) and "tendon" in each.target for each in case.devices):
         return {}
-    plain = _changed(case, lambda keys: {k: keys[k] for k in ("inertance", "stiffness") if k in keys})
+    plain = _changed(
+        case, lambda keys: {k: keys[k] for k in ("inertance", "stiffness") if k in keys}
+    )
     model = added(spec, plain).compile()
     flags = mujoco.mjtDisableBit
     model.opt.disableflags |= flags.mjDSBL_CONSTRAINT | flags.mjDSBL_DAMPER

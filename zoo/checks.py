@@ -46,9 +46,7 @@ LIMITS: Figures = {
 }  # fmt: skip
 
 
-def same_state(
-    bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel
-) -> mujoco.MjData:
+def same_state(bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel) -> mujoco.MjData:
     """The bare model's state in the model with devices, whose own states are 0."""
     data = mujoco.MjData(model)
     for field in ("qpos", "qvel", "mocap_pos", "mocap_quat", "eq_active", "qacc_warmstart"):
@@ -111,7 +109,7 @@ class Forces:
                 fell = held - values["dissipated_energy"]
                 self._note("heat", float(fell > 1e-9 * (1e-12 + abs(held))))
 
-    def _compare(self, each: Drawn, row, values, qacc, stepped) -> float:  # noqa: ANN001
+    def _compare(self, each: Drawn, row, values, qacc, stepped) -> float:
         """Note how well the inertance's force fits; what the step's own acceleration adds to it."""
         b = float(each.keys["inertance"])
         found = float(values["inertance"])
@@ -132,7 +130,7 @@ class Forces:
         found = qacc if rk4 else change
         if not rk4 and any("viscous" in each.keys for each in self.case.devices):
             return  # the engine takes its damping at the end of a step, the sensor at its start
-        if self.side.nefc and (not self.case.tight or not rk4 and self._native()):
+        if self.side.nefc and (not self.case.tight or (not rk4 and self._native())):
             return
         self.side.qfrc_applied[:] = pull
         other = copy.copy(self.side)
@@ -167,12 +165,15 @@ class Forces:
 
 
 def weighted_alike(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjModel:
-    """A copy of a model whose constraints are as soft as those of the other, by its devices.
+    """A copy of a model whose constraints are as soft, and muscles as strong, as the other's.
 
-    The engine derives their softness from the inertia at the initial pose, armatures included.
+    The engine derives both from the inertia at the initial pose, armatures included.
     """
     twin = copy.copy(model)
-    for field in ("body_invweight0", "dof_invweight0", "tendon_invweight0"):
+    for field in (
+        "body_invweight0", "dof_invweight0", "tendon_invweight0", "actuator_acc0",
+        "actuator_lengthrange",
+    ):  # fmt: skip
         own, given = getattr(twin, field), getattr(other, field)
         count = min(len(own), len(given))
         own[:count] = given[:count]
@@ -184,9 +185,7 @@ def rigid(each: Drawn) -> bool:
     return "series_stiffness" not in each.keys
 
 
-def dense(
-    bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel, case: Case
-) -> Figures:
+def dense(bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel, case: Case) -> Figures:
     """The acceleration of a step from a dense solve of all inertances, without constraints.
 
     How the bare model answers forces is asked of it by unit forces, so that this holds under every
@@ -196,6 +195,7 @@ def dense(
         return {}
     if model.opt.integrator != RK4 and any("viscous" in each.keys for each in case.devices):
         return {}
+    bare = weighted_alike(bare, model)
     data = same_state(bare, start, model)
     h, before = model.opt.timestep, data.qvel.copy()
     side = mujoco.MjData(bare)
@@ -236,7 +236,7 @@ def dense(
 def model_acceleration(
     bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel
 ) -> np.ndarray:
-    """qacc of the first instant."""
+    """Qacc of the first instant."""
     data = same_state(bare, start, model)
     mujoco.mj_forward(model, data)
     return data.qacc
@@ -304,7 +304,7 @@ def _threads(model: mujoco.MjModel, data: mujoco.MjData, steps: int) -> float:
     both, _ = mujoco.rollout.rollout(
         model, [mujoco.MjData(model) for _ in range(2)], first, nstep=steps, chunk_size=1
     )
-    return float(not np.array_equal(alone, both, equal_nan=True))
+    return float(not np.array_equal(np.asarray(alone), np.asarray(both), equal_nan=True))
 
 
 def saved_as_xml(spec: mujoco.MjSpec, model: mujoco.MjModel, directory: str) -> Figures:
@@ -381,7 +381,7 @@ def _native_inertance(model: mujoco.MjModel, actuator: int) -> float:
     return float(model.actuator_armature[actuator])
 
 
-def _speed(model: mujoco.MjModel, data: mujoco.MjData, place) -> float:  # noqa: ANN001
+def _speed(model: mujoco.MjModel, data: mujoco.MjData, place) -> float:
     return float(data.actuator_velocity[model.actuator_outadr[place.actuator]])
 
 

@@ -1,4 +1,4 @@
-"""Devices drawn for a model: where they are attached, and parameters of a size that matters there."""
+"""Devices drawn for a model: where they are attached, and parameters that matter there."""
 
 from __future__ import annotations
 
@@ -115,7 +115,8 @@ def _line(
         ends = [data.body(body).xpos + data.body(body).xmat.reshape(3, 3) @ p for body, p in points]
         if np.linalg.norm(ends[1] - ends[0]) > 1e-2 * model.stat.extent:
             words = f"line {first} - {second}"
-            return Drawn(name, {"between": tuple(points)}, {}, 1.0, words, tuple(points))
+            pair = (points[0], points[1])
+            return Drawn(name, {"between": pair}, {}, 1.0, words, pair)
     return None
 
 
@@ -225,7 +226,6 @@ def added(spec: mujoco.MjSpec, case: Case) -> mujoco.MjSpec:
     """
     whole = spec.copy()
     for each in case.devices:
-        add_device(
-            whole, each.name, rest_length="initial", gear=each.gear, **each.target, **each.keys
-        )
+        device = each.device()
+        add_device(whole, each.name, device, rest_length="initial", gear=each.gear, **each.target)
     return whole

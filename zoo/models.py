@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 
-class NoModel(Exception):
+class NoModelError(Exception):
     """A file that the engine compiles no model with a degree of freedom from: a part of another."""
 
 
@@ -32,7 +32,7 @@ def bare(path: Path) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
 
     Raises
     ------
-    NoModel
+    NoModelError
         It does not compile by itself, or nothing in it moves.
     """
     try:
@@ -42,9 +42,9 @@ def bare(path: Path) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
                 body.name = f"unnamed_{number}"
         model = spec.copy().compile()
     except (ValueError, mujoco.FatalError) as error:
-        raise NoModel(" ".join(str(error).split())[:160]) from None
+        raise NoModelError(" ".join(str(error).split())[:160]) from None
     if not model.nv:
-        raise NoModel("nothing moves in it")
+        raise NoModelError("nothing moves in it")
     return spec, model
 
 
@@ -53,7 +53,7 @@ def started(model: mujoco.MjModel, rng: np.random.Generator, steps: int) -> mujo
 
     Raises
     ------
-    NoModel
+    NoModelError
         The bare model does not run: it diverges by itself.
     """
     data = mujoco.MjData(model)
@@ -66,7 +66,7 @@ def started(model: mujoco.MjModel, rng: np.random.Generator, steps: int) -> mujo
     )
     mujoco.mj_step(model, data, steps)
     if bad(data) or np.abs(data.qvel).max() > 1e3:
-        raise NoModel("the bare model diverges within some steps")
+        raise NoModelError("the bare model diverges within some steps")
     return data
 
 

@@ -36,7 +36,7 @@ def text(results: list[Result]) -> str:
     unused = {each["path"] for each in results if each["status"] == "no_model"} - models
     packages = Counter(each["package"] for each in real)
     lines = [
-        f"{len(real)} cases in {len(models)} models; {len(unused)} files are no model by themselves",
+        f"{len(real)} cases in {len(models)} models; {len(unused)} files are no model",
         "cases: " + ", ".join(f"{name} {count}" for name, count in sorted(packages.items())),
         "",
         *_figures(ran),

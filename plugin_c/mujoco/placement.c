@@ -27,9 +27,9 @@
 static const int kPlacedSlot = mjNGAIN - 1;
 enum { PLACED_NATIVE = 1, PLACED_PLUGIN = -1 };
 
-// Slots of actuator_dynprm, unused where dyntype is none, with the inertance and the viscous damping
-// as configured when the model received them. The engine saves them in XML beside armature and
-// damping: what stands there as it was written is the plugin's own statement, not a second one.
+// Slots of actuator_dynprm, unused where dyntype is none, with the inertance and the viscous
+// damping as configured when the model received them. The engine saves them in XML beside armature
+// and damping: what stands there as it was written is the plugin's own statement, not a second one.
 static const int kInertanceSlot = mjNDYN - 2, kViscousSlot = mjNDYN - 1;
 
 // relative, of a number with six digits

@@ -1,4 +1,4 @@
-"""Taking a device out of a model that is made with `mujoco.MjSpec`, and finding it under a new name.
+"""Taking a device out of a model that is made with `mujoco.MjSpec`, and finding it renamed.
 
 `MjSpec.attach` puts a prefix and a suffix around every name of the attached model.
 """
@@ -43,13 +43,13 @@ def new_name(name: str, device: Device, present: Mapping[str, Device]) -> str | 
     if name in present:
         return name
     alike = [
-        other
-        for other, found in present.items()
-        if name in other and found.given == device.given
+        other for other, found in present.items() if name in other and found.given == device.given
     ]
     if len(alike) > 1:
         listed = ", ".join(map(repr, alike))
-        raise ValueError(f"device {name!r} is there more than once: {listed}; say which by its name")
+        raise ValueError(
+            f"device {name!r} is there more than once: {listed}; say which by its name"
+        )
     return alike[0] if alike else None
 
 
@@ -115,9 +115,11 @@ def remove(
     if holder is not None and spec.plugin(instance) is not None:
         spec.delete(spec.plugin(instance))
     _shorten_keyframes(spec, places)
-    if tendon is not None and spec.tendon(tendon) is not None:
-        if tendon not in _named_by([*spec.actuators, *spec.sensors, *spec.equalities]):
-            spec.delete(spec.tendon(tendon))
+    rope = None if tendon is None else spec.tendon(tendon)
+    if rope is not None and tendon not in _named_by(
+        [*spec.actuators, *spec.sensors, *spec.equalities]
+    ):
+        spec.delete(rope)
     _remove_sites(spec, sites)
 
 
