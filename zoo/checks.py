@@ -24,8 +24,9 @@ STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 RK4 = mujoco.mjtIntegrator.mjINT_RK4
 
 LIMITS: Figures = {
-    # force of the inertance against b (J qacc + J'v), per size of the terms
-    "force": 1e-6,
+    # force of the inertance against b (J qacc + J'v), per size of the terms; with the file's own
+    # options of the engine's solver, which may stop early
+    "force": 1e-6, "force_as_in_file": 1e-3,
     # the bare model that is given the same forces moves alike, per change of velocity of the step:
     # without constraints, and where its solver answers them
     "same_forces": 1e-6, "same_in_contact": 1e-3,
@@ -161,7 +162,8 @@ class Forces:
     def result(self) -> Figures:
         """The worst of each figure; a device's force fits one acceleration in all steps."""
         fits = [min(self._by_forward[name], self._by_step[name]) for name in self._by_forward]
-        return self.figures | ({"force": max(fits)} if fits else {})
+        name = "force" if self.case.tight else "force_as_in_file"
+        return self.figures | ({name: max(fits)} if fits else {})
 
 
 def weighted_alike(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjModel:
@@ -333,7 +335,7 @@ def at_rest(
     """
     still = mujoco.MjData(bare)
     mujoco.mj_copyData(still, bare, start)
-    mujoco.mj_step(bare, still, 300)
+    mujoco.mj_step(bare, still, int(np.clip(1.5 / bare.opt.timestep, 100, 800)))
     first = np.abs(still.qvel).max()
     if bad(still) or first > 1e-2:
         return {}
