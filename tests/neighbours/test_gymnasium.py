@@ -82,5 +82,3 @@ def test_the_environment_is_the_engine(path: str, alone: np.ndarray) -> None:
         data.ctrl[0] = action[0, 0]
         mujoco.mj_step(model, data, 5)
         assert np.array_equal(np.concatenate([data.qpos, data.qvel, data.act]), row)
-
-
