@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import mujoco
 import numpy as np
@@ -44,10 +44,10 @@ def leg_xml() -> str:
 class LegEnv(MujocoEnv):
     """Hop: the action is the knee's motor, the device's own control stays 0."""
 
-    metadata = {
+    metadata: ClassVar[dict[str, Any]] = {
         "render_modes": ["human", "rgb_array", "depth_array", "rgbd_tuple"],
         "render_fps": 100,
-    }  # noqa: E501
+    }
 
     def __init__(self, path: str) -> None:
         super().__init__(path, 5, Box(-np.inf, np.inf, (5,), np.float64))
