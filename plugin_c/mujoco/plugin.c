@@ -70,7 +70,8 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     } else {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "no actuator refers to it; add <actuator><plugin plugin=\"inerter.device\" "
-               "instance=\"...\" tendon=\"...\"/></actuator>");
+               "instance=\"...\" tendon=\"...\"/></actuator>, or take it out (where an MjSpec "
+               "has lost the actuator: inerter.remove_device)");
     }
     return -1;
   }

@@ -9,7 +9,7 @@ from inerter.plugin import load_plugin, plugin_path
 
 if TYPE_CHECKING:
     from inerter.device_in_model import DeviceInModel, device_of, devices_of
-    from inerter.mjspec import AddedDevice, add_device
+    from inerter.mjspec import AddedDevice, add_device, remove_device
     from inerter.running import Energy, SolveCounts, energy, solve_counts
 
 __all__ = [
@@ -28,6 +28,7 @@ __all__ = [
     "load_plugin",
     "parameters",
     "plugin_path",
+    "remove_device",
     "solve_counts",
 ]
 __version__ = "0.1.0"
@@ -36,6 +37,7 @@ __version__ = "0.1.0"
 _LAZY = {
     "AddedDevice": "inerter.mjspec",
     "add_device": "inerter.mjspec",
+    "remove_device": "inerter.mjspec",
     "DeviceInModel": "inerter.device_in_model",
     "device_of": "inerter.device_in_model",
     "devices_of": "inerter.device_in_model",
