@@ -48,11 +48,9 @@ class Place:
 
 
 def terminals(
-    mbs: Any, name: str, items: Sequence[Any], local: Sequence[Sequence[float]]
+    mbs: Any, items: Sequence[Any], local: Sequence[Sequence[float]]
 ) -> tuple[list[Any], Line | Span]:
     """The nodes, each once, and the kinematics over their coordinates in this order.
-
-    `name` is the element's.
 
     Raises
     ------
@@ -84,7 +82,7 @@ def terminals(
             size += len(mbs.GetNode(place.node)["referenceCoordinates"])
     if any(straight):
         return nodes, _line(mbs, places, starts, size)
-    return nodes, Span(size, *(_point(mbs, place, starts) for place in places), name=name)
+    return nodes, Span(size, *(_point(mbs, place, starts) for place in places))
 
 
 def _vector(point: Sequence[float], index: int) -> tuple[float, float, float]:

@@ -1,0 +1,171 @@
+"""`Inerter`: a device in an Exudyn system, what it does and what can be measured of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.core import Device
+from inerter.exudyn import device as law
+from inerter.exudyn.element import HEAT, Element
+from inerter.exudyn.engine import exudyn
+from inerter.exudyn.functions import NUMBERS
+from inerter.exudyn.kinematics import SHORTEST, Span
+from inerter.exudyn.readings import FORCES, READINGS, Readings
+from inerter.exudyn.user_functions import UserFunctions
+
+QUANTITIES = (*READINGS, "stored_energy")
+"""What `Inerter.Evaluate` tells, and sensors can measure."""
+
+
+@dataclass
+class Model:
+    """What belongs to a device, without the system, which would never be freed if it held itself.
+
+    `element` changes with the parameters and the geometry; `readings` follow it.
+    """
+
+    name: str
+    device: Device
+    element: Element
+    objectNumber: Any  # noqa: N815 - Exudyn's manner
+    nodeNumbers: tuple[Any, ...]  # noqa: N815
+    stateNode: Any  # noqa: N815
+    stateNames: tuple[str, ...]  # noqa: N815
+    symbolic: bool
+    functions: UserFunctions
+    readings: Readings
+
+    def coordinates(self, mbs: Any, kind: str, configuration: Any) -> NDArray[np.float64]:
+        """Coordinates of the object: the terminals' nodes, then the device's own."""
+        engine = exudyn()
+        where = engine.ConfigurationType.Current if configuration is None else configuration
+        what = getattr(engine.OutputVariableType, kind)
+        found = mbs.GetObjectOutputBody(self.objectNumber, what, [0.0] * 3, where)
+        return np.atleast_1d(found)
+
+    def read(self, mbs: Any, configuration: Any) -> dict[str, float]:
+        """All readings and states."""
+        kinds = ("Coordinates", "Coordinates_t", "Coordinates_tt")
+        inputs = np.concatenate([self.coordinates(mbs, kind, configuration) for kind in kinds])
+        if not np.isfinite(inputs).all():
+            raise ValueError(
+                f'inerter "{self.name}": its coordinates are not finite; the run has diverged. '
+                "Shorten the step, or take GeneralizedAlpha, or DOPRI5 with tolerances"
+            )
+        found = self.readings.at(inputs)
+        if isinstance(self.element.kinematics, Span) and found["length"] < SHORTEST:
+            raise ValueError(
+                f'inerter "{self.name}": its terminals are {found["length"]:g} m apart, which '
+                "leaves it without a direction; put them apart, or use 1D coordinates"
+            )
+        return found
+
+
+class Inerter:
+    """A device in an Exudyn system.
+
+    Attributes
+    ----------
+    name
+        Name of the object.
+    device
+        The device with all its parameters.
+    objectNumber
+        The ObjectGenericODE2.
+    nodeNumbers
+        Nodes of the terminals.
+    stateNode
+        NodeGenericODE2 of the device's own coordinates, or None.
+    stateNames
+        Names of the states in their order; last "dissipated_energy" if it is added up.
+    symbolic
+        Whether Exudyn evaluates the forces in C++.
+    """
+
+    def __init__(self, mbs: Any, model: Model) -> None:
+        self.mbs, self._model = mbs, model
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in Model.__dataclass_fields__:
+            raise AttributeError(f"an Inerter has no {name!r}")
+        return getattr(self._model, name)
+
+    def __repr__(self) -> str:
+        return f"Inerter({self.name!r}, {self.device!r})"
+
+    def GetStates(self, configuration: Any = None) -> NDArray[np.float64]:  # noqa: N802
+        """States, shape (states,), in the order of `stateNames`; Exudyn's current configuration.
+
+        Raises
+        ------
+        ValueError
+            The run has diverged.
+        """
+        if not self.stateNames:
+            return np.zeros(0)
+        found = self._model.read(self.mbs, configuration)
+        return np.array([found[name] for name in self.stateNames])
+
+    def Evaluate(self, configuration: Any = None) -> dict[str, Any]:  # noqa: N802
+        """What the device does: the quantities of `QUANTITIES` and "states", SI units.
+
+        Forces are tension positive. The acceleration is the one that Exudyn knows: explicit
+        solvers know none before the first step, and that of their last stage if
+        `timeIntegration.explicit.computeEndOfStepAccelerations` has been set False. Raises
+        ValueError if the run has diverged.
+        """
+        found = self._model.read(self.mbs, configuration)
+        states = [found[name] for name in self.stateNames]
+        told: dict[str, Any] = {name: found[name] for name in READINGS}
+        told["stored_energy"] = _stored_energy(self._model, found)
+        return told | {"states": np.array(states)}
+
+    def AddSensor(  # noqa: N802
+        self, quantity: str = "total", fileName: str = "", storeInternal: bool = True
+    ) -> Any:
+        """Add a sensor of a quantity or a state, and return its SensorIndex.
+
+        "forces" are total, inertance and friction together, "states" all states.
+
+        Raises
+        ------
+        ValueError
+            There is no such quantity; the message lists them.
+        """
+        together = {"forces": FORCES} | ({"states": self.stateNames} if self.stateNames else {})
+        known = (*QUANTITIES, *self.stateNames, *together)
+        if quantity not in known:
+            raise ValueError(f"quantity: {quantity!r} is none of {', '.join(known)}")
+
+        name = f"{self.name}_{quantity}"
+        if int(self.mbs.GetSensorNumber(name)) >= 0:
+            name = f"{name}_{self.mbs.systemData.NumberOfSensors()}"
+        model, names = self._model, together.get(quantity, (quantity,))
+
+        def sensorUserFunction(  # noqa: N802
+            mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
+        ) -> list[float]:
+            found = model.read(mbs, configuration)
+            if quantity == "stored_energy":
+                return [_stored_energy(model, found)]
+            return [found[name] for name in names]
+
+        return self.mbs.AddSensor(
+            exudyn("itemInterface").SensorUserFunction(
+                name=name,
+                sensorUserFunction=sensorUserFunction,
+                fileName=fileName,
+                writeToFile=bool(fileName),
+                storeInternal=storeInternal,
+            )
+        )
+
+
+def _stored_energy(model: Model, found: dict[str, float]) -> float:
+    p = model.element.device
+    states = [found[name] for name in model.device.state_names]
+    return law.stored_energy(p, found["displacement"], found["velocity"], states)

@@ -1,0 +1,57 @@
+"""What can be read off a device at some coordinates, recorded once and evaluated in C."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from inerter.exudyn import device as law
+from inerter.exudyn.element import HEAT, Element
+from inerter.exudyn.functions import Functions, Value
+from inerter.exudyn.tape import Tape
+
+FORCES = ("total", "inertance", "friction")
+READINGS = ("displacement", "velocity", "acceleration", *FORCES, "dissipated_power")
+
+
+class Readings:
+    """`READINGS`, the length and the states of an element, by name."""
+
+    def __init__(self, element: Element) -> None:
+        n = element.size
+        tape = Tape(3 * n)
+        parts = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
+        told = _told(element, tape.functions, *parts)
+        keys = {name: tape.key(value) for name, value in told.items()}
+        self._finished = tape.finish()
+        self._places = {name: self._finished.place(key) for name, key in keys.items()}
+
+    def at(self, inputs: Sequence[float]) -> dict[str, float]:
+        """By name, at coordinates, velocities and accelerations in one row, shape (3 size,)."""
+        values = self._finished.run(inputs)
+        return {name: float(values[place]) for name, place in self._places.items()}
+
+
+def _told(
+    element: Element,
+    f: Functions,
+    q: Sequence[Value],
+    q_t: Sequence[Value],
+    q_tt: Sequence[Value],
+) -> dict[str, Value]:
+    p, motion = element.device, element.kinematics.at(f, q, q_t)
+    x, v = motion.length - p.rest_length, motion.rate
+    a = motion.bias
+    for share, latest in zip(motion.row, q_tt, strict=False):
+        a = a + share * latest
+    z = element.states(x, q, q_t)
+    if p.backlash:
+        # within the play, past whose edge a last step may have gone; without a damper the
+        # position follows from the deflection
+        gap, slide = (p.state_names.index(n) for n in ("gap_position", "series_deflection"))
+        place = z[gap] if p.series_damping else z[slide]
+        z[gap] = f.least(p.backlash, f.greatest(-p.backlash, place))
+    forces = law.forces(p, x, v, a, z, f)
+    heat = law.dissipated_power(f, p, x, v, z, forces["inertance"])
+    told = {"length": motion.length, "displacement": x, "velocity": v, "acceleration": a, **forces}
+    told |= {"dissipated_power": heat, **dict(zip(p.state_names, z, strict=True))}
+    return told | ({HEAT: q_t[element.first + element.own.index(HEAT)]} if element.heat else {})
