@@ -27,7 +27,10 @@ typedef struct InerterElement_ {
   double* jacobian;          // size x size
   Object* mass_array;        // the NumPy arrays of these
   Object* jacobian_array;
+  Object* mass_list;         // the mass matrix as lists, which Exudyn reads faster if it is small,
+                             // or Python's None
   Object* reader;            // (mbs, itemNumber) -> accelerations
+  Object* none;              // Python's
   Object* error;             // raised when the terminals meet,
   const char* message;       // with this text
 } InerterElement;
@@ -109,11 +112,29 @@ static Object* force(Object* self, Object* arguments) {
   return list;
 }
 
-static Object* mass(Object* self, Object* arguments) {
-  InerterElement* element = element_of(self);
-  if (!element || update(element, arguments)) {
-    return NULL;
+// put B J'J into the list of lists; 0, or -1 with an error set
+static int write_lists(const InerterElement* element) {
+  const double* values = element->tape.values;
+  double inertance = values[element->inertance];
+  for (int32_t i = 0; i < element->nrow; i++) {
+    double part = inertance * values[element->row[i]];
+    Object* row = python.PyList_GetItem(element->mass_list, i);
+    for (int32_t k = 0; k <= i; k++) {
+      Object* value = python.PyFloat_FromDouble(part * values[element->row[k]]);
+      if (!value) {
+        return -1;
+      }
+      if (k < i) {
+        python.Py_IncRef(value);
+        python.PyList_SetItem(python.PyList_GetItem(element->mass_list, k), i, value);
+      }
+      python.PyList_SetItem(row, k, value);
+    }
   }
+  return 0;
+}
+
+static void write_array(const InerterElement* element) {
   const double* values = element->tape.values;
   double inertance = values[element->inertance];
   for (int32_t i = 0; i < element->nrow; i++) {
@@ -121,8 +142,24 @@ static Object* mass(Object* self, Object* arguments) {
     double* row = element->mass + (ptrdiff_t)i * element->size;
     for (int32_t k = 0; k < element->nrow; k++) row[k] = part * values[element->row[k]];
   }
-  python.Py_IncRef(element->mass_array);
-  return element->mass_array;
+}
+
+static Object* mass(Object* self, Object* arguments) {
+  InerterElement* element = element_of(self);
+  if (!element || update(element, arguments)) {
+    return NULL;
+  }
+  Object* matrix = element->mass_array;
+  if (element->mass_list != element->none) {
+    matrix = element->mass_list;
+    if (write_lists(element)) {
+      return NULL;
+    }
+  } else {
+    write_array(element);
+  }
+  python.Py_IncRef(matrix);
+  return matrix;
 }
 
 static Object* jacobian(Object* self, Object* arguments) {

@@ -50,7 +50,9 @@ class CElement(ctypes.Structure):
         ("jacobian", ctypes.c_void_p),
         ("mass_array", ctypes.py_object),
         ("jacobian_array", ctypes.py_object),
+        ("mass_list", ctypes.py_object),
         ("reader", ctypes.py_object),
+        ("none", ctypes.py_object),
         ("error", ctypes.py_object),
         ("message", ctypes.c_char_p),
     )

@@ -26,6 +26,10 @@ from inerter.exudyn.tape import Finished, Number, Tape
 Matrix = NDArray[np.float64]
 
 
+LISTED = 9
+"""Up to this size Exudyn reads a matrix faster from lists than from an array."""
+
+
 @dataclass(frozen=True)
 class UserFunctions:
     """What the object is made of: parameters of ObjectGenericODE2 by name, and what to keep."""
@@ -97,7 +101,8 @@ class Compiled:
         c.length = finished.place(length) if isinstance(element.kinematics, Span) else -1
         c.shortest, c.message = SHORTEST, self._message
         c.mass, c.jacobian = mass.ctypes.data, jacobian.ctypes.data
-        c.mass_array, c.jacobian_array = mass, jacobian
+        c.mass_array, c.jacobian_array, c.none = mass, jacobian, None
+        c.mass_list = mass.tolist() if size <= LISTED else None
         c.reader, c.error = latest_accelerations, ValueError
         self._kept[:] = [finished, places, mass, jacobian]
 
