@@ -8,19 +8,16 @@ from numbers import Real
 from typing import Any
 
 from inerter.core import Device
-from inerter.exudyn.element import FLYWHEEL, Element
+from inerter.exudyn.changes import KEPT, start
+from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.inerter import Inerter, Model
 from inerter.exudyn.kinematics import Line, Span
 from inerter.exudyn.parameters import Parameters
 from inerter.exudyn.readings import Readings
 from inerter.exudyn.terminals import terminals
-from inerter.exudyn.user_functions import made_for
-
-KEPT = "inerter_models"
-"""Where in `mbs.variables` the devices of a system are kept."""
-
+from inerter.exudyn.user_functions import UserFunctions
+from inerter.exudyn.watch import install
 
 def CreateInerter(  # noqa: N802 - Exudyn's manner
     mbs: Any,
@@ -100,7 +97,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     given = _initial_states(names, initialStates or {})
     own = _own_node(mbs, name, element, nodes, given) if element.own else None
     compiled = straight if symbolic is None else bool(symbolic)
-    functions = made_for(element, mbs, name, compiled)
+    functions = UserFunctions(mbs, element, name, compiled)
+    install()
     number = mbs.AddObject(
         itemInterface.ObjectGenericODE2(
             name=name,
@@ -111,7 +109,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     )
     model = Model(
         name, device, element, number, tuple(nodes), own, names, compiled, functions,
-        Readings(element),
+        Readings(element), tuple(itemNumbers), (tuple(localPosition0), tuple(localPosition1)), given,
     )  # fmt: skip
     # user functions live as long as the system that evaluates them
     mbs.variables.setdefault(KEPT, []).append(model)
@@ -124,7 +122,7 @@ def _own_node(
     mbs: Any, name: str, element: Element, nodes: Sequence[Any], given: Mapping[str, float]
 ) -> Any:
     """The node of the device's own coordinates, at its start."""
-    places, rates = _start(mbs, element, nodes, given)
+    places, rates = start(mbs, element, nodes, given)
     return mbs.AddNode(
         exudyn("itemInterface").NodeGenericODE2(
             name=f"{name}_states",
@@ -134,28 +132,6 @@ def _own_node(
             numberOfODE2Coordinates=len(element.own),
         )
     )
-
-
-def _start(
-    mbs: Any, element: Element, nodes: Sequence[Any], given: Mapping[str, float]
-) -> tuple[list[float], list[float]]:
-    """Coordinates and velocities at the start: what is not given is unloaded, the flywheel moves
-    with the terminals."""
-    q: list[float] = []
-    q_t: list[float] = []
-    for node in nodes:
-        told = mbs.GetNode(node)
-        size = len(told["referenceCoordinates"])
-        q += list(told.get("initialCoordinates", [0.0] * size))
-        q_t += list(told.get("initialVelocities", [0.0] * size))
-    motion = element.kinematics.at(NUMBERS, q, q_t)
-    moving = {FLYWHEEL: motion.rate}
-    places = [0.0] * len(element.own)
-    if FLYWHEEL in element.own:
-        stretch = motion.length - element.device.rest_length
-        deflection = given.get("series_deflection", 0.0)
-        places[element.own.index(FLYWHEEL)] = stretch - deflection
-    return places, [float(given.get(name, moving.get(name, 0.0))) for name in element.own]
 
 
 def _initial_states(names: Sequence[str], given: Mapping[str, float]) -> dict[str, float]:

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.exudyn import device as law
-from inerter.exudyn.element import HEAT, Element
+from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.readings import FORCES, READINGS, Readings
 from inerter.exudyn.user_functions import UserFunctions
@@ -25,7 +24,8 @@ QUANTITIES = (*READINGS, "stored_energy")
 class Model:
     """What belongs to a device, without the system, which would never be freed if it held itself.
 
-    `element` changes with the parameters and the geometry; `readings` follow it.
+    `element` changes with the parameters and the geometry; `readings` follow it. `items` and
+    `local` are the terminals as they were given, `given` the initial states.
     """
 
     name: str
@@ -38,6 +38,9 @@ class Model:
     symbolic: bool
     functions: UserFunctions
     readings: Readings
+    items: tuple[Any, ...]
+    local: tuple[Any, ...]
+    given: dict[str, float]
 
     def coordinates(self, mbs: Any, kind: str, configuration: Any) -> NDArray[np.float64]:
         """Coordinates of the object: the terminals' nodes, then the device's own."""
@@ -93,6 +96,23 @@ class Inerter:
         if name.startswith("_") or name not in Model.__dataclass_fields__:
             raise AttributeError(f"an Inerter has no {name!r}")
         return getattr(self._model, name)
+
+    def set(self, **parameters: float | str) -> None:
+        """Change parameters, also while a run goes on; checked like those of `CreateInerter`.
+
+        `mbs.SetObjectParameter(strut.objectNumber, "inertance", 50)` does the same. States that
+        the device has stay; a change that asks for others is refused.
+
+        Raises
+        ------
+        inerter.core.DeviceError
+            A parameter that cannot be: names it, its value, what is allowed.
+        ValueError
+            A change that is not possible once the device is made.
+        """
+        from inerter.exudyn.changes import change_parameters
+
+        change_parameters(self.mbs, self._model, parameters)
 
     def __repr__(self) -> str:
         return f"Inerter({self.name!r}, {self.device!r})"

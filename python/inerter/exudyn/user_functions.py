@@ -30,38 +30,53 @@ LISTED = 9
 """Up to this size Exudyn reads a matrix faster from lists than from an array."""
 
 
-@dataclass(frozen=True)
 class UserFunctions:
-    """What the object is made of: parameters of ObjectGenericODE2 by name, and what to keep."""
+    """Matrices and user functions of an element; `name` is for its errors.
 
-    parameters: dict[str, Any]
-    kept: Any = None
+    Attributes
+    ----------
+    parameters
+        Those of an ObjectGenericODE2, by name.
+    """
 
+    def __init__(self, mbs: Any, element: Element, name: str, symbolic: bool) -> None:
+        self._symbolic = symbolic
+        only_matrices = symbolic and element.constant_mass
+        self._compiled = None if only_matrices else Compiled(element, name)
+        self.parameters = self._made_of(mbs, element)
 
-def made_for(element: Element, mbs: Any, name: str, symbolic: bool) -> UserFunctions:
-    """Matrices and user functions of an element; `name` is for its errors."""
-    mass, hold = element.mass_matrix(), element.hold_matrix()
-    if isinstance(element.kinematics, Line) and symbolic:
-        linear, rest = _split(element)
-        force = _symbolic(element, mbs, rest)
-        functions = {} if element.constant_mass else {"mass": Compiled(element, name)}
-        parameters = {
-            "stiffnessMatrix": hold + linear.stiffness,
-            "dampingMatrix": linear.damping,
-            "forceVector": linear.force,
-            "forceUserFunction": force,
-            "massMatrixUserFunction": functions["mass"].mass if functions else 0,
+    def take(self, mbs: Any, objectNumber: Any, element: Element) -> None:  # noqa: N803
+        """Let the object be this element from now on; it has the same coordinates."""
+        if self._compiled is not None:
+            self._compiled.take(element)
+        before, self.parameters = self.parameters, self._made_of(mbs, element)
+        for key, value in self.parameters.items():
+            same = value is before[key] or (
+                isinstance(value, np.ndarray) and np.array_equal(value, before[key])
+            )
+            if not same:
+                mbs.SetObjectParameter(objectNumber, key, value)
+
+    def _made_of(self, mbs: Any, element: Element) -> dict[str, Any]:
+        mass, hold, compiled = element.mass_matrix(), element.hold_matrix(), self._compiled
+        varying = {} if element.constant_mass else {"massMatrixUserFunction": compiled.mass}
+        if self._symbolic:
+            linear, rest = _split(element)
+            return {
+                "massMatrix": mass,
+                "stiffnessMatrix": hold + linear.stiffness,
+                "dampingMatrix": linear.damping,
+                "forceVector": linear.force,
+                "forceUserFunction": _symbolic(element, mbs, rest),
+                **varying,
+            }
+        return {
+            "massMatrix": mass,
+            "stiffnessMatrix": hold,
+            "forceUserFunction": compiled.force,
+            "jacobianUserFunction": compiled.jacobian,
+            **varying,
         }
-        return UserFunctions({"massMatrix": mass, **parameters}, (force, functions))
-    compiled = Compiled(element, name)
-    parameters = {
-        "massMatrix": mass,
-        "stiffnessMatrix": hold,
-        "forceUserFunction": compiled.force,
-        "massMatrixUserFunction": 0 if element.constant_mass else compiled.mass,
-        "jacobianUserFunction": compiled.jacobian,
-    }
-    return UserFunctions(parameters, compiled)
 
 
 class Compiled:
