@@ -133,6 +133,6 @@ def _warn_of_constraints(mbs: Any, model: Model, solver: str) -> None:
                     f'"{item["name"]}" back after each step, which is not exact where an inerter '
                     "couples it to others (errors of 1e-3 were seen); take GeneralizedAlpha, or "
                     "lock the coordinate by a large mass",
-                    stacklevel=4,
+                    stacklevel=3,
                 )
                 return
