@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from inerter.exudyn.element import FLYWHEEL, Element
+from inerter.exudyn.element import FLYWHEEL, TURNED, Element
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.inerter import Model
+from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.parameters import Parameters
 from inerter.exudyn.readings import Readings
 from inerter.exudyn.terminals import terminals
@@ -22,21 +23,43 @@ def models_of(mbs: Any) -> list[Model]:
     return mbs.variables.get(KEPT, [])
 
 
-def read_geometry(mbs: Any, model: Model) -> None:
-    """Take the reference coordinates, local positions and ground positions as they are now."""
-    nodes, kinematics = terminals(mbs, model.items, model.local)
+def reference_length(kinematics: Span, name: str) -> float:
+    """Distance of the terminals at the reference configuration [m]."""
+    nothing = [0.0] * kinematics.size
+    length = kinematics.at(NUMBERS, nothing, nothing).length
+    if length < SHORTEST:
+        raise ValueError(
+            f'inerter "{name}": its terminals are {length:g} m apart at the reference '
+            "configuration, which leaves it without a direction; put them apart, or use 1D "
+            "coordinates"
+        )
+    return length
+
+
+def read_geometry(mbs: Any, model: Model, assembling: bool = False) -> None:
+    """Take the reference coordinates, local positions and ground positions as they are now.
+
+    While a system is assembled, a rest length that was not given becomes the distance anew.
+    """
+    nodes, kinematics = terminals(mbs, model.places)
     if [int(node) for node in nodes] != [int(node) for node in model.nodeNumbers]:
         raise ValueError(
             f'inerter "{model.name}": a terminal has moved to another node, which cannot change '
             "once the device is made; make the device after that"
         )
     if kinematics != model.element.kinematics:
-        take(mbs, model, replace(model.element, kinematics=kinematics))
+        element = replace(model.element, kinematics=kinematics)
+        if assembling and model.free_length:
+            rest = reference_length(kinematics, model.name)
+            model.device = model.device.replace(rest_length=rest)
+            smooth = element.device.smooth_play
+            element = replace(element, device=Parameters.of(model.device, smooth))
+        take(mbs, model, element)
 
 
 def read_start(mbs: Any, model: Model) -> None:
     """Take the start of the terminals' motion as it is now: the flywheel goes with it."""
-    if FLYWHEEL not in model.element.own:
+    if not {FLYWHEEL, TURNED} & set(model.element.own):
         return
     places, rates = start(mbs, model.element, model.nodeNumbers, model.given)
     mbs.SetNodeParameter(model.stateNode, "initialCoordinates", places)
@@ -63,7 +86,7 @@ def start(
         stretch = motion.length - element.device.rest_length
         slide = given.get("series_deflection", 0.0)
         places[element.own.index(FLYWHEEL)] = stretch - slide
-    moving = {FLYWHEEL: motion.rate}
+    moving = {FLYWHEEL: motion.rate, TURNED: motion.length}
     return places, [float(given.get(name, moving.get(name, 0.0))) for name in element.own]
 
 
@@ -77,6 +100,10 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
     ValueError
         A change that asks for other coordinates than the device was made with.
     """
+    if "rest_length" in changes and changes["rest_length"] is None:
+        raise ValueError(
+            f'inerter "{model.name}": rest_length=None is for CreateInerter; give a number [m]'
+        )
     device = model.device.replace(**changes)
     old = model.element
     new = replace(old, device=Parameters.of(device, old.device.smooth_play))

@@ -4,20 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from numbers import Real
 from typing import Any
 
-from inerter.core import Device
-from inerter.exudyn.changes import KEPT, start
+from inerter.core import Device, DeviceError
+from inerter.exudyn.carriers import Carrier, carry, is_carried
+from inerter.exudyn.changes import KEPT, reference_length, start
+from inerter.exudyn.drawing import draw
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Inerter, Model
 from inerter.exudyn.kinematics import Line, Span
 from inerter.exudyn.parameters import Parameters
 from inerter.exudyn.readings import Readings
-from inerter.exudyn.terminals import terminals
+from inerter.exudyn.terminals import Terminals, check, terminals
 from inerter.exudyn.user_functions import UserFunctions
 from inerter.exudyn.watch import install
+
+ALIASES = {
+    "damping": "viscous",
+    "referenceLength": "rest_length",
+    "offset": "rest_length",
+    "force": "force_offset",
+    "torque": "force_offset",
+}
+"""Keywords of Exudyn's own connectors, and the parameters that they mean here."""
+
 
 def CreateInerter(  # noqa: N802 - Exudyn's manner
     mbs: Any,
@@ -26,6 +39,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     localPosition0: Sequence[float] = (0.0, 0.0, 0.0),
     localPosition1: Sequence[float] = (0.0, 0.0, 0.0),
     *,
+    axis: Sequence[float] | None = None,
+    useGlobalFrame: bool = True,
     symbolic: bool | None = None,
     initialStates: Mapping[str, float] | None = None,
     dissipatedEnergy: bool = False,
@@ -33,9 +48,12 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     show: bool = True,
     drawSize: float = -1.0,
     color: Sequence[float] | None = None,
-    **parameters: float | str,
+    bodyNumbers: Sequence[Any] | None = None,
+    bodyOrNodeList: Sequence[Any] | None = None,
+    **parameters: float | str | None,
 ) -> Inerter:
-    """Put a device between two terminals.
+    """Put a device between two terminals: helper function to create an inerter with its friction,
+    springs and shaft between bodies, nodes or markers; see also CreateSpringDamper.
 
     Parameters
     ----------
@@ -46,16 +64,27 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     itemNumbers
         Terminals 1 and 2: each a body (ObjectIndex) at `localPosition0` or `localPosition1`, a
         node (NodeIndex), a marker (MarkerIndex), or None, the ground. Two points on bodies: the
-        displacement is their distance minus `rest_length`. Two coordinates (Node1D, or
-        MarkerNodeCoordinate): it is their difference minus `rest_length`, reference coordinates
-        not counted, as in CoordinateSpringDamper.
+        displacement is their distance minus `rest_length`. Two coordinates (Node1D, Mass1D,
+        RotationalMass1D, MarkerNodeCoordinate): it is their difference minus `rest_length`,
+        reference coordinates not counted, as in CoordinateSpringDamper. Cables, beams, kinematic
+        trees and superelements get a massless point with a spherical joint, for implicit solvers.
+        `bodyNumbers` and `bodyOrNodeList` are other names of it.
     localPosition0, localPosition1
         Points on the bodies [m], in their frames; on the ground in the global one.
+    axis
+        For a torsional device between two rigid bodies: the axis about which their relative angle
+        [rad] counts, usually that of their joint; zero at the reference configuration. Inertance is
+        then in kg m^2, forces are torques. Two MarkerNodeRotationCoordinate need no axis.
+    useGlobalFrame
+        Whether `axis` is in the global frame at the reference configuration, or in the frame of
+        the first body.
     symbolic
-        Whether Exudyn evaluates the forces itself, in C++, instead of calling Python: None, where
-        it can (on 1D coordinates, unless load friction acts on a rigid device).
+        Whether Exudyn evaluates the forces itself, from matrices and expressions: None, where it
+        can (on 1D coordinates, unless load friction acts on a rigid device). Else the package's
+        library evaluates them, as it does between points.
     initialStates
-        States at the start by name, as in `Inerter.stateNames`; 0 for those not given.
+        States at the start by name, as in `Inerter.stateNames`; where none is given the shaft is
+        unloaded, the flywheel moves with the terminals, the others are 0.
     dissipatedEnergy
         Whether to add up the dissipated energy [J], as one more state.
     smoothPlay
@@ -64,10 +93,13 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         then seems smaller by some c_s v / (10 k_s). LuGre's damper behind `friction_backlash` then
         bears at most ten times what the bristle's spring does.
     show, drawSize, color
-        Whether and how a device between points is drawn.
+        Whether and how a device between points is drawn; `Inerter.Show` switches it.
     **parameters
         Parameters of the device, named as in the MuJoCo plugin, SI units: `inertance=113`,
-        `friction="lugre"`, `bristle_stiffness=1e5` ...
+        `friction="lugre"`, `bristle_stiffness=1e5` ... `rest_length=None`, which is its default
+        between points, is the distance at the reference configuration, as in SpringDamper. Keywords
+        of Exudyn's connectors are understood: `damping` is `viscous`, `referenceLength` and
+        `offset` are `rest_length`, `force` and `torque` are `force_offset`.
 
     Returns
     -------
@@ -80,12 +112,24 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         A parameter that cannot be: names it, its value, what is allowed.
     ValueError
         Terminals or states that cannot be.
+
+    Examples
+    --------
+    >>> strut = CreateInerter(
+    ...     mbs, "strut", [ground, box], inertance=113, damping=500
+    ... )  # doctest: +SKIP
     """
-    itemInterface = exudyn("itemInterface")
-    device = Device(**parameters)
+    items = _items(name, itemNumbers, bodyNumbers, bodyOrNodeList)
+    wanted = _parameters(parameters)
+    device = Device(**{key: value for key, value in wanted.items() if value is not None})
     # what belongs to the device is named after it
     name = name or f"inerter{mbs.systemData.NumberOfObjects()}"
-    nodes, kinematics = terminals(mbs, itemNumbers, (localPosition0, localPosition1))
+    places = Terminals(tuple(items), (localPosition0, localPosition1), axis, useGlobalFrame)
+    places, points = _carried(mbs, name, places)
+    nodes, kinematics = terminals(mbs, places)
+    free = wanted.get("rest_length") is None and isinstance(kinematics, Span)
+    if free:
+        device = device.replace(rest_length=reference_length(kinematics, name))
     element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
     straight = isinstance(kinematics, Line) and not element.loaded
     if symbolic and not straight:
@@ -99,23 +143,75 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     compiled = straight if symbolic is None else bool(symbolic)
     functions = UserFunctions(mbs, element, name, compiled)
     install()
+    items_of = exudyn("itemInterface")
     number = mbs.AddObject(
-        itemInterface.ObjectGenericODE2(
+        items_of.ObjectGenericODE2(
             name=name,
             nodeNumbers=[*nodes, *([own] if own is not None else [])],
             **functions.parameters,
-            visualization=itemInterface.VObjectGenericODE2(show=False),
+            visualization=items_of.VObjectGenericODE2(show=False),
         )
     )
+    drawn = isinstance(kinematics, Span)
+    shown = draw(mbs, name, places, show, drawSize, color) if drawn else None
     model = Model(
-        name, device, element, number, tuple(nodes), own, names, compiled, functions,
-        Readings(element), tuple(itemNumbers), (tuple(localPosition0), tuple(localPosition1)), given,
+        name=name, device=device, element=element, objectNumber=number, nodeNumbers=tuple(nodes),
+        stateNode=own, stateNames=names, symbolic=compiled, drawingNumber=shown,
+        functions=functions, readings=Readings(element), places=places, carriers=points,
+        given=given, free_length=free,
     )  # fmt: skip
     # user functions live as long as the system that evaluates them
     mbs.variables.setdefault(KEPT, []).append(model)
-    if show and isinstance(kinematics, Span):
-        _draw(mbs, name, itemNumbers, (localPosition0, localPosition1), drawSize, color)
     return Inerter(mbs, model)
+
+
+def _items(
+    name: Any, itemNumbers: Any, bodyNumbers: Any, bodyOrNodeList: Any  # noqa: N803
+) -> list[Any]:
+    """The two items, under whichever name they were given."""
+    if not isinstance(name, str):
+        raise ValueError(
+            f"name: {name!r:.60} is no text; give the name first, then the items: "
+            'CreateInerter(mbs, "strut", [body1, body2], ...), or itemNumbers=[body1, body2]'
+        )
+    told = {"bodyNumbers": bodyNumbers, "bodyOrNodeList": bodyOrNodeList}
+    others = {key: value for key, value in told.items() if value is not None}
+    if len(others) > 1 or (others and tuple(itemNumbers) != (None, None)):
+        raise ValueError(f"itemNumbers: also given as {', '.join(others)}; give it once")
+    found = next(iter(others.values()), itemNumbers)
+    if isinstance(found, str) or not hasattr(found, "__len__") or len(found) != 2:
+        count = len(found) if hasattr(found, "__len__") else repr(found)
+        raise ValueError(f"itemNumbers: {count} given; an inerter has two terminals")
+    return list(found)
+
+
+def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters under their own names."""
+    found: dict[str, Any] = {}
+    for key, value in given.items():
+        own = ALIASES.get(key, key)
+        if own in found or (own != key and own in given):
+            raise DeviceError(f"{key}: is {own}, which is given as well; give one of them")
+        found[own] = value
+    for key, value in found.items():
+        if value is None and key != "rest_length":
+            raise DeviceError(f"{key} is None: give a number, or leave it out")
+    return found
+
+
+def _carried(mbs: Any, name: str, places: Terminals) -> tuple[Terminals, tuple[Carrier, ...]]:
+    """The terminals with massless points in place of what has no coordinates of its own."""
+    needed = [is_carried(mbs, item) for item in places.items]
+    if not any(needed):
+        return places, ()
+    # nothing is added before the other terminal is known to be right
+    check(mbs, places, needed)
+    items, local, points = list(places.items), list(places.local), []
+    for i, is_needed in enumerate(needed):
+        if is_needed:
+            points.append(carry(mbs, name, items[i], local[i]))
+            items[i], local[i] = points[-1].node, (0.0, 0.0, 0.0)
+    return replace(places, items=tuple(items), local=tuple(local)), tuple(points)
 
 
 def _own_node(
@@ -144,30 +240,3 @@ def _initial_states(names: Sequence[str], given: Mapping[str, float]) -> dict[st
         if not isinstance(value, Real) or not math.isfinite(value):
             raise ValueError(f"initialStates: {key} is {value!r}; give a finite number")
     return {key: float(value) for key, value in given.items()}
-
-
-def _draw(
-    mbs: Any,
-    name: str,
-    items: Sequence[Any],
-    local: Sequence[Sequence[float]],
-    size: float,
-    color: Sequence[float] | None,
-) -> None:
-    """A spring without force, which Exudyn draws between the terminals."""
-    places = [list(point) for point in local]
-    ends = []
-    for item, place in zip(items, places, strict=True):
-        if item is None:
-            ends.append(mbs.CreateGround(referencePosition=place))
-            place[:] = [0.0, 0.0, 0.0]
-        else:
-            ends.append(item)
-    mbs.CreateSpringDamper(
-        name=f"{name}_drawing",
-        itemNumbers=ends,
-        localPosition0=places[0],
-        localPosition1=places[1],
-        drawSize=size,
-        color=exudyn("graphics").color.default if color is None else list(color),
-    )

@@ -10,6 +10,7 @@ mass, so that every solver of second order integrates it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 from inerter.exudyn import device as law
 from inerter.exudyn import flywheel, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
-from inerter.exudyn.kinematics import Line, Motion, Span
+from inerter.exudyn.kinematics import Line, Motion, Span, Twist
 from inerter.exudyn.parameters import Parameters
 
 HOLD = 1e-20
@@ -29,6 +30,8 @@ static solution exists; far below the rounding of what it is added to [N/m per k
 
 HEAT = "dissipated_energy"
 FLYWHEEL = "flywheel_velocity"
+TURNED = "turned_angle"
+"""Integrated angle of a torsional device, which tells how many turns there have been."""
 
 
 class Recorded(NamedTuple):
@@ -44,7 +47,7 @@ class Element:
     """The device, its kinematics, whether heat is added up."""
 
     device: Parameters
-    kinematics: Line | Span
+    kinematics: Line | Span | Twist
     heat: bool = False
 
     @property
@@ -55,6 +58,8 @@ class Element:
         # without a damper the place in the play follows from the deflection
         if "gap_position" in there and not p.series_damping:
             there.remove("gap_position")
+        if isinstance(self.kinematics, Twist):
+            there.append(TURNED)
         return (*there, *((HEAT,) if self.heat else ()))
 
     @property
@@ -80,6 +85,15 @@ class Element:
             return True
         straight = isinstance(self.kinematics, Line)
         return straight and not flywheel.varies(self.device) and not self.loaded
+
+    def motion(self, f: Functions, q: Sequence[Value], q_t: Sequence[Value]) -> Motion:
+        """The terminals' motion; an angle goes on beyond a turn."""
+        found = self.kinematics.at(f, q, q_t)
+        if TURNED not in self.own:
+            return found
+        integrated = q_t[self.first + self.own.index(TURNED)]
+        turns = f.round((integrated - found.length) / (2.0 * math.pi))
+        return found._replace(length=found.length + 2.0 * math.pi * turns)
 
     def states(self, x: Value, q: Sequence[Value], q_t: Sequence[Value]) -> list[Value]:
         """The device's states at stretch x [m] and all coordinates."""
@@ -118,7 +132,7 @@ class Element:
         self, f: Functions, q: Sequence[Value], q_t: Sequence[Value], q_tt: Sequence[Value] = ()
     ) -> Recorded:
         """All that a user function tells; q_tt, the latest accelerations, only if `loaded`."""
-        p, motion = self.device, self.kinematics.at(f, q, q_t)
+        p, motion = self.device, self.motion(f, q, q_t)
         x, v = motion.length - p.rest_length, motion.rate
         z = self.states(x, q, q_t)
         forces: list[Value] = [0.0] * self.size
@@ -141,6 +155,8 @@ class Element:
         at_terminals = at_terminals + inertance * motion.bias
         for place, share in enumerate(motion.row):
             forces[place] = -(share * at_terminals)
+        if TURNED in self.own:
+            forces[self.first + self.own.index(TURNED)] = v
         if self.heat:
             through = law.carried(f, p, x, v, a, z) if p.load_friction else 0.0
             forces[-1] = law.dissipated_power(f, p, x, v, z, through)

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from inerter.core import Device
 from inerter.exudyn import device as law
 from inerter.exudyn.element import Element
+from inerter.exudyn.carriers import Carrier
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.readings import FORCES, READINGS, Readings
+from inerter.exudyn.terminals import Terminals
 from inerter.exudyn.user_functions import UserFunctions
 
 QUANTITIES = (*READINGS, "stored_energy")
@@ -24,8 +26,9 @@ QUANTITIES = (*READINGS, "stored_energy")
 class Model:
     """What belongs to a device, without the system, which would never be freed if it held itself.
 
-    `element` changes with the parameters and the geometry; `readings` follow it. `items` and
-    `local` are the terminals as they were given, `given` the initial states.
+    `element` changes with the parameters and the geometry; `readings` follow it. `places`
+    are the terminals as they were given, `carriers` massless points made for them, `given` the
+    initial states; with `free_length` the rest length is the reference distance.
     """
 
     name: str
@@ -36,11 +39,13 @@ class Model:
     stateNode: Any  # noqa: N815
     stateNames: tuple[str, ...]  # noqa: N815
     symbolic: bool
+    drawingNumber: Any  # noqa: N815
     functions: UserFunctions
     readings: Readings
-    items: tuple[Any, ...]
-    local: tuple[Any, ...]
+    places: Terminals
+    carriers: tuple[Carrier, ...]
     given: dict[str, float]
+    free_length: bool
 
     def coordinates(self, mbs: Any, kind: str, configuration: Any) -> NDArray[np.float64]:
         """Coordinates of the object: the terminals' nodes, then the device's own."""
@@ -87,6 +92,8 @@ class Inerter:
         Names of the states in their order; last "dissipated_energy" if it is added up.
     symbolic
         Whether Exudyn evaluates the forces in C++.
+    drawingNumber
+        The object that draws the device, or None.
     """
 
     def __init__(self, mbs: Any, model: Model) -> None:
@@ -113,6 +120,11 @@ class Inerter:
         from inerter.exudyn.changes import change_parameters
 
         change_parameters(self.mbs, self._model, parameters)
+
+    def Show(self, show: bool = True) -> None:  # noqa: N802
+        """Draw the device, or not; also while the renderer runs."""
+        if self.drawingNumber is not None:
+            self.mbs.SetObjectParameter(self.drawingNumber, "Vshow", bool(show))
 
     def __repr__(self) -> str:
         return f"Inerter({self.name!r}, {self.device!r})"

@@ -133,6 +133,65 @@ class Span:
         return Motion(length, rate, row, bias)
 
 
+@dataclass(frozen=True)
+class Frame:
+    """A body that turns: as `Point`; without `rotation` it is the ground.
+
+    `across` is a unit vector across the axis, in the body's frame.
+    """
+
+    start: int = 0
+    reference: tuple[float, ...] = ()
+    moves: int = 0
+    rotation: Callable[[Functions, Numbers, Numbers], Rotation] | None = None
+    across: Vector = (1.0, 0.0, 0.0)
+
+    def at(self, f: Functions, q: Numbers, q_t: Numbers) -> tuple[Rotation, Vector]:
+        """The rotation and the angular velocity."""
+        if self.rotation is None:
+            return Rotation(UNITS, [], ZERO), ZERO
+        end = self.start + len(self.reference)
+        total = [a + b for a, b in zip(self.reference, q[self.start : end], strict=True)]
+        rates = list(q_t[self.start : end])[self.moves :]
+        turned = self.rotation(f, total[self.moves :], rates)
+        spin = ZERO
+        for axis, rate in zip(turned.axes, rates, strict=True):
+            spin = add(spin, scale(axis, rate))
+        return turned, spin
+
+
+@dataclass(frozen=True)
+class Twist:
+    """The angle by which the second body has turned about an axis, seen from the first [rad].
+
+    `axis` is a unit vector in the first body's frame, or the ground's if `fixed`. The length of the
+    motion is the angle within one turn.
+    """
+
+    size: int
+    first: Frame
+    second: Frame
+    axis: Vector
+    fixed: bool = False
+
+    def at(self, f: Functions, q: Numbers, q_t: Numbers) -> Motion:
+        """The motion at coordinates and velocities of shape (size,) or longer."""
+        (turned1, spin1), (turned2, spin2) = self.first.at(f, q, q_t), self.second.at(f, q, q_t)
+        line = self.axis if self.fixed else apply(turned1.matrix, self.axis)
+        relative = subtract(spin2, spin1)
+        row: list[Value] = [0.0] * self.size
+        for frame, turned, sign in ((self.first, turned1, -1.0), (self.second, turned2, 1.0)):
+            for k, axis in enumerate(turned.axes):
+                row[frame.start + frame.moves + k] += sign * dot(line, axis)
+        bias = dot(line, subtract(turned2.bias, turned1.bias))
+        if not self.fixed:
+            bias = bias + dot(cross(spin1, line), relative)
+        one = apply(turned1.matrix, self.first.across)
+        other = apply(turned2.matrix, self.second.across)
+        angle = f.arctan2(dot(other, cross(line, one)), dot(other, one))
+        return Motion(angle, dot(line, relative), row, bias)
+
+
 SHORTEST = 1e-9
 """Distance of the terminals [m] below which their line has no direction."""
 

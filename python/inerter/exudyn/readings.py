@@ -10,11 +10,11 @@ from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.tape import Tape
 
 FORCES = ("total", "inertance", "friction")
-READINGS = ("displacement", "velocity", "acceleration", *FORCES, "dissipated_power")
+READINGS = ("length", "displacement", "velocity", "acceleration", *FORCES, "dissipated_power")
 
 
 class Readings:
-    """`READINGS`, the length and the states of an element, by name."""
+    """`READINGS` and the states of an element, by name."""
 
     def __init__(self, element: Element) -> None:
         n = element.size
@@ -38,7 +38,7 @@ def _told(
     q_t: Sequence[Value],
     q_tt: Sequence[Value],
 ) -> dict[str, Value]:
-    p, motion = element.device, element.kinematics.at(f, q, q_t)
+    p, motion = element.device, element.motion(f, q, q_t)
     x, v = motion.length - p.rest_length, motion.rate
     a = motion.bias
     for share, latest in zip(motion.row, q_tt, strict=False):

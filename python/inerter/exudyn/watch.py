@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from inerter.core import parameters
+from inerter.exudyn.carriers import follow
 from inerter.exudyn.changes import change_parameters, models_of, read_geometry, read_start
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Model
@@ -45,10 +46,17 @@ def install() -> None:
 def _telling_of_assembly(original: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(original)
     def Assemble(self: Any) -> Any:  # noqa: N802 - Exudyn's name
-        for model in models_of(self):
-            read_geometry(self, model)
+        models = models_of(self)
+        for model in models:
+            read_geometry(self, model, assembling=True)
             read_start(self, model)
-        return original(self)
+        done = original(self)
+        # where markers start is known only now
+        if [model for model in models if follow(self, model.carriers)]:
+            for model in models:
+                read_start(self, model)
+            done = original(self)
+        return done
 
     return Assemble
 
@@ -89,6 +97,7 @@ def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
         name = getattr(solver or exudyn().DynamicSolverType.GeneralizedAlpha, "name", "")
         if name not in IMPLICIT:
             for model in models:
+                _refuse_points(model, name)
                 _warn_of_constraints(mbs, model, name)
             return original(mbs, settings, *args, **kwargs)
         with _fresh_jacobians(settings, models):
@@ -112,6 +121,14 @@ def _fresh_jacobians(settings: Any, models: list[Model]) -> Iterator[None]:
         yield
     finally:
         newton.modifiedNewtonJacUpdatePerStep = before
+
+
+def _refuse_points(model: Model, solver: str) -> None:
+    if model.carriers:
+        raise ValueError(
+            f'inerter "{model.name}": {solver} cannot solve the joint of its massless point, which '
+            "carries the terminal on a cable, beam, tree or superelement; take GeneralizedAlpha"
+        )
 
 
 def _warn_of_constraints(mbs: Any, model: Model, solver: str) -> None:
