@@ -23,17 +23,34 @@ def models_of(mbs: Any) -> list[Model]:
     return mbs.variables.get(KEPT, [])
 
 
-def reference_length(kinematics: Span, name: str) -> float:
+def reference_length(kinematics: Span) -> float:
     """Distance of the terminals at the reference configuration [m]."""
     nothing = [0.0] * kinematics.size
-    length = kinematics.at(NUMBERS, nothing, nothing).length
+    return kinematics.at(NUMBERS, nothing, nothing).length
+
+
+def check_apart(mbs: Any, name: str, element: Element, nodes: Any) -> None:
+    """Raise ValueError if the terminals start at one point."""
+    if not isinstance(element.kinematics, Span):
+        return
+    length = element.kinematics.at(NUMBERS, *initial_coordinates(mbs, nodes)).length
     if length < SHORTEST:
         raise ValueError(
-            f'inerter "{name}": its terminals are {length:g} m apart at the reference '
-            "configuration, which leaves it without a direction; put them apart, or use 1D "
-            "coordinates"
+            f'inerter "{name}": its terminals are {length:g} m apart, which leaves it without a '
+            "direction; put them apart, or use 1D coordinates"
         )
-    return length
+
+
+def initial_coordinates(mbs: Any, nodes: Any) -> tuple[list[float], list[float]]:
+    """Coordinates and velocities of nodes at the start."""
+    q: list[float] = []
+    q_t: list[float] = []
+    for node in nodes:
+        told = mbs.GetNode(node)
+        rest = [0.0] * len(told["referenceCoordinates"])
+        q += list(told.get("initialCoordinates", rest))
+        q_t += list(told.get("initialVelocities", told.get("initialCoordinates_t", rest)))
+    return q, q_t
 
 
 def read_geometry(mbs: Any, model: Model, assembling: bool = False) -> None:
@@ -50,11 +67,13 @@ def read_geometry(mbs: Any, model: Model, assembling: bool = False) -> None:
     if kinematics != model.element.kinematics:
         element = replace(model.element, kinematics=kinematics)
         if assembling and model.free_length:
-            rest = reference_length(kinematics, model.name)
+            rest = reference_length(kinematics)
             model.device = model.device.replace(rest_length=rest)
             smooth = element.device.smooth_play
             element = replace(element, device=Parameters.of(model.device, smooth))
         take(mbs, model, element)
+    if assembling:
+        check_apart(mbs, model.name, model.element, model.nodeNumbers)
 
 
 def read_start(mbs: Any, model: Model) -> None:
@@ -73,13 +92,7 @@ def start(
 
     A state that is not given is 0, but the flywheel moves with the terminals.
     """
-    q: list[float] = []
-    q_t: list[float] = []
-    for node in nodes:
-        told = mbs.GetNode(node)
-        rest = [0.0] * len(told["referenceCoordinates"])
-        q += list(told.get("initialCoordinates", rest))
-        q_t += list(told.get("initialVelocities", told.get("initialCoordinates_t", rest)))
+    q, q_t = initial_coordinates(mbs, nodes)
     motion = element.kinematics.at(NUMBERS, q, q_t)
     places = [0.0] * len(element.own)
     if FLYWHEEL in element.own:

@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.core import Device, DeviceError
 from inerter.exudyn.carriers import Carrier, carry, is_carried
-from inerter.exudyn.changes import KEPT, reference_length, start
+from inerter.exudyn.changes import KEPT, check_apart, reference_length, start
 from inerter.exudyn.drawing import draw
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
@@ -119,6 +119,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     ...     mbs, "strut", [ground, box], inertance=113, damping=500
     ... )  # doctest: +SKIP
     """
+    items_of = exudyn("itemInterface")
     items = _items(name, itemNumbers, bodyNumbers, bodyOrNodeList)
     wanted = _parameters(parameters)
     device = Device(**{key: value for key, value in wanted.items() if value is not None})
@@ -129,7 +130,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     nodes, kinematics = terminals(mbs, places)
     free = wanted.get("rest_length") is None and isinstance(kinematics, Span)
     if free:
-        device = device.replace(rest_length=reference_length(kinematics, name))
+        device = device.replace(rest_length=reference_length(kinematics))
     element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
     straight = isinstance(kinematics, Line) and not element.loaded
     if symbolic and not straight:
@@ -139,11 +140,11 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         )
     names = (*device.state_names, *(("dissipated_energy",) if dissipatedEnergy else ()))
     given = _initial_states(names, initialStates or {})
+    check_apart(mbs, name, element, nodes)
     own = _own_node(mbs, name, element, nodes, given) if element.own else None
     compiled = straight if symbolic is None else bool(symbolic)
     functions = UserFunctions(mbs, element, name, compiled)
     install()
-    items_of = exudyn("itemInterface")
     number = mbs.AddObject(
         items_of.ObjectGenericODE2(
             name=name,

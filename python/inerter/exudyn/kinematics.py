@@ -122,14 +122,14 @@ class Span:
         p2, v2, partial2, bias2 = self.second.at(f, q, q_t)
         between, relative = subtract(p2, p1), subtract(v2, v1)
         length = f.sqrt(dot(between, between))
-        line = scale(between, 1.0 / length)
+        line = scale(between, 1.0 / f.greatest(length, SHORTEST))
         rate = dot(line, relative)
         row: list[Value] = [0.0] * self.size
         for point, partial, sign in ((self.first, partial1, -1.0), (self.second, partial2, 1.0)):
             for k, velocity in enumerate(partial):
                 row[point.start + k] += sign * dot(line, velocity)
         across = f.greatest(0.0, dot(relative, relative) - rate * rate)
-        bias = dot(line, subtract(bias2, bias1)) + across / length
+        bias = dot(line, subtract(bias2, bias1)) + across / f.greatest(length, SHORTEST)
         return Motion(length, rate, row, bias)
 
 

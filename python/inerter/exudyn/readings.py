@@ -10,7 +10,7 @@ from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.tape import Tape
 
 FORCES = ("total", "inertance", "friction")
-READINGS = ("length", "displacement", "velocity", "acceleration", *FORCES, "dissipated_power")
+READINGS = ("displacement", "velocity", "acceleration", *FORCES, "dissipated_power", "length")
 
 
 class Readings:

@@ -30,47 +30,47 @@ class Number:
         self.tape, self.key, self.affine = tape, key, affine
 
     def __add__(self, other: Value) -> Value:
-        return self if _is(other, 0.0) else self.tape.step("add", self, other)
+        return self if _is(other, 0.0) else self.tape.record("add", self, other)
 
     def __radd__(self, other: float) -> Value:
-        return self if _is(other, 0.0) else self.tape.step("add", other, self)
+        return self if _is(other, 0.0) else self.tape.record("add", other, self)
 
     def __sub__(self, other: Value) -> Value:
-        return self if _is(other, 0.0) else self.tape.step("subtract", self, other)
+        return self if _is(other, 0.0) else self.tape.record("subtract", self, other)
 
     def __rsub__(self, other: float) -> Value:
-        return -self if _is(other, 0.0) else self.tape.step("subtract", other, self)
+        return -self if _is(other, 0.0) else self.tape.record("subtract", other, self)
 
     def __mul__(self, other: Value) -> Value:
         if _is(other, 0.0):
             return 0.0
-        return self if _is(other, 1.0) else self.tape.step("multiply", self, other)
+        return self if _is(other, 1.0) else self.tape.record("multiply", self, other)
 
     def __rmul__(self, other: float) -> Value:
         if _is(other, 0.0):
             return 0.0
-        return self if _is(other, 1.0) else self.tape.step("multiply", other, self)
+        return self if _is(other, 1.0) else self.tape.record("multiply", other, self)
 
     def __truediv__(self, other: Value) -> Value:
-        return self if _is(other, 1.0) else self.tape.step("divide", self, other)
+        return self if _is(other, 1.0) else self.tape.record("divide", self, other)
 
     def __rtruediv__(self, other: float) -> Value:
-        return 0.0 if _is(other, 0.0) else self.tape.step("divide", other, self)
+        return 0.0 if _is(other, 0.0) else self.tape.record("divide", other, self)
 
     def __neg__(self) -> Value:
-        return self.tape.step("negate", self)
+        return self.tape.record("negate", self)
 
     def __lt__(self, other: Value) -> Value:
-        return self.tape.step("less", self, other)
+        return self.tape.record("less", self, other)
 
     def __gt__(self, other: Value) -> Value:
-        return self.tape.step("less", other, self)
+        return self.tape.record("less", other, self)
 
     def __le__(self, other: Value) -> Value:
-        return self.tape.step("not_above", self, other)
+        return self.tape.record("not_above", self, other)
 
     def __ge__(self, other: Value) -> Value:
-        return self.tape.step("not_above", other, self)
+        return self.tape.record("not_above", other, self)
 
     def __bool__(self) -> bool:
         raise TypeError("a recorded number is neither true nor false; use Functions.choose")
@@ -92,7 +92,7 @@ class Tape:
         names = Functions.__dataclass_fields__
         self.functions = Functions(**{name: self._function(name) for name in names})
 
-    def step(self, name: str, *operands: Value) -> Number:
+    def record(self, name: str, *operands: Value) -> Number:
         """Record an operation, or find it where it is recorded already."""
         recorded = (name, *(self.key(operand) for operand in operands))
         if recorded not in self._steps:
@@ -113,12 +113,12 @@ class Tape:
     def _function(self, name: str) -> Callable[..., Value]:
         plain = getattr(NUMBERS, name)
 
-        def record(*operands: Value) -> Value:
+        def function(*operands: Value) -> Value:
             if any(isinstance(operand, Number) for operand in operands):
-                return self.step(name, *operands)
+                return self.record(name, *operands)
             return plain(*operands)
 
-        return record
+        return function
 
 
 class Finished:

@@ -83,10 +83,11 @@ def terminals(mbs: Any, given: Terminals) -> tuple[list[Any], Line | Span | Twis
         for i, (item, point) in enumerate(zip(given.items, given.local, strict=True))
     ]
     if all(place.node is None for place in places):
+        forgotten = " (itemNumbers=[...] was perhaps forgotten)"
+        named = any(item is not None for item in given.items)
         raise ValueError(
             "itemNumbers: both are the ground; give at least one body or node"
-            if any(item is not None for item in given.items)
-            else "itemNumbers: not given; name two bodies, nodes or markers, None for the ground"
+            + ("" if named else forgotten)
         )
     nodes: list[Any] = []
     starts: dict[int, int] = {}

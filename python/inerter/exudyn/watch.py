@@ -15,7 +15,7 @@ from typing import Any
 
 from inerter.core import parameters
 from inerter.exudyn.carriers import follow
-from inerter.exudyn.changes import change_parameters, models_of, read_geometry, read_start
+from inerter.exudyn.changes import KEPT, change_parameters, models_of, read_geometry, read_start
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import Line
@@ -37,6 +37,7 @@ def install() -> None:
     system.Assemble = _telling_of_assembly(system.Assemble)
     for name in GEOMETRY:
         setattr(system, name, _telling_of_change(name, getattr(system, name)))
+    system.Reset = _forgetting(system.Reset)
     solve = _careful(system.SolveDynamic)
     for place in (system, exudyn(), exudyn("solver")):
         if hasattr(place, "SolveDynamic"):
@@ -59,6 +60,15 @@ def _telling_of_assembly(original: Callable[..., Any]) -> Callable[..., Any]:
         return done
 
     return Assemble
+
+
+def _forgetting(original: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(original)
+    def Reset(self: Any) -> Any:  # noqa: N802 - Exudyn's name
+        self.variables.pop(KEPT, None)
+        return original(self)
+
+    return Reset
 
 
 def _telling_of_change(name: str, original: Callable[..., Any]) -> Callable[..., Any]:
