@@ -116,7 +116,7 @@ def test_terms_add_up_to_the_force_and_the_state_rates(friction: str) -> None:
             sign = np.sign(true["inertance"][i])
             total += law.mass(NUMBERS, p, stretch, v, sign) * a
             if rigid(device):
-                total += law.load_rest(p, stretch, v, sign)
+                total += law.load_rest(NUMBERS, p, stretch, v, sign)
             assert total == pytest.approx(true["total"][i], rel=SAME, abs=SAME * 1e3)
             for name, rate, expected in zip(device.state_names, found, rates[i], strict=False):
                 if name == "gap_position" and not device.series_damping:
@@ -160,9 +160,9 @@ def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
             for symbolic in (True, False)
         ]  # fmt: skip
         system.mbs.Assemble()
-        element, items = made[0].element, [system.mbs.GetObject(d.objectNumber) for d in made]
+        element, items = made[0].element, [each.functions.parameters for each in made]
         for i, (x, v, _) in enumerate(motion.tolist()):
-            q, q_t = coordinates(element, x, v, dict(zip(device.state_names, states[i], strict=True)))
+            q, q_t = coordinates(element, x, v, dict(zip(device.state_names, states[i].tolist(), strict=True)))
             plain = np.array(element.record(NUMBERS, q, q_t).forces)
             found = [forces(system.mbs, item, q, q_t) for item in items]
             scale = SAME * np.abs(plain).max()
@@ -186,13 +186,10 @@ def coordinates(
 
 
 def forces(mbs: Any, item: dict[str, Any], q: list[float], q_t: list[float]) -> Array:
-    """What an ObjectGenericODE2 does: its user function and its matrices."""
-    total = np.zeros(len(q))
-    function = item["forceUserFunction"]
-    if function:
-        called = function.Evaluate if hasattr(function, "Evaluate") else function
-        total += called(mbs, 0.0, 0, q, q_t)
-    for name, values in (("stiffnessMatrix", q), ("dampingMatrix", q_t)):
-        if np.size(item[name]):
-            total -= np.asarray(item[name]) @ values
-    return total + item["forceVector"] if np.size(item["forceVector"]) else total
+    """What an ObjectGenericODE2 with these parameters does."""
+    total = np.array(item.get("forceVector", np.zeros(len(q))))
+    if function := item["forceUserFunction"]:
+        evaluate = getattr(function, "Evaluate", function)
+        total += evaluate(mbs, 0.0, 0, q, q_t)
+    total -= item["stiffnessMatrix"] @ q
+    return total - item["dampingMatrix"] @ q_t if "dampingMatrix" in item else total

@@ -149,7 +149,11 @@ def _warn_of_constraints(mbs: Any, model: Model, solver: str) -> None:
         return
     nodes = {int(node) for node in model.nodeNumbers}
     for number in range(mbs.systemData.NumberOfObjects()):
-        item = mbs.GetObject(number)
+        try:
+            item = mbs.GetObject(number)
+        except TypeError:
+            # Exudyn 1.9 cannot tell of an object with a symbolic function; it is no constraint
+            continue
         if item["objectType"] != "ConnectorCoordinate":
             continue
         for marker in item["markerNumbers"]:
