@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +15,15 @@ from inerter.exudyn import device as law
 from inerter.exudyn.element import Element
 from inerter.exudyn.carriers import Carrier
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.readings import FORCES, READINGS, Readings
 from inerter.exudyn.terminals import Terminals
 from inerter.exudyn.user_functions import UserFunctions
 
 QUANTITIES = (*READINGS, "stored_energy")
 """What `Inerter.Evaluate` tells, and sensors can measure."""
+
+
+ORIGIN = [0.0, 0.0, 0.0]
 
 
 @dataclass
@@ -47,30 +51,38 @@ class Model:
     given: dict[str, float]
     free_length: bool
 
-    def coordinates(self, mbs: Any, kind: str, configuration: Any) -> NDArray[np.float64]:
-        """Coordinates of the object: the terminals' nodes, then the device's own."""
+    def read(self, mbs: Any, configuration: Any, names: Sequence[str]) -> list[float]:
+        """Readings and states by name, and "stored_energy"."""
+        if "stored_energy" in names:
+            return self._with_energy(mbs, configuration, names)
         engine = exudyn()
         where = engine.ConfigurationType.Current if configuration is None else configuration
-        what = getattr(engine.OutputVariableType, kind)
-        found = mbs.GetObjectOutputBody(self.objectNumber, what, [0.0] * 3, where)
-        return np.atleast_1d(found)
+        kinds, number = engine.OutputVariableType, self.objectNumber
+        q, q_t, q_tt = (
+            mbs.GetObjectOutputBody(number, kind, ORIGIN, where)
+            for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
+        )
+        found = self.readings.at(q, q_t, q_tt, names=names)
+        if not math.isfinite(sum(found)):
+            self._explain(q, q_t, q_tt)
+        return found
 
-    def read(self, mbs: Any, configuration: Any) -> dict[str, float]:
-        """All readings and states."""
-        kinds = ("Coordinates", "Coordinates_t", "Coordinates_tt")
-        inputs = np.concatenate([self.coordinates(mbs, kind, configuration) for kind in kinds])
-        if not np.isfinite(inputs).all():
+    def _explain(self, *parts: Any) -> None:
+        """Raise ValueError for readings that are not finite."""
+        if not all(np.isfinite(part).all() for part in parts):
             raise ValueError(
                 f'inerter "{self.name}": its coordinates are not finite; the run has diverged. '
                 "Shorten the step, or take GeneralizedAlpha, or DOPRI5 with tolerances"
             )
-        found = self.readings.at(inputs)
-        if isinstance(self.element.kinematics, Span) and found["length"] < SHORTEST:
-            raise ValueError(
-                f'inerter "{self.name}": its terminals are {found["length"]:g} m apart, which '
-                "leaves it without a direction; put them apart, or use 1D coordinates"
-            )
-        return found
+
+    def _with_energy(self, mbs: Any, configuration: Any, names: Sequence[str]) -> list[float]:
+        others = [name for name in names if name != "stored_energy"]
+        wanted = (*others, "displacement", "velocity", *self.device.state_names)
+        found = self.read(mbs, configuration, wanted)
+        x, v, *states = found[len(others) :]
+        energy = law.stored_energy(self.element.device, x, v, states)
+        told = dict(zip(others, found, strict=False)) | {"stored_energy": energy}
+        return [told[name] for name in names]
 
 
 class Inerter:
@@ -139,8 +151,7 @@ class Inerter:
         """
         if not self.stateNames:
             return np.zeros(0)
-        found = self._model.read(self.mbs, configuration)
-        return np.array([found[name] for name in self.stateNames])
+        return np.array(self._model.read(self.mbs, configuration, self.stateNames))
 
     def Evaluate(self, configuration: Any = None) -> dict[str, Any]:  # noqa: N802
         """What the device does: the quantities of `QUANTITIES` and "states", SI units.
@@ -150,11 +161,10 @@ class Inerter:
         `timeIntegration.explicit.computeEndOfStepAccelerations` has been set False. Raises
         ValueError if the run has diverged.
         """
-        found = self._model.read(self.mbs, configuration)
-        states = [found[name] for name in self.stateNames]
-        told: dict[str, Any] = {name: found[name] for name in READINGS}
-        told["stored_energy"] = _stored_energy(self._model, found)
-        return told | {"states": np.array(states)}
+        names = (*QUANTITIES, *self.stateNames)
+        found = self._model.read(self.mbs, configuration, names)
+        told: dict[str, Any] = dict(zip(QUANTITIES, found, strict=False))
+        return told | {"states": np.array(found[len(QUANTITIES) :])}
 
     def AddSensor(  # noqa: N802
         self, quantity: str = "total", fileName: str = "", storeInternal: bool = True
@@ -181,10 +191,7 @@ class Inerter:
         def sensorUserFunction(  # noqa: N802
             mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
         ) -> list[float]:
-            found = model.read(mbs, configuration)
-            if quantity == "stored_energy":
-                return [_stored_energy(model, found)]
-            return [found[name] for name in names]
+            return model.read(mbs, configuration, names)
 
         return self.mbs.AddSensor(
             exudyn("itemInterface").SensorUserFunction(
@@ -195,9 +202,3 @@ class Inerter:
                 storeInternal=storeInternal,
             )
         )
-
-
-def _stored_energy(model: Model, found: dict[str, float]) -> float:
-    p = model.element.device
-    states = [found[name] for name in model.device.state_names]
-    return law.stored_energy(p, found["displacement"], found["velocity"], states)

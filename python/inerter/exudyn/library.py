@@ -83,7 +83,12 @@ def operations() -> dict[str, int]:
 
 def run(tape: Any) -> None:
     """Evaluate a tape, a reference to a CTape."""
-    _library().inerter_exudyn_run(tape)
+    _evaluate()(tape)
+
+
+@functools.cache
+def _evaluate() -> Any:
+    return _library().inerter_exudyn_run
 
 
 def run_slopes(tape: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from inerter.exudyn import device as law
 from inerter.exudyn.element import HEAT, Element
@@ -23,12 +24,21 @@ class Readings:
         told = _told(element, tape.functions, *parts)
         keys = {name: tape.key(value) for name, value in told.items()}
         self._finished = tape.finish()
+        self._size, self._starts = n, (0, n, 2 * n)
         self._places = {name: self._finished.place(key) for name, key in keys.items()}
 
-    def at(self, inputs: Sequence[float]) -> dict[str, float]:
-        """By name, at coordinates, velocities and accelerations in one row, shape (3 size,)."""
-        values = self._finished.run(inputs)
-        return {name: float(values[place]) for name, place in self._places.items()}
+    def at(self, *parts: Any, names: Sequence[str] = ()) -> list[float]:
+        """Those named, at coordinates, velocities and accelerations, each of shape (size,)."""
+        values = self._finished.values
+        for start, part in zip(self._starts, parts, strict=True):
+            values[start : start + self._size] = part
+        found = self._finished.rerun()
+        return [found.item(self._places[name]) for name in names]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All that can be read."""
+        return tuple(self._places)
 
 
 def _told(

@@ -137,6 +137,7 @@ class Finished:
         self.slopes[range(inputs), range(inputs)] = 1.0
         arrays = (self.steps, self.values, self.slopes)
         self.c = CTape(inputs, len(constants), len(steps), *(each.ctypes.data for each in arrays))
+        self._reference = ctypes.byref(self.c)
 
     def place(self, key: Key) -> int:
         """Where a value lies among `values`."""
@@ -145,12 +146,16 @@ class Finished:
     def run(self, inputs: Sequence[float]) -> NDArray[np.float64]:
         """All values at some inputs; the array is this object's own."""
         self.values[: len(inputs)] = inputs
-        run(ctypes.byref(self.c))
+        return self.rerun()
+
+    def rerun(self) -> NDArray[np.float64]:
+        """All values at the inputs that stand in `values`."""
+        run(self._reference)
         return self.values
 
     def run_slopes(self) -> NDArray[np.float64]:
         """Derivatives of all values by the inputs where `run` was last, shape (values, inputs)."""
-        run_slopes(ctypes.byref(self.c))
+        run_slopes(self._reference)
         return self.slopes
 
 
