@@ -1,8 +1,9 @@
 """What one step in Exudyn costs, with the element and with user functions written by hand.
 
 "element in C" evaluates in the package's library instead of by matrices and Exudyn's expressions.
-`exudyn_native` compares with Exudyn's own spring-dampers. Two systems: a quarter-car, and the stick-slip of Canudas de Wit et al. 1995 as one of Exudyn's
-own examples states it (a first-order system in one Python function on NumPy arrays).
+`exudyn_native` compares with Exudyn's own spring-dampers. Two systems: a quarter-car, and the
+stick-slip of Canudas de Wit et al. 1995 as one of Exudyn's own examples states it (a first-order
+system in one Python function on NumPy arrays).
 """
 
 from __future__ import annotations

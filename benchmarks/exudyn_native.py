@@ -69,7 +69,8 @@ def _system(kind: str, name: str, count: int) -> Any:
     items = exudyn("itemInterface")
     mbs = exudyn().SystemContainer().AddSystem()
     for number in range(count):
-        pair, local = _pair(mbs, kind, number), {}
+        pair = _pair(mbs, kind, number)
+        local: dict[str, Any] = {}
         if kind == "1D":
             markers = [
                 mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
@@ -153,7 +154,7 @@ def _rows(kind: str, quick: bool) -> list[Row]:
     return rows
 
 
-def _ratio(times: Any, name: str) -> dict[str, float | None]:
+def _ratio(times: Any, name: str) -> dict[str, Any]:
     if name == NATIVE:
         return dict.fromkeys(("ratio", "ratio_lower", "ratio_upper"))
     return spread_of("ratio", times[name].ratio(times[NATIVE]))

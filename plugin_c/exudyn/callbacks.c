@@ -14,25 +14,25 @@
 
 typedef struct InerterElement_ {
   InerterTape tape;
-  int32_t size;              // coordinates of the object
-  int32_t nrow;              // of them those of the terminals' nodes
-  int32_t loaded;            // inputs end with the latest accelerations, asked of `reader`
-  int32_t known;             // the values on the tape are those of `inputs`
-  const int32_t* forces;     // places of the forces, size
-  const int32_t* row;        // places of J, nrow
-  int32_t inertance;         // place of B
-  int32_t length;            // place of what must not fall below `shortest`, or -1
+  int32_t size;           // coordinates of the object
+  int32_t nrow;           // of them those of the terminals' nodes
+  int32_t loaded;         // inputs end with the latest accelerations, asked of `reader`
+  int32_t known;          // the values on the tape are those of `inputs`
+  const int32_t* forces;  // places of the forces, size
+  const int32_t* row;     // places of J, nrow
+  int32_t inertance;      // place of B
+  int32_t length;         // place of what must not fall below `shortest`, or -1
   double shortest;
-  double* mass;              // the mass matrix, size x size; its constant part is in place
-  double* jacobian;          // size x size
-  Object* mass_array;        // the NumPy arrays of these
+  double* mass;        // the mass matrix, size x size; its constant part is in place
+  double* jacobian;    // size x size
+  Object* mass_array;  // the NumPy arrays of these
   Object* jacobian_array;
-  Object* mass_list;         // the mass matrix as lists, which Exudyn reads faster if it is small,
-                             // or Python's None
-  Object* reader;            // (mbs, itemNumber) -> accelerations
-  Object* none;              // Python's
-  Object* error;             // raised when the terminals meet,
-  const char* message;       // with this text
+  Object* mass_list;    // the mass matrix as lists, which Exudyn reads faster if it is small,
+                        // or Python's None
+  Object* reader;       // (mbs, itemNumber) -> accelerations
+  Object* none;         // Python's
+  Object* error;        // raised when the terminals meet,
+  const char* message;  // with this text
 } InerterElement;
 
 static Python python;
@@ -176,7 +176,7 @@ static Object* jacobian(Object* self, Object* arguments) {
   const int32_t n = element->size;
   for (int32_t i = 0; i < n; i++) {
     const double* slope =
-      element->tape.slopes + (ptrdiff_t)element->forces[i] * element->tape.ninput;
+        element->tape.slopes + (ptrdiff_t)element->forces[i] * element->tape.ninput;
     double* row = element->jacobian + (ptrdiff_t)i * n;
     for (int32_t k = 0; k < n; k++) row[k] = -by_place * slope[k] - by_speed * slope[n + k];
   }
@@ -185,10 +185,10 @@ static Object* jacobian(Object* self, Object* arguments) {
 }
 
 static Method methods[] = {
-  {"forceUserFunction", force, INERTER_METHOD_ARGUMENTS, "forces (mbs, t, itemNumber, q, q_t)"},
-  {"massMatrixUserFunction", mass, INERTER_METHOD_ARGUMENTS, "M (mbs, t, itemNumber, q, q_t)"},
-  {"jacobianUserFunction", jacobian, INERTER_METHOD_ARGUMENTS,
-   "K (mbs, t, itemNumber, q, q_t, factor, factor_t)"},
+    {"forceUserFunction", force, INERTER_METHOD_ARGUMENTS, "forces (mbs, t, itemNumber, q, q_t)"},
+    {"massMatrixUserFunction", mass, INERTER_METHOD_ARGUMENTS, "M (mbs, t, itemNumber, q, q_t)"},
+    {"jacobianUserFunction", jacobian, INERTER_METHOD_ARGUMENTS,
+     "K (mbs, t, itemNumber, q, q_t, factor, factor_t)"},
 };
 
 // hand over Python's functions, in the order of INERTER_PYTHON
@@ -206,7 +206,7 @@ INERTER_API Method* inerter_exudyn_method(int number) {
 INERTER_API const char* inerter_exudyn_operation(int number) {
   static const char* const names[] = {
 #define X(name, expression) #name,
-    INERTER_OPERATIONS(X)
+      INERTER_OPERATIONS(X)
 #undef X
   };
   return number >= 0 && number < INERTER_NOPERATION ? names[number] : NULL;

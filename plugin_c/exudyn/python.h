@@ -9,19 +9,19 @@
 typedef struct Object_ Object;  // a PyObject
 
 // name, type of the answer, arguments: the order is that of the table handed over
-#define INERTER_PYTHON(X)                                \
-  X(PyTuple_GetItem, Object*, (Object*, ptrdiff_t))      \
-  X(PyLong_AsVoidPtr, void*, (Object*))                  \
-  X(PyList_Size, ptrdiff_t, (Object*))                   \
-  X(PyList_GetItem, Object*, (Object*, ptrdiff_t))       \
-  X(PyList_New, Object*, (ptrdiff_t))                    \
-  X(PyList_SetItem, int, (Object*, ptrdiff_t, Object*))  \
-  X(PyFloat_FromDouble, Object*, (double))               \
-  X(PyFloat_AsDouble, double, (Object*))                 \
-  X(PyErr_Occurred, Object*, (void))                     \
-  X(PyErr_SetString, void, (Object*, const char*))       \
-  X(PyObject_CallObject, Object*, (Object*, Object*))    \
-  X(Py_IncRef, void, (Object*))                          \
+#define INERTER_PYTHON(X)                               \
+  X(PyTuple_GetItem, Object*, (Object*, ptrdiff_t))     \
+  X(PyLong_AsVoidPtr, void*, (Object*))                 \
+  X(PyList_Size, ptrdiff_t, (Object*))                  \
+  X(PyList_GetItem, Object*, (Object*, ptrdiff_t))      \
+  X(PyList_New, Object*, (ptrdiff_t))                   \
+  X(PyList_SetItem, int, (Object*, ptrdiff_t, Object*)) \
+  X(PyFloat_FromDouble, Object*, (double))              \
+  X(PyFloat_AsDouble, double, (Object*))                \
+  X(PyErr_Occurred, Object*, (void))                    \
+  X(PyErr_SetString, void, (Object*, const char*))      \
+  X(PyObject_CallObject, Object*, (Object*, Object*))   \
+  X(Py_IncRef, void, (Object*))                         \
   X(Py_DecRef, void, (Object*))
 
 typedef struct Python_ {

@@ -10,9 +10,9 @@ void inerter_tape_run(const InerterTape* tape) {
     const InerterStep* step = tape->steps + i;
     double a = values[step->a], b = values[step->b], c = values[step->c];
     switch ((InerterOperation)step->operation) {
-#define X(name, expression)          \
-  case INERTER_OPERATION_##name:     \
-    value[i] = (expression);         \
+#define X(name, expression)      \
+  case INERTER_OPERATION_##name: \
+    value[i] = (expression);     \
     break;
       INERTER_OPERATIONS(X)
 #undef X
@@ -99,8 +99,8 @@ void inerter_tape_slopes(const InerterTape* tape) {
       continue;
     }
     double p[2];
-    partials((InerterOperation)step->operation, values[step->a], values[step->b],
-             values[first + i], p);
+    partials((InerterOperation)step->operation, values[step->a], values[step->b], values[first + i],
+             p);
     // a corner's infinite slope times nothing is nothing
     if (p[0] == 0.0 && p[1] == 0.0) {
       memset(slope, 0, n * sizeof *slope);

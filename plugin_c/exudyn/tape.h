@@ -10,27 +10,27 @@
 #include <stdint.h>
 
 // operations: their name in Python, and the value of (a, b, c)
-#define INERTER_OPERATIONS(X)                   \
-  X(add, a + b)                                 \
-  X(subtract, a - b)                            \
-  X(multiply, a * b)                            \
-  X(divide, a / b)                              \
-  X(negate, -a)                                 \
-  X(abs, fabs(a))                               \
+#define INERTER_OPERATIONS(X)                    \
+  X(add, a + b)                                  \
+  X(subtract, a - b)                             \
+  X(multiply, a* b)                              \
+  X(divide, a / b)                               \
+  X(negate, -a)                                  \
+  X(abs, fabs(a))                                \
   X(sign, (double)(a > 0.0) - (double)(a < 0.0)) \
-  X(sqrt, sqrt(a))                              \
-  X(sin, sin(a))                                \
-  X(cos, cos(a))                                \
-  X(exp, exp(a))                                \
-  X(log, log(a))                                \
-  X(tanh, tanh(a))                              \
-  X(power, pow(a, b))                           \
-  X(arctan2, atan2(a, b))                       \
-  X(round, nearbyint(a))                        \
-  X(least, b < a ? b : a)                       \
-  X(greatest, b > a ? b : a)                    \
-  X(less, (double)(a < b))                      \
-  X(not_above, (double)(a <= b))                \
+  X(sqrt, sqrt(a))                               \
+  X(sin, sin(a))                                 \
+  X(cos, cos(a))                                 \
+  X(exp, exp(a))                                 \
+  X(log, log(a))                                 \
+  X(tanh, tanh(a))                               \
+  X(power, pow(a, b))                            \
+  X(arctan2, atan2(a, b))                        \
+  X(round, nearbyint(a))                         \
+  X(least, b < a ? b : a)                        \
+  X(greatest, b > a ? b : a)                     \
+  X(less, (double)(a < b))                       \
+  X(not_above, (double)(a <= b))                 \
   X(choose, a != 0.0 ? b : c)
 
 typedef enum InerterOperation_ {

@@ -16,12 +16,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import exudyn as exu
+import exudyn
 import exudyn.solver
 import numpy as np
 from inerter.exudyn import CreateInerter
 from inerter.exudyn.watch import install
 
+# what it says of its own types lacks much
+exu: Any = exudyn
 STEPS = 400
 INERTANCE = 0.2
 ASIDE = np.array([0.37, -0.41, 0.53])
@@ -76,7 +78,7 @@ def main() -> None:
         return assemble(self)
 
     def SolveDynamic(mbs: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N802 - Exudyn's name
-        settings = kwargs.get("simulationSettings") or (args[0] if args else None)
+        settings: Any = kwargs.get("simulationSettings") or (args[0] if args else None)
         integration = settings.timeIntegration
         step = integration.endTime / integration.numberOfSteps
         integration.numberOfSteps = min(STEPS, integration.numberOfSteps)

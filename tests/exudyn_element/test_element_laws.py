@@ -162,7 +162,8 @@ def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
         system.mbs.Assemble()
         element, items = made[0].element, [each.functions.parameters for each in made]
         for i, (x, v, _) in enumerate(motion.tolist()):
-            q, q_t = coordinates(element, x, v, dict(zip(device.state_names, states[i].tolist(), strict=True)))
+            z = dict(zip(device.state_names, states[i].tolist(), strict=True))
+            q, q_t = coordinates(element, x, v, z)
             plain = np.array(element.record(NUMBERS, q, q_t).forces)
             found = [forces(system.mbs, item, q, q_t) for item in items]
             scale = SAME * np.abs(plain).max()

@@ -31,7 +31,7 @@ def test_torsion_over_turns(kind: str, where: str) -> None:
     )
     mbs.CreateRevoluteJoint(itemNumbers=[ground, body], position=[0, 0, 0], axis=list(axis))
     mbs.CreateTorque(itemNumber=body, loadVector=list(TORQUE * axis))
-    device = {"inertance": SPIN, "stiffness": SPRING}
+    device: dict[str, Any] = {"inertance": SPIN, "stiffness": SPRING}
     if where == "marker":
         marker = mbs.AddMarker(
             itemInterface.MarkerNodeRotationCoordinate(
@@ -153,7 +153,7 @@ def test_keywords_of_exudyns_own() -> None:
 def test_a_name_that_is_no_name_and_twice_the_same() -> None:
     system = line([1.0, 1.0], [0.0, 0.5])
     with pytest.raises(ValueError, match=r"name: .* is no text; give the name first"):
-        CreateInerter(system.mbs, system.parts, inertance=1.0)
+        CreateInerter(system.mbs, system.parts, inertance=1.0)  # pyright: ignore[reportArgumentType]
     with pytest.raises(ValueError, match="itemNumbers: also given as bodyOrNodeList"):
         CreateInerter(system.mbs, "d", system.parts, bodyOrNodeList=system.parts, inertance=1.0)
     with pytest.raises(DeviceError, match="damping: is viscous, which is given as well"):

@@ -9,12 +9,14 @@ from __future__ import annotations
 import warnings
 from typing import Any
 
-import exudyn as exu
+import exudyn
 import numpy as np
 from exudyn.beams import GenerateStraightLineANCFCable2D
 from exudyn.itemInterface import ObjectANCFCable2D, SensorNode
 from inerter.exudyn import CreateInerter
 
+# what it says of its own types lacks much
+exu: Any = exudyn
 LENGTH, BENDING, DENSITY = 2.0, 200.0, 1.5
 FIRST = 1.8751040687**2 * np.sqrt(BENDING / DENSITY) / LENGTH**2
 """First frequency of a cantilever [rad/s]."""

@@ -1,6 +1,6 @@
 """A quarter-car over a kerb: the same spring and damper with an inerter beside them, and without.
 
-Prints natural frequencies, by Exudyn's default eigenvalues, and the peak of the body's acceleration.
+Prints natural frequencies, by Exudyn's default eigenvalues, and the body's peak acceleration.
 """
 
 from __future__ import annotations

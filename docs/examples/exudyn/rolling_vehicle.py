@@ -28,7 +28,8 @@ def acceleration(inertance: float) -> float:
         wheel = mbs.CreateRigidBody(inertia=WHEEL, referencePosition=place, gravity=GRAVITY)
         mbs.CreateRevoluteJoint(itemNumbers=[cart, wheel], position=place, axis=[1, 0, 0])
         mbs.CreateRollingDiscPenalty(
-            bodyNumbers=[ground, wheel], discRadius=RADIUS, axisPosition=[0, 0, 0], axisVector=[1, 0, 0],
+            bodyNumbers=[ground, wheel], discRadius=RADIUS, axisPosition=[0, 0, 0],
+            axisVector=[1, 0, 0],
             contactStiffness=1e5, contactDamping=1e3, dryFriction=[0.9, 0.9],
             dryFrictionProportionalZone=1e-3,
         )  # fmt: skip

@@ -1,8 +1,8 @@
 """Massless points that carry a terminal where Exudyn gives a marker but no coordinates of its own.
 
-Cables, beams, kinematic trees and superelements: a NodePoint without mass is held to the marker by a
-spherical joint, and the device acts on the point. The joint is an algebraic constraint, which asks
-for an implicit solver.
+Cables, beams, kinematic trees and superelements: a NodePoint without mass is held to the marker by
+a spherical joint, and the device acts on the point. The joint is an algebraic constraint, which
+asks for an implicit solver.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def is_carried(mbs: Any, item: Any) -> bool:
     return body["objectType"] in CARRIED_BODIES
 
 
-def carry(mbs: Any, name: str, item: Any, local: Sequence[float]) -> Carrier:
+def carry(mbs: Any, name: str, item: Any, local: Any) -> Carrier:
     """Add the point and its joint to the system; `name` is the device's."""
     engine, items = exudyn(), exudyn("itemInterface")
     marker = item
@@ -87,5 +87,3 @@ def follow(mbs: Any, carriers: Sequence[Carrier]) -> bool:
                 mbs.SetNodeParameter(node, key, [float(x) for x in value])
                 moved = True
     return moved
-
-

@@ -66,7 +66,7 @@ def read_geometry(mbs: Any, model: Model, assembling: bool = False) -> None:
         )
     if kinematics != model.element.kinematics:
         element = replace(model.element, kinematics=kinematics)
-        if assembling and model.free_length:
+        if assembling and model.free_length and isinstance(kinematics, Span):
             rest = reference_length(kinematics)
             model.device = model.device.replace(rest_length=rest)
             smooth = element.device.smooth_play

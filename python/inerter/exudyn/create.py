@@ -8,6 +8,8 @@ from dataclasses import replace
 from numbers import Real
 from typing import Any
 
+from numpy.typing import ArrayLike
+
 from inerter.core import Device, DeviceError
 from inerter.exudyn.carriers import Carrier, carry, is_carried
 from inerter.exudyn.changes import KEPT, check_apart, reference_length, start
@@ -36,10 +38,10 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     mbs: Any,
     name: str = "",
     itemNumbers: Sequence[Any] = (None, None),
-    localPosition0: Sequence[float] = (0.0, 0.0, 0.0),
-    localPosition1: Sequence[float] = (0.0, 0.0, 0.0),
+    localPosition0: ArrayLike = (0.0, 0.0, 0.0),
+    localPosition1: ArrayLike = (0.0, 0.0, 0.0),
     *,
-    axis: Sequence[float] | None = None,
+    axis: ArrayLike | None = None,
     useGlobalFrame: bool = True,
     symbolic: bool | None = None,
     initialStates: Mapping[str, float] | None = None,
@@ -68,7 +70,6 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         RotationalMass1D, MarkerNodeCoordinate): it is their difference minus `rest_length`,
         reference coordinates not counted, as in CoordinateSpringDamper. Cables, beams, kinematic
         trees and superelements get a massless point with a spherical joint, for implicit solvers.
-        `bodyNumbers` and `bodyOrNodeList` are other names of it.
     localPosition0, localPosition1
         Points on the bodies [m], in their frames; on the ground in the global one.
     axis
@@ -94,6 +95,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         bears at most ten times what the bristle's spring does.
     show, drawSize, color
         Whether and how a device between points is drawn; `Inerter.Show` switches it.
+    bodyNumbers, bodyOrNodeList
+        Other names of `itemNumbers`, as in CreateSpringDamper.
     **parameters
         Parameters of the device, named as in the MuJoCo plugin, SI units: `inertance=113`,
         `friction="lugre"`, `bristle_stiffness=1e5` ... `rest_length=None`, which is its default
@@ -128,8 +131,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     places = Terminals(tuple(items), (localPosition0, localPosition1), axis, useGlobalFrame)
     places, points = _carried(mbs, name, places)
     nodes, kinematics = terminals(mbs, places)
-    free = wanted.get("rest_length") is None and isinstance(kinematics, Span)
-    if free:
+    free = wanted.get("rest_length") is None
+    if free and isinstance(kinematics, Span):
         device = device.replace(rest_length=reference_length(kinematics))
     element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
     straight = isinstance(kinematics, Line) and not element.loaded
@@ -166,9 +169,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     return Inerter(mbs, model)
 
 
-def _items(
-    name: Any, itemNumbers: Any, bodyNumbers: Any, bodyOrNodeList: Any  # noqa: N803
-) -> list[Any]:
+def _items(name: Any, itemNumbers: Any, bodyNumbers: Any, bodyOrNodeList: Any) -> list[Any]:
     """The two items, under whichever name they were given."""
     if not isinstance(name, str):
         raise ValueError(

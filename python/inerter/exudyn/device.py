@@ -102,9 +102,7 @@ def load_rest(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value)
     return load_sign * _load_share(f, p, v) * rest
 
 
-def carried(
-    f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value]
-) -> Value:
+def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value]) -> Value:
     """N, the force through the inertance [N]."""
     if series.is_there(p):
         state = states_of(p, z)

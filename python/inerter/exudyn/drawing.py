@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.terminals import Terminals
 
@@ -22,7 +24,7 @@ def draw(
     shade = list(exudyn("graphics").color.default if color is None else color)
     ends = [
         _marker(mbs, item, [float(x) for x in point])
-        for item, point in zip(places.items, places.local, strict=True)
+        for item, point in zip(places.items, map(np.asarray, places.local), strict=True)
     ]
     return mbs.AddObject(
         items.ObjectConnectorSpringDamper(
@@ -31,9 +33,7 @@ def draw(
             # it is drawn all the same, but not evaluated
             activeConnector=False,
             referenceLength=1.0,
-            visualization=items.VObjectConnectorSpringDamper(
-                show=show, drawSize=size, color=shade
-            ),
+            visualization=items.VObjectConnectorSpringDamper(show=show, drawSize=size, color=shade),
         )
     )
 

@@ -1,6 +1,6 @@
 """The element as an ObjectGenericODE2: what its coordinates are, its forces, its mass.
 
-    M = B (1 + lambda) J'J + own masses,   f = [-J' (forces + M-bias), forces of the own coordinates]
+    M = B (1 + lambda) J'J + own masses,   f = [-J' (forces + B bias), forces of own coordinates]
 
 The coordinates are those of the terminals' nodes, then the device's own. The flywheel behind a
 series element is a true coordinate: its displacement y, with the inertance as its mass; the

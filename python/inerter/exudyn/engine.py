@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-
 OLDEST, NEWEST = (1, 9), (1, 13)
 """Versions of Exudyn that are tested; 1.8 gives wrong forces, 1.7 has no expressions."""
 

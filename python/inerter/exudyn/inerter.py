@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.exudyn import device as law
-from inerter.exudyn.element import Element
 from inerter.exudyn.carriers import Carrier
+from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.readings import FORCES, READINGS, Readings
 from inerter.exudyn.terminals import Terminals

@@ -199,7 +199,7 @@ TURNED = 1e-8
 """Square of a rotation vector [rad^2] below which its series has all digits."""
 
 ZERO: Vector = (0.0, 0.0, 0.0)
-UNITS: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+UNITS: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def add(a: Vector, b: Vector) -> Vector:

@@ -99,6 +99,9 @@ def run_slopes(tape: Any) -> None:
 def built_in(method: str, element: CElement, *kept: Any) -> Any:
     """A built-in function of Python over an element, which lives as long as the function."""
     make = ctypes.pythonapi.PyCFunction_NewEx
-    make.argtypes, make.restype = [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p], ctypes.py_object
+    make.argtypes, make.restype = (
+        [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p],
+        ctypes.py_object,
+    )
     definition = _library().inerter_exudyn_method(METHODS.index(method))
     return make(definition, (ctypes.addressof(element), element, *kept), None)

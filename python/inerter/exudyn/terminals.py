@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.functions import NUMBERS
@@ -65,8 +66,8 @@ class Terminals:
     """What a user names: items, local positions, for torsion an axis and whose frame it is in."""
 
     items: tuple[Any, ...]
-    local: tuple[Sequence[float], ...]
-    axis: Sequence[float] | None = None
+    local: tuple[ArrayLike, ...]
+    axis: ArrayLike | None = None
     useGlobalFrame: bool = True  # noqa: N815 - Exudyn's name
 
 
@@ -132,7 +133,9 @@ def _twist(
     frames = [_frame(mbs, place, starts) for place in places]
     turns = {place.turns for place in places if place.turns is not None}
     if given.axis is None:
-        if len(turns) != 1 or any(place.turns is None and place.node is not None for place in places):
+        if len(turns) != 1 or any(
+            place.turns is None and place.node is not None for place in places
+        ):
             raise ValueError(
                 "itemNumbers: rotation coordinates about different axes, or one rotation and one "
                 "other terminal; give two MarkerNodeRotationCoordinate of one rotationCoordinate, "
@@ -166,8 +169,9 @@ def _frame(mbs: Any, place: Place, starts: dict[int, int]) -> Frame:
     if node["nodeType"] not in WITH_ROTATION:
         names = ", ".join(f"Node{name}" for name in WITH_ROTATION)
         raise ValueError(
-            f"itemNumbers: a Node{node['nodeType']} does not turn in space; with an axis an inerter "
-            f"takes rigid bodies ({names}) and the ground; leave the axis out on 1D coordinates"
+            f"itemNumbers: a Node{node['nodeType']} does not turn in space; with an axis an "
+            f"inerter takes rigid bodies ({names}) and the ground; leave the axis out on 1D "
+            "coordinates"
         )
     moves, rotation = WITH_ROTATION[node["nodeType"]]
     reference = tuple(float(value) for value in node["referenceCoordinates"])
@@ -185,7 +189,7 @@ def _back(matrix: Matrix, vector: Vector) -> Vector:
     return apply(rows, vector)  # pyright: ignore[reportArgumentType]
 
 
-def _vector(point: Sequence[float], what: str) -> tuple[float, float, float]:
+def _vector(point: ArrayLike, what: str) -> tuple[float, float, float]:
     try:
         found = np.asarray(point, dtype=float)
     except (TypeError, ValueError):

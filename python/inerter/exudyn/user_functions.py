@@ -1,8 +1,8 @@
 """The element's user functions: matrices where it is linear, else what Exudyn calls.
 
-On 1D coordinates linear terms stand in constant matrices, and the others are recorded as expressions
-that Exudyn evaluates in C++. Elsewhere the package's C library evaluates a tape, in built-in
-functions that Exudyn calls without running any Python.
+On 1D coordinates linear terms stand in constant matrices, and the others are recorded as
+expressions that Exudyn evaluates in C++. Elsewhere the package's C library evaluates a tape, in
+built-in functions that Exudyn calls without running any Python.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from inerter.exudyn import device as law
 from inerter.exudyn import series
 from inerter.exudyn.element import HEAT, Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import NUMBERS, Functions, Value, expressions
+from inerter.exudyn.functions import Functions, Value, expressions
 from inerter.exudyn.kinematics import SHORTEST, Line, Span
 from inerter.exudyn.library import CElement, built_in
-from inerter.exudyn.tape import Finished, Number, Tape
+from inerter.exudyn.tape import Number, Tape
 
 Matrix = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class UserFunctions:
         self._compiled = None if only_matrices else Compiled(element, name)
         self.parameters = self._made_of(mbs, element)
 
-    def take(self, mbs: Any, objectNumber: Any, element: Element) -> None:  # noqa: N803
+    def take(self, mbs: Any, objectNumber: Any, element: Element) -> None:
         """Let the object be this element from now on; it has the same coordinates."""
         if self._compiled is not None:
             self._compiled.take(element)
@@ -58,24 +58,22 @@ class UserFunctions:
                 mbs.SetObjectParameter(objectNumber, key, value)
 
     def _made_of(self, mbs: Any, element: Element) -> dict[str, Any]:
-        mass, hold, compiled = element.mass_matrix(), element.hold_matrix(), self._compiled
-        varying = {} if element.constant_mass else {"massMatrixUserFunction": compiled.mass}
-        if self._symbolic:
-            linear, rest = _split(element)
-            return {
-                "massMatrix": mass,
-                "stiffnessMatrix": hold + linear.stiffness,
-                "dampingMatrix": linear.damping,
-                "forceVector": linear.force,
-                "forceUserFunction": _symbolic(element, mbs, rest),
-                **varying,
+        found: dict[str, Any] = {"massMatrix": element.mass_matrix()}
+        compiled, hold = self._compiled, element.hold_matrix()
+        if compiled is not None and not element.constant_mass:
+            found["massMatrixUserFunction"] = compiled.mass
+        if compiled is not None and not self._symbolic:
+            return found | {
+                "stiffnessMatrix": hold,
+                "forceUserFunction": compiled.force,
+                "jacobianUserFunction": compiled.jacobian,
             }
-        return {
-            "massMatrix": mass,
-            "stiffnessMatrix": hold,
-            "forceUserFunction": compiled.force,
-            "jacobianUserFunction": compiled.jacobian,
-            **varying,
+        linear, rest = _split(element)
+        return found | {
+            "stiffnessMatrix": hold + linear.stiffness,
+            "dampingMatrix": linear.damping,
+            "forceVector": linear.force,
+            "forceUserFunction": _symbolic(element, mbs, rest),
         }
 
 

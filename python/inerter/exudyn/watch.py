@@ -73,7 +73,7 @@ def _forgetting(original: Callable[..., Any]) -> Callable[..., Any]:
 
 def _telling_of_change(name: str, original: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(original)
-    def set_parameter(self: Any, number: Any, parameterName: str, value: Any) -> Any:  # noqa: N803
+    def set_parameter(self: Any, number: Any, parameterName: str, value: Any) -> Any:
         models = models_of(self)
         if models and name == "SetObjectParameter" and _is_of_device(parameterName):
             for model in models:
@@ -100,7 +100,7 @@ def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
             return original(mbs, *args, **kwargs)
         settings = kwargs.pop("simulationSettings", None)
         if settings is None and args:
-            settings, *args = args
+            settings, args = args[0], args[1:]
         if settings is None:
             settings = exudyn().SimulationSettings()
         solver = kwargs.get("solverType") or (args[0] if args else None)
