@@ -5,12 +5,17 @@
 // Every function is a built-in function of Python whose self is a tuple; its first item is the
 // address of an InerterElement, the others keep alive what that points to.
 
-#include <math.h>
-#include <string.h>
+#include <stddef.h>
+#include <stdint.h>
 
-#include "core/device.h"
 #include "exudyn/python.h"
 #include "exudyn/tape.h"
+
+#if defined(_WIN32)
+#define INERTER_API __declspec(dllexport)
+#else
+#define INERTER_API __attribute__((visibility("default")))
+#endif
 
 typedef struct InerterElement_ {
   InerterTape tape;

@@ -25,6 +25,7 @@ typedef struct Object_ Object;  // a PyObject
   X(Py_DecRef, void, (Object*))
 
 typedef struct Python_ {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): types
 #define X(name, answer, arguments) answer(*name) arguments;
   INERTER_PYTHON(X)
 #undef X

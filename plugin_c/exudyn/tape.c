@@ -7,7 +7,7 @@ void inerter_tape_run(const InerterTape* tape) {
   double* values = tape->values;
   double* value = values + tape->ninput + tape->nconstant;
   for (int32_t i = 0; i < tape->nstep; i++) {
-    const InerterStep* step = tape->steps + i;
+    const InerterTapeStep* step = tape->steps + i;
     double a = values[step->a], b = values[step->b], c = values[step->c];
     switch ((InerterOperation)step->operation) {
 #define X(name, expression)      \
@@ -89,7 +89,7 @@ void inerter_tape_slopes(const InerterTape* tape) {
   const double* values = tape->values;
   const int32_t first = tape->ninput + tape->nconstant;
   for (int32_t i = 0; i < tape->nstep; i++) {
-    const InerterStep* step = tape->steps + i;
+    const InerterTapeStep* step = tape->steps + i;
     const double* by_a = tape->slopes + n * (size_t)step->a;
     const double* by_b = tape->slopes + n * (size_t)step->b;
     double* slope = tape->slopes + n * (size_t)(first + i);

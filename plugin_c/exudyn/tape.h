@@ -41,15 +41,15 @@ typedef enum InerterOperation_ {
 } InerterOperation;
 
 // one operation and the places of what it works on
-typedef struct InerterStep_ {
+typedef struct InerterTapeStep_ {
   int32_t operation, a, b, c;
-} InerterStep;
+} InerterTapeStep;
 
 typedef struct InerterTape_ {
   int32_t ninput, nconstant, nstep;
-  const InerterStep* steps;  // nstep
-  double* values;            // ninput + nconstant + nstep; constants are in place
-  double* slopes;            // the same number of rows of `ninput` derivatives, inputs' in place
+  const InerterTapeStep* steps;  // nstep
+  double* values;                // ninput + nconstant + nstep; constants are in place
+  double* slopes;  // the same number of rows of `ninput` derivatives, inputs' in place
 } InerterTape;
 
 // evaluate every step at the inputs that are in place

@@ -61,7 +61,12 @@ class CElement(ctypes.Structure):
 @functools.cache
 def _library() -> ctypes.CDLL:
     # PyDLL: what it calls of Python needs the interpreter's lock
-    library = ctypes.PyDLL(os.fspath(library_path("inerter_exudyn")))
+    path = library_path("inerter_exudyn")
+    if not path.exists():
+        raise ImportError(
+            f"{path} is missing: reinstall with `pip install --force-reinstall inerter`"
+        )
+    library = ctypes.PyDLL(os.fspath(path))
     library.inerter_exudyn_method.restype = ctypes.c_void_p
     library.inerter_exudyn_operation.restype = ctypes.c_char_p
     library.inerter_exudyn_run.restype = library.inerter_exudyn_run_slopes.restype = None
