@@ -73,6 +73,7 @@ def main() -> None:
             made = put_device(self)
             if made is None:
                 tell(none="no body that takes a device")
+                return None
             sensors = [made.AddSensor(name) for name in ("velocity", "inertance")]
             devices[0] = (self, made, sensors)
         return assemble(self)
@@ -99,7 +100,8 @@ def main() -> None:
         tell(error=float(np.abs(momentum - impulse).max() / max(size, 1e-12)), steps=len(time))
 
     exu.MainSystem.Assemble = Assemble
-    for where in (exu.MainSystem, exu, exudyn.solver):
+    places: tuple[Any, ...] = (exu.MainSystem, exu, exudyn.solver)
+    for where in places:
         where.SolveDynamic = SolveDynamic
     # no window, no pictures
     exu.StartRenderer = exu.StopRenderer = lambda *args, **kwargs: False
