@@ -70,7 +70,7 @@ def test_the_wheel_says_where_it_runs(wheel: Path) -> None:
 def test_the_wheel_holds_our_libraries_and_not_mujocos(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     libraries = {Path(name).stem for name in names if Path(name).suffix in (".so", ".dylib")}
-    assert libraries == {"libinerter_core", "libinerter_mujoco"}
+    assert libraries == {"libinerter_core", "libinerter_exudyn", "libinerter_mujoco"}
     assert not [name for name in names if "libmujoco" in name or "/tests/" in name]
     assert "inerter/mjcf_models/quarter_car/model.xml" in names
 
