@@ -18,12 +18,14 @@
 
 #include <math.h>
 #include <mujoco/mujoco.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "mujoco/attachment.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupled.h"
+#include "mujoco/engine_private.h"
 #include "mujoco/instance.h"
 #include "mujoco/live.h"
 #include "mujoco/placement.h"
@@ -49,6 +51,40 @@ static int count_sensor_values(const mjModel* m, int instance, int sensor) {
   return sensor_size(bad ? 0 : inerter_nstate(&device));
 }
 
+// refuse a device without anything, say that one is no inerter
+static int check_content(const mjModel* m, int instance, const Instance* self,
+                         char message[INERTER_MESSAGE_SIZE]) {
+  uint64_t inertance = UINT64_C(1) << INERTER_INDEX_inertance;
+  int native = m->actuator_armature[self->actuator] != 0;
+  int damped = m->actuator_damping[self->actuator] != 0;
+  if (self->device.given & inertance || native) {
+    return 0;
+  }
+  if (!self->stated.given && !self->nlive && !damped &&
+      self->stated.friction == INERTER_FRICTION_none) {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "nothing is configured: the device would do nothing; state inertance, or what else it "
+             "has, as <config key=\"inertance\" value=\"...\"/>");
+    return -1;
+  }
+  if (self->stated.friction != INERTER_FRICTION_none) {
+    instance_report(
+        m, instance,
+        "inertance is not given: it runs as friction without one; if that is meant, say "
+        "so: <config key=\"inertance\" value=\"0\"/>");
+  }
+  return 0;
+}
+
+// once in a process
+static void warn_of_engine(const mjModel* m) {
+  static atomic_flag said = ATOMIC_FLAG_INIT;
+  const char* fault = engine_fault(m);
+  if (fault && !atomic_flag_test_and_set(&said)) {
+    mju_warning("inerter.device: %s", fault);
+  }
+}
+
 // the instance from its configuration; returns 0, or -1 with a message
 static int prepare(const mjModel* m, int instance, Instance* self,
                    char message[INERTER_MESSAGE_SIZE]) {
@@ -67,6 +103,12 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     if (count) {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "%d actuators refer to it; give every actuator an instance of its own", count);
+    } else if (instance_sensed(m, instance) && !mj_id2name(m, mjOBJ_PLUGIN, instance)) {
+      snprintf(
+          message, INERTER_MESSAGE_SIZE,
+          "it names no instance, so that it reads a device of its own; configure the device as "
+          "<extension><plugin plugin=\"inerter.device\"><instance name=\"NAME\">, and write "
+          "instance=\"NAME\" in its actuator and in this sensor");
     } else {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "no actuator refers to it; add <actuator><plugin plugin=\"inerter.device\" "
@@ -85,6 +127,10 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     return -1;
   }
   self->limited = attachment_limited(m, self->actuator);
+
+  if (compiling && check_content(m, instance, self, message)) {
+    return -1;
+  }
 
   // what acts on the inertance alone would do nothing; edited or live, it may be 0
   if (compiling && instance_varies(&self->device) && self->device.inertance == 0 && !live) {
@@ -107,7 +153,11 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     ((mjModel*)m)->plugin[instance] = instance_slot_quiet;
   }
   if (compiling && self->last) {
+    if (live_check_names(m, message)) {
+      return -1;
+    }
     placement_finish(m);
+    warn_of_engine(m);
   }
   return 0;
 }
@@ -401,11 +451,11 @@ mjPLUGIN_LIB_INIT(inerter) {
   if (mj_version() != mjVERSION_HEADER) {
     int header = mjVERSION_HEADER;
     mju_warning(
-        "inerter was compiled for MuJoCo %d.%d.%d, loaded is MuJoCo %s; inerter.device is "
-        "not available. Run `pip install mujoco==%d.%d.%d`, or install an inerter made for "
-        "MuJoCo %s",
-        header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString(), header / 1000000,
-        header / 1000 % 1000, header % 1000, mj_versionString());
+        "this library of inerter was compiled for MuJoCo %d.%d.%d, loaded is MuJoCo %s; "
+        "inerter.device is not available. Take the library that `inerter plugin-path --mujoco %s` "
+        "prints, or run `pip install mujoco==%d.%d.%d`",
+        header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString(),
+        mj_versionString(), header / 1000000, header / 1000 % 1000, header % 1000);
     return;
   }
 

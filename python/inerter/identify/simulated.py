@@ -21,7 +21,7 @@ from functools import cached_property
 
 import mujoco
 import numpy as np
-from mujoco import batch
+from inerter.engine_batch import batch
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 

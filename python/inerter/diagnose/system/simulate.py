@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from mujoco import batch
+from inerter.engine_batch import batch
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 

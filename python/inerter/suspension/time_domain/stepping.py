@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from mujoco import batch
+from inerter.engine_batch import batch
 from numpy.typing import NDArray
 
 from inerter.simulate.checks import engine_warnings
