@@ -12,7 +12,8 @@
 //   before 3.16   mj_effSolve has another name, mj_readCtrl (3.13) other arguments; no `discrete`
 //                 before 3.13
 //   3.16          no mujoco.batch in Python
-//   3.16, 3.17    mj_setConst computes the statistics anew; RK4 turns free bodies in second order; no
+//   3.16, 3.17    mj_setConst computes the statistics anew; RK4 turns free bodies in second order;
+//   no
 //                 entry points for plugins in Python (inerter/__init__.py)
 //   4.0.0         Newton with a sparse constraint Jacobian is wrong (mujoco #3767); 4.0.1 mends it
 

@@ -14,7 +14,7 @@ typedef struct Now_ {
   Instance self;
   mjtNum a;         // acceleration of the step along it [m/s^2]
   mjtNum mobility;  // as in coupled.c [1/kg]
-  int idle;
+  int asleep;
 } Now;
 
 static int look(const mjModel* m, const mjData* d, int instance, Now* now,
@@ -33,30 +33,31 @@ static int look(const mjModel* m, const mjData* d, int instance, Now* now,
     return -1;
   }
   self->x = instance_displacement(m, d, self);
-  self->v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
+  self->v = instance_velocity(m, d, self);
   self->bias = instance_bias_acceleration(m, d, self);
-  self->rate_x = NAN;
   int nstate = inerter_nstate(&self->device);
   mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
-  now->idle = instance_idle(m, d, self);
+  self->disabled = instance_disabled(m, self);
+  now->asleep = instance_asleep(m, d, self);
   return 0;
 }
 
-// what the actuator brings: the share at the acceleration of the step, less the engine's part of it
+// what the plugin brings: the share at the acceleration of the step, less the engine's part of it
 static mjtNum share_of_force(const mjModel* m, const Now* now) {
   const Instance* self = &now->self;
+  const InerterDevice* share = self->disabled ? &self->matter : &self->share;
   mjtNum a = now->a, rest;
-  if (now->idle || self->forceless) {
+  if (now->asleep || self->forceless) {
     return 0;
   }
   if (coupled_needed(m, self) && m->opt.integrator != mjINT_RK4) {
-    InerterForce force = inerter_force_over_step(&self->share, self->x, self->v, a, self->state,
+    InerterForce force = inerter_force_over_step(share, self->x, self->v, a, self->state,
                                                  m->opt.timestep, now->mobility, NULL);
     return force.total - self->replaced * a;
   }
-  mjtNum branch = inerter_inertance(&self->share, self->x, self->v, &rest) * a + rest;
-  mjtNum load = inerter_load_factor(&self->share, self->v) * fabs(branch);
-  return branch + load + inerter_force_motion(&self->share, self->x, self->v, self->state) -
+  mjtNum branch = inerter_inertance(share, self->x, self->v, &rest) * a + rest;
+  mjtNum load = inerter_load_factor(share, self->v) * fabs(branch);
+  return branch + load + inerter_force_motion(share, self->x, self->v, self->state) -
          self->replaced * a;
 }
 
@@ -68,17 +69,21 @@ static void move(const mjModel* m, mjData* d, const mjtNum* qacc, int n, Now* al
   mjtNum* J = mj_stackAllocNum(d, (size_t)n * nv);
   mjtNum* X = mj_stackAllocNum(d, (size_t)n * nv);
   mjtNum* pull = mj_stackAllocNum(d, nv);
+  int* dof = mj_stackAllocInt(d, nv);
+  for (int i = 0; i < nv; i++) {
+    dof[i] = i;
+  }
   mjtNum* step = mj_stackAllocNum(d, nv);
   mju_copy(step, qacc, nv);
   if (metric_moves_qacc(&metric)) {
     mj_mulM(m, d, pull, qacc);
-    metric_solve(m, d, &metric, step, pull, 1);
+    metric_solve(m, d, &metric, nv, dof, pull, step);
   }
   mju_zero(J, n * nv);
   for (int i = 0; i < n; i++) {
     instance_add_moment(m, d, &all[i].self, 1, J + i * nv);
+    metric_solve(m, d, &metric, nv, dof, J + i * nv, X + i * nv);
   }
-  metric_solve(m, d, &metric, X, J, n);
   for (int i = 0; i < n; i++) {
     all[i].a = instance_along(m, d, &all[i].self, step) + all[i].self.bias;
     all[i].mobility = 0;
@@ -104,7 +109,7 @@ int inerter_device_force(const mjModel* m, mjData* d, const mjtNum* qacc, mjtNum
     for (int i = 0; i < n; i++) {
       const Instance* self = &all[i].self;
       mjtNum share = share_of_force(m, all + i);
-      instance_add_moment(m, d, self, -share, qfrc);
+      instance_add_moment(m, d, self, self->detour - share, qfrc);
 
       // and what the engine holds of it
       mjtNum a = instance_along(m, d, self, qacc) + self->bias;

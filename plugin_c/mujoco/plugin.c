@@ -18,14 +18,13 @@
 
 #include <math.h>
 #include <mujoco/mujoco.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "mujoco/advice.h"
 #include "mujoco/attachment.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupled.h"
-#include "mujoco/engine_private.h"
 #include "mujoco/instance.h"
 #include "mujoco/live.h"
 #include "mujoco/placement.h"
@@ -49,40 +48,6 @@ static int count_sensor_values(const mjModel* m, int instance, int sensor) {
   // init reports a bad configuration; here any size will do
   int bad = configuration_read(m, instance, &device, message) || inerter_finish(&device, message);
   return sensor_size(bad ? 0 : inerter_nstate(&device));
-}
-
-// refuse a device without anything, say that one is no inerter
-static int check_content(const mjModel* m, int instance, const Instance* self,
-                         char message[INERTER_MESSAGE_SIZE]) {
-  uint64_t inertance = UINT64_C(1) << INERTER_INDEX_inertance;
-  int native = m->actuator_armature[self->actuator] != 0;
-  int damped = m->actuator_damping[self->actuator] != 0;
-  if (self->device.given & inertance || native) {
-    return 0;
-  }
-  if (!self->stated.given && !self->nlive && !damped &&
-      self->stated.friction == INERTER_FRICTION_none) {
-    snprintf(message, INERTER_MESSAGE_SIZE,
-             "nothing is configured: the device would do nothing; state inertance, or what else it "
-             "has, as <config key=\"inertance\" value=\"...\"/>");
-    return -1;
-  }
-  if (self->stated.friction != INERTER_FRICTION_none) {
-    instance_report(
-        m, instance,
-        "inertance is not given: it runs as friction without one; if that is meant, say "
-        "so: <config key=\"inertance\" value=\"0\"/>");
-  }
-  return 0;
-}
-
-// once in a process
-static void warn_of_engine(const mjModel* m) {
-  static atomic_flag said = ATOMIC_FLAG_INIT;
-  const char* fault = engine_fault(m);
-  if (fault && !atomic_flag_test_and_set(&said)) {
-    mju_warning("inerter.device: %s", fault);
-  }
 }
 
 // the instance from its configuration; returns 0, or -1 with a message
@@ -128,7 +93,7 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   }
   self->limited = attachment_limited(m, self->actuator);
 
-  if (compiling && check_content(m, instance, self, message)) {
+  if (compiling && advice_on_content(m, instance, self, message)) {
     return -1;
   }
 
@@ -157,7 +122,7 @@ static int prepare(const mjModel* m, int instance, Instance* self,
       return -1;
     }
     placement_finish(m);
-    warn_of_engine(m);
+    advice_on_engine(m);
   }
   return 0;
 }
