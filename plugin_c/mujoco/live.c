@@ -64,7 +64,7 @@ int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZ
   int instance = m->actuator_plugin[self->actuator];
   self->nlive = 0;
   for (int i = 0; i < m->nnumeric; i++) {
-    int parameter;
+    int parameter = -1;
     const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
     if (!name || owner(m, name, &parameter) != instance) {
       continue;
@@ -102,7 +102,7 @@ static const char* named_after(const mjModel* m, const char* name) {
 
 int live_check_names(const mjModel* m, char message[INERTER_MESSAGE_SIZE]) {
   for (int i = 0; i < m->nnumeric; i++) {
-    int parameter;
+    int parameter = -1;
     const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
     if (!name || owner(m, name, &parameter) >= 0) {
       continue;
@@ -181,7 +181,7 @@ void live_update(const mjModel* m, Instance* self) {
 
 int inerter_live_address(const mjModel* m, int instance, int parameter) {
   for (int i = 0; i < m->nnumeric; i++) {
-    int held;
+    int held = -1;
     const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
     if (name && owner(m, name, &held) == instance && held == parameter) {
       return m->numeric_adr[i];

@@ -31,8 +31,8 @@ def device_force(model: mujoco.MjModel, data: mujoco.MjData, qacc: ArrayLike) ->
     """The devices' forces at an acceleration, for inverse dynamics.
 
     `mj_inverse` knows what the engine's inertia matrix and passive forces hold of a device (inside
-    a branch of the tree its inertance and viscous damping) and not what the plugin brings: friction,
-    springs, and between two branches the inertance too. The forces that motors have to bring are
+    a branch of the tree its inertance and viscous damping) and not what the plugin brings:
+    friction, springs, and between two branches the inertance too. What motors have to bring is
 
         mujoco.mj_inverse(model, data)
         torque = data.qfrc_inverse - device_force(model, data, data.qacc).qfrc
@@ -59,9 +59,10 @@ def device_force(model: mujoco.MjModel, data: mujoco.MjData, qacc: ArrayLike) ->
     """
     given = np.ascontiguousarray(qacc, dtype=np.float64)
     if given.shape != (model.nv,) or not np.isfinite(given).all():
+        finite = bool(np.isfinite(given).all())
         raise ValueError(
-            f"qacc has shape {given.shape}, finite: {bool(np.isfinite(given).all())}; give {model.nv} "
-            "finite numbers, one for each dof"
+            f"qacc has shape {given.shape}, finite: {finite}; give {model.nv} finite numbers, one "
+            "for each dof"
         )
     found = sorted(devices_of(model), key=lambda each: each.instance)
     force, qfrc = np.zeros(max(1, len(found))), np.zeros(model.nv)

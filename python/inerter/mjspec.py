@@ -105,8 +105,8 @@ def add_device(
         Parameters to read from the model at every step: each becomes a numeric "NAME.key", whose
         value in `mjModel.numeric_data` can be changed without compiling again.
     control : bool
-        Give the device a control, a force beside it [N]; without, `nu` stays as it was. A model that
-        is saved as XML has the control again.
+        Give the device a control, a force beside it [N]; without, `nu` stays as it was. A model
+        that is saved as XML has the control again.
     **values : float or str
         Parameters by name, SI units; beside `device` they replace its own.
 

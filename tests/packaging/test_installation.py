@@ -149,7 +149,7 @@ def test_a_missing_plugin_is_an_import_error(
     monkeypatch.setattr(inerter.core, "LIBRARY_FOLDER", tmp_path)
     monkeypatch.setattr(inerter.plugin, "_loaded", False)
     for call in (inerter.plugin_path, inerter.load_plugin):
-        with pytest.raises(ImportError, match=r"inerter_mujoco.* is missing for every VERSION: reinstall with `pip"):
+        with pytest.raises(ImportError, match=r"inerter_mujoco.* is missing .*reinstall with `pip"):
             call()
 
 

@@ -262,6 +262,7 @@ def test_a_program_in_c(program: Path, whole_folder: bool) -> None:
 def test_a_program_in_c_with_a_library_for_another_mujoco(program: Path, for_another: Path) -> None:
     model = program.parent / "model.xml"
     done = run(program, library_in(for_another), model)
-    for word in ("warning: ", "compiled for MuJoCo 4.1.0", f"loaded is MuJoCo {VERSION}", "not found"):
+    words = ("warning: ", "compiled for MuJoCo 4.1.0", f"loaded is MuJoCo {VERSION}", "not found")
+    for word in words:
         assert word in done.stdout
     assert done.returncode == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import ClassVar
 
 import inerter
 import mujoco
@@ -78,7 +79,7 @@ def test_the_actions_of_an_environment_are_those_of_its_motors(tmp_path: Path) -
     path.write_text(spec_of("Euler", "none").to_xml())
 
     class Environment(mujoco_env.MujocoEnv):
-        metadata = {"render_modes": ["human", "rgb_array", "depth_array", "rgbd_tuple"]}
+        metadata: ClassVar = {"render_modes": ["human", "rgb_array", "depth_array", "rgbd_tuple"]}
 
         def __init__(self) -> None:
             space = gymnasium.spaces.Box(-np.inf, np.inf, (4,))

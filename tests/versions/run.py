@@ -26,9 +26,9 @@ def main() -> int:
     """Run the tests; 1 if a version fails."""
     folder, *arguments = sys.argv[1:]
     (wheel,) = Path(folder).resolve().glob("wheel/*.whl")
-    results = []
+    results, ends = [], (min(ENGINES, key=_numbers), max(ENGINES, key=_numbers))
     for version, package in ENGINES.items():
-        tests = WHOLE if version in (list(ENGINES)[0], list(ENGINES)[-1]) else SOME
+        tests = WHOLE if version in ends else SOME
         print(f"\n== MuJoCo {version}: {' '.join(tests)}", flush=True)
         started = time.monotonic()
         python = _environment(wheel.parents[1] / version, wheel, f"{package}=={version}")
@@ -40,6 +40,10 @@ def main() -> int:
     for name, status, seconds in results:
         print(f"MuJoCo {name:8} {'FAILED' if status else 'passed':7} {seconds:4.0f} s")
     return int(any(status for _, status, _ in results))
+
+
+def _numbers(version: str) -> list[int]:
+    return [int(number) for number in version.split(".")]
 
 
 def _environment(place: Path, wheel: Path, engine: str) -> Path:

@@ -40,7 +40,7 @@ def test_it_is_the_engine_that_is_to_be_tested() -> None:
     asked = os.environ.get("INERTER_TESTED_ENGINE")
     if asked is None:
         pytest.skip("`make versions` says which")
-    assert VERSION == asked
+    assert asked == VERSION
     assert asked in mujoco.__file__
 
 
@@ -52,7 +52,7 @@ def test_the_library_is_made_for_it() -> None:
 
 @pytest.mark.parametrize("integrator", ["Euler", "implicit", "implicitfast", "discrete", "RK4"])
 def test_two_masses_share_a_push(integrator: str) -> None:
-    """M a = (f, 0), M = diag(m1, m2) + b (1 -1; -1 1): a line in time, which all integrators hit."""
+    """M a = (f, 0), M = diag(m1, m2) + b (1 -1; -1 1): all integrators hit it."""
     model = mujoco.MjModel.from_xml_string(SIBLINGS.format(integrator))
     data = mujoco.MjData(model)
     data.qfrc_applied[0] = 100

@@ -37,4 +37,4 @@ def _meant(text: str) -> str:
     if not found:
         return ""
     names = [*parameters(), "friction", "gas_law"]
-    return with_suggestion(found[1], "", names) or "; `inerter parameters` lists the keys"
+    return with_suggestion(found[1], "", names)
