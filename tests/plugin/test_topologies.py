@@ -26,7 +26,7 @@ STEPS = dict.fromkeys(INTEGRATORS, (2e-3, 1e-3, 5e-4)) | {"RK4": (1e-2, 5e-3, 2.
 # errors at 1 ms over 0.4 s: explicit first order on the wheel's 36 rad/s; springs that discrete
 # integrates implicitly are damped
 QUARTER_CAR = {"Euler": 0.02, "implicit": 0.03, "implicitfast": 0.03, "discrete": 0.1, "RK4": 1e-7}
-IN_SPACE = dict.fromkeys(INTEGRATORS, 6e-3) | {"RK4": 1e-9 if RK4_TURNS else 2e-6}
+IN_SPACE = dict.fromkeys(INTEGRATORS, 6e-3) | {"RK4": 1e-9 if RK4_TURNS else 2e-5}
 RK4_ORDER = 3.7 if RK4_TURNS else 1.8
 
 
