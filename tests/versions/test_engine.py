@@ -74,3 +74,21 @@ def test_many_at_once_or_a_word_about_it() -> None:
     assert "mujoco.batch, which is in MuJoCo 3.17 and newer" in done.stderr
     assert VERSION in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_an_engine_at_fault_is_told_once_where_it_matters() -> None:
+    """MuJoCo 4.0.0 alone, the Newton solver with a sparse constraint Jacobian."""
+    script = (
+        "import inerter, mujoco, sys\n"
+        "for jacobian in ('dense', 'sparse', 'sparse'):\n"
+        "    xml = sys.argv[1].replace('timestep', f'jacobian=\"{jacobian}\" timestep')\n"
+        "    mujoco.MjModel.from_xml_string(xml)\n"
+        "    print(jacobian, file=sys.stderr, flush=True)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, SIBLINGS.format("Euler")],
+        capture_output=True, text=True, check=True, cwd=Path(sys.prefix),
+    )  # fmt: skip
+    before, after = done.stderr.split("dense", 1)
+    assert "3767" not in before
+    assert after.count("mujoco #3767") == (NUMBERS == [4, 0, 0])
