@@ -76,7 +76,7 @@ def test_many_at_once_or_a_word_about_it() -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_an_engine_at_fault_is_told_once_where_it_matters() -> None:
+def test_an_engine_at_fault_is_told_once_where_it_matters(tmp_path: Path) -> None:
     """MuJoCo 4.0.0 alone, the Newton solver with a sparse constraint Jacobian."""
     script = (
         "import inerter, mujoco, sys\n"
@@ -87,7 +87,7 @@ def test_an_engine_at_fault_is_told_once_where_it_matters() -> None:
     )
     done = subprocess.run(
         [sys.executable, "-c", script, SIBLINGS.format("Euler")],
-        capture_output=True, text=True, check=True, cwd=Path(sys.prefix),
+        capture_output=True, text=True, check=True, cwd=tmp_path,
     )  # fmt: skip
     before, after = done.stderr.split("dense", 1)
     assert "3767" not in before
