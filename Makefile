@@ -23,7 +23,7 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
   --suppress=variableScope --suppress=constParameterPointer:plugin_c/mujoco/visual.c
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test sanitize fuzz soak bench zoo docs lint format check wheel lock clean
+.PHONY: help demo test sanitize fuzz soak bench zoo docs lint format check versions wheel lock clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
@@ -42,7 +42,8 @@ help:
 	@echo 'make wheel   a wheel (on Linux for every recent one) and the sources of it, into dist'
 	@echo 'make lock    the versions of requirements/ anew: the newest that pyproject.toml allows'
 	@echo 'make clean   remove everything that was made, $(VENV) too'
-	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler.'
+	@echo 'make versions  the plugin with every MuJoCo that it is built for, some minutes'
+	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler, or fetches one.'
 
 #------------------------------ set-up -------------------------------------------------------------
 
@@ -50,8 +51,8 @@ $(VENV)/created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	  echo 'inerter needs Python >= 3.11, and $(PYTHON) is not; say which: make PYTHON=python3.12'; \
 	  exit 1; }
-	@command -v $(firstword $(CC)) >/dev/null || { \
-	  echo 'inerter needs a C compiler, and there is no $(CC); on Debian: apt install gcc'; exit 1; }
+	@command -v $(firstword $(CC)) >/dev/null || \
+	  echo 'no C compiler ($(CC)): the one of the package ziglang is fetched and taken'
 	@echo 'creating $(VENV)'
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo '$(PYTHON) cannot create a virtual environment; on Debian: apt install python3-venv'; \
@@ -148,15 +149,25 @@ format: $(VENV)/dev
 
 check: lint test
 
-# The wheel is built from the source distribution, so that both are proven. On Linux its libraries are
-# looked at for the oldest C library they run with, which names the wheel; MuJoCo's own is not taken in.
+# The wheel is built from the source distribution, so that both are proven, with a library for every
+# engine. On Linux its libraries are looked at for the oldest C library they run with, which names the
+# wheel; MuJoCo's own is not taken in.
+ENGINES := build/engines
 wheel: $(VENV)/dev
 	@rm -rf build/wheel && mkdir -p build/wheel $(DIST)
-	@$(BIN)/python -m build --quiet --outdir build/wheel .
+	@echo 'fetching every MuJoCo that the plugin is built for, into $(ENGINES)'
+	@INERTER_MUJOCO=$$($(BIN)/python plugin_c/packaging/engines.py $(ENGINES)) && export INERTER_MUJOCO && \
+	  $(BIN)/python -m build --quiet --outdir build/wheel .
 	@if [ "$$(uname -s)" = Linux ]; then cd build/wheel && PATH="$(abspath $(BIN)):$$PATH" \
 	  auditwheel repair --exclude 'libmujoco.so.*' --wheel-dir . *-linux_*.whl && rm *-linux_*.whl; fi
 	@mv build/wheel/* $(DIST)
 	@ls $(DIST)
+
+# one wheel with every engine: the plugin's tests with the oldest and the newest, the others' load
+versions: $(VENV)/dev
+	@rm -rf build/versions
+	@$(MAKE) --no-print-directory wheel DIST=build/versions/wheel
+	@$(BIN)/python tests/versions/run.py build/versions $(ARGS)
 
 clean:
 	rm -rf build dist out $(VENV) docs/figures .pytest_cache .ruff_cache .hypothesis

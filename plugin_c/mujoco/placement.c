@@ -20,6 +20,7 @@
 
 #include "mujoco/attachment.h"
 #include "mujoco/instance.h"
+#include "mujoco/servo.h"
 
 // Slot of actuator_gainprm, unused by plugin actuators, that says where they are. It goes with the
 // model through copies and MJB files, so that later edits of actuator_armature count. Its sign is
@@ -155,7 +156,13 @@ static void derive(mjModel* m) {
   m->nplugin = 0;
   m->opt.enableflags &= ~mjENBL_SLEEP;
   mjData* workspace = mj_makeData(m);
+  mjStatistic statistic = m->stat;
+  mjtNum* M0 = mju_malloc(sizeof(mjtNum) * (size_t)m->nv);
+  mju_copy(M0, m->dof_M0, (int)m->nv);
   mj_setConst(m, workspace);
+  m->stat = statistic;
+  servo_warn(m, workspace, M0);
+  mju_free(M0);
   mj_deleteData(workspace);
   m->opt.enableflags = enableflags;
   m->nplugin = nplugin;

@@ -99,16 +99,16 @@ def _command() -> None:
 
 def _without_lab(missing: str) -> None:
     """What needs no lab; for the rest, how to install it."""
-    if sys.argv[1:] == ["plugin-path"]:
+    if sys.argv[1:2] == ["plugin-path"] and sys.argv[2:3] in ([], ["--mujoco"]):
         from inerter.plugin import plugin_path
 
-        print(plugin_path())
+        print(plugin_path(*sys.argv[3:4]))
         return
     if sys.argv[1:] == ["--version"]:
         from inerter import __version__
-        from inerter.plugin import MUJOCO_VERSION
+        from inerter.plugin import supported_text
 
-        print(f"inerter {__version__} for MuJoCo {MUJOCO_VERSION}")
+        print(f"inerter {__version__} for {supported_text()}")
         return
     print(
         f"inerter: this needs the lab, and {missing} is not installed; "

@@ -14,7 +14,7 @@ from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, ref
 from inerter.design.commands import app as design_app
 from inerter.folder import json_text
 from inerter.identify.command import identify_command
-from inerter.plugin import MUJOCO_VERSION, plugin_path
+from inerter.plugin import plugin_path, supported_text
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
@@ -39,7 +39,7 @@ def run() -> None:
 
 def _version(asked: bool) -> None:
     if asked:
-        print(f"inerter {inerter.__version__} for MuJoCo {MUJOCO_VERSION}")
+        print(f"inerter {inerter.__version__} for {supported_text()}")
         raise typer.Exit
 
 
@@ -258,9 +258,18 @@ def demo(
 
 
 @app.command("plugin-path")
-def plugin_path_command() -> None:
+def plugin_path_command(
+    engine: Annotated[
+        str | None,
+        typer.Option(
+            "--mujoco",
+            metavar="VERSION",
+            help="For this version of MuJoCo; default: the installed one.",
+        ),
+    ] = None,
+) -> None:
     """Path of the MuJoCo plugin library, for C programs and `simulate`."""
-    print(plugin_path())
+    print(plugin_path(engine))
 
 
 @app.command("parameters")

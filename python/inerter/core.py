@@ -67,11 +67,11 @@ class Parameter:
     meaning: str
 
 
-def library_path(stem: str) -> Path:
-    """Path of a shared library of this package, by its stem."""
+def library_path(stem: str, folder: str = "") -> Path:
+    """Path of a shared library of this package, by its stem and the folder within `lib`."""
     suffix = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
     prefix = "" if sys.platform == "win32" else "lib"
-    return LIBRARY_FOLDER / f"{prefix}{stem}{suffix}"
+    return LIBRARY_FOLDER / folder / f"{prefix}{stem}{suffix}"
 
 
 @functools.cache

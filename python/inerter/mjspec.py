@@ -9,6 +9,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from inerter.controls import remove_control
 from inerter.core import Device, DeviceError, parameters
 from inerter.device_in_model import PLUGIN, DeviceInModel, device_of, devices_of
 from inerter.mjspec_blank import blank
@@ -89,6 +90,7 @@ def add_device(
     gear: float = 1.0,
     sensor: bool = True,
     live: Sequence[str] = (),
+    control: bool = False,
     **values: float | str,
 ) -> AddedDevice:
     """Add a device to a model under construction, with everything that it needs.
@@ -117,6 +119,9 @@ def add_device(
     live : sequence of str
         Parameters to read from the model at every step: each becomes a numeric "NAME.key", whose
         value in `mjModel.numeric_data` can be changed without compiling again.
+    control : bool
+        Give the device a control, a force beside it [N]; without, `nu` stays as it was. A model
+        that is saved as XML has the control again.
     **values : float or str
         Parameters by name, SI units; beside `device` they replace its own.
 
@@ -162,6 +167,8 @@ def add_device(
     numerics = _live_values(spec, name, device, live)
 
     _add(spec, name, device, sites, target, gear, sensor, is_joint=joint is not None)
+    if not control:
+        remove_control(spec.actuator(name))
     for key, value in numerics.items():
         spec.add_numeric(name=f"{name}.{key}", data=[value], size=1)
     return AddedDevice(
@@ -234,6 +241,9 @@ def _add(
     spec.activate_plugin(PLUGIN)
     instance = spec.add_plugin(name=name, plugin_name=PLUGIN, active=True)
     instance.config = {key: str(value) for key, value in device.given.items()}
+    if device.inertance == 0:
+        # said, so that the plugin does not ask whether that is meant
+        instance.config = {"inertance": "0", **instance.config}
     if sites:
         _add_tendon(spec, target, sites)
     actuator = blank(spec.add_actuator(name=name))

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import mujoco
-import mujoco.batch
 import numpy as np
 import pytest
 from plugin_models import INTEGRATORS
@@ -275,8 +274,9 @@ def loop() -> tuple[Array, Array, Array]:
 def test_a_batch_is_the_loop(
     threads: int, persistent: bool, loop: tuple[Array, Array, Array]
 ) -> None:
+    many = pytest.importorskip("mujoco.batch", reason="MuJoCo 3.16 has none")
     values, speeds, rows = loop
-    batch = mujoco.batch.Batch(quarter_car(), CARS, threads, persistent)
+    batch = many.Batch(quarter_car(), CARS, threads, persistent)
     batch.expand("numeric_data")[:] = values
     qpos, qvel, act = (batch.bind(name) for name in ("qpos", "qvel", "act"))
     sensors = batch.bind("sensordata")

@@ -21,12 +21,12 @@ from functools import cached_property
 
 import mujoco
 import numpy as np
-from mujoco import batch
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
+from inerter.engine_batch import batch
 from inerter.identify.bench import scales, thin
 from inerter.identify.coordinates import NOT_OF_DEVICE, Scales, coordinate, device_values
 from inerter.identify.model import Model
