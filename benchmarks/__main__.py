@@ -21,6 +21,7 @@ from benchmarks import (
     along_motion,
     diagnosis,
     exudyn_cost,
+    exudyn_native,
     growth,
     identification,
     many,
@@ -59,6 +60,9 @@ BENCHMARKS = {
         work_precision.run, work_precision.summary, work_precision.picture, work_precision.notes,
     ),
     "exudyn_cost": Benchmark("One step in Exudyn", exudyn_cost.run, needs=("exudyn",)),
+    "exudyn_native": Benchmark(
+        "One step in Exudyn beside its own spring-damper", exudyn_native.run, needs=("exudyn",)
+    ),
     "along_motion": Benchmark(
         "A sample along a motion, and how much longer others take",
         along_motion.run, picture=along_motion.picture, notes=along_motion.notes,

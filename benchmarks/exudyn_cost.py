@@ -1,7 +1,9 @@
 """What one step in Exudyn costs, with the element and with user functions written by hand.
 
-Two systems: a quarter-car, and the stick-slip of Canudas de Wit et al. 1995 as one of Exudyn's
-own examples states it (a first-order system in one Python function on NumPy arrays).
+"element in C" evaluates in the package's library instead of by matrices and Exudyn's expressions.
+`exudyn_native` compares with Exudyn's own spring-dampers. Two systems: a quarter-car, and the
+stick-slip of Canudas de Wit et al. 1995 as one of Exudyn's own examples states it (a first-order
+system in one Python function on NumPy arrays).
 """
 
 from __future__ import annotations
@@ -34,10 +36,10 @@ VARIANTS: dict[str, str | None] = {
     "no device": None,
     "element, ideal": "no device",
     "element, LuGre": "no device",
-    "element in Python, LuGre": "element, LuGre",
+    "element in C, LuGre": "element, LuGre",
     "by hand in Python, LuGre": "element, LuGre",
     "element, series element": "no device",
-    "element in Python, series element": "element, series element",
+    "element in C, series element": "element, series element",
     "stick-slip, element": None,
     "stick-slip, Exudyn's example": "stick-slip, element",
 }
@@ -75,7 +77,7 @@ def _quarter_car(name: str) -> Any:
     if name.startswith("element"):
         CreateInerter(
             mbs, "strut", [wheel, body], inertance=113.0,
-            symbolic="in Python" not in name, **ELEMENTS[name.split(", ")[1]],
+            symbolic="in C" not in name, **ELEMENTS[name.split(", ")[1]],
         )  # fmt: skip
     if name.startswith("by hand"):
         state = mbs.AddNode(items.Node1D(referenceCoordinates=[0.0]))

@@ -26,7 +26,6 @@ import numpy as np
 from inerter import Device
 from inerter.benchmark.rows import Row, aimed, spread_of
 from inerter.benchmark.timing import Spread, Work, interleaved
-from inerter.catalogue.coordinates import search_range
 from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
@@ -255,13 +254,12 @@ def _by_scipy(record: Record, model: Model) -> Callable[[Counted], Values]:
 
     def fit(counted: Counted) -> Values:
         problem = _problem(record, counted)
-        how = [search_range(name, problem.scales) for name in model.free]
-        start = problem.variables(model)
-        lower, upper = np.array([each.bounds for each in how]).T
+        variables = problem.variables(model)
+        start, (lower, upper) = variables.encode(model.values), variables.bounds
         masks = np.concatenate(problem.masks)
 
-        def residual(variables: np.ndarray) -> np.ndarray:
-            there = problem.moved(model, variables - start)
+        def residual(point: np.ndarray) -> np.ndarray:
+            there = problem.moved(model, point - start)
             return np.concatenate(problem.residual(there))[masks] / problem.scales.force
 
         found = least_squares(

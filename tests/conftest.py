@@ -15,6 +15,7 @@ import secrets
 from pathlib import Path
 from typing import Any
 
+import inerter  # noqa: F401  (with MuJoCo 3 this makes the plugin known, 4 does it by itself)
 import pytest
 
 # before NumPy is imported: one thread for each worker, not one for each core in each of them

@@ -18,6 +18,7 @@ from inerter.exudyn.model_parts import (
     Model,
     chosen,
     drive_coordinate,
+    flywheel_at_rest,
     named,
     save_picture,
     simulate,
@@ -130,6 +131,7 @@ def build(
         name="device",
         itemNumbers=[None, piston],
         symbolic=symbolic,
+        initialStates=flywheel_at_rest(parameters),
         **parameters,
     )
     return Model(mbs, {name: (node, 0) for name, node in nodes.items()}, {"device": inerter})

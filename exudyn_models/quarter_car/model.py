@@ -19,6 +19,7 @@ from inerter.exudyn.model_parts import (
     Model,
     device_parameters,
     drive_coordinate,
+    flywheel_at_rest,
     named,
     save_picture,
     simulate,
@@ -101,6 +102,7 @@ def build(
             name="strut",
             itemNumbers=[wheel, upper],
             symbolic=symbolic,
+            initialStates=flywheel_at_rest(parameters),
             **parameters,
         )
     return Model(mbs, {name: (node, 0) for name, node in nodes.items()}, inerters)

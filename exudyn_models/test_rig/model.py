@@ -13,7 +13,14 @@ import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import Mass1D, Node1D
 from inerter.exudyn import CreateInerter
-from inerter.exudyn.model_parts import Model, drive_coordinate, named, save_picture, simulate
+from inerter.exudyn.model_parts import (
+    Model,
+    drive_coordinate,
+    flywheel_at_rest,
+    named,
+    save_picture,
+    simulate,
+)
 from inerter.model_parameters import TEST_RIG
 
 COORDINATES = ("table",)
@@ -67,6 +74,7 @@ def build(
         name="device",
         itemNumbers=[None, table],
         symbolic=symbolic,
+        initialStates=flywheel_at_rest(parameters),
         **parameters,
     )
     return Model(mbs, {"table": (table, 0)}, {"device": inerter})

@@ -17,6 +17,7 @@ from inerter.exudyn import CreateInerter
 from inerter.exudyn.model_parts import (
     Model,
     drive_coordinate,
+    flywheel_at_rest,
     named,
     save_picture,
     simulate,
@@ -95,6 +96,7 @@ def build(
         name="damper",
         itemNumbers=[lower, upper],
         symbolic=symbolic,
+        initialStates=flywheel_at_rest(device),
         **device,
     )
     coordinates = {name: (node, 0) for name, node in zip(COORDINATES, floors[1:], strict=True)}

@@ -27,7 +27,7 @@
 // asymmetry of friction up to which its force does not fall with v1
 static const double kMildAsymmetry = 0.5;
 
-enum { STEP_LINE, STEP_FRICTION, STEP_LOAD, STEP_GENERAL };  // InerterStep.kind
+enum { STEP_LINE, STEP_FRICTION, STEP_BRISTLE, STEP_LOAD, STEP_GENERAL };  // InerterStep.kind
 
 // friction without memory, with its slope over v1
 static Tangent sharp_friction(const InerterStep* step, double v1) {
@@ -119,19 +119,21 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
                         const double* z, double h, double mobility) {
   *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
   step->kind = STEP_GENERAL;
-  if (device->load_friction != 0 || device->quadratic_damping != 0 || has_bristle(device) ||
-      has(device, PART_SERIES) || has(device, PART_STOPS)) {
+  if (device->load_friction != 0 || device->quadratic_damping != 0 || has(device, PART_SERIES) ||
+      has(device, PART_STOPS)) {
     return;
   }
 
-  // a line, or a line and the sign of friction
+  // a line, or a line and friction
   double rest, inertance = inerter_inertance(device, x, v, &rest), stretch = stretch_of(device, x);
   double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
   double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
   step->start = rest + spring + device->viscous * v + device->force_offset;
   step->rise = inertance + h * (slope + device->viscous);
   step->kind = STEP_LINE;
-  if (device->friction != INERTER_FRICTION_none) {
+  if (has_bristle(device)) {
+    step->kind = STEP_BRISTLE;
+  } else if (device->friction != INERTER_FRICTION_none) {
     step->kind = STEP_FRICTION;
     find_level(step, stretch);
   }
@@ -166,6 +168,17 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
       Tangent friction = sharp_friction(step, step->v + step->h * a);
       *slope = step->rise + step->h * friction.slope;
       return line + friction.value;
+    }
+
+    case STEP_BRISTLE: {
+      const InerterDevice* p = step->device;
+      double stretch = stretch_of(p, step->x), h = step->h, near = 1e-6 * (1 + fabs(a)), end;
+      double friction =
+          bristle_over_step(p, stretch, step->v + h * a, step->z, h, step->mobility, &end);
+      double beside =
+          bristle_over_step(p, stretch, step->v + h * (a + near), step->z, h, step->mobility, &end);
+      *slope = step->rise + fmax(0, (beside - friction) / near);
+      return line + friction;
     }
 
     case STEP_LOAD:

@@ -79,9 +79,19 @@ static int joins_two(const mjModel* m, int tendon) {
 // refuse an actuator that moves nothing
 static int check_moves(const mjModel* m, int actuator, char message[INERTER_MESSAGE_SIZE]) {
   int tendon = m->actuator_trnid[2 * actuator];
-  if (m->actuator_gear[6 * m->actuator_outadr[actuator]] == 0) {
+  const mjtNum* gear = m->actuator_gear + 6 * m->actuator_outadr[actuator];
+  if (gear[0] == 0) {
     snprintf(message, INERTER_MESSAGE_SIZE, "gear is 0: the device would do nothing; give another");
     return -1;
+  }
+  for (int k = 1; k < 6; k++) {
+    if (gear[k] != 0) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "gear is \"%g %g %g %g %g %g\", but a device acts along one line or about one axis: "
+               "give one number, gear=\"%g\"",
+               gear[0], gear[1], gear[2], gear[3], gear[4], gear[5], gear[0]);
+      return -1;
+    }
   }
   if (m->actuator_trntype[actuator] == mjTRN_TENDON && !joins_two(m, tendon)) {
     snprintf(

@@ -22,6 +22,9 @@
 enum { ENGINE_ROUNDS = 12 };
 static const double kFit = 1e-9, kLooseFit = 1e-6;
 
+// share of the largest acceleration of the model that counts beside those along a device
+static const double kRounding = 1e-3;
+
 // one device in the equations of coupled.h
 typedef struct Coupled_ {
   Instance* self;
@@ -186,6 +189,19 @@ static void begin_all(const mjModel* m, const Solution* part, const mjtNum* W) {
   }
 }
 
+// acceleration of the last step, in its metric
+static const mjtNum* last_acceleration(const mjModel* m, mjData* d, const Solution* part,
+                                       const Group* group) {
+  if (!metric_moves_qacc(&part->metric)) {
+    return d->qacc_warmstart;
+  }
+  mjtNum* force = mj_stackAllocNum(d, m->nv);
+  mjtNum* moved = mj_stackAllocNum(d, m->nv);
+  mj_mulM(m, d, force, d->qacc_warmstart);
+  metric_solve(m, d, &part->metric, group->ndof, group->dof, force, moved);
+  return moved;
+}
+
 static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* group, mjtNum* W) {
   int n = part->n;
   find_mobilities(m, d, part, group, W);
@@ -210,9 +226,10 @@ static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* 
     monotone_solve_lines(n, start, rise, W, p, part->a, part->force, scratch + 2 * n);
     return 0;
   }
+  const mjtNum* last = last_acceleration(m, d, part, group);
   for (int i = 0; i < n; i++) {
     const Instance* self = part->all[i].self;
-    part->a[i] = instance_along(m, d, self, d->qacc_warmstart) + self->bias;
+    part->a[i] = instance_along(m, d, self, last) + self->bias;
   }
   return monotone_solve(law, part->all, n, W, p, part->a, part->force, scratch);
 }
@@ -283,9 +300,10 @@ static int engine_is_exact(const mjModel* m, const Solution* s) {
   return !s->constrained || !(m->opt.noslip_iterations || m->opt.disableflags & mjDSBL_WARMSTART);
 }
 
-// acceleration along the devices when they pull with these forces, in the engine's own words
-static void respond(const mjModel* m, mjData* d, const Solution* s, const mjtNum* force,
-                    mjtNum* a) {
+// acceleration along the devices when they pull with these forces, in the engine's own words; size:
+// of the accelerations that it is a difference of
+static void respond(const mjModel* m, mjData* d, const Solution* s, const mjtNum* force, mjtNum* a,
+                    mjtNum* size) {
   int nv = m->nv;
   mj_markStack(d);
   int* all = mj_stackAllocInt(d, nv);
@@ -313,9 +331,17 @@ static void respond(const mjModel* m, mjData* d, const Solution* s, const mjtNum
     metric_solve(m, d, &s->metric, nv, all, pull, qacc);
     found = qacc;
   }
+  // a body in free fall accelerates its joints by the rounding of its own acceleration alone
+  mjtNum largest = 0;
+  for (int i = 0; i < nv; i++) {
+    largest = mju_max(largest, fabs(found[i]));
+  }
+  mju_fill(pull, kRounding * largest, nv);
   for (int i = 0; i < s->n; i++) {
     const Instance* self = s->all[i].self;
     a[i] = instance_along(m, d, self, found) + self->bias;
+    size[i] = instance_along_size(m, d, self, found) + fabs(self->bias) +
+              instance_along_size(m, d, self, pull);
   }
   mj_freeStack(d);
 }
@@ -330,8 +356,9 @@ static void learn(int n, mjtNum* W, const mjtNum* da, const mjtNum* dforce) {
 }
 
 // The forces of a group that fit the engine's answer to those asked, taken as linear; returns how
-// far they are off. part: a, force in: asked and answered; out: those that fit.
-static double refit(mjData* d, Solution* part, const mjtNum* W) {
+// far they are off, beside the accelerations and their size. part: a, force in: asked and answered;
+// out: those that fit.
+static double refit(mjData* d, Solution* part, const mjtNum* W, const mjtNum* scale) {
   int n = part->n;
   mjtNum* p = mj_stackAllocNum(d, n);
   mjtNum* asked = mj_stackAllocNum(d, n);
@@ -345,7 +372,7 @@ static double refit(mjData* d, Solution* part, const mjtNum* W) {
   monotone_solve(law, part->all, n, W, p, part->a, part->force, scratch);
   double worst = 0;
   for (int i = 0; i < n; i++) {
-    double size = fabs(p[i]) + fabs(answered[i]) + fabs(part->bias[i]) + mjMINVAL, miss = 0;
+    double size = fabs(p[i]) + fabs(answered[i]) + scale[i] + mjMINVAL, miss = 0;
     for (int j = 0; j < n; j++) {
       size += fabs(W[i * n + j] * asked[j]);
       miss += W[i * n + j] * (part->force[j] - asked[j]);
@@ -363,10 +390,11 @@ static int fit_engine(const mjModel* m, mjData* d, Solution* s) {
   mjtNum* answered = mj_stackAllocNum(d, n);
   mjtNum* before = mj_stackAllocNum(d, 2 * n);
   mjtNum* best = mj_stackAllocNum(d, 2 * n);
+  mjtNum* size = mj_stackAllocNum(d, n);
   double least = INFINITY;
   mju_copy(asked, s->force, n);
   for (int round = 0; round < ENGINE_ROUNDS; round++) {
-    respond(m, d, s, asked, answered);
+    respond(m, d, s, asked, answered, size);
     double worst = 0;
     for (int g = 0; g < s->ngroup; g++) {
       const Group* group = s->groups + g;
@@ -374,17 +402,19 @@ static int fit_engine(const mjModel* m, mjData* d, Solution* s) {
       Solution part = part_of(d, s, group);
       mjtNum* da = mj_stackAllocNum(d, part.n);
       mjtNum* dforce = mj_stackAllocNum(d, part.n);
+      mjtNum* scale = mj_stackAllocNum(d, part.n);
       for (int i = 0; i < part.n; i++) {
         int k = group->device[i];
         part.a[i] = answered[k];
         part.force[i] = asked[k];
         da[i] = answered[k] - before[k];
         dforce[i] = asked[k] - before[n + k];
+        scale[i] = size[k];
       }
       if (round) {
         learn(part.n, s->W[g], da, dforce);
       }
-      worst = fmax(worst, refit(d, &part, s->W[g]));
+      worst = fmax(worst, refit(d, &part, s->W[g], scale));
       give_back(&part, group, s);
       mj_freeStack(d);
     }

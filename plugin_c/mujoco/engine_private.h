@@ -1,10 +1,42 @@
-// What the engine's library exports and its public headers leave out. The plugin is built for
-// exactly one version of the library and refuses any other (see plugin.c).
+// What differs between the versions of the engine, and what its library exports and its public
+// headers leave out. A library of the plugin is built for exactly one version and refuses any other
+// (see plugin.c); which versions: packaging/engines.py.
 
 #ifndef INERTER_MUJOCO_ENGINE_PRIVATE_H_
 #define INERTER_MUJOCO_ENGINE_PRIVATE_H_
 
 #include <mujoco/mujoco.h>
+
+//------------------------------ versions ----------------------------------------------------------
+//
+//   before 3.16   mj_effSolve has another name, mj_readCtrl (3.13) other arguments; no `discrete`
+//                 before 3.13
+//   3.16          no mujoco.batch in Python
+//   3.16, 3.17    mj_setConst computes the statistics anew; RK4 turns free bodies in second order;
+//   no
+//                 entry points for plugins in Python (inerter/__init__.py)
+//   4.0.0         Newton with a sparse constraint Jacobian is wrong (mujoco #3767); 4.0.1 mends it
+
+#if mjVERSION_HEADER < 3016000
+#error "the plugin needs MuJoCo 3.16.0 or newer: the engine's functions below are not in this one"
+#endif
+
+// What is known to be wrong with this engine for such a model, NULL if nothing is.
+static inline const char* engine_fault(const mjModel* m) {
+#if mjVERSION_HEADER == 4000000
+  if (m->opt.solver == mjSOL_NEWTON && mj_isSparse(m)) {
+    return "MuJoCo 4.0.0 has a fault that this model meets: its Newton solver with a sparse "
+           "constraint "
+           "Jacobian converges slowly and may be wrong (mujoco #3767); take MuJoCo 4.0.1 or 3.17, "
+           "or "
+           "<option solver=\"CG\"/> or jacobian=\"dense\"";
+  }
+#endif
+  (void)m;
+  return NULL;
+}
+
+//------------------------------ what the headers leave out ----------------------------------------
 
 // Derivative of the smooth forces by velocity into mjData.qDeriv; bias: Coriolis forces too.
 void mjd_smooth_vel(const mjModel* m, mjData* d, int bias);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "mujoco/bias.h"
+#include "mujoco/units.h"
 
 //------------------------------ who it is ---------------------------------------------------------
 
@@ -23,28 +24,35 @@ int instance_actuator(const mjModel* m, int instance, int* count) {
   return found;
 }
 
-int instance_sensed(const mjModel* m, int instance) {
+// the sensor that reads an instance
+static int find_sensor(const mjModel* m, int instance) {
   for (int i = 0; i < m->nsensor; i++) {
     if (m->sensor_plugin[i] == instance) {
-      return 1;
+      return i;
     }
   }
-  return 0;
+  return -1;
+}
+
+int instance_sensed(const mjModel* m, int instance) {
+  return find_sensor(m, instance) >= 0;
 }
 
 void instance_report(const mjModel* m, int instance, const char* text) {
-  int count;
-  int actuator = instance_actuator(m, instance, &count);
+  int count, actuator = instance_actuator(m, instance, &count), id = actuator;
   const char* name = mj_id2name(m, mjOBJ_PLUGIN, instance);
   const char* kind = "instance";
-  if ((!name || !*name) && actuator >= 0) {
-    name = mj_id2name(m, mjOBJ_ACTUATOR, actuator);
-    kind = "actuator";
+  if (!name || !*name) {
+    kind = actuator >= 0 ? "actuator" : "sensor";
+    id = actuator >= 0 ? actuator : find_sensor(m, instance);
+    name = id < 0 ? NULL : mj_id2name(m, actuator >= 0 ? mjOBJ_ACTUATOR : mjOBJ_SENSOR, id);
   }
+  char message[INERTER_MESSAGE_SIZE];
+  units_of_actuator(m, actuator, text, message);
   if (name && *name) {
-    mju_warning("inerter.device, %s \"%.60s\": %s", kind, name, text);
+    mju_warning("inerter.device, %s \"%.60s\": %s", kind, name, message);
   } else {
-    mju_warning("inerter.device, %s %d: %s", kind, actuator >= 0 ? actuator : instance, text);
+    mju_warning("inerter.device, %s %d: %s", kind, id < 0 ? instance : id, message);
   }
 }
 

@@ -2,70 +2,134 @@
 
 #include "mujoco/live.h"
 
+#include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "mujoco/units.h"
 
 static double* value_of(InerterDevice* device, int parameter) {
   return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
 }
 
-// whether a name continues an actuator's name of this length to that of another actuator: "car" to
-// "car.front" in "car.front.inertance"
-static int names_longer(const mjModel* m, const char* name, size_t length) {
-  char other[256];
-  size_t end = (size_t)(strrchr(name, '.') - name);
-  if (end <= length || end >= sizeof(other)) {
-    return 0;
+//------------------------------ names -------------------------------------------------------------
+
+// whether two pieces together are a name
+static int joined(const char* name, const char* head, size_t length, const char* tail) {
+  return name && !strncmp(name, head, length) && !strcmp(name + length, tail);
+}
+
+// The device of which two pieces of a numeric's name are the name, -1 without: the name of its
+// actuator, else that of its instance, which stays when the actuator is renamed.
+static int device_named(const mjModel* m, const char* head, size_t length, const char* tail) {
+  for (int by_instance = 0; by_instance < 2; by_instance++) {
+    for (int k = 0; k < m->nplugin; k++) {
+      int count, id = by_instance ? k : instance_actuator(m, k, &count);
+      if (instance_is_device(m, k) && id >= 0 &&
+          joined(mj_id2name(m, by_instance ? mjOBJ_PLUGIN : mjOBJ_ACTUATOR, id), head, length,
+                 tail)) {
+        return k;
+      }
+    }
   }
-  memcpy(other, name, end);
-  other[end] = 0;
-  return mj_name2id(m, mjOBJ_ACTUATOR, other) >= 0;
+  return -1;
+}
+
+// The device whose parameter a numeric holds, -1 without. An attachment with a suffix makes
+// "a.viscous_right" of "a.viscous" and "a_right" of "a": what follows the parameter belongs to the
+// device's name. The shortest that does counts, so that no parameter is taken for another.
+static int owner(const mjModel* m, const char* name, int* parameter) {
+  int found = -1;
+  size_t shortest = SIZE_MAX;
+  for (const char* dot = strchr(name, '.'); dot; dot = strchr(dot + 1, '.')) {
+    for (int i = 0; i < INERTER_NPARAMETER; i++) {
+      const char* key = inerter_parameter(i)->name;
+      const char* tail = dot + 1 + strlen(key);
+      if (strncmp(dot + 1, key, strlen(key)) != 0 || strlen(tail) >= shortest) {
+        continue;
+      }
+      int device = device_named(m, name, (size_t)(dot - name), tail);
+      if (device >= 0) {
+        found = device;
+        *parameter = i;
+        shortest = strlen(tail);
+      }
+    }
+  }
+  return found;
 }
 
 int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZE]) {
-  const char* actuator = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
+  int instance = m->actuator_plugin[self->actuator];
   self->nlive = 0;
-  if (!actuator || !*actuator) {
-    return 0;
-  }
-  for (int i = 0; i < INERTER_NPARAMETER; i++) {
-    char name[256];
-    snprintf(name, sizeof(name), "%.150s.%s", actuator, inerter_parameter(i)->name);
-    int numeric = mj_name2id(m, mjOBJ_NUMERIC, name);
-    if (numeric < 0) {
+  for (int i = 0; i < m->nnumeric; i++) {
+    int parameter = -1;
+    const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
+    if (!name || owner(m, name, &parameter) != instance) {
       continue;
     }
-    if (m->numeric_size[numeric] != 1) {
+    if (m->numeric_size[i] != 1) {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "numeric \"%.120s\" has %d values; a live parameter is one number", name,
-               m->numeric_size[numeric]);
+               m->numeric_size[i]);
+      return -1;
+    }
+    if (instance_is_live(self, parameter)) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "numeric \"%.120s\" is the second one that holds its %s: one is named after the "
+               "actuator, one after the instance; remove one",
+               name, inerter_parameter(parameter)->name);
       return -1;
     }
     LiveParameter* live = self->live + self->nlive++;
-    live->parameter = i;
-    live->address = m->numeric_adr[numeric];
+    live->parameter = parameter;
+    live->address = m->numeric_adr[i];
     live->value = m->numeric_data[live->address];
   }
+  return 0;
+}
 
-  // a numeric named after this actuator alone, but after no parameter, is a slip
-  size_t length = strlen(actuator);
-  for (int i = 0; i < m->nnumeric; i++) {
-    const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
-    int ours = name && !strncmp(name, actuator, length) && name[length] == '.' &&
-               !names_longer(m, name, length);
-    for (int k = 0; ours && k < INERTER_NPARAMETER; k++) {
-      ours = strcmp(name + length + 1, inerter_parameter(k)->name) != 0;
+// whether a numeric is named after a device ("strut.coulmb_force"): returns what follows, or NULL
+static const char* named_after(const mjModel* m, const char* name) {
+  for (const char* dot = strchr(name, '.'); dot; dot = strchr(dot + 1, '.')) {
+    if (device_named(m, name, (size_t)(dot - name), "") >= 0) {
+      return dot + 1;
     }
-    if (ours) {
+  }
+  return NULL;
+}
+
+int live_check_names(const mjModel* m, char message[INERTER_MESSAGE_SIZE]) {
+  for (int i = 0; i < m->nnumeric; i++) {
+    int parameter = -1;
+    const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
+    if (!name || owner(m, name, &parameter) >= 0) {
+      continue;
+    }
+    const char *last = strrchr(name, '.'), *rest = named_after(m, name);
+    if (rest) {
       snprintf(message, INERTER_MESSAGE_SIZE,
-               "numeric \"%.120s\" is named after this device, but \"%.60s\" is not a parameter "
+               "numeric \"%.120s\" is named after a device, but \"%.60s\" is not a parameter "
                "that can be live; see `inerter parameters`, or give the numeric another name",
-               name, name + length + 1);
+               name, rest);
       return -1;
+    }
+    for (int k = 0; last && k < INERTER_NPARAMETER; k++) {
+      if (!strcmp(last + 1, inerter_parameter(k)->name)) {
+        snprintf(message, INERTER_MESSAGE_SIZE,
+                 "numeric \"%.120s\" has the name of a live parameter, but no device is named "
+                 "\"%.*s\" (neither its actuator nor its instance), so that it would hold nothing; "
+                 "name it after a device, or give it a name without \".%s\"",
+                 name, (int)mjMIN(last - name, 120), name, last + 1);
+        return -1;
+      }
     }
   }
   return 0;
 }
+
+//------------------------------ values ------------------------------------------------------------
 
 int live_derive(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZE]) {
   self->device = self->stated;
@@ -103,9 +167,25 @@ void live_update(const mjModel* m, Instance* self) {
     instance_refresh(m, self, 0);
     return;
   }
-  char message[INERTER_MESSAGE_SIZE];
-  if (live_derive(m, self, message)) {
+  char message[INERTER_MESSAGE_SIZE], text[INERTER_MESSAGE_SIZE];
+  if (live_derive(m, self, text)) {
+    // not taken over: seen again at the next evaluation, and again an error unless it is mended
+    for (int k = 0; k < self->nlive; k++) {
+      self->live[k].value = NAN;
+    }
     const char* name = mj_id2name(m, mjOBJ_ACTUATOR, self->actuator);
-    mju_error("inerter.device, actuator \"%.60s\": live parameters: %s", name, message);
+    units_of_actuator(m, self->actuator, text, message);
+    mju_error("inerter.device, actuator \"%.60s\": live parameters: %s", name ? name : "", message);
   }
+}
+
+int inerter_live_address(const mjModel* m, int instance, int parameter) {
+  for (int i = 0; i < m->nnumeric; i++) {
+    int held = -1;
+    const char* name = mj_id2name(m, mjOBJ_NUMERIC, i);
+    if (name && owner(m, name, &held) == instance && held == parameter) {
+      return m->numeric_adr[i];
+    }
+  }
+  return -1;
 }

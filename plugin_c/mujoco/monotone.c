@@ -90,6 +90,15 @@ static void multiply(int n, const mjtNum* W, const mjtNum* x, mjtNum* product) {
   }
 }
 
+// I + S W
+static void newton_matrix(int n, const mjtNum* W, const mjtNum* rise, mjtNum* A) {
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < n; j++) {
+      A[i * n + j] = (i == j) + rise[i] * W[i * n + j];
+    }
+  }
+}
+
 // largest of the changes of a over what rounding leaves of its terms, 1 or less is nothing
 static double largest(int n, const mjtNum* W, const mjtNum* p, const Point* at,
                       const mjtNum* change) {
@@ -135,9 +144,13 @@ int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
   Point now = {force, a, u + n, u + 2 * n};
   Point next = {u + 3 * n, u + 4 * n, u + 5 * n, u + 6 * n};
 
-  // the forces at the guess, then the point that they lead to
+  // the laws as lines through the guess: (I + S W) y = F + S (p - a)
   evaluate(law, devices, n, &now);
-  mju_copy(now.y, now.force, n);
+  for (int i = 0; i < n; i++) {
+    r[i] = now.force[i] + now.rise[i] * (p[i] - a[i]);
+  }
+  newton_matrix(n, W, now.rise, A);
+  solve_dense(n, A, r, now.y);
   multiply(n, W, now.y, u);
   mju_sub(a, p, u, n);
   evaluate(law, devices, n, &now);
@@ -148,11 +161,7 @@ int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
     if (!(largest(n, W, p, &now, u) > 1)) {
       return round;
     }
-    for (int i = 0; i < n; i++) {
-      for (int j = 0; j < n; j++) {
-        A[i * n + j] = (i == j) + now.rise[i] * W[i * n + j];
-      }
-    }
+    newton_matrix(n, W, now.rise, A);
     solve_dense(n, A, r, dy);
     multiply(n, W, dy, u);
     Line line = {law, devices, n, &now, dy, u, &next};

@@ -20,6 +20,7 @@
 
 #include "mujoco/attachment.h"
 #include "mujoco/instance.h"
+#include "mujoco/servo.h"
 
 // Slot of actuator_gainprm, unused by plugin actuators, that says where they are. It goes with the
 // model through copies and MJB files, so that later edits of actuator_armature count. Its sign is
@@ -27,8 +28,21 @@
 static const int kPlacedSlot = mjNGAIN - 1;
 enum { PLACED_NATIVE = 1, PLACED_PLUGIN = -1 };
 
+// Slots of actuator_dynprm, unused where dyntype is none, with the inertance and the viscous
+// damping as configured when the model received them. The engine saves them in XML beside armature
+// and damping: what stands there as it was written is the plugin's own statement, not a second one.
+static const int kInertanceSlot = mjNDYN - 2, kViscousSlot = mjNDYN - 1;
+
 // relative, of a number with six digits
 static const mjtNum kXmlRounding = 5e-6;
+
+static int same_in_xml(mjtNum a, mjtNum b) {
+  return fabs(a - b) <= kXmlRounding * mju_max(fabs(a), fabs(b));
+}
+
+static mjtNum* written(const mjModel* m, int actuator, int slot) {
+  return (mjtNum*)m->actuator_dynprm + mjNDYN * actuator + slot;
+}
 
 // whether the inertia matrix has an entry for a pair of dofs
 static int in_inertia(const mjModel* m, int a, int b) {
@@ -90,20 +104,25 @@ int placement_is_new(const mjModel* m, int actuator) {
   return m->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] == 0;
 }
 
-// Value that the model is to hold: the configured one, unless only the attribute states it.
-// Return 0, or -1 with a message if both are stated and differ by more than the engine's rounding
-// where it saves a compiled model as XML.
-static int merge(const InerterDevice* device, int index, mjtNum configured, const char* attribute,
-                 mjtNum* value, char message[INERTER_MESSAGE_SIZE]) {
+// Value that the model is to hold: the configured one, unless only the attribute states it. In XML
+// that the engine has saved both stand, as they were written: then the one that was edited counts.
+// Return 0, or -1 with a message if both are stated and differ.
+static int merge(const mjModel* m, int actuator, const InerterDevice* device, int index, int slot,
+                 mjtNum configured, const char* attribute, mjtNum* value,
+                 char message[INERTER_MESSAGE_SIZE]) {
   const InerterParameter* parameter = inerter_parameter(index);
   int given = (int)(device->given >> index & 1);
-  if (*value != 0 && given && fabs(*value - configured) > kXmlRounding * fabs(configured)) {
-    snprintf(message, INERTER_MESSAGE_SIZE,
-             "%s is %g %s, but the actuator's %s is %g: both mean the same; state one of them",
-             parameter->name, configured, parameter->unit, attribute, *value);
-    return -1;
-  }
-  if (given) {
+  mjtNum* mark = written(m, actuator, slot);
+  int own = *mark != 0 && same_in_xml(*value, *mark);
+  int edited = *mark != 0 && *value != 0 && !own && given && same_in_xml(configured, *mark);
+  *mark = given ? configured : 0;
+  if (own || (given && !edited)) {
+    if (!own && *value != 0 && !same_in_xml(*value, configured)) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "%s is %g %s, but the actuator's %s is %g: both mean the same; state one of them",
+               parameter->name, configured, parameter->unit, attribute, *value);
+      return -1;
+    }
     *value = configured;
   }
   if (*value < 0) {
@@ -112,6 +131,19 @@ static int merge(const InerterDevice* device, int index, mjtNum configured, cons
     return -1;
   }
   return 0;
+}
+
+// take back what an earlier compilation wrote, where the device has moved to the plugin since
+static void forget(const mjModel* m, int actuator) {
+  mjtNum* values[] = {m->actuator_armature + actuator, m->actuator_damping + actuator};
+  int slots[] = {kInertanceSlot, kViscousSlot};
+  for (int k = 0; k < 2; k++) {
+    mjtNum* mark = written(m, actuator, slots[k]);
+    if (*mark != 0 && same_in_xml(*values[k], *mark)) {
+      *values[k] = 0;
+    }
+    *mark = 0;
+  }
 }
 
 // Inverse weights, and which actuators act on which joint or tendon. The statistics stay as they
@@ -124,7 +156,13 @@ static void derive(mjModel* m) {
   m->nplugin = 0;
   m->opt.enableflags &= ~mjENBL_SLEEP;
   mjData* workspace = mj_makeData(m);
+  mjStatistic statistic = m->stat;
+  mjtNum* M0 = mju_malloc(sizeof(mjtNum) * (size_t)m->nv);
+  mju_copy(M0, m->dof_M0, (int)m->nv);
   mj_setConst(m, workspace);
+  m->stat = statistic;
+  servo_warn(m, workspace, M0);
+  mju_free(M0);
   mj_deleteData(workspace);
   m->opt.enableflags = enableflags;
   m->nplugin = nplugin;
@@ -155,6 +193,9 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   mjModel* model = (mjModel*)m;
   int series = instance_has_series(device);
   *native = fits_inertia(m, actuator);
+  if (!*native || (series && *written(m, actuator, kInertanceSlot) != 0)) {
+    forget(m, actuator);
+  }
   if (!*native || (series && m->actuator_armature[actuator] != 0)) {
     *native = 0;
     if (check_attributes(m, actuator, device, message)) {
@@ -163,9 +204,10 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   } else {
     mjtNum armature = m->actuator_armature[actuator], damping = m->actuator_damping[actuator];
     mjtNum inertance = armature, viscous = damping;
-    if ((!series && merge(device, INERTER_INDEX_inertance, device->inertance, "armature",
-                          &inertance, message)) ||
-        merge(device, INERTER_INDEX_viscous, device->viscous, "damping", &viscous, message)) {
+    if ((!series && merge(m, actuator, device, INERTER_INDEX_inertance, kInertanceSlot,
+                          device->inertance, "armature", &inertance, message)) ||
+        merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, device->viscous, "damping",
+              &viscous, message)) {
       return -1;
     }
     model->actuator_armature[actuator] = inertance;

@@ -21,6 +21,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "mujoco/advice.h"
 #include "mujoco/attachment.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupled.h"
@@ -67,10 +68,17 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     if (count) {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "%d actuators refer to it; give every actuator an instance of its own", count);
+    } else if (instance_sensed(m, instance) && !mj_id2name(m, mjOBJ_PLUGIN, instance)) {
+      snprintf(
+          message, INERTER_MESSAGE_SIZE,
+          "it names no instance, so that it reads a device of its own; configure the device as "
+          "<extension><plugin plugin=\"inerter.device\"><instance name=\"NAME\">, and write "
+          "instance=\"NAME\" in its actuator and in this sensor");
     } else {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "no actuator refers to it; add <actuator><plugin plugin=\"inerter.device\" "
-               "instance=\"...\" tendon=\"...\"/></actuator>");
+               "instance=\"...\" tendon=\"...\"/></actuator>, or take it out (where an MjSpec "
+               "has lost the actuator: inerter.remove_device)");
     }
     return -1;
   }
@@ -85,6 +93,10 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     return -1;
   }
   self->limited = attachment_limited(m, self->actuator);
+
+  if (compiling && advice_on_content(m, instance, self, message)) {
+    return -1;
+  }
 
   // what acts on the inertance alone would do nothing; edited or live, it may be 0
   if (compiling && instance_varies(&self->device) && self->device.inertance == 0 && !live) {
@@ -107,7 +119,11 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     ((mjModel*)m)->plugin[instance] = instance_slot_quiet;
   }
   if (compiling && self->last) {
+    if (live_check_names(m, message)) {
+      return -1;
+    }
     placement_finish(m);
+    advice_on_engine(m);
   }
   return 0;
 }
@@ -401,11 +417,11 @@ mjPLUGIN_LIB_INIT(inerter) {
   if (mj_version() != mjVERSION_HEADER) {
     int header = mjVERSION_HEADER;
     mju_warning(
-        "inerter was compiled for MuJoCo %d.%d.%d, loaded is MuJoCo %s; inerter.device is "
-        "not available. Run `pip install mujoco==%d.%d.%d`, or install an inerter made for "
-        "MuJoCo %s",
-        header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString(), header / 1000000,
-        header / 1000 % 1000, header % 1000, mj_versionString());
+        "this library of inerter was compiled for MuJoCo %d.%d.%d, loaded is MuJoCo %s; "
+        "inerter.device is not available. Take the library that `inerter plugin-path --mujoco %s` "
+        "prints, or run `pip install mujoco==%d.%d.%d`",
+        header / 1000000, header / 1000 % 1000, header % 1000, mj_versionString(),
+        mj_versionString(), header / 1000000, header / 1000 % 1000, header % 1000);
     return;
   }
 

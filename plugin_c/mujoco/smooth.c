@@ -77,9 +77,11 @@ static void actuate(const mjModel* m, mjData* d, mjtNum* total) {
   mj_freeStack(d);
 }
 
-// that force
+// That force. What actuators bring is left where the engine's derivatives look for it, to see which
+// joints are at their limit: the force of the step before stands there.
 static void add_up(const mjModel* m, mjData* d, mjtNum* smooth) {
   actuate(m, d, smooth);
+  mju_copy(d->qfrc_actuator, smooth, m->nv);
   for (int i = 0; i < m->nv; i++) {
     smooth[i] += d->qfrc_passive[i] - d->qfrc_bias[i] + d->qfrc_applied[i];
   }

@@ -135,7 +135,7 @@ static void consider(Fastest* fastest, double rate, double limit, const char* ca
 }
 
 // share of what a step can bear up to which a bristle is taken at its start
-static const double kResolvedBristle = 0.1;
+static const double kResolvedBristle = 0.25;
 
 void watch_stiffness(const mjModel* m, Instance* self) {
   if (self->integrator == m->opt.integrator + 1 && self->timestep == m->opt.timestep) {

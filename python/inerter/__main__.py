@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from typing import Any
+from io import TextIOWrapper
 
-INTERRUPTED = 130  # exit status after Ctrl-C, as shells give it
+from inerter import signals
+from inerter.printable import PLAIN
 
 # what the lab brings: a command imports it when it is run
 _LAB = (
@@ -18,34 +19,62 @@ _LAB = (
 
 def main() -> None:
     """Entry point of the `inerter` command: no way out shows a traceback that a user can cause."""
-    interrupted = False
-
-    def interrupt(*_: Any) -> None:
-        nonlocal interrupted
-        interrupted = True
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, interrupt)
+    signals.hear()
     try:
+        _settle()
         try:
             _command()
         finally:
             sys.stdout.flush()
     except BaseException as error:
-        # libraries turn an interrupt into errors of their own; a command that Ctrl-C ends as it
+        # libraries turn an interrupt into errors of their own; a command that a signal ends as it
         # should ends well
         well = isinstance(error, SystemExit) and not error.code
-        if interrupted and not well:
-            _leave("interrupted", INTERRUPTED)
+        number = signals.heard()
+        if number is not None and not well:
+            name = signal.Signals(number).name
+            # the exit status is as shells give it
+            said = "interrupted" if number == signal.SIGINT else f"ended by {name}"
+            _leave(said, 128 + number)
         if isinstance(error, BrokenPipeError):
             # whoever read has gone
             _leave("", 1)
+        if isinstance(error, MemoryError):
+            _leave("memory is short; close other programs, or raise the limit (ulimit -v)", 1)
         if isinstance(error, OSError):
             place = error.filename or "standard output"
             _leave(f"{place}: cannot be written ({error.strerror})", 1)
         if isinstance(error, ImportError) and not isinstance(error, ModuleNotFoundError):
             _leave(str(error), 1)
         raise
+
+
+def _settle() -> None:
+    """Take what the surroundings bring so that it harms nothing."""
+    # a number that is closed would be given to the next file: what is printed would go into it
+    for number in (0, 1, 2):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDONLY if number < 2 else os.O_WRONLY)
+    # to write to the stdout that was closed fails, and is told
+    sys.stdin = sys.stdin or os.fdopen(0, closefd=False)
+    sys.stdout = sys.stdout or os.fdopen(1, "w", closefd=False)
+    sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
+    # what cannot be shown is shown otherwise
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors=PLAIN)
+    # pictures are drawn into files: whatever window is wished for, none opens
+    os.environ["MPLBACKEND"] = "agg"
+    # a width in which nothing can be shown
+    for name in ("COLUMNS", "LINES"):
+        if not _is_size(os.environ.get(name, "80")):
+            del os.environ[name]
+
+
+def _is_size(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 5 and int(text) >= 20
 
 
 def _leave(message: str, status: int) -> None:
@@ -70,16 +99,16 @@ def _command() -> None:
 
 def _without_lab(missing: str) -> None:
     """What needs no lab; for the rest, how to install it."""
-    if sys.argv[1:] == ["plugin-path"]:
+    if sys.argv[1:2] == ["plugin-path"] and sys.argv[2:3] in ([], ["--mujoco"]):
         from inerter.plugin import plugin_path
 
-        print(plugin_path())
+        print(plugin_path(*sys.argv[3:4]))
         return
     if sys.argv[1:] == ["--version"]:
         from inerter import __version__
-        from inerter.plugin import MUJOCO_VERSION
+        from inerter.plugin import supported_text
 
-        print(f"inerter {__version__} for MuJoCo {MUJOCO_VERSION}")
+        print(f"inerter {__version__} for {supported_text()}")
         return
     print(
         f"inerter: this needs the lab, and {missing} is not installed; "

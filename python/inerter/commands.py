@@ -14,7 +14,7 @@ from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, ref
 from inerter.design.commands import app as design_app
 from inerter.folder import json_text
 from inerter.identify.command import identify_command
-from inerter.plugin import MUJOCO_VERSION, plugin_path
+from inerter.plugin import plugin_path, supported_text
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
@@ -39,7 +39,7 @@ def run() -> None:
 
 def _version(asked: bool) -> None:
     if asked:
-        print(f"inerter {inerter.__version__} for MuJoCo {MUJOCO_VERSION}")
+        print(f"inerter {inerter.__version__} for {supported_text()}")
         raise typer.Exit
 
 
@@ -117,7 +117,8 @@ def _diagnose(
     from inerter.report.terminal import print_summary
 
     # a user's data that overflow are judged by what comes out, not by numpy's warnings
-    with refusing(folder), np.errstate(all="ignore"), catch_warnings():
+    names = ("diagnosis.json", "report.html", "device.toml", "model.xml")
+    with refusing(folder, *names), np.errstate(all="ignore"), catch_warnings():
         simplefilter("ignore", RuntimeWarning)
         with status(as_json) as progress:
             result = diagnose(record, device, model, holdout, progress, *mapping)
@@ -172,7 +173,7 @@ def simulate_command(
     from inerter.simulate.summary import print_run, summary
     from inerter.simulate.video import FRAME_RATE, refuse_video, write_video
 
-    with refusing(out_dir):
+    with refusing(out_dir, "simulation.json", "simulation.html"):
         if video is not None:
             refuse_video(video)
         try:
@@ -224,7 +225,7 @@ def validate_command(
     from inerter.validate.output import write_validation
     from inerter.validate.table import print_validation
 
-    with refusing(out_dir):
+    with refusing(out_dir, "validation.json", "validation.png"):
         names = (tuple(given or ()) for given in (model, law, engine, integrator))
         with progress_bar("validating", as_json) as progress:
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
@@ -257,9 +258,18 @@ def demo(
 
 
 @app.command("plugin-path")
-def plugin_path_command() -> None:
+def plugin_path_command(
+    engine: Annotated[
+        str | None,
+        typer.Option(
+            "--mujoco",
+            metavar="VERSION",
+            help="For this version of MuJoCo; default: the installed one.",
+        ),
+    ] = None,
+) -> None:
     """Path of the MuJoCo plugin library, for C programs and `simulate`."""
-    print(plugin_path())
+    print(plugin_path(engine))
 
 
 @app.command("parameters")

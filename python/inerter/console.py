@@ -62,16 +62,17 @@ def refuse(message: str, status: int = UNUSABLE) -> NoReturn:
 
 
 @contextmanager
-def refusing(folder: Path | None) -> Iterator[None]:
+def refusing(folder: Path | None, *names: str) -> Iterator[None]:
     """End as `refuse` does where the input cannot be used, or results cannot be written.
 
-    A folder that cannot be written is refused before the work is done.
+    A folder that cannot be written, or holds a folder of one of the `names`, is refused before the
+    work is done.
     """
     from inerter.folder import refuse_folder
 
     try:
         if folder is not None:
-            refuse_folder(folder)
+            refuse_folder(folder, names)
     except OSError as error:
         refuse(_unwritten(error, folder))
     try:

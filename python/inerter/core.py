@@ -67,11 +67,11 @@ class Parameter:
     meaning: str
 
 
-def library_path(stem: str) -> Path:
-    """Path of a shared library of this package, by its stem."""
+def library_path(stem: str, folder: str = "") -> Path:
+    """Path of a shared library of this package, by its stem and the folder within `lib`."""
     suffix = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
     prefix = "" if sys.platform == "win32" else "lib"
-    return LIBRARY_FOLDER / f"{prefix}{stem}{suffix}"
+    return LIBRARY_FOLDER / folder / f"{prefix}{stem}{suffix}"
 
 
 @functools.cache
@@ -143,6 +143,10 @@ def _device_type() -> type[ctypes.Structure]:
     return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
 
 
+def _made_again(given: dict[str, float | str]) -> Device:
+    return Device(**given)
+
+
 class Device:
     """A device: inertance, damping, stiffness, further force laws and one friction law.
 
@@ -207,6 +211,17 @@ class Device:
         if name.startswith("_") or name not in parameters():
             raise AttributeError(name)
         return getattr(self._c, name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not name.startswith("_"):
+            raise AttributeError(
+                f"{name}: a device does not change; make another with device.replace({name}=...), "
+                f"and change one in an Exudyn system with strut.set({name}=...)"
+            )
+        super().__setattr__(name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _made_again, (self._given,)
 
     def __repr__(self) -> str:
         return "Device(" + ", ".join(f"{k}={v!r}" for k, v in self._given.items()) + ")"

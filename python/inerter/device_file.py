@@ -9,16 +9,19 @@ coulomb_force = "10 N"
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.core import Device, DeviceError, parameters
+from inerter.input_file import read_toml
 from inerter.printable import printable
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
 SCHEMA = "inerter.device/1"
 LAWS = ("friction", "gas_law")  # keys whose value is a name
+LARGEST = 1e15
+"""Size of a parameter, in SI units, beyond which no unit can be right."""
 LARGEST_DELAY = 0.05
 """Delay of the force channel [s] beyond which none is sought or held, either way."""
 
@@ -31,14 +34,7 @@ def read_device(path: Path) -> Device:
     DeviceError
         The file cannot be read, or a value in it cannot be used; names the file and the key.
     """
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise DeviceError(f"{path}: cannot be opened ({error.strerror}); check the path") from None
-    except UnicodeDecodeError:
-        raise DeviceError(f"{path}: not UTF-8 text; give a TOML file") from None
-    except tomllib.TOMLDecodeError as error:
-        raise DeviceError(f"{path}: not TOML ({error}); correct the line") from None
+    content = _content(path)
     table = content.get("device")
     if not isinstance(table, dict):
         raise DeviceError(
@@ -47,9 +43,16 @@ def read_device(path: Path) -> Device:
     values: dict[str, float | str] = {}
     for key, value in table.items():
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-            raise DeviceError(f"{path}: {key} is {value!r}; give a number, or a text with a unit")
+            raise DeviceError(
+                f"{path}: {key} is {_shown(value)}; give a number, or a text with a unit"
+            )
         if isinstance(value, str) and key not in LAWS:
             value = _with_unit(path, key, value)
+        if not isinstance(value, str) and LARGEST < abs(value) < math.inf:
+            raise DeviceError(
+                f"{path}: {key} is {_shown(value)}, which no device has; give SI units, "
+                f"at most {LARGEST:g}"
+            )
         values[key] = value
     try:
         return Device(**values)
@@ -65,21 +68,40 @@ def read_delay(path: Path) -> float:
     DeviceError
         No number and no time, or more than `LARGEST_DELAY`.
     """
-    channels = tomllib.loads(path.read_text(encoding="utf-8")).get("channels", {})
+    channels = _content(path).get("channels", {})
     if not isinstance(channels, dict):
-        raise DeviceError(f"{path}: channels is {channels!r}; write a [channels] table")
+        raise DeviceError(f"{path}: channels is {_shown(channels)}; write a [channels] table")
     delay = channels.get("force_delay", 0.0)
     if isinstance(delay, str):
         delay = _in_unit(path, "force_delay", delay, "s")
-    if isinstance(delay, bool) or not isinstance(delay, (int, float)) or not math.isfinite(delay):
-        raise DeviceError(f'{path}: force_delay is {delay!r}; give seconds, or a text as "2 ms"')
+    number = isinstance(delay, (int, float)) and not isinstance(delay, bool)
+    if not (number and abs(delay) < math.inf):
+        raise DeviceError(
+            f'{path}: force_delay is {_shown(delay)}; give seconds, or a text as "2 ms"'
+        )
     if abs(delay) > LARGEST_DELAY:
         raise DeviceError(
-            f"{path}: force_delay is {delay:g} s, beyond the {LARGEST_DELAY:g} s that a diagnosis "
-            f"looks at; shift the force with `inerter prepare --delay {delay:g}`, and leave "
-            "force_delay out"
+            f"{path}: force_delay is {_shown(delay)} s, beyond the {LARGEST_DELAY:g} s that a "
+            f"diagnosis looks at; shift the force with `inerter prepare --delay {_shown(delay)}`, "
+            "and leave force_delay out"
         )
     return float(delay)
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        return read_toml(path)
+    except ValueError as error:
+        raise DeviceError(str(error)) from None
+
+
+def _shown(value: object) -> str:
+    """A value for an error text, at most 60 characters."""
+    if isinstance(value, int) and abs(value) > LARGEST:
+        # of a long one, the digits are no help
+        return f"about 1e{int(math.log10(abs(value)))}"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _with_unit(path: Path, key: str, text: str) -> float:
@@ -96,7 +118,8 @@ def _in_unit(path: Path, key: str, text: str, unit: str) -> float:
     wanted = "" if unit == "1" else unit.replace("m^-n", "dimensionless")
     number, written = split_quantity(text) or (math.nan, "")
     given = parse_unit(written or "dimensionless")
-    refusal = DeviceError(f'{path}: {key} is "{text}"; give a number, or a text in {unit}')
+    shown = printable(text if len(text) <= 60 else text[:57] + "...")
+    refusal = DeviceError(f'{path}: {key} is "{shown}"; give a number, or a text in {unit}')
     if given is None or math.isnan(number):
         raise refusal
     try:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.core import Device, DeviceError, parameters
+from inerter.plugin import plugin_path
 
 PLUGIN = "inerter.device"
 # what the compiled model calls it: the second name where no sensor reads the device
@@ -191,18 +192,28 @@ def _device(model: mujoco.MjModel, actuator: int, instance: int) -> DeviceInMode
         device=device,
         sensor=sensor if readers.size else {},
         act={key: first + i for i, key in enumerate(device.state_names)},
-        live=_live(model, name),
+        live=_live(model, instance),
     )
 
 
-def _live(model: mujoco.MjModel, name: str) -> dict[str, int]:
-    """Addresses of the numerics NAME.key that are named after parameters."""
+def _live(model: mujoco.MjModel, instance: int) -> dict[str, int]:
+    """Addresses of the numerics that hold parameters of an instance, as the plugin finds them."""
     found = {}
-    for i in range(model.nnumeric if name else 0):
-        prefix, dot, key = model.numeric(i).name.rpartition(".")
-        if dot and prefix == name and key in parameters():
-            found[key] = int(model.numeric_adr[i])
+    for i, key in enumerate(parameters() if model.nnumeric else ()):
+        address = plugin_library().inerter_live_address(model._address, instance, i)
+        if address >= 0:
+            found[key] = address
     return found
+
+
+@functools.cache
+def plugin_library() -> ctypes.CDLL:
+    """The plugin, for what it tells of a model."""
+    library = ctypes.CDLL(str(plugin_path()))
+    at = ctypes.c_void_p
+    library.inerter_live_address.argtypes = [at, ctypes.c_int, ctypes.c_int]
+    library.inerter_device_force.argtypes = [at, at, at, at, at, ctypes.c_char_p]
+    return library
 
 
 # --- what the Python binding of the engine leaves out -------------------------------------------

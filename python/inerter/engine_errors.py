@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
+from inerter.core import parameters
+from inerter.parameter_text import with_suggestion
+
 
 class SimulationError(ValueError):
     """A run that cannot be made or has failed; one line: what is wrong, what to do."""
@@ -22,4 +27,14 @@ def engine_text(error: Exception, endings: str = ".xml") -> str:
     if str(error).startswith(_NO_MODEL):
         return f"by its ending this is no model; give a model, {endings}"
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    return "; ".join(dict.fromkeys(lines)).removeprefix("Error: ").removeprefix("XML Error: ")
+    text = "; ".join(dict.fromkeys(lines)).removeprefix("Error: ").removeprefix("XML Error: ")
+    return text + _meant(text)
+
+
+def _meant(text: str) -> str:
+    """For a key of a device that the compiler does not know: which may be meant."""
+    found = re.match(r"unrecognized attribute 'plugin:(.*?)' for plugin inerter\.device", text)
+    if not found:
+        return ""
+    names = [*parameters(), "friction", "gas_law"]
+    return with_suggestion(found[1], "", names)

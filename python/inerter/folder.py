@@ -1,36 +1,60 @@
-"""Results in a folder: all of the files or none."""
+"""Results in a folder: all of the files or none, whatever ends the program or the power.
+
+Everything is written beside its place first, in a folder of its own (`staging.Staging`), and to the
+disk. A folder of results that was not there is then put in place by one rename. Where files are
+exchanged in a folder that is there, a note of what is to be moved is left first: whoever finds it,
+the next run that is to write there, ends what was begun. Signals wait meanwhile.
+"""
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import json
 import os
 import re
-import shutil
-import tempfile
-from collections.abc import Mapping, Sequence
-from pathlib import Path, PurePosixPath
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from inerter.signals import held
+from inerter.staging import LONGEST_NAME, Staging, clear, is_within, to_disk
 
-def refuse_folder(folder: Path) -> None:
-    """Raise OSError where a folder cannot be made or written, before the work is done."""
-    existing = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+
+def refuse_folder(folder: Path, names: Iterable[str] = ()) -> None:
+    """Raise OSError where files cannot be written into a folder, before the work is done.
+
+    names: those that are known. What a run that was killed left there is ended or cleared.
+    """
+    existing = _existing(folder)
     if not existing.is_dir():
-        raise NotADirectoryError(errno.ENOTDIR, "not a folder", str(existing))
-    # rights do not tell of a read-only or a virtual file system: try
+        what = "not a folder" if existing.exists() else "a link that leads nowhere"
+        raise NotADirectoryError(errno.ENOTDIR, what, str(existing))
+    clear(existing)
+    # rights do not tell of a read-only or a virtual file system, or of names too long: try
     try:
-        os.rmdir(tempfile.mkdtemp(prefix=".writing-", dir=existing))
+        with Staging(existing) as staging:
+            (staging.new / _below(folder, existing)).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(existing)) from None
+        raise OSError(error.errno, error.strerror, str(folder)) from None
+    for name in names:
+        if (folder / name).is_dir():
+            raise IsADirectoryError(errno.EISDIR, "is a folder", str(folder / name))
+
+
+def refuse_file(path: Path) -> None:
+    """Raise OSError where one file cannot be written, before the work is done."""
+    refuse_folder(path.absolute().parent, [path.name])
 
 
 def file_names(names: Sequence[str], otherwise: str) -> list[str]:
     """What files may be called after names from a model, all different; `otherwise_0` for none."""
     found: list[str] = []
     for i, name in enumerate(names):
-        safe = re.sub(r"[^\w.+-]+", "_", name).strip("._") or f"{otherwise}_{i}"
+        safe = re.sub(r"[^\w.+-]+", "_", name).strip("._")
+        # room for an ending
+        while len(safe.encode()) > LONGEST_NAME:
+            safe = safe[:-1]
+        safe = safe or f"{otherwise}_{i}"
         while safe.casefold() in [other.casefold() for other in found]:
             safe += "_2"
         found.append(safe)
@@ -40,8 +64,7 @@ def file_names(names: Sequence[str], otherwise: str) -> list[str]:
 def write_files(folder: Path, files: Mapping[str, bytes | str]) -> list[str]:
     """Write files by name into a folder, which is made, as are folders in names; the names.
 
-    Everything is written beside its place first and moved there when complete. Where a move fails
-    or is interrupted, what stood there before comes back.
+    Where a move fails or is interrupted, what stood there before comes back.
 
     Raises
     ------
@@ -51,84 +74,58 @@ def write_files(folder: Path, files: Mapping[str, bytes | str]) -> list[str]:
         The folder cannot be written; nothing is left behind.
     """
     for name in files:
-        if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
+        if not is_within(name):
             raise ValueError(f"the name {name!r} of a result leads out of {folder}; rename it")
-    refuse_folder(folder)
-    made = _make(folder)
+    existing = _existing(folder)
+    refuse_folder(folder, files)
     try:
-        staging = Path(tempfile.mkdtemp(prefix=".writing-", dir=folder))
-        try:
-            _write(files, staging / "new")
-            _keep(files, folder, staging / "old")
-            _move(files, folder, staging)
-        finally:
-            shutil.rmtree(staging, ignore_errors=True)
-    except BaseException as error:
-        _unmake(made)
-        if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror, _place(error, folder)) from None
-        raise
+        with Staging(existing) as staging:
+            below = _below(folder, existing)
+            _write(files, staging.new / below)
+            with held():
+                if below == Path():
+                    staging.exchange(list(files))
+                else:
+                    _put_in_place(staging.new / below.parts[0], existing / below.parts[0])
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, _place(error, folder)) from None
     return list(files)
 
 
-def _make(folder: Path) -> list[Path]:
-    """Make a folder; those that were not there, the deepest first."""
-    missing = [path for path in (folder, *folder.parents) if not path.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        _unmake(missing)
-        raise
-    return missing
+def _existing(folder: Path) -> Path:
+    """The deepest part of a path that is there: a folder, a file, or a link to nowhere."""
+    return next(
+        path for path in (folder, *folder.absolute().parents) if path.exists() or path.is_symlink()
+    )
 
 
-def _unmake(folders: Sequence[Path]) -> None:
-    for path in folders:
-        with contextlib.suppress(OSError):
-            path.rmdir()
+def _below(folder: Path, existing: Path) -> Path:
+    return folder.absolute().relative_to(existing.absolute())
+
+
+def _put_in_place(source: Path, target: Path) -> None:
+    """A folder's whole tree, in one step."""
+    os.rename(source, target)
+    to_disk(target.parent)
 
 
 def _write(files: Mapping[str, bytes | str], place: Path) -> None:
+    folders = {place}
+    place.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         data = content.encode("utf-8", "replace") if isinstance(content, str) else content
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_bytes(data)
-
-
-def _keep(files: Mapping[str, bytes | str], folder: Path, place: Path) -> None:
-    """Second names of the files that are to be replaced."""
-    for name in files:
-        if (folder / name).is_dir():
-            raise IsADirectoryError(errno.EISDIR, "is a folder", str(folder / name))
-        if (folder / name).exists():
-            (place / name).parent.mkdir(parents=True, exist_ok=True)
-            try:
-                os.link(folder / name, place / name)
-            except OSError:
-                # a file system without links
-                shutil.copy2(folder / name, place / name)
-
-
-def _move(files: Mapping[str, bytes | str], folder: Path, staging: Path) -> None:
-    made: list[Path] = []
-    try:
-        for name in files:
-            made += _make((folder / name).parent)
-            os.replace(staging / "new" / name, folder / name)
-    except BaseException:
-        for name in files:
-            if (staging / "old" / name).exists():
-                os.replace(staging / "old" / name, folder / name)
-            elif not (staging / "new" / name).exists():
-                (folder / name).unlink(missing_ok=True)
-        _unmake(made[::-1])
-        raise
+        to_disk(place / name)
+        folders.add((place / name).parent)
+    for each in folders:
+        to_disk(each)
 
 
 def _place(error: OSError, folder: Path) -> str:
     """What could not be written, as the user knows it."""
     name = str(error.filename or "")
-    return str(folder) if ".writing-" in name or not name else name
+    return str(folder) if Staging.PREFIX in name or not name else name
 
 
 def json_text(data: Any) -> str:

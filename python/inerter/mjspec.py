@@ -9,8 +9,11 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from inerter.controls import remove_control
 from inerter.core import Device, DeviceError, parameters
-from inerter.device_in_model import PLUGIN, DeviceInModel, device_of
+from inerter.device_in_model import PLUGIN, DeviceInModel, device_of, devices_of
+from inerter.mjspec_blank import blank
+from inerter.mjspec_remove import devices_in, new_name, remove
 from inerter.plugin import load_plugin
 
 # a site by name or object, or a body and a position in it [m]
@@ -23,9 +26,9 @@ class AddedDevice:
     """What `add_device` has put into an MjSpec, by name.
 
     name: of the actuator, and of the plugin instance. sensor: its sensor, None without. tendon or
-    joint: what it acts on, the other None. sites: terminals, where it made or was given them.
-    numerics: the parameters that can be changed in the compiled model, by their key. rest_length:
-    [m], as measured or stated.
+    joint: what it acts on, the other None. sites: terminals, where it made or was given them;
+    made: those of them that it made. numerics: the parameters that can be changed in the compiled
+    model, by their key. rest_length: [m], as measured or stated.
     """
 
     name: str
@@ -34,6 +37,7 @@ class AddedDevice:
     tendon: str | None
     joint: str | None
     sites: tuple[str, ...] = ()
+    made: tuple[str, ...] = ()
     numerics: dict[str, str] = field(default_factory=dict)
 
     @property
@@ -51,15 +55,27 @@ class AddedDevice:
         """Length at which the displacement is 0 [m] (a hinge: rad)."""
         return self.device.rest_length
 
-    def of(self, model: mujoco.MjModel) -> DeviceInModel:
+    def of(self, model: mujoco.MjModel, name: str | None = None) -> DeviceInModel:
         """Where the device is in the compiled model: sensor values, states, live parameters.
+
+        Parameters
+        ----------
+        model : mujoco.MjModel
+            Compiled from the spec that the device was added to, or from one that this was attached
+            to: the prefix and the suffix are found.
+        name : str, optional
+            Of the device's actuator in the model, where its spec was attached more than once.
 
         Raises
         ------
         ValueError
-            The model has no such device; it was compiled before the device was added.
+            The model has no such device (it was compiled before the device was added), or more than
+            one.
         """
-        return device_of(model, self.name)
+        if name is None:
+            present = {each.name: each.device for each in devices_of(model)}
+            name = new_name(self.name, self.device, present)
+        return device_of(model, name or self.name)
 
 
 def add_device(
@@ -74,6 +90,7 @@ def add_device(
     gear: float = 1.0,
     sensor: bool = True,
     live: Sequence[str] = (),
+    control: bool = False,
     **values: float | str,
 ) -> AddedDevice:
     """Add a device to a model under construction, with everything that it needs.
@@ -102,6 +119,9 @@ def add_device(
     live : sequence of str
         Parameters to read from the model at every step: each becomes a numeric "NAME.key", whose
         value in `mjModel.numeric_data` can be changed without compiling again.
+    control : bool
+        Give the device a control, a force beside it [N]; without, `nu` stays as it was. A model
+        that is saved as XML has the control again.
     **values : float or str
         Parameters by name, SI units; beside `device` they replace its own.
 
@@ -147,6 +167,8 @@ def add_device(
     numerics = _live_values(spec, name, device, live)
 
     _add(spec, name, device, sites, target, gear, sensor, is_joint=joint is not None)
+    if not control:
+        remove_control(spec.actuator(name))
     for key, value in numerics.items():
         spec.add_numeric(name=f"{name}.{key}", data=[value], size=1)
     return AddedDevice(
@@ -156,7 +178,44 @@ def add_device(
         tendon=None if joint is not None else target,
         joint=target if joint is not None else None,
         sites=tuple(site.name for site in sites),
+        made=tuple(site.name for site in sites if site.body is not None),
         numerics={key: f"{name}.{key}" for key in numerics},
+    )
+
+
+def remove_device(spec: mujoco.MjSpec, device: AddedDevice | str) -> None:
+    """Take a device out of a model under construction, with everything that only it uses.
+
+    Actuator, plugin instance, sensors, live parameters and what keyframes hold of them. It also
+    takes the rest along of a device whose actuator, or the body of whose terminal, was deleted:
+    such a model does not compile.
+
+    Parameters
+    ----------
+    spec : mujoco.MjSpec
+        The model that holds the device, under its name or, attached, with a prefix and a suffix.
+    device : AddedDevice or str
+        What `add_device` gave: the tendon and the sites that it made go too, unless something else
+        refers to them. Or the name of the device's actuator or instance: tendon and sites stay.
+
+    Raises
+    ------
+    ValueError
+        There is no such device, or more than one; the spec is as it was.
+    """
+    if isinstance(device, str):
+        remove(spec, device)
+        return
+    if not isinstance(device, AddedDevice):
+        raise ValueError(f"device is {device!r}: give what add_device returned, or a name")
+    name = new_name(device.name, device.device, devices_in(spec)) or device.name
+    before, _, after = name.partition(device.name)
+    made = device.tendon if device.sites else None
+    remove(
+        spec,
+        name,
+        None if made is None else before + made + after,
+        [before + site + after for site in device.made],
     )
 
 
@@ -178,23 +237,25 @@ def _add(
     sensor: bool,
     is_joint: bool,
 ) -> None:
-    """Extension, instance, sites and tendon, actuator, sensor."""
+    """Extension, instance, sites and tendon, actuator, sensor; no default class reaches them."""
     spec.activate_plugin(PLUGIN)
     instance = spec.add_plugin(name=name, plugin_name=PLUGIN, active=True)
     instance.config = {key: str(value) for key, value in device.given.items()}
+    if device.inertance == 0:
+        # said, so that the plugin does not ask whether that is meant
+        instance.config = {"inertance": "0", **instance.config}
     if sites:
         _add_tendon(spec, target, sites)
-    actuator = spec.add_actuator(
-        name=name,
-        target=target,
-        trntype=mujoco.mjtTrn.mjTRN_JOINT if is_joint else mujoco.mjtTrn.mjTRN_TENDON,
-        gear=[gear, 0, 0, 0, 0, 0],
-    )
+    actuator = blank(spec.add_actuator(name=name))
+    actuator.target = target
+    actuator.trntype = mujoco.mjtTrn.mjTRN_JOINT if is_joint else mujoco.mjtTrn.mjTRN_TENDON
+    actuator.gear = [gear, 0, 0, 0, 0, 0]
     if device.nstate:
         actuator.actdim = device.nstate
     readers = [actuator]
     if sensor:
-        readers.append(spec.add_sensor(name=name, type=mujoco.mjtSensor.mjSENS_PLUGIN))
+        readers.append(blank(spec.add_sensor(name=name)))
+        readers[-1].type = mujoco.mjtSensor.mjSENS_PLUGIN
     for element in readers:
         element.plugin.plugin_name = PLUGIN
         element.plugin.name = name
@@ -229,7 +290,7 @@ class _Site:
     def add(self, spec: mujoco.MjSpec) -> None:
         """Make the site where there is none."""
         if self.body is not None:
-            spec.body(self.body).add_site(name=self.name, pos=self.position)
+            blank(spec.body(self.body).add_site(name=self.name)).pos = self.position
 
     def __str__(self) -> str:
         if self.body is None:
@@ -251,7 +312,7 @@ def _place(spec: mujoco.MjSpec, pair: Sequence[Any]) -> tuple[str, np.ndarray]:
 
 
 def _add_tendon(spec: mujoco.MjSpec, name: str, sites: Sequence[_Site]) -> None:
-    tendon = spec.add_tendon(name=name)
+    tendon = blank(spec.add_tendon(name=name))
     for site in sites:
         site.add(spec)
         tendon.wrap_site(site.name)
@@ -346,11 +407,11 @@ def _initial_length(
     try:
         model = trial.compile()
     except ValueError as error:
-        text = " ".join(dict.fromkeys(str(error).split("\n")))
-        raise ValueError(
-            f'rest_length "initial" needs a model that compiles as it is: {text.strip()}; '
-            "or give a number"
-        ) from None
+        text = " ".join(dict.fromkeys(str(error).split("\n"))).strip()
+        needs = "a model that compiles as it is"
+        if sites and _compiles(spec):
+            needs = f"a line between {sites[0]} and {sites[1]}"
+        raise ValueError(f'rest_length "initial" needs {needs}: {text}; or give a number') from None
     data = mujoco.MjData(model)
     if is_joint:
         return float(data.qpos[model.joint(target).qposadr[0]])
@@ -362,3 +423,11 @@ def _initial_length(
             "direction; move one of them"
         )
     return length
+
+
+def _compiles(spec: mujoco.MjSpec) -> bool:
+    try:
+        spec.copy().compile()
+    except ValueError:
+        return False
+    return True

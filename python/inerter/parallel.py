@@ -21,6 +21,8 @@ from types import FrameType
 from typing import Any, TypeVar
 from uuid import uuid4
 
+from inerter.signals import held
+
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 Progress = Callable[[float], None]
@@ -178,7 +180,7 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
 
 @contextmanager
 def deaf_children(tracker: Any = resource_tracker) -> Iterator[None]:
-    """Processes begun here do not hear the Ctrl-C of a terminal: this one ends them.
+    """Processes begun here do not hear the Ctrl-C or the end of a terminal: this one ends them.
 
     It hears it when they have begun; one begun by halves would complain. The `tracker` is the
     module of what begins them that cleans up after them.
@@ -186,10 +188,14 @@ def deaf_children(tracker: Any = resource_tracker) -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    # begun before, as its beginning lets the signal through again
-    tracker.ensure_running()
-    with _interrupts_held():
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    deaf = {signal.SIGINT, signal.SIGHUP, signal.SIGQUIT}
+    with held(), _interrupts_held():
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, deaf - {signal.SIGINT})
+        # begun before, as its beginning lets the signal through again; what it cleans up after a
+        # process that was ended is nobody's trouble
+        with environment({"PYTHONWARNINGS": _without_tracker()}):
+            tracker.ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, deaf)
         try:
             yield
         finally:
@@ -211,6 +217,12 @@ def _interrupts_held() -> Iterator[None]:
         signal.signal(signal.SIGINT, handler)
         if heard:
             handler(*heard[0])
+
+
+def _without_tracker() -> str:
+    """Warnings as they are set; none of what the tracker cleans up."""
+    set_already = os.environ.get("PYTHONWARNINGS")
+    return ",".join(filter(None, (set_already, "ignore:resource_tracker")))
 
 
 def end_with(parent: int) -> None:

@@ -1,33 +1,60 @@
-"""Loads the MuJoCo plugin; MuJoCo calls `load_plugin` by itself at the end of `import mujoco`."""
+"""Loads the MuJoCo plugin; MuJoCo calls `load_plugin` by itself at the end of `import mujoco`.
+
+mjModel and mjData differ between versions of MuJoCo, so there is a library for every one of them:
+lib/VERSION/libinerter_mujoco.so. The one of the running engine is taken.
+"""
 
 from __future__ import annotations
 
 import ctypes
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
-from inerter.core import library_path
+from inerter import core
 
-# the version the library was compiled for; pyproject.toml pins the same
-MUJOCO_VERSION = "4.0.0"
+_STEM = "inerter_mujoco"
+# built anew for the engine that is installed; from a wheel: for all of them
+_REINSTALL = "pip install --force-reinstall --no-deps --no-cache-dir inerter"
 
 _loaded = False
 
 
-def plugin_path() -> Path:
+def plugin_versions() -> list[str]:
+    """The versions of MuJoCo that this installation has a library for, oldest first."""
+    found = core.LIBRARY_FOLDER.glob(f"*/{core.library_path(_STEM).name}")
+    return sorted((path.parent.name for path in found), key=_numbers)
+
+
+def plugin_path(version: str | None = None) -> Path:
     """Path of the plugin library, for C programs and `simulate`.
+
+    Parameters
+    ----------
+    version : str, optional
+        Version of MuJoCo, such as "4.0.0"; by default that of the installed package.
 
     Raises
     ------
     ImportError
-        The library is missing.
+        There is no library for this version; the message lists the versions that there are.
     """
-    path = library_path("inerter_mujoco")
-    if not path.exists():
-        raise ImportError(
-            f"{path} is missing: reinstall with `pip install --force-reinstall inerter`"
-        )
-    return path
+    if version is None:
+        import mujoco
+
+        version = mujoco.mj_versionString()
+    there = plugin_versions()
+    for each in there:
+        if _numbers(each) == _numbers(version):
+            return core.library_path(_STEM, each)
+    if not there:
+        missing = core.LIBRARY_FOLDER / "VERSION" / core.library_path(_STEM).name
+        raise ImportError(f"{missing} is missing for every VERSION: reinstall with `{_REINSTALL}`")
+    raise ImportError(
+        f"inerter has no library for MuJoCo {version}; there is one for MuJoCo {_listed(there)}: "
+        f"run `pip install mujoco=={there[-1]}`, or, if inerter supports MuJoCo {version}, "
+        f"`{_REINSTALL}`, which builds it for the installed version"
+    )
 
 
 def load_plugin() -> None:
@@ -36,8 +63,7 @@ def load_plugin() -> None:
     Raises
     ------
     ImportError
-        The installed MuJoCo is not the one the plugin was compiled for, or the library is missing
-        or damaged.
+        There is no library for the installed MuJoCo, or it is missing or damaged.
     """
     global _loaded
     import mujoco
@@ -45,25 +71,19 @@ def load_plugin() -> None:
     if _loaded:
         return
     found = mujoco.mj_versionString()
-    if _numbers(found) != _numbers(MUJOCO_VERSION):
-        raise ImportError(
-            f"inerter was compiled for MuJoCo {MUJOCO_VERSION}, installed is MuJoCo {found}; "
-            f"run `pip install mujoco=={MUJOCO_VERSION}`, or an inerter made for MuJoCo {found}"
-        )
-    path = str(plugin_path())
+    path = str(plugin_path(found))
     try:
         mujoco.mj_loadPluginLibrary(path)
         built_for = ctypes.CDLL(path).inerter_built_for()
     except (mujoco.FatalError, OSError, AttributeError) as error:
         raise ImportError(
             f"{path} cannot be loaded ({str(error).strip()}): it was not compiled for MuJoCo "
-            f"{found}, or is damaged; reinstall with `pip install --force-reinstall inerter`"
+            f"{found}, or is damaged; reinstall with `{_REINSTALL}`"
         ) from None
     if built_for != mujoco.mj_version():
         raise ImportError(
             f"{path} was compiled for MuJoCo {_text(built_for)}, installed is MuJoCo {found}; "
-            f"run `pip install --force-reinstall inerter`, or `pip install "
-            f"mujoco=={_text(built_for)}`"
+            f"reinstall with `{_REINSTALL}`, or run `pip install mujoco=={_text(built_for)}`"
         )
     _loaded = True
 
@@ -75,3 +95,14 @@ def _text(version: int) -> str:
 
 def _numbers(version: str) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", version)[:3]]
+
+
+def _listed(versions: Sequence[str]) -> str:
+    *others, last = versions
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def supported_text() -> str:
+    """What the command line says of the versions."""
+    there = plugin_versions()
+    return f"MuJoCo {_listed(there)}" if there else "no MuJoCo (the libraries are missing)"

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 def test_command_end_to_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("INERTER_SEED", "20261121")
     # how the engines agree is asked elsewhere
-    monkeypatch.setattr("inerter.diagnose.bench.simulate_engines", lambda *_: {})
+    monkeypatch.setattr("inerter.diagnose.rig.simulate_engines", lambda *_: {})
     arguments = ["blind-test", "--effects", "viscous_friction,force_offset", "--count", "1"]
     arguments += ["--clean", "1", "--workers", "1", "--out", str(tmp_path), "--json"]
     result = CliRunner().invoke(app, arguments)

@@ -22,10 +22,8 @@ pytest.importorskip("exudyn.itemInterface")
 from element_systems import Array, line
 from inerter.exudyn import CreateInerter
 from inerter.exudyn import device as law
-from inerter.exudyn.create import FUNCTIONS
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.parameters import Parameters
-from inerter.exudyn.user_functions import force_function
 
 SAME = 1e-11
 """Relative to the sizes of what is added up; 1e-13 is seen."""
@@ -118,7 +116,7 @@ def test_terms_add_up_to_the_force_and_the_state_rates(friction: str) -> None:
             sign = np.sign(true["inertance"][i])
             total += law.mass(NUMBERS, p, stretch, v, sign) * a
             if rigid(device):
-                total += law.load_rest(p, stretch, v, sign)
+                total += law.load_rest(NUMBERS, p, stretch, v, sign)
             assert total == pytest.approx(true["total"][i], rel=SAME, abs=SAME * 1e3)
             for name, rate, expected in zip(device.state_names, found, rates[i], strict=False):
                 if name == "gap_position" and not device.series_damping:
@@ -145,8 +143,8 @@ def test_a_gap_position_beyond_the_edge() -> None:
 
 @pytest.mark.parametrize("heat", [False, True])
 @pytest.mark.parametrize("friction", LAWS)
-def test_expressions_are_the_numbers(friction: str, heat: bool) -> None:
-    """The same laws, recorded and evaluated in C++."""
+def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
+    """Plain numbers, the tape in C, and matrices with expressions that Exudyn evaluates."""
     compared = 0
     for device, motion, states in devices(friction)[::4]:
         system = line([2.0, 3.0], [0.0, 0.0])
@@ -154,17 +152,45 @@ def test_expressions_are_the_numbers(friction: str, heat: bool) -> None:
         if rigid(device):
             # that one Exudyn cannot evaluate by itself
             given["load_friction"] = 0.0
-        made = CreateInerter(
-            system.mbs, "d", system.parts, symbolic=True, dissipatedEnergy=heat, **given
-        )
-        recorded, plain = system.mbs.variables[FUNCTIONS][0], force_function(made.element)
-        for i, (x, v, a) in enumerate(motion.tolist()):
-            own = [*states[i].tolist(), *([0.3] if heat else [])]
-            q = [-0.4 * x, 0.6 * x, *([0.0] * len(own))]
-            q_t = [-0.1 * v, 0.9 * v, *own]
-            fast = np.array(recorded.Evaluate(system.mbs, a, 0, q, q_t))
-            slow = np.array(plain(system.mbs, a, 0, q, q_t))
-            assert fast.shape == slow.shape == (2 + device.nstate + heat,)
-            np.testing.assert_allclose(fast, slow, rtol=SAME, atol=SAME * np.abs(slow).max())
+        made = [
+            CreateInerter(
+                system.mbs, f"d{symbolic}", system.parts, symbolic=symbolic, dissipatedEnergy=heat,
+                **given,
+            )
+            for symbolic in (True, False)
+        ]  # fmt: skip
+        system.mbs.Assemble()
+        element, items = made[0].element, [each.functions.parameters for each in made]
+        for i, (x, v, _) in enumerate(motion.tolist()):
+            z = dict(zip(device.state_names, states[i].tolist(), strict=True))
+            q, q_t = coordinates(element, x, v, z)
+            plain = np.array(element.record(NUMBERS, q, q_t).forces)
+            found = [forces(system.mbs, item, q, q_t) for item in items]
+            scale = SAME * np.abs(plain).max()
+            for each in found:
+                np.testing.assert_allclose(each, plain, rtol=SAME, atol=scale)
             compared += 1
     assert compared == 20 * POINTS
+
+
+def coordinates(
+    element: Any, x: float, v: float, states: dict[str, float]
+) -> tuple[list[float], list[float]]:
+    """Coordinates and velocities at a length, its rate and the device's states."""
+    stretch = x - element.device.rest_length
+    own = [0.3 if name == "dissipated_energy" else states[name] for name in element.own]
+    places = [
+        stretch - states["series_deflection"] if name == "flywheel_velocity" else 0.0
+        for name in element.own
+    ]
+    return [-0.4 * x, 0.6 * x, *places], [-0.1 * v, 0.9 * v, *own]
+
+
+def forces(mbs: Any, item: dict[str, Any], q: list[float], q_t: list[float]) -> Array:
+    """What an ObjectGenericODE2 with these parameters does."""
+    total = np.array(item.get("forceVector", np.zeros(len(q))))
+    if function := item["forceUserFunction"]:
+        evaluate = getattr(function, "Evaluate", function)
+        total += evaluate(mbs, 0.0, 0, q, q_t)
+    total -= item["stiffnessMatrix"] @ q
+    return total - item["dampingMatrix"] @ q_t if "dampingMatrix" in item else total

@@ -71,7 +71,15 @@ def chain(name: str, ends: Ends, symbolic: bool | None = None) -> tuple[System, 
     for i, (first, second) in enumerate(ends):
         terminals = [None if first is None else system.parts[first], system.parts[second]]
         made.append(
-            CreateInerter(system.mbs, f"d{i}", terminals, symbolic=symbolic, **DEVICES[name])
+            CreateInerter(
+                system.mbs,
+                f"d{i}",
+                terminals,
+                symbolic=symbolic,
+                **DEVICES[name],
+                # as in the reference
+                initialStates={"flywheel_velocity": 0.0} if name == "series" else {},
+            )
         )
     return system, made
 

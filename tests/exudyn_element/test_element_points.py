@@ -177,7 +177,7 @@ def test_both_terminals_on_one_body(kind: str) -> None:
             )  # fmt: skip
             solve(system.mbs, settings(0.2, 2e-3), SOLVER[kind])
             assert made.Evaluate()["velocity"] == pytest.approx(0.0, abs=1e-6)
-            assert made.Evaluate()["displacement"] == pytest.approx(0.1 * 5**0.5, rel=1e-6)
+            assert made.Evaluate()["length"] == pytest.approx(0.1 * 5**0.5, rel=1e-6)
         else:
             solve(system.mbs, settings(0.2, 2e-3), SOLVER[kind])
         ends.append(state(system))

@@ -55,11 +55,6 @@ def ffrf(mbs: Any) -> Any:
     )
 
 
-def on_node(kind: str, mbs: Any, **arguments: Any) -> Any:
-    node = mbs.AddNode(itemInterface.Node1D(referenceCoordinates=[0.0]))
-    return mbs.AddObject(getattr(itemInterface, kind)(nodeNumber=node, **arguments))
-
-
 def node_1d(mbs: Any) -> Any:
     return mbs.AddNode(itemInterface.Node1D(referenceCoordinates=[0.0]))
 
@@ -81,8 +76,10 @@ TERMINALS: dict[str, tuple[Ends, str]] = {
     "a coordinate and a point": (
         lambda m: [node_1d(m), mass(m)], "one terminal is a coordinate, the other a point",
     ),
-    "Mass1D": (lambda m: [None, on_node("Mass1D", m, mass=1.0)], "object 0 is a Mass1D; .*takes"),
-    "Rotor1D": (lambda m: [None, on_node("Rotor1D", m)], "object 0 is a RotationalMass1D; "),
+    "a ground at a place and a coordinate": (
+        lambda m: [m.CreateGround(referencePosition=[0.7, 0.0, 0.0]), node_1d(m)],
+        r"point of the ground at \[0.7, 0.0, 0.0\], .*give None for the ground",
+    ),
     "an object of nodes": (lambda m: [None, ffrf(m)], "object 0 is a GenericODE2; .*MassPoint"),
     "a second coordinate": (
         lambda m: [None, coordinate(m, node_1d(m), 1)], "coordinate 1 of node 0, which has 1, c",
@@ -180,16 +177,38 @@ def test_a_sensor_of_nothing() -> None:
 # at run time
 
 
-@pytest.mark.parametrize("solver", ["RK44", "GeneralizedAlpha"])
 @pytest.mark.parametrize("device", [{"inertance": 1.0}, {"viscous": 1.0}])
-def test_terminals_at_one_point(device: dict[str, Any], solver: str) -> None:
-    """Exudyn hands the message on, with the name of the inerter and what to do."""
+def test_terminals_at_one_point(device: dict[str, Any]) -> None:
+    """It is refused when it is made, and when the system is assembled."""
     made = empty()
     pair = [made.mbs.CreateMassPoint(mass=1.0, initialVelocity=[v, 0.0, 0.0]) for v in (0.0, 1.0)]
-    CreateInerter(made.mbs, "front strut", pair, **device)
     message = r'inerter "front strut": its terminals are 0 m apart, .* put them apart, or use 1D'
+    with pytest.raises(ValueError, match=message):
+        CreateInerter(made.mbs, "front strut", pair, **device)
+    far = made.mbs.CreateMassPoint(mass=1.0, referencePosition=[1.0, 0.0, 0.0])
+    CreateInerter(made.mbs, "front strut", [pair[0], far], **device)
+    node = made.mbs.GetObject(far)["nodeNumber"]
+    made.mbs.SetNodeParameter(node, "referenceCoordinates", [0.0, 0.0, 0.0])
+    with pytest.raises(ValueError, match=message):
+        made.mbs.Assemble()
+
+
+@pytest.mark.parametrize("solver", ["RK44", "GeneralizedAlpha"])
+@pytest.mark.parametrize("device", [{"inertance": 1.0}, {"viscous": 1e-6}])
+def test_terminals_that_meet(device: dict[str, Any], solver: str) -> None:
+    """Exudyn hands the message on, with the name of the inerter and what to do."""
+    made = empty()
+    ends = ((0.0, 1.0), (2e-3, -1.0))
+    pair = [
+        made.mbs.CreateMassPoint(
+            mass=1.0, referencePosition=[x, 0.0, 0.0], initialVelocity=[v, 0.0, 0.0]
+        )
+        for x, v in ends
+    ]
+    CreateInerter(made.mbs, "front strut", pair, **device)
+    message = r'inerter "front strut": its terminals are less than 1e-09 m apart'
     with pytest.raises(Exception, match=message):
-        solve(made.mbs, settings(0.01, 1e-3), solver)
+        solve(made.mbs, settings(2e-3, 1e-3), solver)
 
 
 def test_a_run_that_diverged() -> None:

@@ -13,7 +13,7 @@ pytest.importorskip("exudyn.itemInterface")
 
 from element_systems import LUGRE, PLAY, Array, System, bodies, line, settings, solve
 from inerter.exudyn import CreateInerter
-from inerter.exudyn.create import QUANTITIES
+from inerter.exudyn.inerter import QUANTITIES
 
 END, STEP = 0.2, 1e-3
 DEVICE: dict[str, Any] = {

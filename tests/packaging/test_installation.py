@@ -4,6 +4,7 @@ import ast
 import importlib.metadata
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -105,14 +106,18 @@ def test_no_warning_on_import() -> None:
 # ------------------------------ versions ------------------------------
 
 
-def test_one_mujoco_version_everywhere(project: dict[str, Any]) -> None:
-    version = inerter.plugin.MUJOCO_VERSION
-    assert f"mujoco-core=={version}" in project["build-system"]["requires"]
-    assert f"mujoco=={version}" in project["project"]["dependencies"]
-    assert f"mujoco[sysid]=={version}" in project["project"]["optional-dependencies"]["dev"]
-    assert mujoco.mj_versionString() == version
+def test_the_versions_of_mujoco_are_stated_once(project: dict[str, Any]) -> None:
+    stated = runpy.run_path(str(ROOT / "plugin_c" / "packaging" / "engines.py"))
+    assert stated["REQUIREMENT"] in project["project"]["dependencies"]
     required = importlib.metadata.requires("inerter") or []
-    assert f"mujoco=={version}" in required
+    assert {canonical(each) for each in required if "extra" not in each} == {"mujoco", "numpy"}
+    # built for the engine that is installed, or for all of them
+    versions = inerter.plugin.plugin_versions()
+    assert mujoco.mj_versionString() in versions
+    assert set(versions) <= set(stated["ENGINES"])
+    header = (ROOT / "plugin_c" / "mujoco" / "engine_private.h").read_text(encoding="utf-8")
+    oldest = [int(number) for number in next(iter(stated["ENGINES"])).split(".")]
+    assert f"mjVERSION_HEADER < {oldest[0]}{oldest[1]:03}{oldest[2]:03}" in header
 
 
 def test_one_version_of_the_package(project: dict[str, Any]) -> None:
@@ -121,16 +126,18 @@ def test_one_version_of_the_package(project: dict[str, Any]) -> None:
     assert importlib.metadata.version("inerter") == version
 
 
-@pytest.mark.parametrize("found", ["3.9.1", "4.0.1", "4.1.0", "5.0.0"])
+@pytest.mark.parametrize("found", ["3.9.1", "4.0.7", "4.1.0", "5.0.0"])
 def test_another_mujoco_is_refused(monkeypatch: pytest.MonkeyPatch, found: str) -> None:
     monkeypatch.setattr(mujoco, "mj_versionString", lambda: found)
     monkeypatch.setattr(inerter.plugin, "_loaded", False)
     with pytest.raises(ImportError) as caught:
         inerter.load_plugin()
-    message = str(caught.value)
-    assert f"compiled for MuJoCo {inerter.plugin.MUJOCO_VERSION}" in message
-    assert f"installed is MuJoCo {found}" in message
-    assert f"pip install mujoco=={inerter.plugin.MUJOCO_VERSION}" in message
+    message, there = str(caught.value), inerter.plugin.plugin_versions()
+    assert f"no library for MuJoCo {found}" in message
+    for version in there:
+        assert version in message
+    assert f"pip install mujoco=={there[-1]}" in message
+    assert "pip install --force-reinstall" in message
 
 
 # ------------------------------ a broken installation ------------------------------
@@ -142,7 +149,7 @@ def test_a_missing_plugin_is_an_import_error(
     monkeypatch.setattr(inerter.core, "LIBRARY_FOLDER", tmp_path)
     monkeypatch.setattr(inerter.plugin, "_loaded", False)
     for call in (inerter.plugin_path, inerter.load_plugin):
-        with pytest.raises(ImportError, match=r"inerter_mujoco.* is missing: reinstall with `pip"):
+        with pytest.raises(ImportError, match=r"inerter_mujoco.* is missing .*reinstall with `pip"):
             call()
 
 
@@ -221,7 +228,7 @@ def test_every_import_is_a_declared_dependency(project: dict[str, Any]) -> None:
     # a package that only some other package brings along may be gone tomorrow
     extras = project["project"]["optional-dependencies"]
     stated = [*project["project"]["dependencies"], *extras["lab"], *extras["exudyn"]]
-    stated += extras["cluster"]
+    stated += [*extras["cluster"], *extras["gymnasium"]]
     declared = {canonical(requirement) for requirement in stated} | {"inerter"}
     providers = importlib.metadata.packages_distributions()
     undeclared: dict[str, list[str]] = {}

@@ -12,10 +12,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import inerter
+import inerter.core
+import mujoco
 import pytest
 from falling_model import MODEL
 
 ROOT = Path(__file__).resolve().parents[2]
+VERSION = mujoco.mj_versionString()
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="builds shared libraries as on Linux")
 
 # the plugin from another folder, as a process finds it that knows nothing of this test
@@ -95,6 +98,13 @@ def engine() -> Path:
     return library
 
 
+def library_in(folder: Path) -> Path:
+    """Where the package looks for the plugin, `folder` being its lib; the folder is made."""
+    place = folder / VERSION / "libinerter_mujoco.so"
+    place.parent.mkdir(exist_ok=True)
+    return place
+
+
 def imported(folder: Path) -> tuple[str, str]:
     """What a fresh process prints, and what it warns of, with the libraries of a folder."""
     done = run(sys.executable, "-c", IMPORT, folder, cwd=folder)
@@ -109,12 +119,13 @@ def for_another(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copytree(mujoco_folder() / "include", folder / "include")
     header = folder / "include" / "mujoco" / "mujoco.h"
     text = header.read_text(encoding="utf-8")
-    assert "#define mjVERSION_HEADER 4000000" in text
-    header.write_text(text.replace("HEADER 4000000", "HEADER 4001000"), encoding="utf-8")
+    number = mujoco.mj_version()
+    assert f"#define mjVERSION_HEADER {number}" in text
+    header.write_text(text.replace(f"HEADER {number}", "HEADER 4001000"), encoding="utf-8")
     sources = [*ROOT.glob("plugin_c/core/*.c"), *ROOT.glob("plugin_c/mujoco/*.c")]
     compile_c(
         "-shared", "-fPIC", f"-I{ROOT / 'plugin_c'}", f"-isystem{folder / 'include'}", *sources,
-        engine(), f"-Wl,-rpath,{mujoco_folder()}", "-lm", "-o", folder / "libinerter_mujoco.so",
+        engine(), f"-Wl,-rpath,{mujoco_folder()}", "-lm", "-o", library_in(folder),
     )  # fmt: skip
     return folder
 
@@ -142,7 +153,7 @@ def test_a_library_compiled_for_another_mujoco(for_another: Path) -> None:
     assert "plugin inerter.device not found" in printed
     for text in (printed, warned):
         assert "compiled for MuJoCo 4.1.0" in text
-        assert "MuJoCo 4.0.0" in text
+        assert f"MuJoCo {VERSION}" in text
         assert "pip install" in text
     # said at `import mujoco`, too
     assert "Failed to load mujoco plugin entry point inerter" in warned
@@ -158,23 +169,23 @@ def test_a_library_that_needs_the_engine_of_another_mujoco(tmp_path: Path) -> No
     other.parent.mkdir()
     flags = ("-shared", "-fPIC")
     compile_c(*flags, f"-Wl,-soname,{other.name}", tmp_path / "empty.c", "-o", other)
-    compile_c(*flags, tmp_path / "plugin.c", other, "-o", tmp_path / "libinerter_mujoco.so")
+    compile_c(*flags, tmp_path / "plugin.c", other, "-o", library_in(tmp_path))
     shutil.rmtree(other.parent)
     printed, warned = imported(tmp_path)
     for text in (printed, warned):
         assert "libmujoco.so.4.1.0" in text
-        assert "not compiled for MuJoCo 4.0.0" in text
-        assert "pip install --force-reinstall inerter" in text
+        assert f"not compiled for MuJoCo {VERSION}" in text
+        assert "pip install --force-reinstall" in text
 
 
 @LINUX
 def test_what_is_no_library_of_ours(tmp_path: Path) -> None:
-    library = tmp_path / "libinerter_mujoco.so"
+    library = library_in(tmp_path)
     library.write_text("half a download")
-    assert "pip install --force-reinstall inerter" in imported(tmp_path)[0]
+    assert "pip install --force-reinstall" in imported(tmp_path)[0]
     (tmp_path / "empty.c").write_text("int nothing(void) { return 0; }\n")
     compile_c("-shared", "-fPIC", tmp_path / "empty.c", "-o", library)
-    assert "pip install --force-reinstall inerter" in imported(tmp_path)[0]
+    assert "pip install --force-reinstall" in imported(tmp_path)[0]
 
 
 # ------------------------------ where and how it is installed ------------------------------
@@ -188,7 +199,7 @@ def test_an_installation_that_cannot_be_written_to() -> None:
         package = folder / "inerter"
         shutil.copytree(source, package, ignore=shutil.ignore_patterns("__pycache__"))
         # an installation in place has its libraries elsewhere
-        shutil.copytree(inerter.plugin_path().parent, package / "lib", dirs_exist_ok=True)
+        shutil.copytree(inerter.core.LIBRARY_FOLDER, package / "lib", dirs_exist_ok=True)
         for path in (folder, *folder.rglob("*")):
             path.chmod(0o555 if path.is_dir() else 0o444)
 
@@ -250,7 +261,8 @@ def test_a_program_in_c(program: Path, whole_folder: bool) -> None:
 @LINUX
 def test_a_program_in_c_with_a_library_for_another_mujoco(program: Path, for_another: Path) -> None:
     model = program.parent / "model.xml"
-    done = run(program, for_another / "libinerter_mujoco.so", model)
-    for word in ("warning: ", "compiled for MuJoCo 4.1.0", "loaded is MuJoCo 4.0.0", "not found"):
+    done = run(program, library_in(for_another), model)
+    words = ("warning: ", "compiled for MuJoCo 4.1.0", f"loaded is MuJoCo {VERSION}", "not found")
+    for word in words:
         assert word in done.stdout
     assert done.returncode == 1

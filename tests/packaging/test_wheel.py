@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import runpy
 import shutil
 import subprocess
 import sys
@@ -69,8 +70,13 @@ def test_the_wheel_says_where_it_runs(wheel: Path) -> None:
 
 def test_the_wheel_holds_our_libraries_and_not_mujocos(wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
-    libraries = {Path(name).stem for name in names if Path(name).suffix in (".so", ".dylib")}
-    assert libraries == {"libinerter_core", "libinerter_mujoco"}
+    engines = runpy.run_path(str(ROOT / "plugin_c" / "packaging" / "engines.py"))["ENGINES"]
+    found = {Path(name) for name in names if Path(name).suffix in (".so", ".dylib")}
+    libraries = {str(path.relative_to("inerter/lib").with_suffix("")) for path in found}
+    assert libraries == {
+        "libinerter_core", "libinerter_exudyn",
+        *(f"{version}/libinerter_mujoco" for version in engines),
+    }  # fmt: skip
     assert not [name for name in names if "libmujoco" in name or "/tests/" in name]
     assert "inerter/mjcf_models/quarter_car/model.xml" in names
 

@@ -14,6 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+# MuJoCo 3 turns free bodies in second order under RK4, also without a device
+ENGINE = tuple(int(number) for number in mujoco.mj_versionString().split(".")[:3])
+RK4_TURNS = ENGINE >= (4,)
+
 INTEGRATORS = ("Euler", "implicit", "implicitfast", "discrete", "RK4")
 
 # quarter-car of Wang & Su 2008; strut of middling stiffness

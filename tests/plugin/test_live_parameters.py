@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inerter
 import mujoco
 import numpy as np
 import pytest
@@ -90,3 +91,95 @@ def test_names_with_dots_do_not_meet() -> None:
     data.qfrc_applied[:] = FORCE
     mujoco.mj_forward(model, data)
     np.testing.assert_allclose(FORCE / data.qacc - MASS, [2, 4], rtol=1e-12)
+
+
+def test_a_value_that_cannot_be_is_an_error_of_every_step() -> None:
+    model = slide({"inertance": 4, "viscous": 1}, {"viscous": 1})
+    data = mujoco.MjData(model)
+    model.numeric_data[0] = -1
+    for _ in range(3):
+        with pytest.raises(mujoco.FatalError, match="live parameters: viscous is -1"):
+            mujoco.mj_step(model, data)
+    model.numeric_data[0] = np.nan
+    with pytest.raises(mujoco.FatalError, match="live parameters: viscous is"):
+        mujoco.mj_step(model, data)
+    # mended: also to the value that stood before
+    for viscous in (1.0, 5.0):
+        model.numeric_data[0] = viscous
+        mujoco.mj_resetData(model, data)
+        data.qvel[0] = 2
+        mujoco.mj_forward(model, data)
+        assert data.qacc[0] == pytest.approx(-viscous * 2 / (MASS + 4), rel=1e-12)
+
+
+def knee(**numerics: float) -> mujoco.MjSpec:
+    """A leg with a device on its knee, live parameters of it."""
+    spec = mujoco.MjSpec()
+    body = spec.worldbody.add_body(name="shank")
+    body.add_joint(name="knee", type=mujoco.mjtJoint.mjJNT_SLIDE)
+    body.add_geom(size=[0.1, 0, 0], mass=MASS)
+    inerter.add_device(spec, "knee_dev", joint="knee", inertance=1, live=list(numerics), **numerics)
+    return spec
+
+
+@pytest.mark.parametrize(
+    ("prefix", "suffix"), [("left/", ""), ("/", "_a"), ("b/", ".right"), ("a.b/", "_viscous")]
+)
+def test_an_attached_model_keeps_its_live_parameters(prefix: str, suffix: str) -> None:
+    spec = mujoco.MjSpec()
+    spec.option.gravity[:] = 0
+    spec.attach(knee(viscous=3.0), prefix=prefix, suffix=suffix, frame=spec.worldbody.add_frame())
+    model = spec.compile()
+    (device,) = inerter.devices_of(model)
+    assert device.name == f"{prefix}knee_dev{suffix}"
+    assert device.live == {"viscous": 0}
+    data = mujoco.MjData(model)
+    model.numeric_data[0] = 8
+    data.qvel[0] = 1
+    mujoco.mj_forward(model, data)
+    assert data.qacc[0] == pytest.approx(-8 / (MASS + 1), rel=1e-12)
+
+
+def test_two_attached_models_have_each_its_own() -> None:
+    spec = mujoco.MjSpec()
+    for suffix, viscous in (("_a", 3.0), ("_b", 4.0), ("", 5.0)):
+        frame = spec.worldbody.add_frame()
+        leg = knee(viscous=viscous, stiffness=viscous)
+        spec.attach(leg, prefix="l/", suffix=suffix, frame=frame)
+    model = spec.compile()
+    values = {
+        each.name: [float(model.numeric_data[place]) for place in each.live.values()]
+        for each in inerter.devices_of(model)
+    }
+    assert values == {"l/knee_dev_a": [3, 3], "l/knee_dev_b": [4, 4], "l/knee_dev": [5, 5]}
+
+
+def test_a_renamed_actuator_keeps_its_live_parameters() -> None:
+    spec = knee(viscous=3.0)
+    spec.actuator("knee_dev").name = "strut"
+    (device,) = inerter.devices_of(spec.compile())
+    assert (device.name, dict(device.live)) == ("strut", {"viscous": 0})
+    # two statements of one parameter
+    spec.add_numeric(name="strut.viscous", data=[1], size=1)
+    with pytest.raises(ValueError, match="is the second one that holds its viscous"):
+        spec.compile()
+
+
+@pytest.mark.parametrize(
+    ("numeric", "words"),
+    [
+        ("hip.viscous", 'no device is named "hip"'),
+        ("left/strut.viscous", 'no device is named "left/strut"'),
+        ("strut.viscus", '"viscus" is not a parameter that can be live'),
+    ],
+)
+def test_a_numeric_that_would_hold_nothing_is_refused(numeric: str, words: str) -> None:
+    instance, actuator, sensor = instance_actuator({"inertance": 1}, 'joint="x"')
+    xml = f"""<mujoco><extension><plugin plugin="inerter.device">{instance}</plugin></extension>
+        <worldbody><body><joint name="x" type="slide"/><geom size="0.1"/></body></worldbody>
+        <actuator>{actuator}</actuator><sensor>{sensor}</sensor>
+        <custom><numeric name="{numeric}" data="1"/><numeric name="gains.left" data="1 2"/></custom>
+        </mujoco>"""
+    with pytest.raises(ValueError, match=words):
+        mujoco.MjModel.from_xml_string(xml)
+    mujoco.MjModel.from_xml_string(xml.replace(numeric, "camera.height"))

@@ -7,7 +7,6 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import mujoco
-import mujoco.batch
 import numpy as np
 import pytest
 from inerter.device_in_model import device_of
@@ -120,6 +119,7 @@ def test_gains_may_be_scaled_as_a_whole() -> None:
 
 
 def test_a_batch_is_a_loop() -> None:
+    many = pytest.importorskip("mujoco.batch", reason="MuJoCo 3.16 has none")
     # 256 cars of different inertance, damping and start, on two threads
     model, count, steps = car(), 256, 40
     rng = np.random.default_rng(0)
@@ -127,7 +127,7 @@ def test_a_batch_is_a_loop() -> None:
     dampings = rng.uniform(0, 2000, count)
     speeds = rng.normal(0, 0.3, (count, 2))
     bristles = rng.normal(0, 1e-4, count)
-    batch = mujoco.batch.Batch(model, count, 2)
+    batch = many.Batch(model, count, 2)
     batch.expand("actuator_armature")[:, 0] = inertances
     batch.expand("actuator_damping")[:, 0] = dampings
     batch.set_const()

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import mujoco
-import mujoco.batch
 import numpy as np
 import pytest
 from plugin_models import INTEGRATORS
@@ -275,8 +274,9 @@ def loop() -> tuple[Array, Array, Array]:
 def test_a_batch_is_the_loop(
     threads: int, persistent: bool, loop: tuple[Array, Array, Array]
 ) -> None:
+    many = pytest.importorskip("mujoco.batch", reason="MuJoCo 3.16 has none")
     values, speeds, rows = loop
-    batch = mujoco.batch.Batch(quarter_car(), CARS, threads, persistent)
+    batch = many.Batch(quarter_car(), CARS, threads, persistent)
     batch.expand("numeric_data")[:] = values
     qpos, qvel, act = (batch.bind(name) for name in ("qpos", "qvel", "act"))
     sensors = batch.bind("sensordata")
@@ -285,3 +285,23 @@ def test_a_batch_is_the_loop(
     batch.step(nstep=STEPS - 7)
     assert np.array_equal(np.hstack([qpos, qvel, act, sensors]), rows)
     assert len(np.unique(rows[:, 0])) == CARS
+
+
+@pytest.mark.parametrize("integrator", ["implicit", "implicitfast"])
+def test_a_motor_at_its_limit_continues_bit_for_bit(integrator: str) -> None:
+    """The engine's derivatives look at the motors' force, which must be that of the same pass."""
+    device = (
+        {"inertance": 3.0, "load_friction": 0.02},
+        'joint="arm"',
+    )
+    world = """<body><joint name="arm" axis="0 1 0" damping="0.3" actuatorfrcrange="-30 30"/>
+      <geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.04" mass="2"/></body>"""
+    servo = '<position name="servo" joint="arm" kp="60" kv="5"/>'
+    xml = mjcf(world, "", [device], actuators=servo, gravity=(0, 0, -9.81))
+    option = f'timestep="2e-3" integrator="{integrator}"'
+    model = mujoco.MjModel.from_xml_string(xml.replace("{option}", option))
+    data = mujoco.MjData(model)
+    data.qvel[:], data.ctrl[:1] = 2.0, 1.0
+    run(model, data, 3)
+    fresh = whole_state(model, data)
+    assert np.array_equal(run(model, fresh, 20), run(model, data, 20))

@@ -12,7 +12,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from plugin_models import INTEGRATORS
+from plugin_models import INTEGRATORS, RK4_TURNS
 from topology_mechanisms import Array
 from topology_models import ONE, TWO, Topology, cases, quarter_car, two_bodies
 
@@ -26,7 +26,8 @@ STEPS = dict.fromkeys(INTEGRATORS, (2e-3, 1e-3, 5e-4)) | {"RK4": (1e-2, 5e-3, 2.
 # errors at 1 ms over 0.4 s: explicit first order on the wheel's 36 rad/s; springs that discrete
 # integrates implicitly are damped
 QUARTER_CAR = {"Euler": 0.02, "implicit": 0.03, "implicitfast": 0.03, "discrete": 0.1, "RK4": 1e-7}
-IN_SPACE = dict.fromkeys(INTEGRATORS, 6e-3) | {"RK4": 1e-9}
+IN_SPACE = dict.fromkeys(INTEGRATORS, 6e-3) | {"RK4": 1e-9 if RK4_TURNS else 2e-5}
+RK4_ORDER = 3.7 if RK4_TURNS else 1.8
 
 
 @cache
@@ -64,10 +65,10 @@ def table() -> str:
 @pytest.mark.parametrize("name", CASES)
 def test_the_motion_converges_to_the_equations(name: str, integrator: str) -> None:
     topology = CASES[name]
-    allowed = QUARTER_CAR if name in QUARTER_CARS else IN_SPACE
+    allowed, fast = (QUARTER_CAR, 3.8) if name in QUARTER_CARS else (IN_SPACE, RK4_ORDER)
     assert error(topology, truth(name), integrator, 1e-3) < allowed[integrator]
     observed = order(topology, truth(name), integrator)
-    assert observed > (3.8 if integrator == "RK4" else 0.85), observed
+    assert observed > (fast if integrator == "RK4" else 0.85), observed
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -108,7 +109,7 @@ def test_any_inertance_between_tumbling_bodies(ratio: float, integrator: str) ->
     expected = topology.truth(TIMES)
     assert error(topology, expected, integrator, 1e-3) < IN_SPACE[integrator]
     observed = order(topology, expected, integrator)
-    assert observed > (3.7 if integrator == "RK4" else 0.85), observed
+    assert observed > (RK4_ORDER if integrator == "RK4" else 0.85), observed
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import polars as pl
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from inerter.records import RecordError, csv_table, read_records, table
+from inerter.records import RecordError, csv_table, read_records
 from scipy.io import savemat
 
 HEADER = "time,displacement,force,run"
@@ -84,9 +84,9 @@ def test_too_many_rows_are_refused(
         pl.DataFrame(columns).write_parquet(path)
     else:
         pl.DataFrame(columns).write_csv(path)
-    monkeypatch.setattr(table, "MAX_ROWS", 300)
+    monkeypatch.setenv("INERTER_MOST_ROWS", "300")
     assert len(read_records(path, "bench")[0].time) == 300
-    monkeypatch.setattr(table, "MAX_ROWS", 299)
+    monkeypatch.setenv("INERTER_MOST_ROWS", "299")
     with pytest.raises(RecordError, match=r"week.*about 300 rows, at most 299 are read; "):
         read_records(path)
 
@@ -96,7 +96,7 @@ def test_a_file_far_too_long_is_refused_by_its_first_block(
 ) -> None:
     path = tmp_path / "week.csv"
     path.write_text("\n".join([HEADER, *lines(5000)]))
-    monkeypatch.setattr(table, "MAX_ROWS", 1000)
+    monkeypatch.setenv("INERTER_MOST_ROWS", "1000")
     monkeypatch.setattr(csv_table, "BLOCK", 4096)
     blocks = []
     found = csv_table._columns

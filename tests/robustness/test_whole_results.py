@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 import signal
@@ -15,6 +16,7 @@ import pytest
 from inerter.commands import app
 from inerter.folder import file_names, refuse_folder, write_files
 from inerter.models import data_path, model_path
+from inerter.staging import Staging
 from typer.testing import CliRunner
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="limits and signals of POSIX")
@@ -197,6 +199,52 @@ def test_files_after_names_of_a_model_are_all_there(tmp_path: Path) -> None:
     assert found[1:4] == ["front", "Front_2", "device_3"]
 
 
+SIGNALS = ["SIGKILL", "SIGTERM"]
+MORE_SIGNALS = ["SIGHUP", "SIGINT", "SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU"]
+
+
+@pytest.mark.parametrize("name", [*SIGNALS, *MORE_SIGNALS])
+def test_a_signal_at_any_step_leaves_all_or_nothing(
+    name: str, tmp_path: Path, long_run: bool
+) -> None:
+    """At each call of the system that writing makes, into a folder that is new and one that is not.
+
+    What `kill -9` and a power cut leave behind in a folder that was there, the next run ends.
+    """
+    if name in MORE_SIGNALS and not long_run:
+        pytest.skip("with --long")
+    program = Path(__file__).with_name("killed.py")
+    done = subprocess.run(
+        [sys.executable, program, tmp_path, name],
+        capture_output=True, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    for case, (wrong, steps) in json.loads(done.stdout).items():
+        assert wrong == [], case
+        assert steps > 40, case
+
+
+def test_what_a_run_that_lives_is_making_is_left_alone(tmp_path: Path) -> None:
+    with Staging(tmp_path) as staging:
+        (staging.new / "a.txt").write_text("a")
+        os.utime(staging.place, (0, 0))
+        write_files(tmp_path, {"b.txt": "b"})
+        assert (staging.new / "a.txt").read_text() == "a"
+    assert listing(tmp_path) == {"b.txt": "b"}
+
+
+def test_a_note_from_elsewhere_moves_nothing_out_of_the_folder(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    left = out / f"{Staging.PREFIX}x"
+    (left / "new").mkdir(parents=True)
+    (left / "lock").touch()
+    (tmp_path / "mine.txt").write_text("mine")
+    (left / "mine.txt").write_text("theirs")
+    (left / "commit").write_text('{"../mine.txt": true}')
+    write_files(out, {"a.txt": "a"})
+    assert listing(tmp_path) == {"mine.txt": "mine", "out": "/", "out/a.txt": "a"}
+
+
 # --- Ctrl-C ------------------------------------------------------------------------------------
 
 LONG = {
@@ -234,4 +282,4 @@ def test_ctrl_c_ends_in_order(command: str, after: float, tmp_path: Path) -> Non
     assert len(lines) <= (3 if command == "blind-test" else 1), stderr
     left = [path.name for path in out.rglob("*")] if out.exists() else []
     assert [name for name in left if name.endswith((".json", ".html", ".toml", ".png"))] == []
-    assert not any(name.startswith(".writing-") for name in left)
+    assert not any(name.startswith(Staging.PREFIX) for name in left)

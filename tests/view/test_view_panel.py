@@ -33,6 +33,7 @@ from inerter.view.session import Session
 from inerter.view.shake import Shake
 from mujoco.studio import app, endpoints, launch_thread, messages, viewer_handle
 from mujoco.studio.sim import PauseState  # pyright: ignore[reportMissingImports]
+from served import served
 
 SCENE = model_path("half_car", "scene.xml")
 
@@ -201,39 +202,19 @@ def refusal(*arguments: object) -> str:
 
 
 def test_the_page_is_served_to_this_machine_alone(tmp_path: Path) -> None:
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    command = [sys.executable, "-m", "inerter", "view", str(SCENE), "--port", str(port)]
-    log = tmp_path / "log.txt"
-    hidden = ("DISPLAY", "WAYLAND_DISPLAY")
-    environment = {key: value for key, value in os.environ.items() if key not in hidden}
-    with log.open("w") as out:
-        served = subprocess.Popen(command, stdout=out, stderr=out, env=environment)
-    try:
-        page = None
-        for _ in range(150):
-            try:
-                with urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=2) as answer:
-                    page = answer.read()
-                break
-            except OSError:
-                time.sleep(0.2)
-        assert page, log.read_text()
-        assert b"<html" in page.lower()
+    with served(tmp_path) as viewer:
+        with urllib.request.urlopen(viewer.address, timeout=20) as answer:
+            assert b"<html" in answer.read().lower()
         with socket.socket() as outside:
             outside.settimeout(2)
             address = own_address()
             if address:
-                assert outside.connect_ex((address, port)) != 0
-        time.sleep(0.5)
-    finally:
-        served.send_signal(signal.SIGINT)
-        code = served.wait(30)
-    text = log.read_text()
-    assert code == 0, text
+                assert outside.connect_ex((address, viewer.port)) != 0
+        assert viewer.end(signal.SIGINT) == 0, viewer.log.read_text()
+    text = viewer.log.read_text()
     assert "No display here" in text
-    assert f"ssh -L {port}:localhost:{port}" in text
+    assert f"ssh -L {viewer.port}:localhost:{viewer.port}" in text
+    assert "No authentication" not in text
     assert "Traceback" not in text
 
 

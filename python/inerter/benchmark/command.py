@@ -27,7 +27,7 @@ def benchmark_command(
     from inerter.benchmark.machine import busy
     from inerter.benchmark.report import measure, print_bench
 
-    with refusing(out_dir):
+    with refusing(out_dir, "bench.json"):
         with progress_bar("measuring", as_json) as progress:
             result = measure(quick, progress)
         if remark := busy(result["machine"]):

@@ -62,7 +62,7 @@ def blind_test_command(
     usual = count if effects is None else 0
     numbers = {"clean": clean, "pairs": pairs, "triples": triples, "unknown": unknown}
     names = EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
-    with refusing(folder):
+    with refusing(folder, "blind_test.json", "confusion.png", "calibration.png"):
         plan = Plan(
             effects=names, count=count, noise=noise, seed=_seed(seed),
             **{name: usual if given is None else given for name, given in numbers.items()},

@@ -85,7 +85,7 @@ def _design(calculate: Callable[[], Any], folder: Path | None, as_json: bool) ->
     from inerter.design.table import print_design
 
     files: list[str] = []
-    with refusing(folder):
+    with refusing(folder, "design.json", "device.toml", "design.png", "design.html"):
         design = calculate()
         if folder is not None:
             files = write_design(design, folder)

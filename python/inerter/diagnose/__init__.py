@@ -69,7 +69,7 @@ def diagnose(
     if baseline and rest_length:
         baseline = Device(**{k: v for k, v in baseline.given.items() if k != "rest_length"})
     progress("reading the records")
-    read = read_records(records)
+    read = read_records(records, others=False)
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):

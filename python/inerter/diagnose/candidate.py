@@ -22,7 +22,7 @@ class Candidate:
     @property
     def is_rich(self) -> bool:
         """Whether it is a friction law that is tried only where memory is to be seen."""
-        return self.law in FRICTION and FRICTION[self.law].rich
+        return self.law is not None and self.law in FRICTION and FRICTION[self.law].rich
 
     @property
     def key(self) -> tuple[object, ...]:

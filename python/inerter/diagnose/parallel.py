@@ -20,7 +20,8 @@ import numpy as np
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
-from inerter.parallel import ONE_THREAD, deaf_children, end_with, environment
+from inerter.input_file import whole_number
+from inerter.parallel import ONE_THREAD, deaf_children, end_with
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -65,11 +66,13 @@ def helped() -> Iterator[None]:
 
     There are as many as processors but this one's, LOKY_MAX_CPU_COUNT at most.
     """
+    # a text that is no number is an error of loky's, without the name of the variable
+    whole_number("LOKY_MAX_CPU_COUNT", 1)
     count = min(cpu_count(), MOST) - 1
     if _helpers.get() or not count:
         yield
         return
-    with environment({"PYTHONWARNINGS": _without_tracker()}), deaf_children(resource_tracker):
+    with deaf_children(resource_tracker):
         pool = ProcessPoolExecutor(
             count, env=ONE_THREAD, initializer=_begin, initargs=(os.getpid(),)
         )
@@ -100,12 +103,6 @@ def _begin(parent: int) -> None:
     """A process that ends with its parent, and where a prediction may run away as it may there."""
     end_with(parent)
     np.seterr(over="ignore", invalid="ignore")
-
-
-def _without_tracker() -> str:
-    """Warnings as they are set; none of what the tracker cleans up after a Ctrl-C."""
-    set_already = os.environ.get("PYTHONWARNINGS")
-    return ",".join(filter(None, (set_already, "ignore:resource_tracker")))
 
 
 class _Shared(Generic[S, T]):

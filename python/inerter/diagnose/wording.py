@@ -86,7 +86,7 @@ def _rival_in_words(rival: Rival) -> str:
 
 def _law(name: str | None) -> str:
     """A friction law in brackets, where it is one."""
-    return f" ({FRICTION[name].words})" if name in FRICTION else ""
+    return f" ({FRICTION[name].words})" if name and name in FRICTION else ""
 
 
 def _told_apart(effect: str, rival: Rival) -> str:

@@ -6,6 +6,7 @@ the core come only the table of parameters and the checks of what is given.
 
 from __future__ import annotations
 
-from inerter.exudyn.create import CreateInerter, Inerter
+from inerter.exudyn.create import CreateInerter
+from inerter.exudyn.inerter import Inerter
 
 __all__ = ["CreateInerter", "Inerter"]

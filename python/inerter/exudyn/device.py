@@ -88,37 +88,42 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     return [*found, Term(at_terminals, 1.0)]
 
 
-def mass(f: Functions, p: Parameters, x: Value, v: Value, load_sign: float = 0.0) -> Value:
+def mass(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value = 0.0) -> Value:
     """Inertance at the terminals [kg]; `load_sign` is the sign of N, for load friction."""
     if series.is_there(p):
         return 0.0
     inertance = flywheel.inertance(f, p, x, v)[0]
-    return inertance * (1.0 + load_sign * _load_share(f, p, v)) if load_sign else inertance
+    return inertance * (1.0 + load_sign * _load_share(f, p, v)) if p.load_friction else inertance
 
 
-def load_rest(p: Parameters, x: float, v: float, load_sign: float) -> float:
+def load_rest(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value) -> Value:
     """Load friction of that part of N that does not depend on acceleration [N]."""
-    rest = flywheel.inertance(NUMBERS, p, x, v)[1] + flywheel.force(NUMBERS, p, x, v)
-    return load_sign * _load_share(NUMBERS, p, v) * rest
+    rest = flywheel.inertance(f, p, x, v)[1] + flywheel.force(f, p, x, v)
+    return load_sign * _load_share(f, p, v) * rest
 
 
-def carried(p: Parameters, x: float, v: float, a: float, z: Sequence[float]) -> float:
+def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value]) -> Value:
     """N, the force through the inertance [N]."""
     if series.is_there(p):
         state = states_of(p, z)
         rate = v - state.speed
-        return series.at(NUMBERS, p, state.deflection, rate, state.gap).force
-    inertance, rest = flywheel.inertance(NUMBERS, p, x, v)
-    return inertance * a + rest + flywheel.force(NUMBERS, p, x, v)
+        return series.at(f, p, state.deflection, rate, state.gap).force
+    inertance, rest = flywheel.inertance(f, p, x, v)
+    return inertance * a + rest + flywheel.force(f, p, x, v)
 
 
-def forces(p: Parameters, x: float, v: float, a: float, z: Sequence[float]) -> dict[str, float]:
+def forces(
+    p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value], f: Functions = NUMBERS
+) -> dict[str, Value]:
     """Total force, force through the inertance, friction with load friction [N]."""
-    through = carried(p, x, v, a, z)
-    rubbing = friction.LAWS[p.friction](NUMBERS, p, x, v, states_of(p, z).friction)
-    rub = rubbing.bound + rubbing.damping * (rubbing.rate or 0.0)
-    rub = rub + _load_share(NUMBERS, p, v) * abs(through)
-    total = beside.force(NUMBERS, p, x, v) + rub + through
+    through = carried(f, p, x, v, a, z)
+    rubbing = friction.LAWS[p.friction](f, p, x, v, states_of(p, z).friction)
+    rub = rubbing.bound
+    if rubbing.rate is not None:
+        rub = rub + rubbing.damping * rubbing.rate
+    if p.load_friction:
+        rub = rub + _load_share(f, p, v) * f.abs(through)
+    total = beside.force(f, p, x, v) + rub + through
     return {"total": total, "inertance": through, "friction": rub}
 
 

@@ -9,6 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+OLDEST, NEWEST = (1, 9), (1, 13)
+"""Versions of Exudyn that are tested; 1.8 gives wrong forces, 1.7 has no expressions."""
+
 
 def installed() -> bool:
     """Whether Exudyn can be imported; a mere folder of its name does not count."""
@@ -31,15 +34,36 @@ def exudyn(module: str = "") -> Any:
             "(it has wheels for the usual Pythons)"
         )
     package = importlib.import_module("exudyn")
+    _check_version(package)
     if not module or hasattr(package, module):
         return getattr(package, module) if module else package
     return importlib.import_module(f"exudyn.{module}")
 
 
+def _check_version(package: Any) -> None:
+    """Raise ImportError for a version that does not work as those which are tested."""
+    told = getattr(package, "__version__", None) or package.GetVersionString()
+    numbers = tuple(int(part) for part in str(told).split(".")[:2] if part.isdigit())
+    if not OLDEST <= numbers <= NEWEST:
+        raise ImportError(
+            f"Exudyn {told} is not one of the versions that inerter works with, "
+            f"{OLDEST[0]}.{OLDEST[1]} to {NEWEST[0]}.{NEWEST[1]}; run "
+            '`pip install "inerter[exudyn]"`'
+        )
+
+
 @contextmanager
 def quiet() -> Iterator[None]:
     """Keep Exudyn from printing: its solvers remark on any user function."""
-    config = exudyn().config
+    config = getattr(exudyn(), "config", None)
+    if config is None:
+        # Exudyn 1.9, which cannot tell how it is set
+        exudyn().SetWriteToConsole(False)
+        try:
+            yield
+        finally:
+            exudyn().SetWriteToConsole(True)
+        return
     before = config.printToConsole
     config.printToConsole = False
     try:

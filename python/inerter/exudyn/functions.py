@@ -1,6 +1,7 @@
 """The elementary functions of the laws, on numbers and on Exudyn's symbolic expressions.
 
-A law is written once with these names; `NUMBERS` evaluates it, `expressions()` records it.
+A law is written once with these names; `NUMBERS` evaluates it, `expressions()` and a `Tape` record
+it.
 """
 
 from __future__ import annotations
@@ -24,10 +25,15 @@ class Functions:
 
     abs: Function
     sign: Function
+    sqrt: Function
+    sin: Function
+    cos: Function
     exp: Function
     log: Function
     tanh: Function
+    round: Function
     power: Callable[[Value, Value], Value]
+    arctan2: Callable[[Value, Value], Value]
     least: Callable[[Value, Value], Value]
     greatest: Callable[[Value, Value], Value]
     choose: Callable[[Value, Value, Value], Value]
@@ -49,10 +55,15 @@ def _choose(condition: bool, yes: float, no: float) -> float:
 NUMBERS = Functions(
     abs=abs,
     sign=_sign,
+    sqrt=math.sqrt,
+    sin=math.sin,
+    cos=math.cos,
     exp=_exp,
     log=math.log,
     tanh=math.tanh,
+    round=round,
     power=math.pow,
+    arctan2=math.atan2,
     least=min,
     greatest=max,
     choose=_choose,
@@ -72,10 +83,15 @@ def expressions() -> Functions:
     return Functions(
         abs=symbolic.abs,
         sign=symbolic.sign,
+        sqrt=symbolic.sqrt,
+        sin=symbolic.sin,
+        cos=symbolic.cos,
         exp=symbolic.exp,
         log=symbolic.log,
         tanh=symbolic.tanh,
+        round=symbolic.round,
         power=symbolic.pow,
+        arctan2=symbolic.atan2,
         least=symbolic.min,
         greatest=symbolic.max,
         choose=choose,

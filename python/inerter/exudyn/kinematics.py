@@ -10,23 +10,24 @@ rotational velocity coordinate k.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-Vector = tuple[float, float, float]
+from inerter.exudyn.functions import Functions, Value
+
+Vector = tuple[Value, Value, Value]
 Matrix = tuple[Vector, Vector, Vector]
-Numbers = Sequence[float]
+Numbers = Sequence[Value]
 
 
 class Motion(NamedTuple):
     """Length or displacement [m], its rate, J of shape (coordinates,), bias [m/s^2]."""
 
-    length: float
-    rate: float
-    row: list[float]
-    bias: float
+    length: Value
+    rate: Value
+    row: list[Value]
+    bias: Value
 
 
 class Rotation(NamedTuple):
@@ -48,16 +49,21 @@ class Line:
     @property
     def row(self) -> list[float]:
         """J, shape (size,)."""
-        found = [0.0] * self.size
+        found: list[Value] = [0.0] * self.size
         for place, weight in zip(self.places, self.weights, strict=True):
             found[place] += weight
         return found
 
-    def at(self, q: Numbers, q_t: Numbers) -> Motion:
+    def difference(self, values: Numbers) -> Value:
+        """J times values of shape (size,) or longer."""
+        found = 0.0
+        for place, weight in zip(self.places, self.weights, strict=True):
+            found = found + weight * values[place] if weight != 1.0 else values[place] + found
+        return found
+
+    def at(self, f: Functions, q: Numbers, q_t: Numbers) -> Motion:
         """The motion at coordinates and velocities of shape (size,) or longer."""
-        pairs = list(zip(self.places, self.weights, strict=True))
-        length = sum(weight * q[place] for place, weight in pairs)
-        return Motion(length, sum(weight * q_t[place] for place, weight in pairs), self.row, 0.0)
+        return Motion(self.difference(q), self.difference(q_t), self.row, 0.0)
 
 
 @dataclass(frozen=True)
@@ -71,10 +77,12 @@ class Point:
     start: int = 0
     reference: tuple[float, ...] = ()
     moves: int = 0
-    rotation: Callable[[Numbers, Numbers], Rotation] | None = None
+    rotation: Callable[[Functions, Numbers, Numbers], Rotation] | None = None
     local: Vector = (0.0, 0.0, 0.0)
 
-    def at(self, q: Numbers, q_t: Numbers) -> tuple[Vector, Vector, list[Vector], Vector]:
+    def at(
+        self, f: Functions, q: Numbers, q_t: Numbers
+    ) -> tuple[Vector, Vector, list[Vector], Vector]:
         """Position, velocity, partial velocities, acceleration at q'' = 0."""
         if not self.reference:
             return self.local, ZERO, [], ZERO
@@ -89,7 +97,7 @@ class Point:
             position = add(origin, self.local)  # pyright: ignore[reportArgumentType]
             return position, speed, partial, ZERO  # pyright: ignore[reportReturnType]
 
-        turned = self.rotation(total[moves:], rates[moves:])
+        turned = self.rotation(f, total[moves:], rates[moves:])
         arm = apply(turned.matrix, self.local)
         spin = ZERO
         for axis, rate in zip(turned.axes, rates[moves:], strict=True):
@@ -102,40 +110,96 @@ class Point:
 
 @dataclass(frozen=True)
 class Span:
-    """The distance between two points; `name` is the element's, for its errors."""
+    """The distance between two points."""
 
     size: int
     first: Point
     second: Point
-    name: str = ""
 
-    def at(self, q: Numbers, q_t: Numbers) -> Motion:
+    def at(self, f: Functions, q: Numbers, q_t: Numbers) -> Motion:
         """The motion at coordinates and velocities of shape (size,) or longer."""
-        p1, v1, partial1, bias1 = self.first.at(q, q_t)
-        p2, v2, partial2, bias2 = self.second.at(q, q_t)
+        p1, v1, partial1, bias1 = self.first.at(f, q, q_t)
+        p2, v2, partial2, bias2 = self.second.at(f, q, q_t)
         between, relative = subtract(p2, p1), subtract(v2, v1)
-        length = math.sqrt(dot(between, between))
-        if length < SHORTEST:
-            raise ValueError(
-                f'inerter "{self.name}": its terminals are {length:g} m apart, which leaves it '
-                "without a direction; put them apart, or use 1D coordinates"
-            )
-        line = scale(between, 1.0 / length)
+        length = f.sqrt(dot(between, between))
+        line = scale(between, 1.0 / f.greatest(length, SHORTEST))
         rate = dot(line, relative)
-        row = [0.0] * self.size
+        row: list[Value] = [0.0] * self.size
         for point, partial, sign in ((self.first, partial1, -1.0), (self.second, partial2, 1.0)):
             for k, velocity in enumerate(partial):
                 row[point.start + k] += sign * dot(line, velocity)
-        across = max(0.0, dot(relative, relative) - rate * rate)
-        bias = dot(line, subtract(bias2, bias1)) + across / length
+        across = f.greatest(0.0, dot(relative, relative) - rate * rate)
+        bias = dot(line, subtract(bias2, bias1)) + across / f.greatest(length, SHORTEST)
         return Motion(length, rate, row, bias)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A body that turns: as `Point`; without `rotation` it is the ground.
+
+    `across` is a unit vector across the axis, in the body's frame.
+    """
+
+    start: int = 0
+    reference: tuple[float, ...] = ()
+    moves: int = 0
+    rotation: Callable[[Functions, Numbers, Numbers], Rotation] | None = None
+    across: Vector = (1.0, 0.0, 0.0)
+
+    def at(self, f: Functions, q: Numbers, q_t: Numbers) -> tuple[Rotation, Vector]:
+        """The rotation and the angular velocity."""
+        if self.rotation is None:
+            return Rotation(UNITS, [], ZERO), ZERO
+        end = self.start + len(self.reference)
+        total = [a + b for a, b in zip(self.reference, q[self.start : end], strict=True)]
+        rates = list(q_t[self.start : end])[self.moves :]
+        turned = self.rotation(f, total[self.moves :], rates)
+        spin = ZERO
+        for axis, rate in zip(turned.axes, rates, strict=True):
+            spin = add(spin, scale(axis, rate))
+        return turned, spin
+
+
+@dataclass(frozen=True)
+class Twist:
+    """The angle by which the second body has turned about an axis, seen from the first [rad].
+
+    `axis` is a unit vector in the first body's frame, or the ground's if `fixed`. The length of the
+    motion is the angle within one turn.
+    """
+
+    size: int
+    first: Frame
+    second: Frame
+    axis: Vector
+    fixed: bool = False
+
+    def at(self, f: Functions, q: Numbers, q_t: Numbers) -> Motion:
+        """The motion at coordinates and velocities of shape (size,) or longer."""
+        (turned1, spin1), (turned2, spin2) = self.first.at(f, q, q_t), self.second.at(f, q, q_t)
+        line = self.axis if self.fixed else apply(turned1.matrix, self.axis)
+        relative = subtract(spin2, spin1)
+        row: list[Value] = [0.0] * self.size
+        for frame, turned, sign in ((self.first, turned1, -1.0), (self.second, turned2, 1.0)):
+            for k, axis in enumerate(turned.axes):
+                row[frame.start + frame.moves + k] += sign * dot(line, axis)
+        bias = dot(line, subtract(turned2.bias, turned1.bias))
+        if not self.fixed:
+            bias = bias + dot(cross(spin1, line), relative)
+        one = apply(turned1.matrix, self.first.across)
+        other = apply(turned2.matrix, self.second.across)
+        angle = f.arctan2(dot(other, cross(line, one)), dot(other, one))
+        return Motion(angle, dot(line, relative), row, bias)
 
 
 SHORTEST = 1e-9
 """Distance of the terminals [m] below which their line has no direction."""
 
+TURNED = 1e-8
+"""Square of a rotation vector [rad^2] below which its series has all digits."""
+
 ZERO: Vector = (0.0, 0.0, 0.0)
-UNITS: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+UNITS: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def add(a: Vector, b: Vector) -> Vector:
@@ -148,12 +212,12 @@ def subtract(a: Vector, b: Vector) -> Vector:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-def scale(a: Vector, factor: float) -> Vector:
+def scale(a: Vector, factor: Value) -> Vector:
     """Factor a."""
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
-def dot(a: Vector, b: Vector) -> float:
+def dot(a: Vector, b: Vector) -> Value:
     """A . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
@@ -172,13 +236,13 @@ def apply(matrix: Matrix, vector: Vector) -> Vector:
     return (dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector))
 
 
-def plane_rotation(angles: Numbers, rates: Numbers) -> Rotation:
+def plane_rotation(f: Functions, angles: Numbers, rates: Numbers) -> Rotation:
     """Rotation about z, of a planar rigid body."""
-    c, s = math.cos(angles[0]), math.sin(angles[0])
+    c, s = f.cos(angles[0]), f.sin(angles[0])
     return Rotation(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)), [UNITS[2]], ZERO)
 
 
-def euler_parameters(p: Numbers, rates: Numbers) -> Rotation:
+def euler_parameters(f: Functions, p: Numbers, rates: Numbers) -> Rotation:
     """Euler parameters (e0, e1, e2, e3); E p'' is all of the angular acceleration."""
     e0, e1, e2, e3 = p
     matrix = (
@@ -195,9 +259,9 @@ def euler_parameters(p: Numbers, rates: Numbers) -> Rotation:
     return Rotation(matrix, axes, ZERO)
 
 
-def tait_bryan(angles: Numbers, rates: Numbers) -> Rotation:
+def tait_bryan(f: Functions, angles: Numbers, rates: Numbers) -> Rotation:
     """Rotations about x, the new y, the new z."""
-    (c1, s1), (c2, s2), (c3, s3) = ((math.cos(a), math.sin(a)) for a in angles)
+    (c1, s1), (c2, s2), (c3, s3) = ((f.cos(a), f.sin(a)) for a in angles)
     matrix = (
         (c2 * c3, -c2 * s3, s2),
         (c1 * s3 + s1 * s2 * c3, c1 * c3 - s1 * s2 * s3, -s1 * c2),
@@ -211,14 +275,14 @@ def tait_bryan(angles: Numbers, rates: Numbers) -> Rotation:
     return Rotation(matrix, [UNITS[0], second, third], bias)
 
 
-def rotation_vector(vector: Numbers, rates: Numbers) -> Rotation:
+def rotation_vector(f: Functions, vector: Numbers, rates: Numbers) -> Rotation:
     """Rotation vector; the velocity coordinates are the angular velocity in the body's frame."""
-    angle = math.sqrt(sum(value * value for value in vector))
-    if angle < 1e-8:
-        sine, cosine = 1.0 - angle * angle / 6.0, 0.5
-    else:
-        sine, cosine = math.sin(angle) / angle, (1.0 - math.cos(angle)) / angle**2
     x, y, z = vector
+    square = x * x + y * y + z * z
+    # near no rotation the quotients are their series
+    small, angle = square < TURNED, f.sqrt(f.greatest(square, TURNED))
+    sine = f.choose(small, 1.0 - square / 6.0, f.sin(angle) / angle)
+    cosine = f.choose(small, 0.5 - square / 24.0, (1.0 - f.cos(angle)) / (angle * angle))
     matrix = (
         (1 - cosine * (y * y + z * z), cosine * x * y - sine * z, cosine * x * z + sine * y),
         (cosine * x * y + sine * z, 1 - cosine * (x * x + z * z), cosine * y * z - sine * x),

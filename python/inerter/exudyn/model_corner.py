@@ -20,7 +20,7 @@ from exudyn import graphics
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from inerter.exudyn import CreateInerter
-from inerter.exudyn.model_parts import Drive, drive_coordinate, spring_damper
+from inerter.exudyn.model_parts import Drive, drive_coordinate, flywheel_at_rest, spring_damper
 from inerter.model_parameters import AxleParameters, FullCarParameters, HalfCarParameters
 
 Z = 2
@@ -112,6 +112,7 @@ def add_corner(
         itemNumbers=[wheel["bodyNumber"], body],
         localPosition1=top,
         symbolic=symbolic,
+        initialStates=flywheel_at_rest(parameters),
         **parameters,
     )
     return node, {f"strut_{name}": inerter}

@@ -21,6 +21,8 @@ from exudyn.itemInterface import (
 )
 from numpy.typing import NDArray
 
+from inerter.core import Device
+
 Array = NDArray[np.float64]
 Drive = Callable[[float], float]
 LAYOUTS = ("S1", "S2", "S3")
@@ -86,6 +88,12 @@ def device_parameters(
     if layout == "S1":
         return {}
     return {"inertance": inertance} if device is None else dict(device)
+
+
+def flywheel_at_rest(parameters: Mapping[str, Any]) -> dict[str, float]:
+    """Initial states as in the other simulators, where a flywheel behind a shaft starts at rest."""
+    there = "flywheel_velocity" in Device(**parameters).state_names
+    return {"flywheel_velocity": 0.0} if there else {}
 
 
 def coordinate_marker(mbs: Any, node: Any, coordinate: int = 0) -> Any:

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.core import Device
 from inerter.exudyn import device as law
-from inerter.exudyn.create import FORCES, CreateInerter
+from inerter.exudyn.create import CreateInerter
 from inerter.exudyn.engine import exudyn, quiet
+from inerter.exudyn.readings import FORCES
 
 TABLE = 1e12
 """Mass of the rig's table [kg], beside which the device's force moves nothing."""

@@ -1,187 +1,212 @@
-"""The user functions of the element: its forces and, where it is not constant, its mass matrix.
+"""The element's user functions: matrices where it is linear, else what Exudyn calls.
 
-The coordinates of the object are those of the terminals' nodes, then the states: a state is the
-velocity of a coordinate with unit mass, so that every solver of second order integrates it.
-
-    M = B (1 + lambda) J' J (+ 1 for each state),   f = [-J' (forces + M-bias), rates of the states]
-
-On 1D coordinates the forces can be recorded as expressions that Exudyn evaluates in C++.
+On 1D coordinates linear terms stand in constant matrices, and the others are recorded as
+expressions that Exudyn evaluates in C++. Elsewhere the package's C library evaluates a tape, in
+built-in functions that Exudyn calls without running any Python.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.exudyn import device as law
-from inerter.exudyn import flywheel, series
+from inerter.exudyn import series
+from inerter.exudyn.element import HEAT, Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import NUMBERS, expressions
-from inerter.exudyn.kinematics import Line, Motion, Span
-from inerter.exudyn.parameters import Parameters
+from inerter.exudyn.functions import Functions, Value, expressions
+from inerter.exudyn.kinematics import SHORTEST, Line, Span
+from inerter.exudyn.library import CElement, built_in
+from inerter.exudyn.tape import Number, Tape
 
-Kinematics = Callable[[Sequence[float], Sequence[float]], Motion]
-
-
-@dataclass(frozen=True)
-class Element:
-    """What the user functions need: the device, its kinematics, whether heat is added up."""
-
-    device: Parameters
-    kinematics: Line | Span
-    heat: bool = False
-
-    @property
-    def states(self) -> int:
-        """Number of state coordinates, heat included."""
-        return self.device.nstate + self.heat
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates of the object."""
-        return self.kinematics.size + self.states
-
-    @property
-    def loaded(self) -> bool:
-        """Whether load friction acts on a rigidly driven inertance, and needs accelerations."""
-        return bool(self.device.load_friction) and not series.is_there(self.device)
-
-    @property
-    def constant_mass(self) -> bool:
-        """Whether the mass matrix never changes."""
-        rigid = not series.is_there(self.device) and self.device.inertance > 0.0
-        if not rigid:
-            return True
-        straight = isinstance(self.kinematics, Line)
-        return straight and not flywheel.varies(self.device) and not self.loaded
-
-    @property
-    def recordable(self) -> bool:
-        """Whether Exudyn can evaluate the forces by itself."""
-        return isinstance(self.kinematics, Line) and not self.loaded
+Matrix = NDArray[np.float64]
 
 
-def recalled(kinematics: Line | Span) -> Kinematics:
-    """The kinematics with a memory of one: forces and mass matrix are asked at the same point."""
-    last: list[Any] = [None, None, None]
-
-    def at(q: Sequence[float], q_t: Sequence[float]) -> Motion:
-        if q != last[0] or q_t != last[1]:
-            last[:] = q, q_t, kinematics.at(q, q_t)
-        return last[2]
-
-    return at
+LISTED = 9
+"""Up to this size Exudyn reads a matrix faster from lists than from an array."""
 
 
-def mass_matrix(element: Element) -> np.ndarray:
-    """The mass matrix of a device at rest, shape (size, size); constant where it is constant."""
-    matrix = np.zeros((element.size, element.size))
-    first = element.kinematics.size
-    matrix[range(first, element.size), range(first, element.size)] = 1.0
-    if element.constant_mass and isinstance(element.kinematics, Line):
-        row = np.array(element.kinematics.row)
-        inertance = law.mass(NUMBERS, element.device, 0.0, 0.0)
-        matrix[:first, :first] = inertance * np.outer(row, row)
-    return matrix
+class UserFunctions:
+    """Matrices and user functions of an element; `name` is for its errors.
 
+    Attributes
+    ----------
+    parameters
+        Those of an ObjectGenericODE2, by name.
+    """
 
-def mass_function(element: Element, at: Kinematics | None = None) -> Callable[..., np.ndarray]:
-    """massMatrixUserFunction(mbs, t, itemNumber, q, q_t)."""
-    p, first = element.device, element.kinematics.size
-    motion_at = at or recalled(element.kinematics)
-    matrix = mass_matrix(element)
+    def __init__(self, mbs: Any, element: Element, name: str, symbolic: bool) -> None:
+        self._symbolic = symbolic
+        only_matrices = symbolic and element.constant_mass
+        self._compiled = None if only_matrices else Compiled(element, name)
+        self.parameters = self._made_of(mbs, element)
 
-    def massMatrixUserFunction(  # noqa: N802 - Exudyn's name
-        mbs: Any, t: float, itemNumber: int, q: Sequence[float], q_t: Sequence[float]
-    ) -> np.ndarray:
-        motion = motion_at(q, q_t)
-        x, row = motion.length - p.rest_length, np.array(motion.row)
-        sign = load_sign(mbs, itemNumber, element, x, motion.rate, motion.bias, motion.row)
-        inertance = law.mass(NUMBERS, p, x, motion.rate, sign)
-        matrix[:first, :first] = inertance * np.outer(row, row)
-        return matrix
-
-    return massMatrixUserFunction
-
-
-def force_function(element: Element, at: Kinematics | None = None) -> Callable[..., list[float]]:
-    """forceUserFunction(mbs, t, itemNumber, q, q_t), on numbers."""
-    p, first = element.device, element.kinematics.size
-    motion_at = at or recalled(element.kinematics)
-    through_mass = not element.constant_mass
-
-    def forceUserFunction(  # noqa: N802 - Exudyn's name
-        mbs: Any, t: float, itemNumber: int, q: Sequence[float], q_t: Sequence[float]
-    ) -> list[float]:
-        motion = motion_at(q, q_t)
-        x, v, z = motion.length - p.rest_length, motion.rate, q_t[first:]
-        at_terminals = 0.0
-        rates = [0.0] * element.states
-        for term in law.terms(NUMBERS, p, x, v, z):
-            at_terminals += term.terminals * term.value
-            for place, share in term.rates:
-                rates[place] += share * term.value
-        sign = load_sign(mbs, itemNumber, element, x, v, motion.bias, motion.row)
-        if through_mass:
-            at_terminals += law.mass(NUMBERS, p, x, v, sign) * motion.bias
-        if sign:
-            at_terminals += law.load_rest(p, x, v, sign)
-        if element.heat:
-            a = (
-                last_acceleration(mbs, itemNumber, motion.row, motion.bias)
-                if element.loaded
-                else 0.0
+    def take(self, mbs: Any, objectNumber: Any, element: Element) -> None:
+        """Let the object be this element from now on; it has the same coordinates."""
+        if self._compiled is not None:
+            self._compiled.take(element)
+        before, self.parameters = self.parameters, self._made_of(mbs, element)
+        for key, value in self.parameters.items():
+            same = value is before[key] or (
+                isinstance(value, np.ndarray) and np.array_equal(value, before[key])
             )
-            through = law.carried(p, x, v, a, z) if p.load_friction else 0.0
-            rates[-1] = law.dissipated_power(NUMBERS, p, x, v, z, through)
-        return [-share * at_terminals for share in motion.row] + rates
+            if not same:
+                mbs.SetObjectParameter(objectNumber, key, value)
 
-    return forceUserFunction
+    def _made_of(self, mbs: Any, element: Element) -> dict[str, Any]:
+        found: dict[str, Any] = {"massMatrix": element.mass_matrix()}
+        compiled, hold = self._compiled, element.hold_matrix()
+        if compiled is not None and not element.constant_mass:
+            found["massMatrixUserFunction"] = compiled.mass
+        if compiled is not None and not self._symbolic:
+            return found | {
+                "stiffnessMatrix": hold,
+                "forceUserFunction": compiled.force,
+                "jacobianUserFunction": compiled.jacobian,
+            }
+        linear, rest = _split(element)
+        return found | {
+            "stiffnessMatrix": hold + linear.stiffness,
+            "dampingMatrix": linear.damping,
+            "forceVector": linear.force,
+            "forceUserFunction": _symbolic(element, mbs, rest),
+        }
 
 
-def last_acceleration(mbs: Any, itemNumber: int, row: Sequence[float], bias: float) -> float:
-    """The latest relative acceleration that the solver knows [m/s^2]."""
+class Compiled:
+    """The built-in functions `force`, `mass` and `jacobian` of an element.
+
+    Others hold these functions, so that `take` changes what they evaluate.
+    """
+
+    def __init__(self, element: Element, name: str) -> None:
+        self._c = CElement()
+        self._message = (
+            f'inerter "{name}": its terminals are less than {SHORTEST:g} m apart, which leaves it '
+            "without a direction; put them apart, or use 1D coordinates"
+        ).encode()
+        # what the built-in functions point to lives as long as they do
+        self._kept: list[Any] = []
+        self.take(element)
+        made = [built_in(each, self._c, self._kept) for each in ("force", "mass", "jacobian")]
+        self.force, self.mass, self.jacobian = made
+
+    def take(self, element: Element) -> None:
+        """Evaluate this element from now on; it has the same coordinates."""
+        tape, recorded = _taped(element)
+        keys = [tape.key(each) for each in recorded.forces]
+        row = [tape.key(each) for each in recorded.motion.row]
+        inertance = tape.key(recorded.inertance)
+        length = tape.key(recorded.motion.length)
+        finished = tape.finish()
+        size = element.size
+        mass, jacobian = element.mass_matrix(), np.zeros((size, size))
+        places = np.array([finished.place(key) for key in (*keys, *row)], dtype=np.int32)
+        c, address = self._c, places.ctypes.data
+        c.tape, c.size, c.nrow = finished.c, size, len(row)
+        c.loaded, c.known = element.loaded, 0
+        c.forces, c.row = address, address + len(keys) * places.itemsize
+        c.inertance = finished.place(inertance)
+        c.length = finished.place(length) if isinstance(element.kinematics, Span) else -1
+        c.shortest, c.message = SHORTEST, self._message
+        c.mass, c.jacobian = mass.ctypes.data, jacobian.ctypes.data
+        c.mass_array, c.jacobian_array, c.none = mass, jacobian, None
+        c.mass_list = mass.tolist() if size <= LISTED else None
+        c.reader, c.error = latest_accelerations, ValueError
+        self._kept[:] = [finished, places, mass, jacobian]
+
+
+def latest_accelerations(mbs: Any, t: float, itemNumber: int, *others: Any) -> list[float]:
+    """The latest accelerations that the solver knows, shape (size,); arguments of any of them."""
     kind = exudyn().OutputVariableType.Coordinates_tt
     # one coordinate alone comes as a number
     found = np.atleast_1d(mbs.GetObjectOutputBody(itemNumber, kind, [0.0, 0.0, 0.0]))
-    return float(np.dot(row, found[: len(row)])) + bias
+    return found.tolist()
 
 
-def load_sign(
-    mbs: Any,
-    itemNumber: int,
-    element: Element,
-    x: float,
-    v: float,
-    bias: float,
-    row: Sequence[float],
-) -> float:
-    """Sign of the force N that load friction goes with; 0 if it does not need one.
-
-    N depends on the acceleration that is being solved for; its sign is that of the latest known
-    acceleration. Where N changes sign the friction passes 0, so that a sign which is late by a
-    step costs no more than a step across the corner of a force.
-    """
-    if not element.loaded:
-        return 0.0
-    a = last_acceleration(mbs, itemNumber, row, bias)
-    return 1.0 if law.carried(element.device, x, v, a, ()) >= 0.0 else -1.0
+def _taped(element: Element) -> tuple[Tape, Any]:
+    n = element.size
+    tape = Tape((3 if element.loaded else 2) * n)
+    q, q_t, q_tt = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
+    return tape, element.record(tape.functions, q, q_t, q_tt)
 
 
-def symbolic_force(element: Element, mbs: Any) -> Any:
-    """The forces as a symbolic user function, every expression once; 0 if there are none."""
+@dataclass(frozen=True)
+class Linear:
+    """Constant part of an element: f = force - stiffness q - damping q'."""
+
+    stiffness: Matrix
+    damping: Matrix
+    force: Matrix
+
+
+def _parts(element: Element, f: Functions, q: Any, q_t: Any) -> list[tuple[Any, Matrix]]:
+    """Every expression of an element on a line, with its factors on all coordinates."""
+    p, line = element.device, element.kinematics
+    assert isinstance(line, Line)
+    x, v = line.difference(q) - p.rest_length, line.difference(q_t)
+    z = element.states(x, q, q_t)
+    found = []
+    for term in law.terms(f, p, x, v, z):
+        weights = np.zeros(element.size)
+        weights[: element.first] = [-term.terminals * share for share in line.row]
+        for place, share in element.own_shares(term):
+            weights[place] += share
+        found.append((term.value, weights))
+    if element.heat:
+        through = 0.0
+        if p.load_friction:
+            state = law.states_of(p, z)
+            through = series.at(f, p, state.deflection, v - state.speed, state.gap).force
+        weights = np.zeros(element.size)
+        weights[element.first + element.own.index(HEAT)] = 1.0
+        found.append((law.dissipated_power(f, p, x, v, z, through), weights))
+    return found
+
+
+def _split(element: Element) -> tuple[Linear, list[bool]]:
+    """The linear part in matrices, and which of `_parts` are not in it."""
+    n = element.size
+    tape = Tape(2 * n)
+    parts = _parts(element, tape.functions, tape.inputs[:n], tape.inputs[n:])
+    rest = [isinstance(value, Number) and not value.affine for value, _ in parts]
+    keys = [tape.key(0.0 if left else value) for (value, _), left in zip(parts, rest, strict=True)]
+    finished = tape.finish()
+    constant = finished.run([0.0] * (2 * n))
+    finished.run_slopes()
+    slopes = np.zeros((n, 2 * n))
+    force = np.zeros(n)
+    for key, (_, weights) in zip(keys, parts, strict=True):
+        place = finished.place(key)
+        force += weights * constant[place]
+        slopes += np.outer(weights, finished.slopes[place, : 2 * n])
+    return Linear(-slopes[:, :n], -slopes[:, n:], force), rest
+
+
+def _symbolic(element: Element, mbs: Any, rest: Sequence[bool]) -> Any:
+    """What is not linear as a symbolic user function, every expression once; 0 if there is none."""
+    if not any(rest):
+        return 0
     symbolic = exudyn("symbolic")
     recording = symbolic.GetRecording()
     symbolic.SetRecording(True)
     try:
-        arguments, result = _record(element, symbolic)
+        q = symbolic.Vector("q", [0.0] * element.size)
+        q_t = symbolic.Vector("q_t", [0.0] * element.size)
+        result: Value = None
+        for (value, weights), left in zip(
+            _parts(element, expressions(), q, q_t), rest, strict=True
+        ):
+            if left:
+                part = value * symbolic.Vector(weights.tolist())
+                result = part if result is None else result + part
+        arguments = [symbolic.Real("t", 0.0), symbolic.Real("itemNumber", 0), q, q_t]
     finally:
         symbolic.SetRecording(recording)
-    if result is None:
-        return 0
     function = symbolic.UserFunction()
     contents = {
         "functionName": "forceUserFunction",
@@ -193,43 +218,3 @@ def symbolic_force(element: Element, mbs: Any) -> Any:
     }
     function.SetUserFunctionFromDict(mbs, contents, "forceUserFunction", None, "ObjectGenericODE2")
     return function
-
-
-def _record(element: Element, symbolic: Any) -> tuple[list[Any], Any]:
-    """Arguments after mbs, and the vector of forces."""
-    p, line, first = element.device, element.kinematics, element.kinematics.size
-    assert isinstance(line, Line)
-    q = symbolic.Vector("q", [0.0] * element.size)
-    q_t = symbolic.Vector("q_t", [0.0] * element.size)
-
-    def difference(values: Any) -> Any:
-        found = 0.0
-        for place, weight in zip(line.places, line.weights, strict=True):
-            found = found + weight * values[place] if weight != 1.0 else values[place] + found
-        return found
-
-    x = difference(q) - p.rest_length if p.rest_length else difference(q)
-    v = difference(q_t)
-    z = [q_t[first + i] for i in range(p.nstate)]
-    f = expressions()
-    recorded = law.terms(f, p, x, v, z)
-    if element.heat:
-        through = 0.0
-        if p.load_friction:
-            state = law.states_of(p, z)
-            through = series.at(f, p, state.deflection, v - state.speed, state.gap).force
-        heat = law.dissipated_power(f, p, x, v, z, through)
-        recorded.append(law.Term(heat, 0.0, ((element.states - 1, 1.0),)))
-
-    result = None
-    for term in recorded:
-        if not isinstance(term.value, symbolic.Real) and term.value == 0.0:
-            continue
-        weights = np.zeros(element.size)
-        weights[:first] = [-term.terminals * share for share in line.row]
-        for place, share in term.rates:
-            weights[first + place] += share
-        value = term.value if isinstance(term.value, symbolic.Real) else symbolic.Real(term.value)
-        part = value * symbolic.Vector(weights.tolist())
-        result = part if result is None else result + part
-    return [symbolic.Real("t", 0.0), symbolic.Real("itemNumber", 0), q, q_t], result

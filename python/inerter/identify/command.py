@@ -63,8 +63,8 @@ def identify_command(
     from inerter.identify.refine import simulated
     from inerter.records import read_records
 
-    with refusing(out_dir):
-        records = read_records(record, "bench")
+    with refusing(out_dir, "identification.json", "identification.png", "device.toml"):
+        records = read_records(record, "bench", others=False)
         with progress_bar("identifying", as_json) as progress:
             result = identify(
                 records, _names(law), fixed=_fixed(fix or []), holdout=holdout or (), loss=loss,

@@ -21,13 +21,13 @@ from functools import cached_property
 
 import mujoco
 import numpy as np
-from mujoco import batch
 from numpy.typing import NDArray
 
 from inerter.catalogue.coordinates import NOT_OF_DEVICE, parameters_of
 from inerter.catalogue.scales import Scales
 from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
+from inerter.engine_batch import batch
 from inerter.estimation.covariance import sandwich
 from inerter.estimation.least_squares import Tolerances, inside, minimise
 from inerter.estimation.variables import Variables

@@ -11,6 +11,7 @@ import plotly.graph_objects as go
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.pictures.palette import LIGHT
+from inerter.printable import upright_json
 
 FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 # float32 resolves 1e-7 of a value; a time axis needs more when it starts late
@@ -141,7 +142,7 @@ def to_script(data: Any) -> str:
     ValueError
         A number is not finite: JSON has no word for it.
     """
-    text = json.dumps(_plain(data), allow_nan=False, separators=(",", ":"))
+    text = upright_json(json.dumps(_plain(data), allow_nan=False, separators=(",", ":")))
     for character in "<>&\u2028\u2029":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return text

@@ -6,8 +6,9 @@ A file may be larger than the memory would bear as text: what is kept of a block
 from __future__ import annotations
 
 import csv
+import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from io import BytesIO
@@ -16,12 +17,14 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
-from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers, too_long
+from .bounds import Wanted, refuse_header, refuse_table
+from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers
 from .record import Array, RecordError
 from .units import split_header
 
 BLOCK = 1 << 24  # bytes that are read at a time
 LONGEST_LINE = 1 << 22  # bytes
+LONGEST_PREAMBLE = 1 << 23  # bytes of blanks and comments above the header
 
 
 @dataclass(frozen=True)
@@ -33,21 +36,29 @@ class _Block:
     last: bool
 
 
-def read_csv(path: Path, most_rows: int) -> RawTable:
-    """The raw table of a CSV file; RecordError when it cannot be read or has too many rows."""
+def read_csv(path: Path, wanted: Wanted) -> RawTable:
+    """The raw table of a CSV file; RecordError when it cannot be read or has too much."""
     comments: list[str] = []
     table: _Growing | None = None
+    above = 0
     for block in _blocks(path):
         start = 0
         if table is None:
             line, start = _find_header(path, block, comments)
+            above += start
+            if line is None and above > LONGEST_PREAMBLE:
+                raise RecordError(
+                    f"{path}: no header in the first {LONGEST_PREAMBLE >> 20} MB, blanks and "
+                    "comments only; take them out"
+                )
             if line is None:
                 continue
             number = block.number + block.text.count(b"\n", 0, start) - 1
             body = block.text[start : start + 4096]
-            table = _Growing(path, _split_header_line(path, line, number, comments, body))
+            header = _split_header_line(path, line, number, comments, body)
+            table = _Growing(path, header, wanted)
         number = block.number + block.text.count(b"\n", 0, start)
-        table.add(_Block(number, block.text[start:], block.last), most_rows)
+        table.add(_Block(number, block.text[start:], block.last))
     if table is None:
         raise RecordError(
             f"{path}: the file is empty (blanks and comments only); add header and data"
@@ -56,53 +67,56 @@ def read_csv(path: Path, most_rows: int) -> RawTable:
 
 
 class _Growing:
-    """A table whose rows come block by block."""
+    """The wanted columns of a table whose rows come block by block."""
 
-    def __init__(self, path: Path, header: tuple[str, ...]) -> None:
+    def __init__(self, path: Path, header: tuple[str, ...], wanted: Wanted) -> None:
+        refuse_header(path, header)
         self.path, self.header, self.rows = path, header, 0
+        self.wanted = [index for index, name in enumerate(header) if wanted(name)]
         # names of runs stay what they are
-        self.as_text = [split_header(name)[0] == "run" for name in header]
-        self.numbers: list[list[Array]] = [[] for _ in header]
-        self.texts: list[list[pl.Series]] = [[] for _ in header]
+        self.as_text = {index for index in self.wanted if split_header(header[index])[0] == "run"}
+        self.numbers: dict[int, list[Array]] = {index: [] for index in self.wanted}
+        self.texts: dict[int, list[pl.Series]] = {index: [] for index in self.as_text}
         self.odd: dict[int, OddCell] = {}
 
-    def add(self, block: _Block, most_rows: int) -> None:
+    def add(self, block: _Block) -> None:
         """Take in the data lines of a block."""
-        columns = _columns(self.path, block, len(self.header))
-        rows = len(columns[0]) if columns else 0
+        columns, rows = _columns(self.path, block, len(self.header), self.wanted)
         if rows:
-            self._refuse_long(block, rows, most_rows)
-        for index, column in enumerate(columns):
-            if self.as_text[index]:
+            self._refuse_long(block, rows)
+        for index, column in columns.items():
+            if index in self.as_text:
                 self.texts[index].append(column)
                 continue
             values, bad = to_numbers(column)
             self.numbers[index].append(values)
             if len(bad) and index not in self.odd:
-                cells = tuple(str(series[int(bad[0])]).strip() for series in columns)
+                cells = _cells_of_row(self.path, block, int(bad[0]))
                 self.odd[index] = OddCell(self.rows + int(bad[0]), cells)
         self.rows += rows
 
-    def _refuse_long(self, block: _Block, rows: int, most_rows: int) -> None:
-        """RecordError where there are too many rows, or a first block tells that there will be."""
-        whole = rows * self.path.stat().st_size / len(block.text)
-        if self.rows + rows > most_rows or (not self.rows and whole > 1.5 * most_rows):
-            raise RecordError(too_long(self.path, max(whole, self.rows + rows), most_rows))
+    def _refuse_long(self, block: _Block, rows: int) -> None:
+        """RecordError where there is too much, or a first block tells that there will be."""
+        refuse_table(self.path, self.rows + rows, len(self.wanted))
+        if not self.rows:
+            whole = rows * self.path.stat().st_size / len(block.text)
+            refuse_table(self.path, whole, len(self.wanted), slack=1.5)
 
     def done(self, comments: list[str]) -> RawTable:
         """The table of all blocks; gives its own rows away."""
-        columns = []
-        for name, is_text in zip(self.header, self.as_text, strict=True):
-            numbers, texts = self.numbers.pop(0), self.texts.pop(0)
-            if is_text or not numbers:
-                columns.append(pl.concat([pl.Series(name, [], dtype=pl.String), *texts]))
+        columns = {}
+        for index in self.wanted:
+            numbers, texts = self.numbers.pop(index), self.texts.get(index, [])
+            name = self.header[index]
+            if index in self.as_text or not numbers:
+                columns[index] = pl.concat([pl.Series(name, [], dtype=pl.String), *texts])
             else:
-                columns.append(pl.Series(name, np.concatenate(numbers)))
+                columns[index] = pl.Series(name, np.concatenate(numbers))
         lines = partial(_data_lines_of, self.path)
         return RawTable(
             path=self.path,
             header=self.header,
-            columns=tuple(columns),
+            columns=columns,
             comments=tuple(comments),
             odd=self.odd,
             lines=lines,
@@ -235,8 +249,10 @@ def _split_header_line(
 # --- rows --------------------------------------------------------------------------------------
 
 
-def _columns(path: Path, block: _Block, width: int) -> list[pl.Series]:
-    """The columns of a block as text; none where it has no data line."""
+def _columns(
+    path: Path, block: _Block, width: int, wanted: Sequence[int]
+) -> tuple[dict[int, pl.Series], int]:
+    """The wanted columns of a block as text by index, and the number of data lines."""
     # what polars gets: no comments, no blank lines
     body = block.text.rstrip(b" \t\n")
     if b"#" in body:
@@ -245,30 +261,43 @@ def _columns(path: Path, block: _Block, width: int) -> list[pl.Series]:
     if body[:1].isspace() or any(mark in body for mark in blank):
         body = re.sub(rb"(?m)^[ \t]*\n", b"", body)
     if not body:
-        return []
-    names = [f"c{index}" for index in range(width)]
+        return {}, 0
+    rows = body.count(b"\n") + 1
 
     # quoted cells are rare and take the slow reader, which knows blanks around quotes
     if b'"' in body:
-        cells = zip(*_split_rows(path, block, width), strict=True)
-        return [pl.Series(n, c, dtype=pl.String) for n, c in zip(names, cells, strict=True)]
+        texts: dict[int, list[str]] = {index: [] for index in wanted}
+        count = 0
+        for cells in _rows(path, block, width):
+            count += 1
+            for index in wanted:
+                texts[index].append(cells[index])
+        return {i: pl.Series(f"c{i}", t, dtype=pl.String) for i, t in texts.items()}, count
 
     # count the commas, which is fast; look at single lines only when the count is off
-    if body.count(b",") != (body.count(b"\n") + 1) * (width - 1):
-        _split_rows(path, block, width)
+    if body.count(b",") != rows * (width - 1):
+        _refuse_ragged(path, block, width)
+    if not wanted:
+        return {}, rows
+    names = [f"c{index}" for index in range(width)]
     try:
-        frame = pl.read_csv(BytesIO(body), has_header=False, schema=dict.fromkeys(names, pl.String))
+        frame = pl.read_csv(
+            BytesIO(body),
+            has_header=False,
+            schema=dict.fromkeys(names, pl.String),
+            columns=list(wanted),
+        )
     except pl.exceptions.PolarsError as error:
         # a long row can hide behind a short one in the count
-        _split_rows(path, block, width)
+        _refuse_ragged(path, block, width)
         reason = str(error).splitlines()[0]
         raise RecordError(f"{path}: not readable as CSV ({reason}); write it again") from None
-    return frame.get_columns()
+    return dict(zip(wanted, frame.get_columns(), strict=True)), rows
 
 
 def _data_lines(block: _Block) -> Iterator[tuple[int, str]]:
     """Line number and text of every line that is neither blank nor a comment."""
-    for number, line in enumerate(block.text.split(b"\n"), start=block.number):
+    for number, line in enumerate(BytesIO(block.text), start=block.number):
         text = line.strip()
         if text and not text.startswith(b"#"):
             yield number, text.decode("utf-8")
@@ -288,23 +317,35 @@ def _cells(path: Path, number: int, line: str) -> list[str]:
         raise RecordError(f"{path}: line {number}: not CSV ({error}); correct the line") from None
 
 
-def _split_rows(path: Path, block: _Block, width: int) -> list[list[str]]:
+def _rows(path: Path, block: _Block, width: int) -> Iterator[list[str]]:
     """Cells of every data row; RecordError for the first that has not `width` of them."""
-    lines = list(_data_lines(block))
-    rows: list[list[str]] = []
-    for index, (number, line) in enumerate(lines, start=1):
+    behind = _data_lines(block)
+    ahead = next(behind, None)
+    while ahead is not None:
+        (number, line), ahead = ahead, next(behind, None)
         cells = _cells(path, number, line)
         if len(cells) == width:
-            rows.append(cells)
+            yield cells
             continue
         advice = "correct or remove the line"
         if len(cells) > width and all(re.fullmatch(r"\s*[+-]?\d*([eE][+-]?\d+)?\s*", c)
                                       for c in cells):  # fmt: skip
             advice = "numbers with decimal commas? write them with a point, such as 0.5"
-        elif block.last and index == len(lines) and len(cells) < width:
+        elif block.last and ahead is None and len(cells) < width:
             advice = "it is the last line, the file may be cut off: remove the line"
         raise RecordError(
             f"{path}: line {number}: {len(cells)} cells where the header has {width} "
             f"({quoted(line)}); {advice}"
         )
-    return rows
+
+
+def _refuse_ragged(path: Path, block: _Block, width: int) -> None:
+    """RecordError for the first data row that has not `width` cells."""
+    for _ in _rows(path, block, width):
+        pass
+
+
+def _cells_of_row(path: Path, block: _Block, row: int) -> tuple[str, ...]:
+    """The stripped cells of a data row of a block, from 0."""
+    number, line = next(itertools.islice(_data_lines(block), row, None))
+    return tuple(cell.strip() for cell in _cells(path, number, line))

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from inerter.printable import text_of
 from inerter.unit_text import parse_unit, unit_registry
 
+from .files import record_files
 from .quality import check_records
-from .raw_table import RawTable
+from .raw_table import RawTable, listed
 from .read import (
-    _expand,
     _name_apart,
     _numbers,
     _Part,
@@ -45,8 +46,9 @@ def column_names(paths: Sequence[str | Path]) -> list[str]:
     RecordError
         It cannot be read.
     """
-    file = next(file for entry in paths for file in _expand(entry))
-    return [name for name in _names(read_table(file)) if name not in ("time", "run")]
+    file = next(file for entry in paths for file in record_files(entry))
+    table = read_table(file, lambda header: _name(header) == "time")
+    return [name for name in _names(table) if name not in ("time", "run")]
 
 
 def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[FreeRecord]:
@@ -65,13 +67,13 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
         Anything that cannot be used, one line.
     """
     records: list[Any] = []
-    for path in [file for entry in paths for file in _expand(entry)]:
-        table = read_table(path)
+    for path in [file for entry in paths for file in record_files(entry)]:
+        table = read_table(path, lambda header: _name(header) in {"time", "run", *columns})
         at = _names(table)
         for name in ("time", *columns):
             if name not in at:
                 raise RecordError(
-                    f"{path}: no column {name!r} (found: {', '.join(at)}); every run needs it"
+                    f"{path}: no column {name!r} (found: {listed(list(at))}); every run needs it"
                 )
         values = {
             name: _numbers(table, at[name]) * _factor(table, at[name], name)
@@ -86,7 +88,7 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
             if lost:
                 raise RecordError(f"{path}: column {lost[0]!r} holds no number; record it")
             record = FreeRecord(
-                name=path.stem if run is None else f"{path.stem}:{run}",
+                name=text_of(path.stem) + ("" if run is None else f":{run}"),
                 source=path,
                 time=filled.pop("time"),
                 extra=filled,
@@ -103,15 +105,21 @@ def _names(table: RawTable) -> dict[str, int]:
     """Index by name; known names in lower case, others as written without their unit."""
     found: dict[str, int] = {}
     for index, header in enumerate(table.header):
-        name, _ = split_header(header)
-        if name not in QUANTITIES and name != "run":
-            name = re.sub(r"\s*[\[(].*$", "", header.strip().strip("\ufeff\"'").strip())
+        name = _name(header)
         if not name:
             continue
         if name in found:
             raise RecordError(f"{table.path}: two columns hold {name!r}; keep one of them")
         found[name] = index
     return found
+
+
+def _name(header: str) -> str:
+    """A column's name without its unit; of those that are known in lower case."""
+    name, _ = split_header(header)
+    if name in QUANTITIES or name == "run":
+        return name
+    return re.sub(r"\s*[\[(].*$", "", header.strip().strip("\ufeff\"'").strip())
 
 
 def _factor(table: RawTable, index: int, name: str) -> float:

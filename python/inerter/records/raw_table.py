@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -29,28 +30,30 @@ class OddCell:
 class RawTable:
     """Columns as they stand in one file.
 
-    header: column names as written; columns: one series each; comments: the ``#`` lines above the
-    header. Of a text file: odd: by column, what is no number in it; lines: number and text of the
-    header and of every data line, read anew.
+    header: column names as written; columns: by index, a series for each that was wanted; comments:
+    the ``#`` lines above the header. Of a text file: odd: by column, what is no number in it;
+    lines: number and text of the header and of every data line, read anew.
     """
 
     path: Path
     header: tuple[str, ...]
-    columns: tuple[pl.Series, ...]
+    columns: Mapping[int, pl.Series]
     comments: tuple[str, ...] = ()
     odd: Mapping[int, OddCell] = field(default_factory=dict)
     lines: Callable[[], Iterator[tuple[int, str]]] | None = None
 
     @property
     def rows(self) -> int:
-        """Number of data rows."""
-        return len(self.columns[0])
+        """Number of data rows; 0 where no column was wanted."""
+        return len(next(iter(self.columns.values()), ()))
 
     def place(self, row: int) -> str:
         """Where a row (from 0) stands: ``line 17`` of a CSV, ``row 16`` of other files."""
-        for index, (number, _) in enumerate(self.lines() if self.lines else ()):
-            if index == row + 1:
-                return f"line {number}"
+        # a file may be gone by now
+        with suppress(OSError):
+            for index, (number, _) in enumerate(self.lines() if self.lines else ()):
+                if index == row + 1:
+                    return f"line {number}"
         return f"row {row + 1}"
 
     def numbers(self, index: int) -> tuple[Array, NDArray[np.intp]]:
@@ -76,7 +79,8 @@ class RawTable:
         """The stripped cells of a row in which a column has no number."""
         if column in self.odd:
             return self.odd[column].cells
-        return tuple(str(series[row]).strip() for series in self.columns)
+        columns = [self.columns.get(index) for index in range(len(self.header))]
+        return tuple("" if series is None else str(series[row]).strip() for series in columns)
 
 
 def to_numbers(series: pl.Series) -> tuple[Array, NDArray[np.intp]]:
@@ -145,13 +149,3 @@ def listed(names: tuple[str, ...] | list[str]) -> str:
     """Column names for an error text, at most twelve."""
     shown = ", ".join(name.strip() or "(blank)" for name in names[:12])
     return shown + (", ..." if len(names) > 12 else "")
-
-
-def too_long(path: Path, rows: float, most_rows: int) -> str:
-    """What is said of a file with too many rows."""
-    said = f"{float(f'{rows:.2g}'):,.0f}".replace(",", " ")
-    most = f"{most_rows:,}".replace(",", " ")
-    return (
-        f"{path}: about {said} rows, at most {most} are read; give a part of it, or low-pass it "
-        "and write every n-th row"
-    )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import glob
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,10 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 
+from inerter.printable import text_of
+
+from .bounds import Wanted, everything
+from .files import record_files
 from .quality import check_records
-from .raw_table import RawTable, explain_cell
+from .raw_table import RawTable, explain_cell, listed
 from .record import AnyRecord, Array, BenchTable, Record, RecordError, TimeRecord, VehicleRecord
-from .table import EXTENSIONS, read_table
+from .table import read_table
 from .units import QUANTITIES, si_factor, split_header
 
 MIN_SAMPLES = 50  # of a record over time
@@ -52,71 +55,70 @@ _SYNONYMS = {
 
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Literal["bench"], *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Literal["bench"],
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[Record]: ...
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Literal["vehicle"], *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Literal["vehicle"],
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[VehicleRecord]: ...
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Literal["table"], *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Literal["table"],
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[BenchTable]: ...
 @overload
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: None = None, *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: None = None,
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> list[AnyRecord]: ...
 def read_records(
-    paths: Sequence[str | Path] | str | Path, kind: Kind | None = None, *, check: bool = True
+    paths: Sequence[str | Path] | str | Path,
+    kind: Kind | None = None,
+    *,
+    check: bool = True,
+    others: bool = True,
 ) -> Sequence[AnyRecord]:
     """Read every run of the given files, folders and globs, in that order, in SI units.
 
     paths: one path or several; a folder stands for its .csv, .parquet and .mat files, sorted.
     kind: which records are wanted; None takes each file for what its columns say.
-    check: add the warnings of `check_records`.
-    Raises RecordError (a ValueError), one line, for anything that cannot be used.
+    check: add `check_records`' warnings. others: read further columns too, into `extra`. Raises
+    RecordError (a ValueError), one line, for anything that cannot be used.
     """
     listed = [paths] if isinstance(paths, str | Path) else list(paths)
     if not listed:
         raise RecordError("no records given; name a file, a folder or a glob such as 'data/*.csv'")
     records: list[AnyRecord] = []
-    for path in [file for entry in listed for file in _expand(entry)]:
-        records.extend(_read_file(path, kind))
+    for path in [file for entry in listed for file in record_files(entry)]:
+        records.extend(_read_file(path, kind, everything if others else _is_known))
     records = _name_apart(records)
     return check_records(records) if check else records
 
 
-def _expand(entry: str | Path) -> list[Path]:
-    """The record files that one argument stands for; RecordError when there is none."""
-    path = Path(entry).expanduser()
-    wanted = ", ".join(EXTENSIONS)
-    if path.is_dir():
-        found = sorted(p for p in path.iterdir() if _is_record_file(p))
-        if not found:
-            raise RecordError(f"{path}: no records in this folder; put {wanted} files into it")
-        return found
-    if path.exists() or not glob.has_magic(str(path)):
-        return [path]
-    found = sorted(p for p in map(Path, glob.glob(str(path), recursive=True)) if _is_record_file(p))
-    if not found:
-        raise RecordError(f"{path}: no {wanted} file matches; check the pattern and the folder")
-    return found
-
-
-def _is_record_file(path: Path) -> bool:
-    return path.is_file() and path.suffix.lower() in EXTENSIONS and not path.name.startswith(".")
-
-
 def _name_apart(records: list[AnyRecord]) -> list[AnyRecord]:
     """Give records of one name different ones: file name, then folder and file, then a count."""
-    runs = [record.name.removeprefix(_source(record).stem) for record in records]
+    runs = [record.name.removeprefix(text_of(_source(record).stem)) for record in records]
     for folder in (False, True):
         count = Counter(record.name for record in records)
         for index, record in enumerate(records):
             if count[record.name] > 1:
                 source = _source(record)
                 base = f"{source.parent.name}/{source.name}" if folder else source.name
-                records[index] = dataclasses.replace(record, name=base + runs[index])
+                records[index] = dataclasses.replace(record, name=text_of(base) + runs[index])
     seen: Counter[str] = Counter()
     for index, record in enumerate(records):
         seen[record.name] += 1
@@ -141,8 +143,14 @@ class _Columns:
     extra: dict[str, int]
 
 
-def _read_file(path: Path, kind: Kind | None) -> list[AnyRecord]:
-    table = read_table(path)
+def _is_known(header: str) -> bool:
+    """Whether a column has a name that records know."""
+    name = split_header(header)[0]
+    return name in QUANTITIES or name == "run"
+
+
+def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]:
+    table = read_table(path, wanted)
     found = _recognise(table)
     cls = _choose_kind(table, found, kind)
     _refuse_missing_columns(table, found, cls)
@@ -155,17 +163,19 @@ def _read_file(path: Path, kind: Kind | None) -> list[AnyRecord]:
         if name in names
     }
     values = {name: _numbers(table, found.own[name]) for name in names}
-    values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
+    with np.errstate(over="ignore"):  # what overflows is refused with its row
+        values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
     extra = {
         name: numbers
         for name, index in found.extra.items()
+        if index in table.columns
         for numbers, bad in (table.numbers(index),)
         if not len(bad) and np.isfinite(numbers).any()
     }
     records: list[AnyRecord] = []
     for run, rows in _split_runs(table, found.own.get("run")):
         part = _Part(table, run, rows)
-        name = path.stem if run is None else f"{path.stem}:{run}"
+        name = text_of(path.stem) + ("" if run is None else f":{run}")
         # long records are many: no copies of a file that is one run
         own = values if run is None else {n: v[rows] for n, v in values.items()}
         columns, rows, notes = part.complete(own, cls)
@@ -236,8 +246,9 @@ def _refuse_missing_columns(table: RawTable, found: _Columns, cls: type[AnyRecor
             f"rename {spare[match[0]]!r} to {_with_unit(name, spare[match[0]])!r}" if match
             else f"a {cls.kind} record needs the columns {', '.join(cls.required)}"
         )  # fmt: skip
-        columns = ", ".join(h.strip() or "(blank)" for h in table.header)
-        raise RecordError(f"{table.path}: no column {name!r} (found: {columns}); {advice}")
+        raise RecordError(
+            f"{table.path}: no column {name!r} (found: {listed(table.header)}); {advice}"
+        )
 
 
 def _with_unit(name: str, header: str) -> str:
@@ -270,8 +281,7 @@ def _split_runs(table: RawTable, column: int | None) -> list[tuple[str | None, R
             f"{table.path}: {table.place(row)}, column {table.header[column].strip()!r}: "
             "no run is named; fill the cell"
         )
-    # one stable sort in place of a search per run
-    order = np.argsort(member, kind="stable")
+    order = np.argsort(member, kind="stable")  # in place of a search per run
     parts = np.split(order, np.cumsum(np.bincount(member))[:-1])
     return [(str(labels[k]), parts[k]) for k in np.argsort(first)]
 

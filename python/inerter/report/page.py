@@ -24,6 +24,7 @@ from inerter.diagnose.result import (
 from inerter.diagnose.wording import departure, is_right
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import to_script
+from inerter.printable import upright
 from inerter.report import text
 from inerter.report.other_plots import cutoff_plot, table_plots
 from inerter.report.run_plots import LOOP_CYCLES, run_plots
@@ -118,6 +119,7 @@ def _template() -> Any:
     environment = Environment(
         loader=FileSystemLoader(folder),
         autoescape=True,
+        finalize=upright,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

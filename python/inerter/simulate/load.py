@@ -9,6 +9,7 @@ import numpy as np
 
 from inerter.device_in_model import PLUGIN, devices_of
 from inerter.engine_errors import SimulationError, engine_text
+from inerter.input_file import refuse_special
 from inerter.plugin import load_plugin
 
 INTEGRATORS = {
@@ -44,11 +45,16 @@ def load_model(
         integrator, a time step that is not positive.
     """
     load_plugin()
-    if not path.is_file():
-        what = "is a folder" if path.is_dir() else "no such file"
-        raise SimulationError(f"{path}: {what}; give a model, .xml or .mjb")
+    try:
+        refuse_special(path)
+    except FileNotFoundError:
+        raise SimulationError(f"{path}: no such file; give a model, .xml or .mjb") from None
+    except OSError as error:
+        raise SimulationError(
+            f"{path}: cannot be opened ({error.strerror}); give a model, .xml or .mjb"
+        ) from None
     if timestep is not None and not 0 < timestep < 1e3:
-        raise SimulationError(f"--timestep is {timestep:g}: give seconds > 0")
+        raise SimulationError(f"--timestep is {timestep:g}: give seconds above 0, below 1000")
     if integrator is not None and integrator.lower() not in INTEGRATORS:
         names = "Euler, RK4, implicit, implicitfast, discrete"
         raise SimulationError(f"--integrator is {integrator!r}; choose one of {names}")

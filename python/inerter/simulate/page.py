@@ -12,6 +12,7 @@ from markupsafe import Markup
 import inerter.report
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import figure, to_script
+from inerter.printable import upright
 from inerter.report import page as report_page
 from inerter.report import text
 from inerter.simulate.plots import (
@@ -56,6 +57,7 @@ def _template() -> Any:
     environment = Environment(
         loader=FileSystemLoader(folders),
         autoescape=True,
+        finalize=upright,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

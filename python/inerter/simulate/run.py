@@ -119,7 +119,7 @@ def _plan(
     if duration is None:
         duration = inputs.duration if inputs else DEFAULT_DURATION
     if not 0 < duration < 1e9:
-        raise SimulationError(f"--duration is {duration:g}: give seconds > 0")
+        raise SimulationError(f"--duration is {duration:g}: give seconds above 0, below 1e9")
     h = float(model.opt.timestep)
     steps, every = round(duration / h), _every(h, rate)
     if steps < 1:

@@ -8,7 +8,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.engine_errors import SimulationError
+from inerter.staging import Staging, to_disk
 
 FRAME_RATE = 25  # frames per second; a GIF counts in hundredths of a second
 WIDTH, HEIGHT = 640, 480
@@ -65,20 +65,11 @@ def write_video(
     OSError
         The file cannot be written.
     """
-    handle, name = tempfile.mkstemp(
-        prefix=".video-", suffix=path.suffix, dir=path.absolute().parent
-    )
-    os.close(handle)
-    try:
+    with Staging(path.absolute().parent) as staging:
         write = _write_gif if path.suffix.lower() == ".gif" else _write_mp4
-        write(_frames(model, states, progress), Path(name))
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
-    finally:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
+        write(_frames(model, states, progress), staging.new / path.name)
+        to_disk(staging.new / path.name)
+        staging.exchange([path.name])
 
 
 def _frames(

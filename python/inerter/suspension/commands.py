@@ -86,7 +86,7 @@ def optimize_command(
     from inerter.suspension.table import print_rows
 
     files: list[str] = []
-    with refusing(out_dir):
+    with refusing(out_dir, "optimum.json", "optimum.png", "optimum.html"):
         quarter = {
             "sprung_mass": sprung_mass,
             "unsprung_mass": unsprung_mass,

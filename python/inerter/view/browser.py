@@ -8,6 +8,8 @@ the devices' pictures are sent beside it.
 
 from __future__ import annotations
 
+import threading
+import webbrowser
 from typing import Any
 
 from mujoco.studio import (
@@ -24,26 +26,32 @@ from mujoco.studio.web import (
 )
 
 from inerter.view.control import DeviceControl
+from inerter.view.guard import Guard, put_before
 from inerter.view.panel import DevicePanel
 from inerter.view.session import Session
 from inerter.view.shake import Shake
 
 
 def run(session: Session, device: str, shake: Shake | None, port: int, open_page: bool) -> None:
-    """Serve a session to browsers on this machine until Ctrl-C.
+    """Serve a session to the user's browser until Ctrl-C.
 
     Raises
     ------
     OSError
         The port is taken.
     """
-    config = viewer_protocol.ViewerConfig(
-        title=session.path.stem, http_port=port, gfx="web", open_browser=open_page
-    )
+    guard = Guard()
+    put_before(guard)
+    config = viewer_protocol.ViewerConfig(title=session.path.stem, http_port=port, gfx="web")
     panels = [app.App(app.Config(show_inspector=False)), DevicePanel()]
 
     def serve(endpoint: endpoints.ViewerEndpoint) -> None:
-        viewer_protocol.run_viewer_loop(_LocalViewer(session, config, endpoint, panels))
+        viewer = _LocalViewer(session, config, endpoint, panels)
+        print(f"The page: {guard.address(port)}\n(Ctrl-C ends)", flush=True)
+        if open_page:
+            once = guard.address(port, once=True)
+            threading.Thread(target=webbrowser.open, args=(once, 2), daemon=True).start()
+        viewer_protocol.run_viewer_loop(viewer)
 
     control = DeviceControl(session, device, shake)
     with launch_thread.launch_thread(serve, sim_plugins=[*app.SIM_PLUGINS, control]) as handle:
@@ -52,7 +60,7 @@ def run(session: Session, device: str, shake: Shake | None, port: int, open_page
 
 
 class _LocalViewer(web_viewer.WebViewer):
-    """Reachable from this machine only: who can reach it, can drive it."""
+    """Reachable from this machine only, and by whom its guard lets in."""
 
     def __init__(
         self,
@@ -71,6 +79,15 @@ class _LocalViewer(web_viewer.WebViewer):
     @_host.setter
     def _host(self, value: str) -> None:
         del value  # the wheel's viewer listens everywhere
+
+    def _start_server(self) -> None:
+        # heard before the address is told
+        self._http_sock.listen()
+        super()._start_server()
+
+    def get_drop_file(self) -> str:
+        """No model is taken from a page."""
+        return ""
 
     def _serialize_model(self) -> bytes:
         empty = self.model.nbody == 1

@@ -42,9 +42,10 @@ def view_command(
 ) -> None:
     """Show a model and the loops of a device as they arise, with sliders for its parameters.
 
-    The page is in your browser; only this machine reaches it. Ctrl-C ends, and prints what was
-    changed.
+    The page is in your browser. Its address has a token, without which no other page or user of
+    this machine gets in. Ctrl-C ends, and prints what was changed.
     """
+    from inerter.folder import refuse_file
     from inerter.simulate.errors import SimulationError
     from inerter.view.picture import write_picture
     from inerter.view.session import Session
@@ -57,7 +58,9 @@ def view_command(
             raise SimulationError(f"--device {device!r}: the model's devices are {listed}")
         shaken = usual_shake(session.model) if shake is None else read_shake(shake, session.model)
         first = device or next(iter(session.devices))
-        if picture is None:
+        if picture is not None:
+            refuse_file(picture)
+        else:
             _serve(session, first, shaken, port)
             return
         notes = write_picture(session, first, shaken, picture, duration, shown)
@@ -86,8 +89,8 @@ def _serve(session: Session, device: str, shake: Shake | None, port: int) -> Non
     if not display:
         out.print(
             f"No display here. From the machine you sit at: ssh -L {port}:localhost:{port} "
-            f"{socket.gethostname()}, then open http://localhost:{port}; or write a picture: "
-            "--picture view.png"
+            f"{socket.gethostname()}, then open the address below in a browser there; or write a "
+            "picture: --picture view.png"
         )
     run(session, device, shake, port, open_page=display)
     for name, values in session.changes().items():

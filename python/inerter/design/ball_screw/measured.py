@@ -91,7 +91,7 @@ def read_points(name: str) -> Points:
     from inerter.records import read_records
 
     path = data_path("ball_screw_table.csv") if name == SHIPPED else Path(name)
-    read = read_records([str(path)])
+    read = read_records([str(path)], others=False)
     if len(read) != 1 or not isinstance(read[0], BenchTable):
         raise DesignError(
             f"measured is {name!r}, not one bench table: give a file with the columns frequency, "

@@ -1,7 +1,7 @@
 """The user's MJCF with a diagnosis' changes in it: edits of an MjSpec, so that it can be written.
 
 ELEMENT.NAME                what changes (tyre:ACTUATOR, tendon:, joint: or body:NAME)
-DEVICE.*                    the configuration of the inerter.device (`identify.coordinates`)
+DEVICE.*                    the configuration of the inerter.device (`catalogue.coordinates`)
 TYRE.tyre_stiffness         gain of the road's position actuator [N/m]
 TYRE.tyre_damping           a further velocity actuator, whose control is the road's rate [N s/m]
 TYRE.tyre_static_load       force range of the road's actuator: it cannot pull by more [N]

@@ -1,6 +1,6 @@
 """A user's model with what a diagnosis changes in it, as numbers by name.
 
-A coordinate is "ELEMENT.NAME": of a device ("strut.coulomb_force", see `identify.coordinates`), or
+A coordinate is "ELEMENT.NAME": of a device ("strut.coulomb_force", see `catalogue.coordinates`), or
 of a part of the vehicle ("road.tyre_damping", "sprung.body_mass").
 """
 

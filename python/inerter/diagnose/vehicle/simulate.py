@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from mujoco import batch
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
@@ -20,6 +19,7 @@ from inerter.diagnose.vehicle.build import UserModel, rate_actuator
 from inerter.diagnose.vehicle.drive import RecordedDrive
 from inerter.diagnose.vehicle.mapping import Channels, Output
 from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.engine_batch import batch
 
 Array = NDArray[np.float64]
 _CHUNK = 2_000_000  # numbers recorded at once

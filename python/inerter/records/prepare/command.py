@@ -60,7 +60,7 @@ def prepare_command(
     forms: dict[str, Format] = {"csv": "csv", "parquet": "parquet"}
     if form not in forms:
         refuse(f"--format is {form!r}; take one of {', '.join(forms)}")
-    with refusing(out_dir):
+    with refusing(out_dir, "preparation.json"):
         chosen: dict[str, Any] = {"channels": tuple(channel)} if channel else {}
         options = Options(
             denoise=denoise, noise=noise, rate=resample, derivatives=derivatives, cutoff=cutoff,

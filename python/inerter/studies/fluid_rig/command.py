@@ -35,7 +35,7 @@ def fluid_rig_command(
     from inerter.studies.fluid_rig.study import study
     from inerter.studies.fluid_rig.summary import print_study
 
-    with refusing(out_dir):
+    with refusing(out_dir, "fluid_rig.json", "fluid_rig.html"):
         settings = Settings(
             objectives=tuple(name.strip() for name in objective.split(",")),
             seeds=tuple(range(seeds)),

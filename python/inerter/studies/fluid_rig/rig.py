@@ -16,12 +16,12 @@ from functools import cached_property
 from typing import Literal
 
 import mujoco
-import mujoco.batch
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import parameters
 from inerter.device_in_model import device_of
+from inerter.engine_batch import batch
 from inerter.model_parameters import FLUID_INERTER, SHAKER
 from inerter.models import model_path
 from inerter.plugin import load_plugin
@@ -75,7 +75,7 @@ class Rig:
         instance = spec.plugin(DEVICE)
         config = dict(instance.config)
         if self.configuration == "dry":
-            config = {key: config[key] for key in _DRY_KEYS}
+            config = {"inertance": "0"} | {key: config[key] for key in _DRY_KEYS}
             instance.config = config
             spec.actuator(DEVICE).actdim = -1
         # energies and forces of the sensors are not needed
@@ -114,13 +114,13 @@ class Rig:
     ) -> list[Signals | None]:
         """Signals of tests of one duration."""
         model, count = self.model, len(tests)
-        batch = mujoco.batch.Batch(model, count, self.threads)
+        runs = batch.Batch(model, count, self.threads)
         if self.live:
-            held = batch.expand("numeric_data")
+            held = runs.expand("numeric_data")
             for row, (_, values) in zip(held, tests, strict=True):
                 for name, value in values:
                     row[model.numeric(f"{DEVICE}.{name}").adr[0]] = value
-        batch.reset(keyframe=0)
+        runs.reset(keyframe=0)
 
         every = round(1 / (self.rate * self.step))
         samples = round(tests[0][0].duration * self.rate)
@@ -139,7 +139,7 @@ class Rig:
             control = np.zeros((count, number, model.nu))
             for row, (sweep, _) in zip(control, tests, strict=True):
                 row[:, coil] = SHAKER.gain * sweep.voltage(middle)
-            record = batch.rollout(
+            record = runs.rollout(
                 number, control, int(mujoco.mjtState.mjSTATE_CTRL), ("qpos", "qvel", "act")
             )
             # row r is the state after step r
@@ -152,7 +152,7 @@ class Rig:
             if model.na:
                 water = np.abs(position[..., piston.qposadr[0]] - record["act"][..., 0])
                 farthest = np.maximum(farthest, water.max(axis=1))
-        reached = np.array(batch.bind("time")).ravel() > (steps - 0.5) * self.step
+        reached = np.array(runs.bind("time")).ravel() > (steps - 0.5) * self.step
         good = reached & np.isfinite(x).all(axis=1) & np.isfinite(v).all(axis=1)
         return [
             self._signals(dict(values), x[n], v[n], current[n], states[n], float(farthest[n]))

@@ -45,7 +45,7 @@ def hysteresis_command(
     from inerter.studies.hysteresis.settings import Settings
     from inerter.studies.hysteresis.study import study
 
-    with refusing(out_dir):
+    with refusing(out_dir, "hysteresis.json", "hysteresis.html"):
         settings = Settings(
             noise=noise, rate=rate, duration=duration, denoise=denoise, draws=draws,
             random_starts=random_starts, seed=seed,

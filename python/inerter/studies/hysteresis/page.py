@@ -15,6 +15,7 @@ from plotly.subplots import make_subplots
 
 from inerter.pictures.palette import LIGHT
 from inerter.pictures.plotting import FONT
+from inerter.printable import upright
 from inerter.studies.hysteresis.figures import published_sets, title_of
 from inerter.studies.hysteresis.panels import COLOURS
 from inerter.studies.hysteresis.published import FREQUENCIES, MODELS
@@ -89,6 +90,7 @@ def _template() -> Any:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
+        finalize=upright,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -101,7 +101,7 @@ def evaluate_command(
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
 
-    with refusing(out_dir):
+    with refusing(out_dir, "evaluation.json", "evaluation.csv"):
         asked = car_named(car)
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
         cases, own = cases_asked(case, device, step)

@@ -51,8 +51,10 @@ def evaluate(
     if scheduler is not None and plan.settings.jobs == 0:
         # a worker of the cluster has as many pieces at once as it has threads
         plan = replace(plan, settings=replace(plan.settings, jobs=1))
-    names = ("stiffness", "index", "layout", "case")
-    rows = [Piece(plan=plan, **dict(zip(names, row, strict=True))) for row in plan.rows]
+    rows = [
+        Piece(plan=plan, stiffness=stiffness, index=index, layout=layout, case=case)
+        for stiffness, index, layout, case in plan.rows
+    ]
     ideals = [
         Piece(
             plan=plan,

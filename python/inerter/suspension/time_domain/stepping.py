@@ -17,9 +17,9 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from mujoco import batch
 from numpy.typing import NDArray
 
+from inerter.engine_batch import batch
 from inerter.simulate.checks import engine_warnings
 from inerter.suspension.time_domain.car_model import CarModel
 from inerter.suspension.time_domain.design import Design

@@ -1,0 +1,226 @@
+// The user functions of an ObjectGenericODE2, and what sensors ask, evaluated on a tape.
+//
+//   M = B J'J (+ the constant part),   f = forces,   K = -df/dq f_q - df/dq' f_v
+//
+// Every function is a built-in function of Python whose self is a tuple; its first item is the
+// address of an InerterElement, the others keep alive what that points to.
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "exudyn/python.h"
+#include "exudyn/tape.h"
+
+#if defined(_WIN32)
+#define INERTER_API __declspec(dllexport)
+#else
+#define INERTER_API __attribute__((visibility("default")))
+#endif
+
+typedef struct InerterElement_ {
+  InerterTape tape;
+  int32_t size;           // coordinates of the object
+  int32_t nrow;           // of them those of the terminals' nodes
+  int32_t loaded;         // inputs end with the latest accelerations, asked of `reader`
+  int32_t known;          // the values on the tape are those of `inputs`
+  const int32_t* forces;  // places of the forces, size
+  const int32_t* row;     // places of J, nrow
+  int32_t inertance;      // place of B
+  int32_t length;         // place of what must not fall below `shortest`, or -1
+  double shortest;
+  double* mass;        // the mass matrix, size x size; its constant part is in place
+  double* jacobian;    // size x size
+  Object* mass_array;  // the NumPy arrays of these
+  Object* jacobian_array;
+  Object* mass_list;    // the mass matrix as lists, which Exudyn reads faster if it is small,
+                        // or Python's None
+  Object* reader;       // (mbs, itemNumber) -> accelerations
+  Object* none;         // Python's
+  Object* error;        // raised when the terminals meet,
+  const char* message;  // with this text
+} InerterElement;
+
+static Python python;
+
+static InerterElement* element_of(Object* self) {
+  return python.PyLong_AsVoidPtr(python.PyTuple_GetItem(self, 0));
+}
+
+// copy a list of numbers, at least n; returns whether something differed, -1 if it was no such list
+static int copy(Object* list, double* to, int32_t n) {
+  if (!list || python.PyList_Size(list) < n) {
+    return -1;
+  }
+  int changed = 0;
+  for (int32_t i = 0; i < n; i++) {
+    double value = python.PyFloat_AsDouble(python.PyList_GetItem(list, i));
+    if (value == -1.0 && python.PyErr_Occurred()) {
+      return -1;
+    }
+    // NaN differs from itself: the run goes on with it as it would without us
+    changed |= !(to[i] == value);
+    to[i] = value;
+  }
+  return changed;
+}
+
+// accelerations of the object, as Exudyn knows them at this moment
+static int read_accelerations(InerterElement* element, Object* arguments, double* to) {
+  Object* found = python.PyObject_CallObject(element->reader, arguments);
+  int changed = found ? copy(found, to, element->size) : -1;
+  if (found) {
+    python.Py_DecRef(found);
+  }
+  return changed;
+}
+
+// bring the tape to the arguments (mbs, t, itemNumber, q, q_t, ...); 0, or -1 with an error set
+static int update(InerterElement* element, Object* arguments) {
+  double* inputs = element->tape.values;
+  const int32_t n = element->size;
+  int by_place = copy(python.PyTuple_GetItem(arguments, 3), inputs, n);
+  int by_speed = copy(python.PyTuple_GetItem(arguments, 4), inputs + n, n);
+  int by_load = 0;
+  if (by_place >= 0 && by_speed >= 0 && element->loaded) {
+    by_load = read_accelerations(element, arguments, inputs + 2 * n);
+  }
+  if (by_place < 0 || by_speed < 0 || by_load < 0) {
+    element->known = 0;
+    if (!python.PyErr_Occurred()) {
+      python.PyErr_SetString(element->error, "coordinates of another number than the element's");
+    }
+    return -1;
+  }
+  if (element->known && !by_place && !by_speed && !by_load) {
+    return 0;
+  }
+  inerter_tape_run(&element->tape);
+  element->known = 1;
+  if (element->length >= 0 && element->tape.values[element->length] < element->shortest) {
+    element->known = 0;
+    python.PyErr_SetString(element->error, element->message);
+    return -1;
+  }
+  return 0;
+}
+
+static Object* force(Object* self, Object* arguments) {
+  InerterElement* element = element_of(self);
+  if (!element || update(element, arguments)) {
+    return NULL;
+  }
+  Object* list = python.PyList_New(element->size);
+  for (int32_t i = 0; list && i < element->size; i++) {
+    Object* value = python.PyFloat_FromDouble(element->tape.values[element->forces[i]]);
+    python.PyList_SetItem(list, i, value);
+  }
+  return list;
+}
+
+// put B J'J into the list of lists; 0, or -1 with an error set
+static int write_lists(const InerterElement* element) {
+  const double* values = element->tape.values;
+  double inertance = values[element->inertance];
+  for (int32_t i = 0; i < element->nrow; i++) {
+    double part = inertance * values[element->row[i]];
+    Object* row = python.PyList_GetItem(element->mass_list, i);
+    for (int32_t k = 0; k <= i; k++) {
+      Object* value = python.PyFloat_FromDouble(part * values[element->row[k]]);
+      if (!value) {
+        return -1;
+      }
+      if (k < i) {
+        python.Py_IncRef(value);
+        python.PyList_SetItem(python.PyList_GetItem(element->mass_list, k), i, value);
+      }
+      python.PyList_SetItem(row, k, value);
+    }
+  }
+  return 0;
+}
+
+static void write_array(const InerterElement* element) {
+  const double* values = element->tape.values;
+  double inertance = values[element->inertance];
+  for (int32_t i = 0; i < element->nrow; i++) {
+    double part = inertance * values[element->row[i]];
+    double* row = element->mass + (ptrdiff_t)i * element->size;
+    for (int32_t k = 0; k < element->nrow; k++) row[k] = part * values[element->row[k]];
+  }
+}
+
+static Object* mass(Object* self, Object* arguments) {
+  InerterElement* element = element_of(self);
+  if (!element || update(element, arguments)) {
+    return NULL;
+  }
+  Object* matrix = element->mass_array;
+  if (element->mass_list != element->none) {
+    matrix = element->mass_list;
+    if (write_lists(element)) {
+      return NULL;
+    }
+  } else {
+    write_array(element);
+  }
+  python.Py_IncRef(matrix);
+  return matrix;
+}
+
+static Object* jacobian(Object* self, Object* arguments) {
+  InerterElement* element = element_of(self);
+  if (!element || update(element, arguments)) {
+    return NULL;
+  }
+  double by_place = python.PyFloat_AsDouble(python.PyTuple_GetItem(arguments, 5));
+  double by_speed = python.PyFloat_AsDouble(python.PyTuple_GetItem(arguments, 6));
+  if (python.PyErr_Occurred()) {
+    return NULL;
+  }
+  inerter_tape_slopes(&element->tape);
+  const int32_t n = element->size;
+  for (int32_t i = 0; i < n; i++) {
+    const double* slope =
+        element->tape.slopes + (ptrdiff_t)element->forces[i] * element->tape.ninput;
+    double* row = element->jacobian + (ptrdiff_t)i * n;
+    for (int32_t k = 0; k < n; k++) row[k] = -by_place * slope[k] - by_speed * slope[n + k];
+  }
+  python.Py_IncRef(element->jacobian_array);
+  return element->jacobian_array;
+}
+
+static Method methods[] = {
+    {"forceUserFunction", force, INERTER_METHOD_ARGUMENTS, "forces (mbs, t, itemNumber, q, q_t)"},
+    {"massMatrixUserFunction", mass, INERTER_METHOD_ARGUMENTS, "M (mbs, t, itemNumber, q, q_t)"},
+    {"jacobianUserFunction", jacobian, INERTER_METHOD_ARGUMENTS,
+     "K (mbs, t, itemNumber, q, q_t, factor, factor_t)"},
+};
+
+// hand over Python's functions, in the order of INERTER_PYTHON
+INERTER_API void inerter_exudyn_begin(const Python* functions) {
+  python = *functions;
+}
+
+// the method of a number: force, mass matrix, Jacobian
+INERTER_API Method* inerter_exudyn_method(int number) {
+  int known = number >= 0 && number < (int)(sizeof methods / sizeof *methods);
+  return known ? methods + number : NULL;
+}
+
+// the name of an operation, or NULL past the last
+INERTER_API const char* inerter_exudyn_operation(int number) {
+  static const char* const names[] = {
+#define X(name, expression) #name,
+      INERTER_OPERATIONS(X)
+#undef X
+  };
+  return number >= 0 && number < INERTER_NOPERATION ? names[number] : NULL;
+}
+
+INERTER_API void inerter_exudyn_run(const InerterTape* tape) {
+  inerter_tape_run(tape);
+}
+
+INERTER_API void inerter_exudyn_run_slopes(const InerterTape* tape) {
+  inerter_tape_slopes(tape);
+}

@@ -1,0 +1,67 @@
+"""What can be read off a device at some coordinates, recorded once and evaluated in C."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from inerter.exudyn import device as law
+from inerter.exudyn.element import HEAT, Element
+from inerter.exudyn.functions import Functions, Value
+from inerter.exudyn.tape import Tape
+
+FORCES = ("total", "inertance", "friction")
+READINGS = ("displacement", "velocity", "acceleration", *FORCES, "dissipated_power", "length")
+
+
+class Readings:
+    """`READINGS` and the states of an element, by name."""
+
+    def __init__(self, element: Element) -> None:
+        n = element.size
+        tape = Tape(3 * n)
+        parts = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
+        told = _told(element, tape.functions, *parts)
+        keys = {name: tape.key(value) for name, value in told.items()}
+        self._finished = tape.finish()
+        self._size, self._starts = n, (0, n, 2 * n)
+        self._places = {name: self._finished.place(key) for name, key in keys.items()}
+
+    def at(self, *parts: Any, names: Sequence[str] = ()) -> list[float]:
+        """Those named, at coordinates, velocities and accelerations, each of shape (size,)."""
+        values = self._finished.values
+        for start, part in zip(self._starts, parts, strict=True):
+            values[start : start + self._size] = part
+        found = self._finished.rerun()
+        return [found.item(self._places[name]) for name in names]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All that can be read."""
+        return tuple(self._places)
+
+
+def _told(
+    element: Element,
+    f: Functions,
+    q: Sequence[Value],
+    q_t: Sequence[Value],
+    q_tt: Sequence[Value],
+) -> dict[str, Value]:
+    p, motion = element.device, element.motion(f, q, q_t)
+    x, v = motion.length - p.rest_length, motion.rate
+    a = motion.bias
+    for share, latest in zip(motion.row, q_tt, strict=False):
+        a = a + share * latest
+    z = element.states(x, q, q_t)
+    if p.backlash:
+        # within the play, past whose edge a last step may have gone; without a damper the
+        # position follows from the deflection
+        gap, slide = (p.state_names.index(n) for n in ("gap_position", "series_deflection"))
+        place = z[gap] if p.series_damping else z[slide]
+        z[gap] = f.least(p.backlash, f.greatest(-p.backlash, place))
+    forces = law.forces(p, x, v, a, z, f)
+    heat = law.dissipated_power(f, p, x, v, z, forces["inertance"])
+    told = {"length": motion.length, "displacement": x, "velocity": v, "acceleration": a, **forces}
+    told |= {"dissipated_power": heat, **dict(zip(p.state_names, z, strict=True))}
+    return told | ({HEAT: q_t[element.first + element.own.index(HEAT)]} if element.heat else {})

@@ -1,0 +1,173 @@
+"""Expressions written down once, evaluated by the package's C library, with their derivatives.
+
+A law or a geometry that is written with the names of `Functions` runs on `Number`s as it runs on
+floats: what it works out is recorded, each expression once, and later evaluated at any inputs.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.exudyn.functions import NUMBERS, Functions
+from inerter.exudyn.library import CTape, operations, run, run_slopes
+
+Value: TypeAlias = "Number | float"
+Key: TypeAlias = tuple[str, int]
+"""Kind (input, constant, step) and number of a value; places follow when the tape is finished."""
+
+
+class Number:
+    """A value on a tape; `affine` where it is linear in the inputs, plus a constant."""
+
+    __slots__ = ("affine", "key", "tape")
+
+    def __init__(self, tape: Tape, key: Key, affine: bool) -> None:
+        self.tape, self.key, self.affine = tape, key, affine
+
+    def __add__(self, other: Value) -> Value:
+        return self if _is(other, 0.0) else self.tape.record("add", self, other)
+
+    def __radd__(self, other: float) -> Value:
+        return self if _is(other, 0.0) else self.tape.record("add", other, self)
+
+    def __sub__(self, other: Value) -> Value:
+        return self if _is(other, 0.0) else self.tape.record("subtract", self, other)
+
+    def __rsub__(self, other: float) -> Value:
+        return -self if _is(other, 0.0) else self.tape.record("subtract", other, self)
+
+    def __mul__(self, other: Value) -> Value:
+        if _is(other, 0.0):
+            return 0.0
+        return self if _is(other, 1.0) else self.tape.record("multiply", self, other)
+
+    def __rmul__(self, other: float) -> Value:
+        if _is(other, 0.0):
+            return 0.0
+        return self if _is(other, 1.0) else self.tape.record("multiply", other, self)
+
+    def __truediv__(self, other: Value) -> Value:
+        return self if _is(other, 1.0) else self.tape.record("divide", self, other)
+
+    def __rtruediv__(self, other: float) -> Value:
+        return 0.0 if _is(other, 0.0) else self.tape.record("divide", other, self)
+
+    def __neg__(self) -> Value:
+        return self.tape.record("negate", self)
+
+    def __lt__(self, other: Value) -> Value:
+        return self.tape.record("less", self, other)
+
+    def __gt__(self, other: Value) -> Value:
+        return self.tape.record("less", other, self)
+
+    def __le__(self, other: Value) -> Value:
+        return self.tape.record("not_above", self, other)
+
+    def __ge__(self, other: Value) -> Value:
+        return self.tape.record("not_above", other, self)
+
+    def __bool__(self) -> bool:
+        raise TypeError("a recorded number is neither true nor false; use Functions.choose")
+
+
+class Tape:
+    """What is recorded over some inputs; `functions` are the elementary functions on its numbers.
+
+    Parameters
+    ----------
+    inputs
+        How many; `Tape.inputs` are they, as numbers to compute with.
+    """
+
+    def __init__(self, inputs: int) -> None:
+        self.inputs = [Number(self, ("input", place), True) for place in range(inputs)]
+        self._steps: dict[tuple[Any, ...], Number] = {}
+        self._constants: dict[float, int] = {}
+        names = Functions.__dataclass_fields__
+        self.functions = Functions(**{name: self._function(name) for name in names})
+
+    def record(self, name: str, *operands: Value) -> Number:
+        """Record an operation, or find it where it is recorded already."""
+        recorded = (name, *(self.key(operand) for operand in operands))
+        if recorded not in self._steps:
+            key = ("step", len(self._steps))
+            self._steps[recorded] = Number(self, key, _affine(name, operands))
+        return self._steps[recorded]
+
+    def key(self, value: Value) -> Key:
+        """The key of a number, or of a constant."""
+        if isinstance(value, Number):
+            return value.key
+        return "constant", self._constants.setdefault(float(value), len(self._constants))
+
+    def finish(self) -> Finished:
+        """What is recorded up to now, in the library's form."""
+        return Finished(len(self.inputs), list(self._constants), list(self._steps))
+
+    def _function(self, name: str) -> Callable[..., Value]:
+        plain = getattr(NUMBERS, name)
+
+        def function(*operands: Value) -> Value:
+            if any(isinstance(operand, Number) for operand in operands):
+                return self.record(name, *operands)
+            return plain(*operands)
+
+        return function
+
+
+class Finished:
+    """A tape as the library reads it, with room for its values and their derivatives."""
+
+    def __init__(self, inputs: int, constants: list[float], steps: list[Any]) -> None:
+        self._first = {"input": 0, "constant": inputs, "step": inputs + len(constants)}
+        rows, numbers = inputs + len(constants) + len(steps), operations()
+        self.steps = np.zeros((len(steps), 4), dtype=np.int32)
+        for row, (name, *operands) in zip(self.steps, steps, strict=True):
+            places = [self.place(key) for key in operands]
+            row[: 1 + len(places)] = numbers[name], *places
+        self.values = np.zeros(rows)
+        self.values[inputs : inputs + len(constants)] = constants
+        self.slopes = np.zeros((rows, max(1, inputs)))
+        self.slopes[range(inputs), range(inputs)] = 1.0
+        arrays = (self.steps, self.values, self.slopes)
+        self.c = CTape(inputs, len(constants), len(steps), *(each.ctypes.data for each in arrays))
+        self._reference = ctypes.byref(self.c)
+
+    def place(self, key: Key) -> int:
+        """Where a value lies among `values`."""
+        return self._first[key[0]] + key[1]
+
+    def run(self, inputs: Sequence[float]) -> NDArray[np.float64]:
+        """All values at some inputs; the array is this object's own."""
+        self.values[: len(inputs)] = inputs
+        return self.rerun()
+
+    def rerun(self) -> NDArray[np.float64]:
+        """All values at the inputs that stand in `values`."""
+        run(self._reference)
+        return self.values
+
+    def run_slopes(self) -> NDArray[np.float64]:
+        """Derivatives of all values by the inputs where `run` was last, shape (values, inputs)."""
+        run_slopes(self._reference)
+        return self.slopes
+
+
+def _is(value: Value, number: float) -> bool:
+    return not isinstance(value, Number) and value == number
+
+
+def _affine(name: str, operands: Sequence[Value]) -> bool:
+    """Whether a step is a linear function of the inputs plus a constant."""
+    linear = [not isinstance(each, Number) or each.affine for each in operands]
+    if name in ("add", "subtract", "negate"):
+        return all(linear)
+    if name == "multiply":
+        return all(linear) and any(not isinstance(each, Number) for each in operands)
+    return name == "divide" and linear[0] and not isinstance(operands[1], Number)

@@ -1,0 +1,169 @@
+"""Lets devices follow their system: what they read when it is assembled, changed, or solved.
+
+Exudyn has no call-back for these moments, but builds much of MainSystem in Python; so do we. The
+functions named in `install` do all that they did, and tell the devices of that system, if it has
+any.
+"""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from inerter.core import parameters
+from inerter.exudyn.carriers import follow
+from inerter.exudyn.changes import KEPT, change_parameters, models_of, read_geometry, read_start
+from inerter.exudyn.engine import exudyn
+from inerter.exudyn.inerter import Model
+from inerter.exudyn.kinematics import Line
+
+GEOMETRY = {
+    "SetNodeParameter": ("referenceCoordinates",),
+    "SetMarkerParameter": ("localPosition", "coordinate"),
+    "SetObjectParameter": ("referencePosition", "referenceRotation"),
+}
+"""Parameters that move a terminal, by the function that sets them."""
+
+IMPLICIT = ("GeneralizedAlpha", "TrapezoidalIndex2")
+
+
+@functools.cache
+def install() -> None:
+    """Let MainSystem tell devices; once in a process."""
+    system = exudyn().MainSystem
+    system.Assemble = _telling_of_assembly(system.Assemble)
+    for name in GEOMETRY:
+        setattr(system, name, _telling_of_change(name, getattr(system, name)))
+    system.Reset = _forgetting(system.Reset)
+    solve = _careful(system.SolveDynamic)
+    for place in (system, exudyn(), exudyn("solver")):
+        if hasattr(place, "SolveDynamic"):
+            place.SolveDynamic = solve
+
+
+def _telling_of_assembly(original: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(original)
+    def Assemble(self: Any) -> Any:  # noqa: N802 - Exudyn's name
+        models = models_of(self)
+        for model in models:
+            read_geometry(self, model, assembling=True)
+            read_start(self, model)
+        done = original(self)
+        # where markers start is known only now
+        if [model for model in models if follow(self, model.carriers)]:
+            for model in models:
+                read_start(self, model)
+            done = original(self)
+        return done
+
+    return Assemble
+
+
+def _forgetting(original: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(original)
+    def Reset(self: Any) -> Any:  # noqa: N802 - Exudyn's name
+        self.variables.pop(KEPT, None)
+        return original(self)
+
+    return Reset
+
+
+def _telling_of_change(name: str, original: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(original)
+    def set_parameter(self: Any, number: Any, parameterName: str, value: Any) -> Any:
+        models = models_of(self)
+        if models and name == "SetObjectParameter" and _is_of_device(parameterName):
+            for model in models:
+                if int(model.objectNumber) == int(number):
+                    return change_parameters(self, model, {parameterName: value})
+        done = original(self, number, parameterName, value)
+        if models and parameterName in GEOMETRY[name] and self.systemIsConsistent:
+            for model in models:
+                read_geometry(self, model)
+        return done
+
+    return set_parameter
+
+
+def _is_of_device(name: str) -> bool:
+    return name in parameters() or name in ("friction", "gas_law")
+
+
+def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(original)
+    def SolveDynamic(mbs: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N802 - Exudyn's name
+        models = models_of(mbs)
+        if not models:
+            return original(mbs, *args, **kwargs)
+        settings = kwargs.pop("simulationSettings", None)
+        if settings is None and args:
+            settings, args = args[0], args[1:]
+        if settings is None:
+            settings = exudyn().SimulationSettings()
+        solver = kwargs.get("solverType") or (args[0] if args else None)
+        name = getattr(solver or exudyn().DynamicSolverType.GeneralizedAlpha, "name", "")
+        if name not in IMPLICIT:
+            for model in models:
+                _refuse_points(model, name)
+                _warn_of_constraints(mbs, model, name)
+            return original(mbs, settings, *args, **kwargs)
+        with _fresh_jacobians(settings, models):
+            return original(mbs, settings, *args, **kwargs)
+
+    return SolveDynamic
+
+
+@contextmanager
+def _fresh_jacobians(settings: Any, models: list[Model]) -> Iterator[None]:
+    """A Jacobian for every step, where an inertance turns; set back afterwards.
+
+    With that of an earlier direction modified Newton converges slowly, and after an impact not at
+    all until the step is at its minimum, where it stays.
+    """
+    newton = settings.timeIntegration.newton
+    before = newton.modifiedNewtonJacUpdatePerStep
+    if not all(model.element.constant_mass for model in models):
+        newton.modifiedNewtonJacUpdatePerStep = True
+    try:
+        yield
+    finally:
+        newton.modifiedNewtonJacUpdatePerStep = before
+
+
+def _refuse_points(model: Model, solver: str) -> None:
+    if model.carriers:
+        raise ValueError(
+            f'inerter "{model.name}": {solver} cannot solve the joint of its massless point, which '
+            "carries the terminal on a cable, beam, tree or superelement; take GeneralizedAlpha"
+        )
+
+
+def _warn_of_constraints(mbs: Any, model: Model, solver: str) -> None:
+    """Explicit solvers put a constrained coordinate back after a step, which is not exact there."""
+    element = model.element
+    alone = isinstance(element.kinematics, Line) and len(element.kinematics.places) == 1
+    if alone or "flywheel_velocity" in element.own or not element.device.inertance:
+        return
+    nodes = {int(node) for node in model.nodeNumbers}
+    for number in range(mbs.systemData.NumberOfObjects()):
+        try:
+            item = mbs.GetObject(number)
+        except TypeError:
+            # Exudyn 1.9 cannot tell of an object with a symbolic function; it is no constraint
+            continue
+        if item["objectType"] != "ConnectorCoordinate":
+            continue
+        for marker in item["markerNumbers"]:
+            node = mbs.GetMarker(marker).get("nodeNumber")
+            if node is not None and int(node) in nodes:
+                warnings.warn(
+                    f'inerter "{model.name}": {solver} puts the coordinate of constraint '
+                    f'"{item["name"]}" back after each step, which is not exact where an inerter '
+                    "couples it to others (errors of 1e-3 were seen); take GeneralizedAlpha, or "
+                    "lock the coordinate by a large mass",
+                    stacklevel=3,
+                )
+                return

@@ -1,0 +1,40 @@
+"""The record files that an argument stands for: a file, a folder or a glob."""
+
+from __future__ import annotations
+
+import glob
+from pathlib import Path
+
+from .record import RecordError
+from .table import EXTENSIONS
+
+
+def record_files(entry: str | Path) -> list[Path]:
+    """The record files that one argument stands for; RecordError when there is none."""
+    try:
+        return _files(Path(entry).expanduser())
+    except (OSError, ValueError, RuntimeError) as error:
+        if isinstance(error, RecordError):
+            raise
+        # a folder that may not be entered, a name that no system bears
+        reason = getattr(error, "strerror", None) or str(error)
+        raise RecordError(f"{entry}: cannot be opened ({reason}); check the path") from None
+
+
+def _files(path: Path) -> list[Path]:
+    wanted = ", ".join(EXTENSIONS)
+    if path.is_dir():
+        found = sorted(p for p in path.iterdir() if _is_record_file(p))
+        if not found:
+            raise RecordError(f"{path}: no records in this folder; put {wanted} files into it")
+        return found
+    if path.exists() or not glob.has_magic(str(path)):
+        return [path]
+    found = sorted(p for p in map(Path, glob.glob(str(path), recursive=True)) if _is_record_file(p))
+    if not found:
+        raise RecordError(f"{path}: no {wanted} file matches; check the pattern and the folder")
+    return found
+
+
+def _is_record_file(path: Path) -> bool:
+    return path.is_file() and path.suffix.lower() in EXTENSIONS and not path.name.startswith(".")

@@ -1,0 +1,69 @@
+"""The plugin with every version of MuJoCo that it is built for, one wheel for all: `make versions`.
+
+    python tests/versions/run.py FOLDER [pytest arguments]
+
+FOLDER/wheel holds the wheel. Every version gets an environment of its own in FOLDER: engine and
+wheel installed, the other packages linked from the environment that runs this. The oldest and the
+newest version run the plugin's tests, the others load and drive the quarter-car.
+"""
+
+from __future__ import annotations
+
+import os
+import runpy
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+ENGINES: dict[str, str] = runpy.run_path(str(ROOT / "plugin_c/packaging/engines.py"))["ENGINES"]
+WHOLE = ["tests/plugin", "tests/versions"]
+SOME = ["tests/versions", "tests/agreement/test_quarter_car.py"]
+
+
+def main() -> int:
+    """Run the tests; 1 if a version fails."""
+    folder, *arguments = sys.argv[1:]
+    (wheel,) = Path(folder).resolve().glob("wheel/*.whl")
+    results, ends = [], (min(ENGINES, key=_numbers), max(ENGINES, key=_numbers))
+    for version, package in ENGINES.items():
+        tests = WHOLE if version in ends else SOME
+        print(f"\n== MuJoCo {version}: {' '.join(tests)}", flush=True)
+        started = time.monotonic()
+        python = _environment(wheel.parents[1] / version, wheel, f"{package}=={version}")
+        command = [python, "-m", "pytest", "-n", "auto", *tests, *arguments]
+        environment = {**os.environ, "INERTER_TESTED_ENGINE": version}
+        status = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+        results.append((version, status, time.monotonic() - started))
+    print()
+    for name, status, seconds in results:
+        print(f"MuJoCo {name:8} {'FAILED' if status else 'passed':7} {seconds:4.0f} s")
+    return int(any(status for _, status, _ in results))
+
+
+def _numbers(version: str) -> list[int]:
+    return [int(number) for number in version.split(".")]
+
+
+def _environment(place: Path, wheel: Path, engine: str) -> Path:
+    """An environment with one engine; its Python."""
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", place], check=True)
+    python = place / "bin" / "python"
+    mine, its = (_packages(each) for each in (sys.executable, python))
+    for entry in mine.iterdir():
+        if not entry.name.lower().startswith(("mujoco", "inerter", "__pycache__")):
+            (its / entry.name).symlink_to(entry)
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
+    subprocess.run([*pip, "--no-deps", "--target", its, engine, wheel], check=True)
+    return python
+
+
+def _packages(python: str | Path) -> Path:
+    code = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    done = subprocess.run([python, "-c", code], capture_output=True, text=True, check=True)
+    return Path(done.stdout.strip())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
