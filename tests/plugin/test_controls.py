@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar
-
-from typing import Any
+from typing import Any, ClassVar
 
 import inerter
 import mujoco
