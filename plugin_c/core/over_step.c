@@ -56,25 +56,26 @@ static void find_level(InerterStep* step, double stretch) {
   }
 }
 
-// force of a law with a bristle; z1: its state at the end
-static double bristle_over_step(const InerterDevice* device, double x, double v1, const double* z,
+// force of a law with a bristle; z, z1: its state at the start and at the end
+static double bristle_over_step(const InerterDevice* device, double x, double v1, double z,
                                 double h, double mobility, double* z1) {
   const FrictionLaw* law = law_of(device);
-  *z1 = bristle_step(device, x, v1, z[0], h);
+  *z1 = bristle_step(device, x, v1, z, h);
   double share = least_share(law->stiffness(device), mobility, h);
   if (device->friction_backlash > 0) {
-    return play_force_over_step(device, x, v1, z[0], *z1, share, h);
+    return play_force_over_step(device, x, v1, z, *z1, share, h);
   }
-  return law->force(device, x, v1, z[0] + share * (*z1 - z[0]));
+  return law->force(device, x, v1, z + share * (*z1 - z));
 }
 
+// z: the bristle's state, that of the end when it returns
 static double friction_over_step(const InerterDevice* device, double x, double v, double v1,
-                                 const double* z, double h, double mobility, double* z1) {
+                                 double h, double mobility, double* z) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
   if (has_bristle(device)) {
-    return bristle_over_step(device, x, v1, z, h, mobility, z1);
+    return bristle_over_step(device, x, v1, z[0], h, mobility, z);
   }
   InerterStep step = {.device = device, .v = v};
   find_level(&step, x);
@@ -92,7 +93,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
   if (h == 0) {
     force = inerter_force(device, x, v, a, z);
   } else {
-    double friction = friction_over_step(device, stretch, v, v1, z, h, mobility, next);
+    double friction = friction_over_step(device, stretch, v, v1, h, mobility, next);
     if (has(device, PART_SERIES)) {
       double* series = next + series_index(device);
       force.inertance = series_over_step(device, stretch, v1, series, h, mobility);
@@ -174,9 +175,9 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
       const InerterDevice* p = step->device;
       double stretch = stretch_of(p, step->x), h = step->h, near = 1e-6 * (1 + fabs(a)), end;
       double friction =
-          bristle_over_step(p, stretch, step->v + h * a, step->z, h, step->mobility, &end);
-      double beside =
-          bristle_over_step(p, stretch, step->v + h * (a + near), step->z, h, step->mobility, &end);
+          bristle_over_step(p, stretch, step->v + h * a, step->z[0], h, step->mobility, &end);
+      double beside = bristle_over_step(p, stretch, step->v + h * (a + near), step->z[0], h,
+                                        step->mobility, &end);
       *slope = step->rise + fmax(0, (beside - friction) / near);
       return line + friction;
     }
@@ -184,6 +185,9 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
     case STEP_LOAD:
       *slope = step->rise * (1 + step->load * sign(line));
       return line + step->load * fabs(line) + step->motion;
+
+    default:
+      break;
   }
 
   // a small difference: laws with corners have no better slope

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "mujoco/downhill.h"
+#include "mujoco/profile.h"
 #include "mujoco/rows.h"
 
 enum { ROUNDS = 40 };
@@ -111,7 +112,6 @@ static void find_profile(Part* part) {
   }
 }
 
-static mjtNum dot(const mjtNum* a, const mjtNum* b, int n);
 static void multiply(const Part* part, const mjtNum* x, mjtNum* product);
 
 // P, and Y = P H^-1 A
@@ -211,22 +211,6 @@ int constrained_fits(const mjModel* m, const mjData* d, const Group* group, int 
 
 //------------------------------ linear algebra ----------------------------------------------------
 
-// in four sums, which a processor adds side by side
-static mjtNum dot(const mjtNum* a, const mjtNum* b, int n) {
-  mjtNum s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-  int i = 0;
-  for (; i + 4 <= n; i += 4) {
-    s0 += a[i] * b[i];
-    s1 += a[i + 1] * b[i + 1];
-    s2 += a[i + 2] * b[i + 2];
-    s3 += a[i + 3] * b[i + 3];
-  }
-  for (; i < n; i++) {
-    s0 += a[i] * b[i];
-  }
-  return (s0 + s1) + (s2 + s3);
-}
-
 // A x
 static void multiply(const Part* part, const mjtNum* x, mjtNum* product) {
   mju_zero(product, part->n);
@@ -249,38 +233,7 @@ static int factor(Part* part) {
     part->K[part->A[e].row * n + part->A[e].column] += part->A[e].value;
   }
   rows_add_stiffness(&part->rows, n, part->K);
-  for (int i = 0; i < n; i++) {
-    mjtNum* row = part->K + i * n;
-    for (int c = part->first[i]; c < i; c++) {
-      const mjtNum* above = part->K + c * n;
-      int from = mjMAX(part->first[i], part->first[c]);
-      row[c] = (row[c] - dot(row + from, above + from, mjMAX(0, c - from))) * above[c];
-    }
-    int from = part->first[i];
-    mjtNum pivot = row[i] - dot(row + from, row + from, i - from);
-    if (!(pivot > 0)) {
-      return 0;
-    }
-    row[i] = 1 / sqrt(pivot);
-  }
-  return 1;
-}
-
-// x = K^-1 x
-static void solve(const Part* part, mjtNum* x) {
-  int n = part->n;
-  for (int i = 0; i < n; i++) {
-    const mjtNum* row = part->K + i * n;
-    int from = part->first[i];
-    x[i] = (x[i] - dot(row + from, x + from, i - from)) * row[i];
-  }
-  for (int i = n - 1; i >= 0; i--) {
-    const mjtNum* row = part->K + i * n;
-    x[i] *= row[i];
-    for (int c = part->first[i]; c < i; c++) {
-      x[c] -= row[c] * x[i];
-    }
-  }
+  return profile_factor(n, part->first, part->K);
 }
 
 //------------------------------ solution ----------------------------------------------------------
@@ -300,17 +253,17 @@ static int solve_springs(Part* part, const Constrained* problem, mjtNum* a, mjtN
   mju_addTo(part->model, part->answer, part->rows.n);
   mju_copy(part->x, part->f, n);
   rows_add_force(&part->rows, part->model, part->x);
-  solve(part, part->x);
+  profile_solve(n, part->first, part->K, part->x);
 
   // and what each takes away
   for (int i = 0; i < k; i++) {
     mju_copy(part->X + i * n, part->P + i * n, n);
-    solve(part, part->X + i * n);
-    part->p[i] = dot(part->Y + i * n, part->x, n) + problem->bias[i];
+    profile_solve(n, part->first, part->K, part->X + i * n);
+    part->p[i] = profile_dot(part->Y + i * n, part->x, n) + problem->bias[i];
   }
   for (int i = 0; i < k; i++) {
     for (int c = 0; c < k; c++) {
-      W[i * k + c] = dot(part->Y + i * n, part->X + c * n, n);
+      W[i * k + c] = profile_dot(part->Y + i * n, part->X + c * n, n);
     }
   }
   int rounds = monotone_solve(problem->law, problem->devices, k, W, part->p, a, force, scratch);
@@ -346,9 +299,9 @@ static double miss(Part* part, const mjData* d) {
   rows_add_force(&part->rows, part->answer, part->product);
   rows_add_force(&part->rows, part->model, part->gradient);
   multiply(part, part->x, part->step);
-  double square = dot(part->f, part->f, n) + dot(part->product, part->product, n) +
-                  dot(part->step, part->step, n);
-  return square > 0 ? sqrt(dot(part->gradient, part->gradient, n) / square) : 0;
+  double square = profile_dot(part->f, part->f, n) + profile_dot(part->product, part->product, n) +
+                  profile_dot(part->step, part->step, n);
+  return square > 0 ? sqrt(profile_dot(part->gradient, part->gradient, n) / square) : 0;
 }
 
 // the line from q to x
@@ -371,7 +324,7 @@ static double slope_at(void* context, double t) {
     part->beside[i] = line->start[i] + t * line->change[i];
   }
   rows_answer(line->d, rows, part->beside, part->answer);
-  double slope = line->constant + t * line->rise - dot(part->answer, line->change, rows->n);
+  double slope = line->constant + t * line->rise - profile_dot(part->answer, line->change, rows->n);
   for (int i = 0; i < part->k; i++) {
     mjtNum rise, a = line->along[i] + t * line->turn[i];
     slope += line->pull[i] * line->problem->law(line->problem->devices, i, a, &rise);
@@ -385,15 +338,15 @@ static double search(Part* part, const mjData* d, const Constrained* problem) {
   mju_sub(part->step, part->x, part->q, n);
   Line line = {part, d, problem, 0, 0, part->j, part->change, part->along, part->turn, part->other};
   multiply(part, part->step, part->product);
-  line.rise = dot(part->step, part->product, n);
-  line.constant = dot(part->q, part->product, n) - dot(part->f, part->step, n);
+  line.rise = profile_dot(part->step, part->product, n);
+  line.constant = profile_dot(part->q, part->product, n) - profile_dot(part->f, part->step, n);
   rows_multiply(&part->rows, part->q, line.start);
   mju_subFrom(line.start, part->reference, part->rows.n);
   rows_multiply(&part->rows, part->step, line.change);
   for (int i = 0; i < part->k; i++) {
-    line.along[i] = dot(part->Y + i * n, part->q, n) + problem->bias[i];
-    line.turn[i] = dot(part->Y + i * n, part->step, n);
-    line.pull[i] = dot(part->P + i * n, part->step, n);
+    line.along[i] = profile_dot(part->Y + i * n, part->q, n) + problem->bias[i];
+    line.turn[i] = profile_dot(part->Y + i * n, part->step, n);
+    line.pull[i] = profile_dot(part->P + i * n, part->step, n);
   }
   return downhill_search(slope_at, &line, slope_at(&line, 0));
 }
@@ -406,7 +359,7 @@ static int descend(const mjData* d, Part* part, const Constrained* problem, cons
   mju_copy(part->q, start, n);
   for (int i = 0; i < part->k; i++) {
     mjtNum rise;
-    a[i] = dot(part->Y + i * n, start, n) + problem->bias[i];
+    a[i] = profile_dot(part->Y + i * n, start, n) + problem->bias[i];
     force[i] = problem->law(problem->devices, i, a[i], &rise);
   }
   double before = INFINITY;

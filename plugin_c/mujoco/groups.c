@@ -100,7 +100,7 @@ static int** places(mjData* d, int count, const int* size) {
     total += size[g];
   }
   int* list = mj_stackAllocInt(d, total + 1);
-  int** next = mj_stackAllocByte(d, (size_t)(count + 1) * sizeof(int*), _Alignof(int*));
+  int** next = (int**)mj_stackAllocByte(d, (size_t)(count + 1) * sizeof(int*), _Alignof(int*));
   for (int g = 0; g < count; g++) {
     next[g] = list;
     list += size[g];

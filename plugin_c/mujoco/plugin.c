@@ -23,6 +23,7 @@
 
 #include "mujoco/advice.h"
 #include "mujoco/attachment.h"
+#include "mujoco/command.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupled.h"
 #include "mujoco/instance.h"
@@ -232,25 +233,6 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
   }
 }
 
-// commanded force parallel to the device: the control, delayed and limited as for other actuators
-static mjtNum command(const mjModel* m, const mjData* d, int actuator) {
-  if (!m->actuator_ctrlnum[actuator]) {
-    return 0;
-  }
-  int address = m->actuator_ctrladr[actuator];
-  mjtNum ctrl = d->ctrl[address];
-  if (m->actuator_delay[actuator]) {
-    const mjtNum* found =
-        mj_readCtrl(m, d, actuator, d->time, &ctrl, m->actuator_history[2 * actuator + 1]);
-    ctrl = found ? *found : ctrl;
-  }
-  if (m->actuator_ctrllimited[address] && !(m->opt.disableflags & mjDSBL_CLAMPCTRL)) {
-    ctrl =
-        mju_clip(ctrl, m->actuator_ctrlrange[2 * address], m->actuator_ctrlrange[2 * address + 1]);
-  }
-  return mju_isBad(ctrl) ? 0 : ctrl;
-}
-
 // force of one device, or a note that it has to be solved for
 static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   live_update(m, self);
@@ -264,7 +246,7 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   if (!self->disabled) {
     watch_stiffness(m, self);
     watch_sites(m, d, self);
-    d->actuator_force[m->actuator_outadr[self->actuator]] = command(m, d, self->actuator);
+    d->actuator_force[m->actuator_outadr[self->actuator]] = command_force(m, d, self->actuator);
   }
   if (self->forceless) {
     return;

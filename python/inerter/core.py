@@ -102,16 +102,9 @@ def parameters() -> Mapping[str, Parameter]:
     found: dict[str, Parameter] = {}
     while entry := _library().inerter_parameter(len(found)):
         c = entry.contents
-        found[c.name.decode()] = Parameter(
-            c.name.decode(),
-            c.unit.decode(),
-            c.initial,
-            c.lower,
-            c.upper,
-            bool(c.lower_open),
-            tuple(c.laws.decode().split()),
-            c.meaning.decode(),
-        )
+        name, unit, laws, meaning = (text.decode() for text in (c.name, c.unit, c.laws, c.meaning))
+        limits = (c.initial, c.lower, c.upper, bool(c.lower_open))
+        found[name] = Parameter(name, unit, *limits, tuple(laws.split()), meaning)
     return found
 
 
@@ -434,16 +427,9 @@ def along_many(
     size = ctypes.sizeof(_device_type())
 
     def run(first: int, count: int) -> None:
-        _library().inerter_along_many(
-            ctypes.byref(array, first * size),
-            count,
-            x.size,
-            ctypes.c_double(h),
-            _pointer(x),
-            _pointer(v),
-            _pointer(a),
-            _pointer(total[first:]),
-        )
+        start, motion = ctypes.byref(array, first * size), (x, v, a, total[first:])
+        pointers = map(_pointer, motion)
+        _library().inerter_along_many(start, count, x.size, ctypes.c_double(h), *pointers)
 
     workers = min(threads or os.cpu_count() or 1, len(devices)) or 1
     bounds = np.linspace(0, len(devices), workers + 1).astype(int)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import mujoco
 
 try:
-    from mujoco import batch
+    import mujoco.batch as batch
 except ImportError:
     raise ImportError(
         "this needs mujoco.batch, which is in MuJoCo 3.17 and newer; installed is MuJoCo "

@@ -42,7 +42,7 @@ def plugin_path(version: str | None = None) -> Path:
     if version is None:
         import mujoco
 
-        version = mujoco.mj_versionString()
+        version = str(mujoco.mj_versionString())
     there = plugin_versions()
     for each in there:
         if _numbers(each) == _numbers(version):

@@ -121,7 +121,8 @@ def test_drawn_boxes_gain_no_energy(seed: int) -> None:
                 keys[name] = float(keys[name]) * level
         keys["inertance"] = 10.0 ** rng.uniform(-2, 2)
         places = (rng.uniform([-1, -1, 0.2], [1, 1, 2.2]), rng.uniform(-0.05, 0.05, 3))
-        struts.append((keys, states, *(" ".join(f"{c:.4f}" for c in p) for p in places)))
+        outside, inside = (" ".join(f"{c:.4f}" for c in place) for place in places)
+        struts.append((keys, states, outside, inside))
     integrator, cone = str(rng.choice(ONE_STAGE)), str(rng.choice(["elliptic", "pyramidal"]))
     model = box(mass, struts, step, integrator, cone)
     speed, rise = fastest(model, 200)

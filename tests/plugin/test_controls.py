@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import inerter
 import mujoco
@@ -96,7 +96,8 @@ def test_the_actions_of_an_environment_are_those_of_its_motors(tmp_path: Path) -
     env.reset(seed=0)
     assert env.action_space.shape == (2,)
     env.step(np.array([0.25, 0.5], dtype=np.float32))
-    assert env.unwrapped.data.ctrl.tolist() == [0.25, 0, 0, 0.5]
+    unwrapped: Any = env.unwrapped
+    assert unwrapped.data.ctrl.tolist() == [0.25, 0, 0, 0.5]
     with pytest.raises(ValueError, match="the model has 4 controls"):
         WithoutDeviceControls(env)
     env.close()

@@ -118,7 +118,8 @@ def knee(**numerics: float) -> mujoco.MjSpec:
     body = spec.worldbody.add_body(name="shank")
     body.add_joint(name="knee", type=mujoco.mjtJoint.mjJNT_SLIDE)
     body.add_geom(size=[0.1, 0, 0], mass=MASS)
-    inerter.add_device(spec, "knee_dev", joint="knee", inertance=1, live=list(numerics), **numerics)
+    device = inerter.Device(inertance=1, **numerics)
+    inerter.add_device(spec, "knee_dev", joint="knee", device=device, live=list(numerics))
     return spec
 
 
