@@ -23,12 +23,13 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
   --suppress=variableScope --suppress=constParameterPointer:plugin_c/mujoco/visual.c
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test sanitize fuzz soak bench zoo docs lint format check versions wheel lock clean
+.PHONY: help demo test test-all sanitize fuzz soak bench zoo docs lint format check versions wheel lock clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
 	@echo 'make test    every test, on all cores, against the installed package'
 	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
+	@echo 'make test-all  the same and the long ones, an hour'
 	@echo 'make sanitize  the C code under sanitizers and valgrind, some minutes'
 	@echo 'make fuzz    any bytes and any doubles for the C code, six minutes'
 	@echo 'make soak    1e8 steps, ten minutes'
@@ -113,6 +114,10 @@ demo: $(VENV)/lab
 
 test: $(VENV)/dev
 	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
+
+# and the long ones: every attack, sanitizers, fuzz and soak
+test-all: $(VENV)/dev
+	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder --long $(ARGS)
 
 # minutes each of what every test run does for seconds; -s: what the programs have counted
 sanitize fuzz soak: $(VENV)/dev

@@ -18,22 +18,8 @@ static double force(const InerterDevice* p, double x, double v, double z) {
   return friction_level(p, x, v) * (sliding + peak);
 }
 
-// F without sgn(v) over tanh(4 |v| / v_s); at rest |v| / v_s over it is 1/4
-static double level(const InerterDevice* p, double x, double v) {
-  double ratio = fabs(v) / p->stribeck_velocity;
-  double shape = 0.25 * ratio * ratio + 0.75;
-  double rise = ratio > 1e-8 ? ratio / tanh(4 * ratio) : 0.25;
-  double excess = (p->static_force - p->coulomb_force) * rise / (shape * shape);
-  return friction_along_stroke(p, x) * (p->coulomb_force + excess);
-}
-
-static double width(const InerterDevice* p) {
-  return 0.25 * p->stribeck_velocity;
-}
-
 static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
   friction_along(p, path, z, forces, NULL, force);
 }
 
-const FrictionLaw inerter_brown_mcphee = {
-    .force = force, .along = along, .level = level, .width = width};
+const FrictionLaw inerter_brown_mcphee = {.force = force, .along = along};

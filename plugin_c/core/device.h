@@ -194,10 +194,11 @@ typedef struct InerterStep_ {
   double x, v;
   const double* z;
   double h, mobility;
-  int kind;                   // which of the parts below there are (over_step.c)
-  double start, rise;         // a line: start + rise a
-  double level, width, lean;  // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
-  double motion, load;        // load friction of this instant
+  int kind;            // which of the parts below there are (over_step.c)
+  double start, rise;  // a line: start + rise a
+  double stretch, level, width,
+      lean;             // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
+  double motion, load;  // load friction of this instant
 } InerterStep;
 
 INERTER_API void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x,

@@ -11,14 +11,14 @@
 //
 // Why: an explicit force is unstable where h^2 k m > 4 or h c m > 2, and forces at the end of the
 // step make a = a0 - mobility F(a) an equation with one solution, since F does not fall with a: the
-// part of friction that falls with speed (Stribeck, Brown-McPhee, asymmetry above 1/2) is that of
+// part of sharp friction that falls with speed (Stribeck, asymmetry above 1/2) is that of
 // the start. The share is the least that is stable: it adds no damping where h resolves the spring.
 // End stops are backward in full: they may take energy at an impact, never give it. Where h
 // resolves one without damping, a mass m comes back with exp(-pi h sqrt(k_e / m) / 2) of its speed.
-// Falls with a where the yield level of LuGre falls with speed: the solution is then unique for
-// h mobility |slope| < 1. Order: 1. For h -> 0 it is inerter_force. Source: Newmark's beta method
-// in its semi-implicit form. Not modelled: springs between the terminals stiffer than h resolves;
-// those belong to the caller.
+// Falls with a where the yield level of LuGre or Brown-McPhee friction falls with speed: the
+// solution is then unique for h mobility |slope| < 1. Order: 1. For h -> 0 it is inerter_force.
+// Source: Newmark's beta method in its semi-implicit form. Not modelled: springs between the
+// terminals stiffer than h resolves; those belong to the caller.
 
 #include <string.h>
 
@@ -32,6 +32,11 @@ enum { STEP_LINE, STEP_FRICTION, STEP_BRISTLE, STEP_LOAD, STEP_GENERAL };  // In
 // friction without memory, with its slope over v1
 static Tangent sharp_friction(const InerterStep* step, double v1) {
   const InerterDevice* p = step->device;
+  if (!law_of(p)->level) {
+    double near = 1e-6 * p->stribeck_velocity, force = law_of(p)->force(p, step->stretch, v1, 0);
+    double beside = law_of(p)->force(p, step->stretch, v1 + near, 0);
+    return (Tangent){force, fmax(0, (beside - force) / near)};
+  }
   double direction = tanh(v1 / step->width);
   Tangent friction = {step->level * direction,
                       step->level * (1 - direction * direction) / step->width};
@@ -47,6 +52,10 @@ static Tangent sharp_friction(const InerterStep* step, double v1) {
 // what friction without memory is at any v1
 static void find_level(InerterStep* step, double stretch) {
   const InerterDevice* p = step->device;
+  step->stretch = stretch;
+  if (!law_of(p)->level) {
+    return;
+  }
   step->level = law_of(p)->level(p, stretch, step->v);
   step->width = law_of(p)->width(p);
   step->lean = p->friction_asymmetry;

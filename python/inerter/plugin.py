@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import ctypes
 import re
+import sys
 from collections.abc import Sequence
+from importlib import metadata
 from pathlib import Path
 
 from inerter import core
@@ -40,9 +42,7 @@ def plugin_path(version: str | None = None) -> Path:
         There is no library for this version; the message lists the versions that there are.
     """
     if version is None:
-        import mujoco
-
-        version = str(mujoco.mj_versionString())
+        version = _installed()
     there = plugin_versions()
     for each in there:
         if _numbers(each) == _numbers(version):
@@ -55,6 +55,18 @@ def plugin_path(version: str | None = None) -> Path:
         f"run `pip install mujoco=={there[-1]}`, or, if inerter supports MuJoCo {version}, "
         f"`{_REINSTALL}`, which builds it for the installed version"
     )
+
+
+def _installed() -> str:
+    """Version of MuJoCo here, without loading it where its package tells."""
+    for package in ("mujoco", "mujoco-core") if "mujoco" not in sys.modules else ():
+        try:
+            return metadata.version(package)
+        except metadata.PackageNotFoundError:
+            continue
+    import mujoco
+
+    return str(mujoco.mj_versionString())
 
 
 def load_plugin() -> None:

@@ -111,7 +111,7 @@ def test_model_and_device_as_baseline(folder: Path, diagnosed, tmp_path: Path) -
         (["{folder}", "--holdout", "run_7"], "no such run"),
         (["{folder}", "--holdout", "run_0", "--holdout", "run_1"], "names every run"),
         (["{folder}", "--device", "{folder}/none.toml"], "cannot be opened"),
-        (["{folder}", "--device", "{folder}/run_0.csv"], "not TOML"),
+        (["{folder}", "--device", "{folder}/run_0.csv"], "is it another file?"),
         (["{folder}", "--model", "{folder}/none.xml"], "no such file"),
         (["{folder}", "--model", "{folder}/m.xml", "--device", "{folder}/d.toml"], "both given"),
         (["{bad}/text.csv"], "line 3"),

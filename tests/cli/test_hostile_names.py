@@ -40,7 +40,7 @@ def attribute(text: str) -> str:
 
 def hostile_report(name: str) -> str:
     curves = replace(run(name, held=True), quantity=name, unit=name)
-    warnings = [{"code": "outliers", "text": f"column {name!r} stands out"}]
+    warnings = [{"code": "outliers", "text": f"column {name} stands out"}]
     made = diagnosis(curves, method={"split": name, name: name, "channels": [name]})
     records = [replace(record, warnings=warnings) for record in made.records]
     return render_report(replace(made, records=records, verdict=name), TOML, XML)

@@ -176,7 +176,7 @@ def test_a_series_element_shows_its_states(tmp_path: Path) -> None:
 
 
 def test_live_parameters_are_read_from_the_model(tmp_path: Path) -> None:
-    strut = device(friction="coulomb", coulomb_force=10, transition_velocity=1e-2)
+    strut = device(inertance=0, friction="coulomb", coulomb_force=10, transition_velocity=1e-2)
     numeric = '<custom><numeric name="strut.coulomb_force" data="40"/></custom>'
     path = written(tmp_path, oscillator(strut, extra=PULL + numeric))
     run = run_model(path, 0.5, keyframe="pulled")

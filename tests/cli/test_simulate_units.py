@@ -45,8 +45,8 @@ CONTROLS = {
     '<motor name="a" tendon="sum"/>': None,
     '<general name="a" joint="x" gainprm="7"/>': None,
     '<intvelocity name="a" joint="x" kp="5" actrange="-1 1"/>': None,
-    device(name="a"): "N",
-    device('joint="turn"', name="a"): "N*m",
+    device(inertance=1, name="a"): "N",
+    device('joint="turn"', inertance=1, name="a"): "N*m",
 }
 
 
