@@ -21,7 +21,7 @@
   X(quadratic_damping, "N*s^2/m^2", 0, 0, INFINITY, CLOSED, "", "force per v*abs(v), c2")          \
   X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "", "force per x^3, k3")             \
   X(force_offset, "N", 0, -INFINITY, INFINITY, CLOSED, "", "constant force")                       \
-  X(load_friction, "1", 0, 0, 0.999, CLOSED, "", "friction per inertance force, mu")               \
+  X(load_friction, "1", 0, 0, 1, CLOSED, "", "friction per inertance force, mu")                   \
   X(inertance_gradient, "1/m", 0, -INFINITY, INFINITY, CLOSED, "",                                 \
     "relative rise of the inertance per x")                                                        \
   X(inertance_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED, "",                              \

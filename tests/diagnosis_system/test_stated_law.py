@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 from inerter.diagnose.vehicle.build import model_of_text
-from inerter.diagnose.vehicle.effects import Effects, Scale
+from inerter.diagnose.vehicle.candidate import Scale
+from inerter.diagnose.vehicle.effects import Effects
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.models import model_path
 

@@ -17,8 +17,9 @@ from inerter.reference import (
     hide_unknown,
     wang_su_bench,
 )
-from inerter.reference.bench_devices import draw_limits, rms
+from inerter.reference.bench_devices import draw_limits
 from inerter.reference.bench_motions import draw_drives, highest_frequency
+from inerter.reference.sizes import rms
 from scipy.signal import lsim
 
 QUIET = NoiseLevels(force=0.0, displacement=0.0)

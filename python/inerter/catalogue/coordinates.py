@@ -30,16 +30,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue import combinations
+from inerter.catalogue.combinations import Values
 from inerter.catalogue.scales import Range, Scales
 from inerter.device_file import LARGEST_DELAY
 
 Array = NDArray[np.float64]
-Values = dict[str, float]
 OfScales = Callable[[Scales], float]
 
 LOWEST_TONE = 0.2
 """Lowest frequency [Hz] that counts as a tone, and not as a drift or an offset."""
-GAS_AREA = 1e-3
 """Piston area [m^2] that a gas is reported under where none is stated: a force has p0 A, V0 / A."""
 FRICTION_SHARE = 0.1
 """Friction level at which a search begins, per rms force."""
@@ -133,42 +133,6 @@ def _reach(s: Scales) -> float:
     return 1.05 * max(-low, least) if np.isfinite(low) else least
 
 
-# --- combinations of parameters ----------------------------------------------------------------
-
-
-def _gas(values: Values) -> None:
-    area = values.setdefault("gas_area", values.get("piston_area", GAS_AREA))
-    values["gas_pressure"] = values.pop("gas_push") / area
-    values["gas_volume"] = values.pop("gas_reach") * area
-
-
-def _shaft(values: Values) -> None:
-    rate, inertance = 2 * np.pi * values.pop("series_frequency"), values["inertance"]
-    values["series_stiffness"] = inertance * rate**2
-    if (loss := values.pop("series_loss", None)) is not None:
-        values["series_damping"] = 2 * loss * rate * inertance
-
-
-def _breakaway(values: Values) -> None:
-    values["static_force"] = values["coulomb_force"] + values.pop("static_excess")
-    if "presliding" in values or not {"transition_velocity", "stribeck_velocity"} <= values.keys():
-        return
-    # a rise wider than the fall would take breakaway away again
-    narrow = values["stribeck_velocity"] / 5
-    values["transition_velocity"] = min(values["transition_velocity"], narrow)
-
-
-def _bristle(values: Values) -> None:
-    distance = values.pop("presliding")
-    if "bw_level" not in values:
-        values["bristle_stiffness"] = values["coulomb_force"] / distance
-        return
-    level, shape = values.pop("bw_level"), values.pop("bw_shape")
-    limit = distance ** -values.get("bw_exponent", 1.0)
-    values["bw_stiffness"] = level / distance / (1 - values.get("bw_ratio", 0.0))
-    values["bw_beta"], values["bw_gamma"] = shape * limit, (1 - shape) * limit
-
-
 # --- every coordinate --------------------------------------------------------------------------
 
 _ALL = (
@@ -208,7 +172,7 @@ _ALL = (
         name="static_excess", unit="N", words={"static_force": "breakaway level f_s"},
         size=lambda s: 0.1 * s.force, lower=_zero, upper=lambda s: s.force,
         start=(0.03, 1.5), start_unit=lambda s: FRICTION_SHARE * s.force,
-        to_parameters=_breakaway, proportional_to="level",
+        to_parameters=combinations.breakaway, proportional_to="level",
         of_device=lambda d: max(d.static_force - d.coulomb_force, 0.0),
     ),
     Coordinate(
@@ -226,7 +190,7 @@ _ALL = (
         name="presliding", unit="m", words={"bristle_stiffness": "bristle stiffness sigma0"},
         size=lambda s: s.displacement, lower=lambda s: 1e-5 * s.displacement,
         upper=lambda s: 3 * s.displacement, logarithmic=True, none=None,
-        start=(1e-3, 1.0), start_unit=lambda s: s.displacement, to_parameters=_bristle,
+        start=(1e-3, 1.0), start_unit=lambda s: s.displacement, to_parameters=combinations.bristle,
         of_device=lambda d: d.coulomb_force / d.bristle_stiffness,
     ),
     Coordinate(
@@ -317,7 +281,7 @@ _ALL = (
         name="series_frequency", unit="Hz", words={"series_stiffness": "series stiffness k_s"},
         size=lambda s: s.frequency, lower=lambda s: 0.1 * s.frequency,
         upper=lambda s: 8 * s.highest_frequency, logarithmic=True, none=None, entangled=True,
-        start=(1.5, 30.0), start_unit=lambda s: s.frequency, to_parameters=_shaft,
+        start=(1.5, 30.0), start_unit=lambda s: s.frequency, to_parameters=combinations.shaft,
         of_device=lambda d: np.sqrt(d.series_stiffness / d.inertance) / (2 * np.pi),
     ),
     Coordinate(
@@ -367,7 +331,8 @@ _ALL = (
         name="gas_push", unit="N",
         words={"gas_pressure": "pressure p0", "gas_area": "piston area A"},
         size=lambda s: s.force, lower=lambda s: 1e-4 * s.force, upper=lambda s: 1e4 * s.force,
-        logarithmic=True, to_parameters=_gas, of_device=lambda d: d.gas_pressure * d.gas_area,
+        logarithmic=True, to_parameters=combinations.gas,
+        of_device=lambda d: d.gas_pressure * d.gas_area,
     ),
     Coordinate(
         name="gas_reach", unit="m", words={"gas_volume": "volume V0"},

@@ -24,12 +24,13 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from .bench_channel import Channel, Situation, answers
-from .bench_devices import draw_effect, draw_limits, joined, own_names, rms, rounded
+from .bench_devices import draw_effect, draw_limits, joined, own_names
 from .bench_effects import EFFECTS, HYSTERETIC_LAWS, NEEDS_LEVEL, check_effect, clash
 from .bench_motions import draw_drives
 from .device import ReferenceDevice
 from .motion import Response
 from .record import write_record
+from .sizes import rms, rounded
 
 
 @dataclass(frozen=True)

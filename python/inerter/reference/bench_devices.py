@@ -24,6 +24,7 @@ from .bench_channel import Channel, Situation, answers
 from .bench_effects import FRICTION_LAWS, LEVEL_CHANGES
 from .bench_motions import Drive, highest_frequency, is_free_of
 from .device import ReferenceDevice
+from .sizes import rms, rounded, size_for_share
 
 
 @dataclass(frozen=True)
@@ -432,29 +433,6 @@ def _size_for_share(
     found = answers(unit.device, unit.channel, runs, 1e-6)
     extra = np.concatenate([one.force for one in found]) - bare
     return size_for_share(share, bare, extra)
-
-
-def size_for_share(share: float, bare: NDArray[np.float64], extra: NDArray[np.float64]) -> float:
-    """P such that rms(p extra) = share rms(bare + p extra); forces [N] of shape (n,)."""
-    square = share * share
-    roots = np.roots(
-        [
-            np.mean(extra * extra) * (1.0 - square),
-            -2.0 * square * np.mean(bare * extra),
-            -square * np.mean(bare * bare),
-        ]
-    )
-    return float(np.max(roots.real))
-
-
-def rms(signal: NDArray[np.float64]) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(signal * signal)))
-
-
-def rounded(value: float) -> float:
-    """Four significant digits: numbers a person could have set."""
-    return float(f"{float(value):.4g}")
 
 
 def _travel(runs: list[Situation]) -> float:

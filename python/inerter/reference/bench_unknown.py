@@ -28,9 +28,9 @@ from scipy.signal import lfilter
 
 from .bench import HiddenCase, NoiseLevels, draw_situations, record_case
 from .bench_channel import Channel, answers
-from .bench_devices import rms, rounded, size_for_share
 from .device import ReferenceDevice
 from .motion import Response
+from .sizes import rms, rounded, size_for_share
 
 Array = NDArray[np.float64]
 Shape = dict[str, float]

@@ -9,57 +9,13 @@ import numpy as np
 
 from inerter.catalogue.coordinates import COORDINATES
 from inerter.catalogue.friction import FRICTION
-from inerter.catalogue.scales import Range, Scales
+from inerter.catalogue.scales import Range
 from inerter.diagnose.vehicle.build import UserModel
-from inerter.diagnose.vehicle.model import Added, VehicleModel, key
+from inerter.diagnose.vehicle.candidate import Scale, VehicleCandidate, candidate
+from inerter.diagnose.vehicle.model import Added, VehicleModel
 from inerter.diagnose.vehicle.parts import Suspension, Tyre
 
 _GRAVITY = 9.81
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scale:
-    """Of one device along the recorded road: force [N], displacement, velocity, acceleration.
-
-    largest, smallest: displacement [m]; step: of the model [s]; explicit: its integrator does not
-    resolve a force law that is steeper than a step.
-    """
-
-    force: float
-    x: float
-    v: float
-    a: float
-    largest: float
-    smallest: float
-    step: float
-    explicit: bool
-
-    @property
-    def of_data(self) -> Scales:
-        """The same as sizes of a data set's channels."""
-        return Scales(
-            force=self.force, displacement=self.x, velocity=self.v, acceleration=self.a
-        )  # fmt: skip
-
-
-@dataclass(frozen=True, kw_only=True)
-class VehicleCandidate:
-    """A model to try: an effect, its coordinates, where fits start, what a start's size is.
-
-    starts: values by coordinate. amplitudes: coordinates that a start is strong or weak by.
-    telling: amplitudes of which one has to differ from none; all by default.
-    """
-
-    added: Added
-    starts: tuple[Mapping[str, float], ...]
-    amplitudes: tuple[str, ...]
-    sizes: Mapping[str, Range]
-    friction: str | None = None
-    telling: tuple[str, ...] = ()
-
-    def model(self, base: VehicleModel, start: Mapping[str, float]) -> VehicleModel:
-        """The base with the effect at a start."""
-        return base.adding(self.added, start, self.friction)
 
 
 @dataclass(frozen=True)
@@ -133,27 +89,6 @@ class Effects:
 Builder = Callable[[Effects, str, VehicleModel], Iterator[VehicleCandidate]]
 
 
-def _candidate(
-    effect: str,
-    element: str,
-    starts: list[dict[str, float]],
-    sizes: dict[str, Range],
-    amplitudes: tuple[str, ...],
-    friction: str | None = None,
-    law: str | None = None,
-    telling: tuple[str, ...] = (),
-) -> VehicleCandidate:
-    names = tuple(sizes)
-    return VehicleCandidate(
-        added=Added(effect, element, key(element, names), law),
-        starts=tuple({f"{element}.{n}": v for n, v in start.items()} for start in starts),
-        amplitudes=key(element, amplitudes),
-        sizes={f"{element}.{n}": size for n, size in sizes.items()},
-        friction=friction,
-        telling=key(element, telling or amplitudes),
-    )
-
-
 # --- inside the device -----------------------------------------------------------------------
 
 
@@ -170,7 +105,7 @@ def _stated(effect: str, name: str, unit: str) -> Builder:
         lower = -np.inf if name == "stiffness" else 0.0
         start = now + 0.05 * max(size, now)
         sizes = {name: Range(max(size, now), lower)}
-        yield _candidate(effect, device, [{name: start}], sizes, (name,))
+        yield candidate(effect, device, [{name: start}], sizes, (name,))
 
     return build
 
@@ -180,14 +115,14 @@ def _coulomb(effects: Effects, device: str, model: VehicleModel) -> Iterator[Veh
     level = Range(0.1 * scale.force, 0.0)
     if law == "none":
         start = {"coulomb_force": 0.05 * scale.force, **_width(scale)}
-        yield _candidate(
+        yield candidate(
             "coulomb_friction", device, [start],
             {"coulomb_force": level, "transition_velocity": _widths(scale)},
             ("coulomb_force",), "coulomb",
         )  # fmt: skip
     elif law == "coulomb":
         now = effects.stated(f"{device}.coulomb_force", model)
-        yield _candidate(
+        yield candidate(
             "coulomb_friction", device, [{"coulomb_force": now + 0.03 * scale.force}],
             {"coulomb_force": level}, ("coulomb_force",),
         )  # fmt: skip
@@ -223,7 +158,7 @@ def _stribeck(effects: Effects, device: str, model: VehicleModel) -> Iterator[Ve
         {"coulomb_force": level, "static_excess": 0.6 * level, "stribeck_velocity": r * scale.v,
          **_width(scale)} for r in (0.1, 0.4)
     ]  # fmt: skip
-    yield _candidate(
+    yield candidate(
         "stribeck_friction", device, starts, sizes, ("coulomb_force", "static_excess"), "stribeck",
         telling=("static_excess",),
     )  # fmt: skip
@@ -240,7 +175,7 @@ def _hysteretic(effects: Effects, device: str, model: VehicleModel) -> Iterator[
     }
     if law != "dahl":
         starts = [{"coulomb_force": level, "presliding": r * scale.x} for r in (0.02, 0.15, 0.6)]
-        yield _candidate(
+        yield candidate(
             "hysteretic_friction", device, starts, sizes, ("coulomb_force",), "dahl", "dahl"
         )
     if law == "dahl":
@@ -250,7 +185,7 @@ def _hysteretic(effects: Effects, device: str, model: VehicleModel) -> Iterator[
             "stribeck_velocity": Range(scale.v, 0.02 * scale.v, 2 * scale.v, logarithmic=True),
         }
         start = {"coulomb_force": level, "presliding": presliding, "static_excess": 0.5 * level}
-        yield _candidate(
+        yield candidate(
             "hysteretic_friction", device, [{**start, "stribeck_velocity": 0.2 * scale.v}],
             {**sizes, **more}, ("static_excess",), "lugre", "lugre",
         )  # fmt: skip
@@ -291,7 +226,7 @@ def _stated_law(effects: Effects, device: str, model: VehicleModel) -> Iterator[
         starts.append({**now, name: moved})
     amplitudes = tuple(name for name, size in sizes.items() if not size.logarithmic)
     told = law.name if law.memory else None
-    yield _candidate(
+    yield candidate(
         law.effect, device, starts, sizes, amplitudes, law.name, told, telling=tuple(sizes)
     )  # fmt: skip
 
@@ -305,7 +240,7 @@ def _added(effect: str, size: Callable[[Scale], dict[str, Range]], share: float)
         starts = []
         for name, each in sizes.items():
             starts.append({**now, name: now[name] + share * each.size})
-        yield _candidate(effect, device, starts, sizes, tuple(sizes))
+        yield candidate(effect, device, starts, sizes, tuple(sizes))
 
     return build
 
@@ -327,7 +262,7 @@ def _series(effects: Effects, device: str, model: VehicleModel) -> Iterator[Vehi
             {"series_frequency": min(r * slow, 0.9 * fast), "series_loss": 0.2}
             for r in (1.5, 3.0, 8.0)
         ]
-        yield _candidate("series_elasticity", device, starts, sizes, ())
+        yield candidate("series_elasticity", device, starts, sizes, ())
     gap = Range(scale.x, 1e-3 * scale.x, 3 * scale.x, logarithmic=True)
     if effects.stated(f"{device}.backlash", model) > 0 or stated:
         return
@@ -336,7 +271,7 @@ def _series(effects: Effects, device: str, model: VehicleModel) -> Iterator[Vehi
         for r in (0.03, 0.1, 0.3, 1.0)
         for frequency in ([known] if known else [4 * slow, min(10 * slow, 0.7 * fast)])
     ]
-    yield _candidate("backlash", device, starts, {"backlash": gap, **sizes}, ())
+    yield candidate("backlash", device, starts, {"backlash": gap, **sizes}, ())
 
 
 def _gas(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
@@ -354,7 +289,7 @@ def _gas(effects: Effects, device: str, model: VehicleModel) -> Iterator[Vehicle
         "gas_pressure": Range(pressure, 1e-3 * pressure, 1e3 * pressure, logarithmic=True),
         "gas_volume": Range(area * length, 0.3 * area * length, 1e2 * area * length, True),
     }
-    yield _candidate("gas_spring", device, starts, sizes, ("gas_pressure",))
+    yield candidate("gas_spring", device, starts, sizes, ("gas_pressure",))
 
 
 def _stops(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
@@ -368,7 +303,7 @@ def _stops(effects: Effects, device: str, model: VehicleModel) -> Iterator[Vehic
             {name: r * reach, "stop_stiffness": s * scale.force / scale.x}
             for r, s in ((0.5, 2.0), (0.75, 8.0))
         ]
-        yield _candidate("end_stop", device, starts, {name: place, "stop_stiffness": stiff}, ())
+        yield candidate("end_stop", device, starts, {name: place, "stop_stiffness": stiff}, ())
 
 
 _DEVICE: tuple[Builder, ...] = (
@@ -404,11 +339,11 @@ def _tyres(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
     for tyre in effects.user.parts.tyres:
         stiffness = effects.stated(f"{tyre.element}.tyre_stiffness", model)
         rate = _wheel_rate(effects, tyre)
-        yield _candidate(
+        yield candidate(
             "tyre_damping", tyre.element, [{"tyre_damping": 0.03 * stiffness / rate}],
             {"tyre_damping": Range(0.1 * stiffness / rate, 0.0)}, ("tyre_damping",),
         )  # fmt: skip
-        yield _candidate(
+        yield candidate(
             "tyre_stiffness_error", tyre.element, [{"tyre_stiffness": 1.05 * stiffness}],
             {"tyre_stiffness": Range(stiffness, 0.02 * stiffness)}, ("tyre_stiffness",),
         )  # fmt: skip
@@ -418,7 +353,7 @@ def _tyres(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
             weightless = not np.any(effects.user.model.opt.gravity)
             size = Range(load, 1e-3 * load if weightless else -0.5 * load, 5 * load, weightless)
             starts = (1.0, 0.6, 0.3) if weightless else (0.0, 0.1)
-            yield _candidate(
+            yield candidate(
                 "tyre_liftoff", tyre.element, [{"tyre_static_load": r * load} for r in starts],
                 {"tyre_static_load": size}, (),
             )  # fmt: skip
@@ -442,7 +377,7 @@ def _suspensions(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandi
     for index, effect in sorted(bodies, key=lambda pair: pair[1]):
         element = user.body(index)
         mass = user.stated[f"{element}.mass"]
-        yield _candidate(
+        yield candidate(
             effect, element, [{"mass": 1.05 * effects.stated(f"{element}.mass", model)}],
             {"mass": Range(mass, 0.05 * mass)}, ("mass",),
         )  # fmt: skip
@@ -457,11 +392,11 @@ def _damper(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator
     starts = [
         {"rebound_damping": r * now, "bump_damping": b * now} for r, b in ((1.1, 0.9), (1.1, 1.0))
     ]
-    yield _candidate(
+    yield candidate(
         "damper_asymmetry", part.device, starts, sizes, ("rebound_damping", "bump_damping")
     )
     if link.kind != "device":
-        yield _candidate(
+        yield candidate(
             "viscous_friction", link.element, [{"damping": 1.05 * now}],
             {"damping": Range(now, 0.0)}, ("damping",),
         )  # fmt: skip
@@ -475,12 +410,12 @@ def _spring(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator
     now = effects.stated(name, model)
     cubic = Range(max(now, 0.1 * scale.force / scale.x) / scale.x**2)
     before = effects.stated(f"{link.element}.stiffness_cubic", model)
-    yield _candidate(
+    yield candidate(
         "spring_hardening", link.element, [{"stiffness_cubic": before + 0.02 * cubic.size}],
         {"stiffness_cubic": cubic}, ("stiffness_cubic",),
     )  # fmt: skip
     if link.kind != "device":
-        yield _candidate(
+        yield candidate(
             "parallel_stiffness", link.element, [{"stiffness": 1.05 * now}],
             {"stiffness": Range(now, 0.0)}, ("stiffness",),
         )  # fmt: skip

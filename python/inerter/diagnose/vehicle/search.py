@@ -23,7 +23,8 @@ from inerter.diagnose.decision import (
     plainest,
 )
 from inerter.diagnose.statistics import advantage, win_shares
-from inerter.diagnose.vehicle.effects import Effects, VehicleCandidate
+from inerter.diagnose.vehicle.candidate import VehicleCandidate
+from inerter.diagnose.vehicle.effects import Effects
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.problem import DrivenProblem, VehicleFit, fit_all
 from inerter.estimation.covariance import sandwich

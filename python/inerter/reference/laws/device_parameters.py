@@ -34,7 +34,7 @@ class DeviceParameters(FrictionParameters):
     force_offset: float = parameter(0.0, "N", "constant force f0")
     # at 1 the device locks: no force says what it accelerates by
     load_friction: float = parameter(
-        0.0, "-", "friction share mu of the inertance force", at_least=0.0, at_most=0.999
+        0.0, "-", "friction share mu of the inertance force", at_least=0.0, at_most=1.0
     )
 
     series_stiffness: float = parameter(0.0, "N/m", "spring in series k_s", at_least=0.0)
