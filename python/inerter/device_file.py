@@ -48,16 +48,29 @@ def read_device(path: Path) -> Device:
             )
         if isinstance(value, str) and key not in LAWS:
             value = _with_unit(path, key, value)
-        if not isinstance(value, str) and LARGEST < abs(value) < math.inf:
-            raise DeviceError(
-                f"{path}: {key} is {_shown(value)}, which no device has; give SI units, "
-                f"at most {LARGEST:g}"
-            )
         values[key] = value
     try:
         return Device(**values)
     except DeviceError as error:
         raise DeviceError(f"{path}: {error}") from None
+
+
+def read_bench_device(path: Path) -> Device:
+    """The device in a file, for computations that absurd values would end without a word.
+
+    Raises
+    ------
+    DeviceError
+        As `read_device`, or a value that no unit can make right.
+    """
+    device = read_device(path)
+    for key, value in device.given.items():
+        if not isinstance(value, str) and LARGEST < abs(value) < math.inf:
+            raise DeviceError(
+                f"{path}: {key} is {_shown(value)}, which no device has; give SI units, "
+                f"at most {LARGEST:g}"
+            )
+    return device
 
 
 def read_delay(path: Path) -> float:

@@ -43,7 +43,7 @@ def test_every_encoding_shows_something(encoding: str, tmp_path: Path, long_run:
     assert done.stderr == ""
     assert (out / "report.html").exists()
     if encoding == "ascii":
-        assert "out -> u" in done.stdout.replace("\n", " ")
+        assert "out -> u" in " ".join(done.stdout.split())
 
 
 def test_a_character_that_cannot_be_shown_has_another() -> None:

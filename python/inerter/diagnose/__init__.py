@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from inerter.core import Device
-from inerter.device_file import read_delay, read_device
+from inerter.device_file import read_bench_device, read_delay
 from inerter.diagnose.result import Diagnosis, Finding
 from inerter.diagnose.rig import diagnose_bench
 from inerter.diagnose.table import diagnose_table
@@ -59,7 +59,7 @@ def diagnose(
     if model is not None and is_for_a_model(records, mapping):
         return diagnose_model(records, model, mapping, holdout, progress)
     if isinstance(device, Path):
-        baseline, delay = read_device(device), read_delay(device)
+        baseline, delay = read_bench_device(device), read_delay(device)
     else:
         baseline, delay = device, 0.0
     if model is not None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from inerter.core import Device
-from inerter.device_file import read_device
+from inerter.device_file import read_bench_device
 from inerter.suspension.time_domain.cases import TRANSITION_VELOCITY, Case
 
 NAME = "device"
@@ -55,7 +55,7 @@ def read_case(path: Path, step: float) -> tuple[Case, float]:
         The file cannot be read (`DeviceError`), or it has a key that the study cannot carry.
     """
     try:
-        return case_of(read_device(path), step)
+        return case_of(read_bench_device(path), step)
     except ValueError as error:
         text = str(error)
         raise ValueError(text if text.startswith(str(path)) else f"{path}: {text}") from None
