@@ -19,6 +19,12 @@ from inerter.models import model_path
 SCENE = model_path("half_car", "scene.xml")
 
 
+def _hears_signals() -> None:
+    """A shell that runs tests in the background lets them ignore signals, and what they start."""
+    for each in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM):
+        signal.signal(each, signal.SIG_DFL)
+
+
 @dataclass(frozen=True)
 class Served:
     """A viewer that runs: its process, port and token, what it says, its folder for what passes."""
@@ -57,7 +63,9 @@ def served(folder: Path, *options: str) -> Iterator[Served]:
     environment = {key: value for key, value in os.environ.items() if key not in hidden}
     environment["TMPDIR"] = str(temporary)
     with log.open("w") as out:
-        process = subprocess.Popen(command, stdout=out, stderr=out, env=environment)
+        process = subprocess.Popen(
+            command, stdout=out, stderr=out, env=environment, preexec_fn=_hears_signals
+        )
     try:
         for _ in range(400):
             found = re.search(r"http://127\.0\.0\.1:\d+/\?token=(\S+)", log.read_text())
