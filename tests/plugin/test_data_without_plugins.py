@@ -53,7 +53,8 @@ DEVICES = {
 def test_the_compiler_finds_ranges_of_lengths(name: str, mode: str) -> None:
     # in a process of its own, so that a crash is a failure and not the end
     code = """
-import sys, mujoco
+import inerter, mujoco
+inerter.load_plugin()
 for actuators in ({0!r} + {1!r}, {1!r} + {0!r}):
     model = mujoco.MjModel.from_xml_string({2!r}.replace("ACTUATORS", actuators))
     data = mujoco.MjData(model)

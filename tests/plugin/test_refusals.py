@@ -22,7 +22,7 @@ CONFIGURATIONS = {
         {"friction": "dahl", "coulomb_force": 1, "bristle_stiffness": 0},
         ['bristle_stiffness is "0"', "> 0 N/m"],
     ),
-    "two bounds": ({"load_friction": 1.5}, ['load_friction is "1.5"', ">= 0 and <= 0.999"]),
+    "two bounds": ({"load_friction": 1.5}, ['load_friction is "1.5"', ">= 0 and <= 1"]),
     "no such law": ({"friction": "luger"}, ['friction is "luger"', "dahl lugre bouc_wen"]),
     "key of another law": (
         {"friction": "coulomb", "coulomb_force": 1, "bristle_stiffness": 1},
