@@ -16,10 +16,9 @@ from inerter.diagnose.result import Finding, RecordSummary, Rival
 from inerter.diagnose.statistics import advantage, gain_interval, win_shares
 from inerter.diagnose.vehicle import wording
 from inerter.diagnose.vehicle.build import UserModel, model_of_text
-from inerter.diagnose.vehicle.candidate import Scale
 from inerter.diagnose.vehicle.curves import channel_curves
 from inerter.diagnose.vehicle.drive import RecordedDrive, make_drive
-from inerter.diagnose.vehicle.effects import Effects
+from inerter.diagnose.vehicle.effects import Effects, Scale
 from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.model import Added, VehicleModel
 from inerter.diagnose.vehicle.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
