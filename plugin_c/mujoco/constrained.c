@@ -388,7 +388,7 @@ int constrained_solve(const mjModel* m, mjData* d, const Metric* metric, const G
                       mjtNum* W) {
   mj_markStack(d);
   int k = problem->n, n = group->ndof;
-  int* place = places(m, d, group);
+  const int* place = places(m, d, group);
   Part part = allocate(d, group, k, most_entries(m, metric, group));
   part.rows = rows_gather(m, d, group->nrow, group->row, place);
   mjtNum* start = mj_stackAllocNum(d, n);

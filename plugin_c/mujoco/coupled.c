@@ -66,7 +66,7 @@ InerterForce coupled_force(const mjModel* m, const Instance* self) {
 //------------------------------ groups ------------------------------------------------------------
 
 // the devices to solve for
-static void collect(const mjModel* m, mjData* d, int last, Solution* s) {
+static void collect(const mjModel* m, const mjData* d, int last, Solution* s) {
   s->n = 0;
   for (int k = 0; k <= last; k++) {
     if (!instance_is_device(m, k) || !instance_of(d, k)->solved) {

@@ -136,7 +136,7 @@ static int merge(const mjModel* m, int actuator, const InerterDevice* device, in
 // take back what an earlier compilation wrote, where the device has moved to the plugin since
 static void forget(const mjModel* m, int actuator) {
   mjtNum* values[] = {m->actuator_armature + actuator, m->actuator_damping + actuator};
-  int slots[] = {kInertanceSlot, kViscousSlot};
+  const int slots[] = {kInertanceSlot, kViscousSlot};
   for (int k = 0; k < 2; k++) {
     mjtNum* mark = written(m, actuator, slots[k]);
     if (*mark != 0 && same_in_xml(*values[k], *mark)) {
