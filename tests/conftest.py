@@ -1,4 +1,7 @@
-"""What the tests share: the folder of measured records, the seed of hidden effects.
+"""What the tests share: the folder of measured records, the seed of hidden effects, long tests.
+
+Tests marked `long` (whole diagnoses, campaigns) are left out unless `--long` asks for all of them
+or `--only-long SECONDS` for as many as begin in that time; every day begins at another one.
 
 Tests that hide an effect and look for it draw it from one seed, so that a failure can be repeated:
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
@@ -12,6 +15,8 @@ from __future__ import annotations
 
 import os
 import secrets
+import time
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -29,14 +34,23 @@ MEASURED = ROOT.parent / "shared" / "data"
 DEFAULT_SEED = 20261121
 
 _SEED = pytest.StashKey[int]()
+_DAY = pytest.StashKey[int]()
+_STARTED = time.monotonic()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add --effects-seed and --long."""
+    """Add --effects-seed, --long and --only-long."""
     parser.addoption(
         "--long",
         action="store_true",
-        help="run sanitizers, fuzzers and the soak of tests/sanitized for minutes each",
+        help="run the tests marked long too, and sanitizers, fuzzers and the soak of "
+        "tests/sanitized for minutes each",
+    )
+    parser.addoption(
+        "--only-long",
+        type=float,
+        metavar="SECONDS",
+        help="run the tests marked long, as many as begin in SECONDS; every day begins at another",
     )
     parser.addoption(
         "--effects-seed",
@@ -48,8 +62,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Settle the seed once per session: a worker has the controller's."""
-    given = getattr(config, "workerinput", {}).get("effects_seed")
+    """Settle the seed and the day once per session: a worker has the controller's."""
+    config.addinivalue_line("markers", "long: takes long; runs with --long or --only-long")
+    told = getattr(config, "workerinput", {})
+    config.stash[_DAY] = told.get("day", date.today().toordinal())
+    given = told.get("effects_seed")
     text = str(config.getoption("--effects-seed") if given is None else given)
     try:
         config.stash[_SEED] = secrets.randbelow(2**31) if text == "random" else int(text)
@@ -61,8 +78,33 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
-    """Tell a worker of pytest-xdist the seed."""
+    """Tell a worker of pytest-xdist the seed and the day."""
     node.workerinput["effects_seed"] = node.config.stash[_SEED]
+    node.workerinput["day"] = node.config.stash[_DAY]
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the long tests, or the others; begin somewhere else every day."""
+    only = config.getoption("--only-long") is not None
+    if config.getoption("--long") and not only:
+        return
+    chosen = [item for item in items if bool(item.get_closest_marker("long")) == only]
+    left = [item for item in items if bool(item.get_closest_marker("long")) != only]
+    config.hook.pytest_deselected(items=left)
+    if only:
+        together = list(dict.fromkeys(_together(item.nodeid) for item in chosen))
+        first = config.stash[_DAY] * 7919 % max(len(together), 1)
+        turn = {name: (k - first) % len(together) for k, name in enumerate(together)}
+        chosen.sort(key=lambda item: turn[_together(item.nodeid)])
+    items[:] = chosen
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Begin no test when the time of --only-long is over."""
+    seconds = item.config.getoption("--only-long")
+    if seconds is not None and time.monotonic() - _STARTED > seconds:
+        pytest.skip(f"the {seconds:g} s of --only-long are over; it has its turn another day")
 
 
 def pytest_terminal_summary(

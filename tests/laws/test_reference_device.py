@@ -87,7 +87,7 @@ def test_arrays_and_numbers_agree() -> None:
         ({"transition_velocity": 0.0}, "transition_velocity"),
         ({"bw_exponent": 0.5}, "bw_exponent"),
         ({"friction": "dahl"}, "coulomb_force"),
-        ({"load_friction": 1.0}, "load_friction"),
+        ({"load_friction": 1.5}, "load_friction"),
         ({"stiffness": float("nan")}, "not finite"),
         ({"friction_asymmetry": 1.5}, "friction_asymmetry"),
     ],

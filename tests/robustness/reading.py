@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 from inerter import Device, DeviceError
-from inerter.device_file import device_text, read_delay, read_device
+from inerter.device_file import device_text, read_bench_device, read_delay
 from inerter.records import RecordError, read_records
 from scipy.io import savemat
 
@@ -27,7 +27,7 @@ def read(path: Path) -> str:
     """What reading a file comes to: "read", or why not."""
     try:
         if path.suffix == ".toml":
-            read_device(path)
+            read_bench_device(path)
             read_delay(path)
         else:
             read_records(path)
