@@ -23,13 +23,14 @@ CPPCHECK_LEAVES := --suppress=constParameterCallback --suppress=returnImplicitIn
   --suppress=variableScope --suppress=constParameterPointer:plugin_c/mujoco/visual.c
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all sanitize fuzz soak bench zoo docs lint format check versions wheel lock clean
+.PHONY: help demo test test-all test-long sanitize fuzz soak bench zoo docs lint format check versions wheel lock clean
 
 help:
 	@echo 'make demo    install with the lab, diagnose the shipped records into out/demo'
-	@echo 'make test    every test, on all cores, against the installed package'
+	@echo 'make test    the tests that take seconds each, on all cores, against the installed package'
 	@echo '             (ARGS="-k dahl -x" go to pytest, ARGS="-n 0" takes one core)'
-	@echo 'make test-all  the same and the long ones, an hour'
+	@echo 'make test-all  the same and the long ones: whole diagnoses, fuzz and soak; an hour and more'
+	@echo 'make test-long  of the long ones as many as begin in SECONDS=1800; every day others first'
 	@echo 'make sanitize  the C code under sanitizers and valgrind, some minutes'
 	@echo 'make fuzz    any bytes and any doubles for the C code, six minutes'
 	@echo 'make soak    1e8 steps, ten minutes'
@@ -112,12 +113,18 @@ $(VENV)/zoo/installed: pyproject.toml | $(VENV)/lab
 demo: $(VENV)/lab
 	@$(BIN)/inerter demo --out out/demo
 
-test: $(VENV)/dev
-	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder $(ARGS)
+PYTEST = $(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder --durations 20
 
-# and the long ones: every attack, sanitizers, fuzz and soak
+test: $(VENV)/dev
+	@$(PYTEST) $(ARGS)
+
+# and those marked long, every attack, minutes of sanitizers, fuzz and soak
 test-all: $(VENV)/dev
-	@$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder --long $(ARGS)
+	@$(PYTEST) --long $(ARGS)
+
+SECONDS ?= 1800
+test-long: $(VENV)/dev
+	@$(PYTEST) --only-long $(SECONDS) $(ARGS)
 
 # minutes each of what every test run does for seconds; -s: what the programs have counted
 sanitize fuzz soak: $(VENV)/dev

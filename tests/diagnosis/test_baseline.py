@@ -45,6 +45,7 @@ def test_right_device_brings_no_finding(records) -> None:
     assert diagnosis.baseline.device["coulomb_force"] == 12.0
 
 
+@pytest.mark.long
 def test_a_stated_friction_law_of_any_kind_may_be_uneven() -> None:
     """The data say that friction after Brown and McPhee differs between the directions."""
     stated = {
@@ -81,6 +82,7 @@ def test_the_rest_length_is_where_a_record_counts_from(tmp_path: Path) -> None:
     assert read_device(tmp_path / "out" / "device.toml").rest_length == 0.4
 
 
+@pytest.mark.long
 def test_a_device_with_every_part_can_be_the_baseline(records) -> None:
     # what the data cannot show (a stiff shaft, a weak gas spring) stays as it was stated
     stated = Device(
@@ -150,6 +152,7 @@ def test_missing_friction_is_named_beside_stated_values(records) -> None:
     assert "contradict" not in diagnosis.verdict
 
 
+@pytest.mark.long
 def test_two_effects_are_found_without_a_device(records) -> None:
     diagnosis = diagnose_bench(records)
     assert {f.effect for f in diagnosis.findings} == {"coulomb_friction", "viscous_friction"}
@@ -247,6 +250,7 @@ def test_delays_that_cannot_be_held_are_refused(tmp_path: Path, text: str, words
         read_delay(path)
 
 
+@pytest.mark.long
 def test_a_doubtful_record_is_told_before_any_cause(records) -> None:
     turned = [replace(record, force=-record.force) for record in records]
     checked = check_records(turned)
@@ -284,6 +288,7 @@ def two_runs(true: dict, seconds: float = 7.0) -> list[Record]:
     return measured(ReferenceDevice(**true), motions, np.arange(0, seconds, 2e-3))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("true", "wrong", "effect"),
     [
@@ -306,6 +311,7 @@ def test_any_stated_parameter_can_be_contradicted(true: dict, wrong: dict, effec
     assert "contradict what is stated" in diagnosis.verdict
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("true", [GREASED, TRAIN, CYLINDER])
 def test_what_is_stated_right_is_held(true: dict) -> None:
     diagnosis = diagnose_bench(two_runs(true, 5.0), Device(**true))

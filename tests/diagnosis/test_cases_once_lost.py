@@ -50,6 +50,7 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES)
 def test_it_is_named_alone(case: str) -> None:
     (effect, *more), seed = CASES[case]

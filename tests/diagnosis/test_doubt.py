@@ -56,6 +56,7 @@ def test_warning_names_only_what_may_stand_in() -> None:
     assert "a explains," in warning(["a"])
 
 
+@pytest.mark.long
 def test_a_stand_in_for_an_unnamed_friction_is_doubted() -> None:
     """Friction that waxes and wanes along the stroke: Coulomb friction is its mean."""
     case = hide_unknown(20261121, "periodic_friction", QUIET)
@@ -71,6 +72,7 @@ def test_a_stand_in_for_an_unnamed_friction_is_doubted() -> None:
     assert "explains, what stays unexplained is large: it may stand in" in found.verdict
 
 
+@pytest.mark.long
 def test_a_named_effect_alone_is_not_doubted(effects_seed: int) -> None:
     case = hide_effect(effects_seed, "viscous_friction", noise=QUIET)
     found = diagnose_bench(records_of(case))

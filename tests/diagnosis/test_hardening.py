@@ -29,6 +29,7 @@ def diagnosis() -> Diagnosis:
     return diagnose_bench(runs)
 
 
+@pytest.mark.long
 def test_it_is_one_cause(diagnosis: Diagnosis) -> None:
     named = [(finding.effect, finding.law) for finding in diagnosis.findings]
     assert ("hysteretic_friction", "bouc_wen") in named, diagnosis.verdict
@@ -36,6 +37,7 @@ def test_it_is_one_cause(diagnosis: Diagnosis) -> None:
     assert diagnosis.extended.rmse < 0.1 * diagnosis.baseline.rmse
 
 
+@pytest.mark.long
 def test_its_parameters_are_near(diagnosis: Diagnosis) -> None:
     values = {name: found.value for name, found in diagnosis.parameters.items()}
     assert values["inertance"] == pytest.approx(20.0, rel=0.01)

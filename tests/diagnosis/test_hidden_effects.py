@@ -25,9 +25,15 @@ CLOSE = {
     "series_damping": 0.3, "stop_stiffness": 0.1, "gas_exponent": 0.3,
 }  # fmt: skip
 USUAL = 0.03
+OFTEN = ("viscous_friction", "coulomb_friction", "series_elasticity", "lugre")
 
 
-@pytest.fixture(params=CASES, ids=[law or effect for effect, law in CASES])
+def _case(effect: str, law: str | None) -> object:
+    name = law or effect
+    return pytest.param((effect, law), id=name, marks=() if name in OFTEN else pytest.mark.long)
+
+
+@pytest.fixture(params=[_case(*case) for case in CASES])
 def solved(request: pytest.FixtureRequest, effects_seed: int):
     effect, law = request.param
     return solve(effects_seed + CASES.index(request.param), effect, law)
@@ -60,6 +66,7 @@ def test_parameters_are_near(solved) -> None:
         assert error < size, f"seed {case.seed}: {name}"
 
 
+@pytest.mark.long
 def test_gas_is_found(effects_seed: int) -> None:
     """Push p0 A and height V0 / A, which are what a force shows."""
     case, diagnosis = solve(effects_seed + CASES.index(("gas_spring", None)), "gas_spring", None)
@@ -131,6 +138,7 @@ def test_clean_data_bring_no_finding(offset: int, effects_seed: int) -> None:
     assert not diagnosis.unexplained.significant
 
 
+@pytest.mark.long
 def test_bouc_wen_loop_is_found(effects_seed: int) -> None:
     """Redundant parameters, the same loop: the friction force along a slow sine is near."""
     index = CASES.index(("hysteretic_friction", "bouc_wen"))

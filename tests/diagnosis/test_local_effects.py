@@ -34,6 +34,7 @@ def diagnosis() -> Diagnosis:
     return diagnose_bench(runs, Device(inertance=80.0, viscous=60.0), holdout=["middle"])
 
 
+@pytest.mark.long
 def test_a_stop_that_one_run_alone_reaches_is_found(diagnosis: Diagnosis) -> None:
     assert [finding.effect for finding in diagnosis.findings] == ["end_stop"], diagnosis.verdict
     stop = diagnosis.findings[0].parameters
@@ -41,6 +42,7 @@ def test_a_stop_that_one_run_alone_reaches_is_found(diagnosis: Diagnosis) -> Non
     assert stop["stop_stiffness"].value == pytest.approx(4e5, rel=0.1)
 
 
+@pytest.mark.long
 def test_its_gain_is_that_on_blocks_left_out(diagnosis: Diagnosis) -> None:
     """As the run held out says nothing of it, which the finding tells."""
     stop = diagnosis.findings[0]

@@ -14,6 +14,7 @@ from inerter.records import read_records
 from inerter.records.preparation import prepare
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("ratio", "inertance", "aim"), [("r0", 61.35, 15.0), ("r16", 32.56, 8.0)])
 def test_rack_inerter(measured_data: Path, ratio: str, inertance: float, aim: float) -> None:
     """The makers' dry and viscous friction model leaves 34-47 N (r0) and 18-26 N (r16)."""
@@ -41,6 +42,7 @@ def test_emps_four_terms(measured_data: Path) -> None:
     assert found["force_offset"] == pytest.approx(-3.1648, rel=0.02)
 
 
+@pytest.mark.long
 def test_emps_is_explained_better_than_by_four_terms(measured_data: Path) -> None:
     """The four terms leave 4.12 % of the force (published, in sample)."""
     result = diagnose([measured_data / "emps" / "emps.csv"])

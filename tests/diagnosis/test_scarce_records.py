@@ -46,6 +46,7 @@ def inerter(
     return Record(name=name, time=time, displacement=x, force=force)
 
 
+@pytest.mark.long
 def test_several_short_fast_runs() -> None:
     """Of 50 ms not one cell of loudness is away from the ends."""
     runs = [
@@ -67,6 +68,7 @@ def test_a_pause_moves_no_scale(pause: float) -> None:
         assert getattr(with_it, name) == pytest.approx(getattr(without, name), rel=0.1), name
 
 
+@pytest.mark.long
 def test_a_pause_leaves_the_noise_as_it_is() -> None:
     floors = []
     for pause in (0.0, 3.132):
@@ -84,6 +86,7 @@ def test_blocks_are_held_out_of_what_was_measured(pause: float) -> None:
     assert 0.25 < held / (held + learnt) < 0.35
 
 
+@pytest.mark.long
 def test_motions_faster_than_the_usual_band() -> None:
     """A smoother that ends at 200 Hz takes most of a motion at 200 Hz away."""
     diagnosis = diagnose_bench([inerter("fast", 200.0, 1.0, 20e3, 1e-5, noise=1.0)])

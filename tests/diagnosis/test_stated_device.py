@@ -56,12 +56,14 @@ def diagnosed(runs: list[Record], delay: float = 0.0, **stated: float | str) -> 
     return diagnosis
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effect", ABSENT)
 def test_what_is_stated_and_not_there(effect: str, runs: list[Record]) -> None:
     diagnosis = diagnosed(runs, **ABSENT[effect])
     assert [finding.effect for finding in diagnosis.findings] == [effect]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", LAWS)
 def test_friction_that_is_stated_and_not_there(law: str, runs: list[Record]) -> None:
     diagnosis = diagnosed(runs, friction=law, **LAWS[law])
@@ -108,6 +110,7 @@ def test_what_a_stated_law_leaves_to_its_defaults_is_set_free_too(law: str) -> N
     assert not [e for e in stated_candidates(free, sizes) if EFFECTS[e.effect].kind == "law"]
 
 
+@pytest.mark.long
 def test_a_default_stiffness_is_contradicted() -> None:
     """The user states the level of Dahl friction alone; the bench's bristle is much softer."""
     motions = [sum_of_sines([3e-3, 0.9e-3], [f, 1.6 * f], [0.0, 0.0]) for f in (1.5, 1.8, 2.2)]

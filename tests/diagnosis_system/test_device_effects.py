@@ -30,6 +30,7 @@ HIDDEN: dict[str, tuple[dict[str, Any], dict[str, tuple[float, float]]]] = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effect", HIDDEN)
 def test_effect_of_the_device_is_named(effect: str) -> None:
     values, parameters = HIDDEN[effect]
@@ -43,6 +44,7 @@ def test_effect_of_the_device_is_named(effect: str) -> None:
     assert found.devices["strut"].given == found.extended.device
 
 
+@pytest.mark.long
 def test_a_first_drive_that_hardly_moves_hides_nothing() -> None:
     """Starting points come from the motion of all drives: from the first's none leads to a stop."""
     values, parameters = HIDDEN["end_stop"]

@@ -11,6 +11,7 @@ CLOSE = {"series_damping": 0.15, "bristle_stiffness": 0.15, "stop_stiffness": 0.
 USUAL = 0.04
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effect", [*OF_VEHICLE, *OF_DEVICE])
 def test_a_drawn_effect_is_named(effect: str, effects_seed: int) -> None:
     case = draw(effects_seed, effect)
@@ -25,6 +26,7 @@ def test_a_drawn_effect_is_named(effect: str, effects_seed: int) -> None:
     assert found.extended.rmse < 0.7 * found.baseline.rmse, f"seed {case.seed}"
 
 
+@pytest.mark.long
 def test_nothing_is_named_in_a_drawn_vehicle_with_nothing_hidden(effects_seed: int) -> None:
     case = draw(effects_seed, "none")
     found = case.diagnose()

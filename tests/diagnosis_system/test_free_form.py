@@ -75,6 +75,7 @@ def test_joint_of_a_robot_with_mapped_columns(tmp_path: Path) -> None:
     assert "no wheel" in found.verdict
 
 
+@pytest.mark.long
 def test_half_car_with_two_roads(tmp_path: Path) -> None:
     # the rear strut of the shipped half-car has Coulomb friction; columns have their own names
     def corner(which: str, **device: Any) -> Corner:

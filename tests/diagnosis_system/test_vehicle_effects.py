@@ -26,6 +26,7 @@ HIDDEN = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("effect", HIDDEN)
 def test_effect_of_the_vehicle_is_named(effect: str) -> None:
     car, amplitude, parameters = HIDDEN[effect]
@@ -73,6 +74,7 @@ def test_channels_are_told_in_their_units() -> None:
     assert json["engines"]["reference"] == {"rmse": None}
 
 
+@pytest.mark.long
 def test_nothing_is_found_where_nothing_is_hidden() -> None:
     for seed in (21, 31):
         found = diagnose(records(Car(), seed=seed))
@@ -89,6 +91,7 @@ def test_single_run_is_judged_on_blocks_of_it() -> None:
     assert found.findings[0].rmse_after < 0.5 * found.findings[0].rmse_before
 
 
+@pytest.mark.long
 def test_two_effects_are_both_found() -> None:
     found = diagnose(records(Car(tyre_damping=150.0, sprung_mass=195.0)))
     assert {finding.effect for finding in found.findings} == {"tyre_damping", "body_mass_error"}
@@ -96,6 +99,7 @@ def test_two_effects_are_both_found() -> None:
     assert found.parameters["body_mass"].value == pytest.approx(195.0, rel=0.005)
 
 
+@pytest.mark.long
 def test_start_in_motion_is_no_effect() -> None:
     # cut out of a longer drive: what the car did before is not in the record
     cut = []
@@ -106,6 +110,7 @@ def test_start_in_motion_is_no_effect() -> None:
     assert diagnose(cut).findings == []
 
 
+@pytest.mark.long
 def test_offset_of_an_accelerometer_is_no_effect() -> None:
     shifted = []
     for run in records(Car(), runs=2):
@@ -117,6 +122,7 @@ def test_offset_of_an_accelerometer_is_no_effect() -> None:
     assert found.baseline.rmse < 1.1 * found.noise_floor
 
 
+@pytest.mark.long
 def test_other_sign_of_the_tyre_force_is_no_effect() -> None:
     turned = []
     for run in records(Car(), runs=2):
@@ -138,6 +144,7 @@ def test_an_accelerometer_turned_round_is_told_before_any_cause() -> None:
     assert verdict.startswith("Look at the records first: run1: 'body_acceleration' runs against")
 
 
+@pytest.mark.long
 def test_a_copy_of_a_drive_is_left_out() -> None:
     runs = records(Car(sprung_mass=200.0), runs=2)
     alone, beside = diagnose(runs), diagnose(check_records([*runs, replace(runs[0], name="copy")]))
