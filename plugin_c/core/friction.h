@@ -23,9 +23,11 @@ typedef struct FrictionPath_ {
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
 // force_of_rate: the force where the rate of the state is known already; NULL where it is no help.
 // along: force and state at samples of a motion, see `friction_along`.
-// level, width: the force of a law with a sharp sign is level(p, x, v) tanh(v / width(p)); the
-// level is even in v but for the asymmetry, which it leaves out. NULL where the law is smooth. Laws
-// without states leave all but force, along, level and width NULL, those with one the latter.
+// over_step: step and force in one, z + share (step - z) in the force, and how the force rises with
+// v; NULL where a small difference of the two says that. level, width: the force of a law with a
+// sharp sign is level(p, x, v) tanh(v / width(p)); the level is even in v but for the asymmetry,
+// which it leaves out. NULL where the law is smooth. Laws without states leave all but force,
+// along, level and width NULL, those with one the latter.
 typedef struct FrictionLaw_ {
   double (*rate)(const InerterDevice* p, double x, double v, double z);
   double (*step)(const InerterDevice* p, double x, double v, double z, double h);
@@ -37,6 +39,8 @@ typedef struct FrictionLaw_ {
   double (*force_of_rate)(const InerterDevice* p, double z, double rate);
   double (*level)(const InerterDevice* p, double x, double v);
   double (*width)(const InerterDevice* p);
+  double (*over_step)(const InerterDevice* p, double x, double v, double z, double h, double share,
+                      double* slope);
 } FrictionLaw;
 
 extern const FrictionLaw inerter_coulomb;

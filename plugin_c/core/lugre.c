@@ -47,6 +47,31 @@ static double force(const InerterDevice* p, double x, double v, double z) {
   return force_of_rate(p, z, rate(p, x, v, z));
 }
 
+// both at once, with the derivative over v but for that of the level's asymmetry
+static double over_step(const InerterDevice* p, double x, double v, double z, double h,
+                        double share, double* slope) {
+  double factor = friction_level(p, x, v), curve = friction_stribeck_curve(p, v);
+  double g = factor * curve, stiff = p->bristle_stiffness, speed = fabs(v);
+  double end = sign(v) * g / stiff, gone = v == 0 ? 0 : -expm1(-stiff * speed * h / g);
+  double z1 = z + gone * (end - z), middle = z + share * (z1 - z);
+
+  // g' over g: the fall of the curve
+  double fall = 0, excess = p->static_force - p->coulomb_force;
+  if (excess != 0 && v != 0) {
+    double power = log(excess / (curve - p->coulomb_force));
+    fall = curve > p->coulomb_force
+               ? -p->stribeck_exponent * power / v * (curve - p->coulomb_force) / curve
+               : 0;
+  }
+  double path = stiff * h / g, left = 1 - gone;
+  double dz1 = v == 0 ? h - path * z
+                      : left * path * (sign(v) - speed * fall) * (end - z) + gone * end * fall;
+  double dmiddle = share * dz1;
+  double drate = 1 - stiff * (sign(v) * middle + speed * (dmiddle - middle * fall)) / g;
+  *slope = stiff * dmiddle + p->bristle_damping * drate;
+  return force_of_rate(p, middle, v - stiff * speed * middle / g);
+}
+
 static double energy(const InerterDevice* p, double x, double z) {
   (void)x;
   return 0.5 * p->bristle_stiffness * z * z;
@@ -69,4 +94,5 @@ const FrictionLaw inerter_lugre = {
     .stiffness = stiffness,
     .along = along,
     .force_of_rate = force_of_rate,
+    .over_step = over_step,
 };

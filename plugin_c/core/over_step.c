@@ -77,6 +77,21 @@ static double bristle_over_step(const InerterDevice* device, double x, double v1
   return law->force(device, x, v1, z + share * (*z1 - z));
 }
 
+// the same, with its slope over v1
+static double bristle_with_slope(const InerterStep* step, double v1, double* slope) {
+  const InerterDevice* p = step->device;
+  const FrictionLaw* law = law_of(p);
+  double x = stretch_of(p, step->x), z = step->z[0], h = step->h, end;
+  if (law->over_step && p->friction_backlash == 0) {
+    double share = least_share(law->stiffness(p), step->mobility, h);
+    return law->over_step(p, x, v1, z, h, share, slope);
+  }
+  double near = 1e-6 * (h + fabs(v1 - step->v));
+  double friction = bristle_over_step(p, x, v1, z, h, step->mobility, &end);
+  *slope = (bristle_over_step(p, x, v1 + near, z, h, step->mobility, &end) - friction) / near;
+  return friction;
+}
+
 // z: the bristle's state, that of the end when it returns
 static double friction_over_step(const InerterDevice* device, double x, double v, double v1,
                                  double h, double mobility, double* z) {
@@ -181,13 +196,8 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
     }
 
     case STEP_BRISTLE: {
-      const InerterDevice* p = step->device;
-      double stretch = stretch_of(p, step->x), h = step->h, near = 1e-6 * (1 + fabs(a)), end;
-      double friction =
-          bristle_over_step(p, stretch, step->v + h * a, step->z[0], h, step->mobility, &end);
-      double beside = bristle_over_step(p, stretch, step->v + h * (a + near), step->z[0], h,
-                                        step->mobility, &end);
-      *slope = step->rise + fmax(0, (beside - friction) / near);
+      double rise, friction = bristle_with_slope(step, step->v + step->h * a, &rise);
+      *slope = step->rise + step->h * fmax(0, rise);
       return line + friction;
     }
 
