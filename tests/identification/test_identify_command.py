@@ -80,6 +80,7 @@ def test_the_terminal_shows_laws_and_parameters(folder: Path, tmp_path: Path) ->
     assert "inertance" in stdout
 
 
+@pytest.mark.long
 def test_a_simulation_refines_the_best_law(tmp_path: Path) -> None:
     """The force drives a damped mass on a spring; its displacement is 20 um noisy."""
     t = np.linspace(0.0, 6.0, 3001)

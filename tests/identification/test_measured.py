@@ -39,6 +39,7 @@ def test_friction_damper_on_a_run_left_out(measured_data: Path) -> None:
     assert result.high < 3031
 
 
+@pytest.mark.long
 def test_friction_damper_has_free_play_before_its_friction(measured_data: Path) -> None:
     """Its force stays at zero over some 3.6 mm at every reversal."""
     records = read_records(measured_data / "friction_damper", "bench")
@@ -55,6 +56,7 @@ def test_friction_damper_has_free_play_before_its_friction(measured_data: Path) 
     assert next(stiffness) > 1.5 * next(stiffness)
 
 
+@pytest.mark.long
 def test_bouc_wen_oscillator_down_to_its_noise(measured_data: Path) -> None:
     """Simulated on a stretch it has not seen; what the true parameters leave is the noise."""
     (record,) = read_records(measured_data / "boucwen" / "train_multisine.csv", "bench")

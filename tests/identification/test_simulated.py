@@ -58,6 +58,7 @@ def test_it_converges_with_the_second_order_of_the_held_force() -> None:
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.3)
 
 
+@pytest.mark.long
 def test_two_runs_with_noise_give_the_device_back() -> None:
     runs = [record(1e-5, name="one"), record(1e-5, 0.8, "two")]
     start = Model(
@@ -135,6 +136,7 @@ def test_figures_are_those_of_the_device_that_is_told() -> None:
     )
 
 
+@pytest.mark.long
 def test_a_simulation_that_drifts_away_is_not_the_best() -> None:
     """The law lacks the constant force; a huge inertance would keep the device in its place."""
     runs = [free(5.0, "one", 1.0), free(5.0, "two", 1.5)]

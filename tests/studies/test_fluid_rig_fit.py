@@ -128,6 +128,7 @@ def test_coordinates_return_to_the_parameters() -> None:
     np.testing.assert_allclose(row, [25.0, 25.0, 0.0, 0.0], atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("configuration", "sweeps", "objective"),
     [
