@@ -31,6 +31,15 @@ static const struct {
 #undef X
 };
 
+static const struct {
+  const char* name;
+  const char* meaning;
+} kSide[] = {
+#define X(identifier, meaning) {#identifier, meaning},
+    INERTER_FRICTION_SIDES(X)
+#undef X
+};
+
 const FrictionLaw* const inerter_friction_law[] = {
 #define inerter_none inerter_coulomb  // never called: "none" is tested first
 #define X(identifier, nstate, meaning) &inerter_##identifier,
@@ -61,6 +70,14 @@ const char* inerter_gas_law_name(int i) {
 
 const char* inerter_gas_law_meaning(int i) {
   return i >= 0 && i < INERTER_NGAS ? kGas[i].meaning : NULL;
+}
+
+const char* inerter_friction_side_name(int i) {
+  return i >= 0 && i < INERTER_NSIDE ? kSide[i].name : NULL;
+}
+
+const char* inerter_friction_side_meaning(int i) {
+  return i >= 0 && i < INERTER_NSIDE ? kSide[i].meaning : NULL;
 }
 
 const char* inerter_state_name(const InerterDevice* device, int i) {

@@ -65,30 +65,53 @@ static void find_level(InerterStep* step, double stretch) {
   }
 }
 
+// implicit share of a bristle's spring
+static double bristle_share(const InerterDevice* device, double h, double mobility) {
+  return has_bristle(device) ? least_share(law_of(device)->stiffness(device), mobility, h) : 0;
+}
+
 // force of a law with a bristle; z, z1: its state at the start and at the end
 static double bristle_over_step(const InerterDevice* device, double x, double v1, double z,
-                                double h, double mobility, double* z1) {
+                                double h, double share, double* z1) {
   const FrictionLaw* law = law_of(device);
   *z1 = bristle_step(device, x, v1, z, h);
-  double share = least_share(law->stiffness(device), mobility, h);
   if (device->friction_backlash > 0) {
     return play_force_over_step(device, x, v1, z, *z1, share, h);
   }
   return law->force(device, x, v1, z + share * (*z1 - z));
 }
 
-// z: the bristle's state, that of the end when it returns
-static double friction_over_step(const InerterDevice* device, double x, double v, double v1,
-                                 double h, double mobility, double* z) {
+double friction_over_step(const InerterDevice* device, double x, double v, double v1, double h,
+                          double share, double* z) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
   if (has_bristle(device)) {
-    return bristle_over_step(device, x, v1, z[0], h, mobility, z);
+    return bristle_over_step(device, x, v1, z[0], h, share, z);
   }
   InerterStep step = {.device = device, .v = v};
   find_level(&step, x);
   return sharp_friction(&step, v1).value;
+}
+
+double friction_grip(const InerterDevice* device, double x, double v) {
+  if (device->friction == INERTER_FRICTION_none) {
+    return 0;
+  }
+  if (has_bristle(device)) {
+    return device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
+  }
+  InerterStep step = {.device = device, .v = v};
+  find_level(&step, x);
+  return sharp_friction(&step, v).slope;
+}
+
+// friction at the terminals with its load, or at the flywheel
+static double friction_with_load(const InerterDevice* device, double friction, double drag,
+                                 double v1, double carried) {
+  return has(device, PART_WHEEL_FRICTION)
+             ? drag
+             : friction + inerter_load_factor(device, v1) * fabs(carried);
 }
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
@@ -102,10 +125,15 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
   if (h == 0) {
     force = inerter_force(device, x, v, a, z);
   } else {
-    double friction = friction_over_step(device, stretch, v, v1, h, mobility, next);
+    double friction = 0, drag = 0;
+    if (!has(device, PART_WHEEL_FRICTION)) {
+      double share = bristle_share(device, h, mobility);
+      friction = friction_over_step(device, stretch, v, v1, h, share, next);
+    }
     if (has(device, PART_SERIES)) {
       double* series = next + series_index(device);
-      force.inertance = series_over_step(device, stretch, v1, series, h, mobility);
+      force.inertance =
+          series_over_step(device, stretch, v1, next, series, h, mobility, &drag) - drag;
     } else {
       double rest, inertance = inerter_inertance(device, x, v, &rest);
       double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
@@ -114,7 +142,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
     double damper = (device->viscous + device->quadratic_damping * fabs(v1)) * v1;
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
-    force.friction = friction + inerter_load_factor(device, v1) * fabs(force.inertance);
+    force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }
   if (end && device->nstate) {
@@ -183,10 +211,10 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
     case STEP_BRISTLE: {
       const InerterDevice* p = step->device;
       double stretch = stretch_of(p, step->x), h = step->h, near = 1e-6 * (1 + fabs(a)), end;
-      double friction =
-          bristle_over_step(p, stretch, step->v + h * a, step->z[0], h, step->mobility, &end);
-      double beside = bristle_over_step(p, stretch, step->v + h * (a + near), step->z[0], h,
-                                        step->mobility, &end);
+      double share = bristle_share(p, h, step->mobility);
+      double friction = bristle_over_step(p, stretch, step->v + h * a, step->z[0], h, share, &end);
+      double beside =
+          bristle_over_step(p, stretch, step->v + h * (a + near), step->z[0], h, share, &end);
       *slope = step->rise + fmax(0, (beside - friction) / near);
       return line + friction;
     }

@@ -107,4 +107,9 @@
   X(polytropic, "p V^gamma is constant") \
   X(expanded, "second order of that, as a paper prints it")
 
+// where the friction law and the load friction act: X(identifier, meaning)
+#define INERTER_FRICTION_SIDES(X)                          \
+  X(terminals, "between the terminals, before the series element") \
+  X(flywheel, "beside the inertance, behind the series element")
+
 #endif  // INERTER_CORE_PARAMETERS_H_

@@ -150,6 +150,8 @@ def draw_complete(rng: np.random.Generator) -> Parameters:
     drawn |= draw_branches(rng) | draw_flywheel(rng, channel, gas)
     drawn |= draw_stops(rng) if stops else {}
     drawn |= draw_series(rng, backlash) if series else {}
+    if rng.random() < 0.4:
+        drawn["friction_side"] = "flywheel"
     if channel:
         del drawn["inertance"]
     return drawn

@@ -263,7 +263,7 @@ def _integrate(
                 atol=absolute,
                 max_step=scan_step,
             )
-        elif device.friction_backlash > 0.0:
+        elif device.friction_backlash > 0.0 and not device.rubs_flywheel:
             direction = float(np.sign(velocity(0.5 * (left + right))))
             path = _through_play(
                 device, rate, velocity, direction, z, stops, method, rtol, absolute, scan_step

@@ -27,7 +27,7 @@ from . import (
     series_spring,
     stribeck,
 )
-from .device_parameters import GAS_LAWS, DeviceParameters
+from .device_parameters import FRICTION_SIDES, GAS_LAWS, DeviceParameters
 from .level import friction_level
 from .parameters import FRICTION_LAWS, FrictionParameters, Quantity, parameter
 
@@ -44,6 +44,7 @@ FRICTION: dict[str, ModuleType] = {
 __all__ = [
     "FRICTION",
     "FRICTION_LAWS",
+    "FRICTION_SIDES",
     "GAS_LAWS",
     "DeviceParameters",
     "FrictionParameters",
