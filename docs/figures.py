@@ -163,6 +163,17 @@ def series() -> None:
     in_time("series", devices, sine(2.0, 3))
 
 
+def friction_side() -> None:
+    """Friction before and behind the elastic drive."""
+    soft = {"inertance": 100, "series_stiffness": 2e4, "series_damping": 400}
+    rubbing = {**soft, "friction": "coulomb", "coulomb_force": 20, "transition_velocity": 1e-3}
+    devices = {
+        "at the terminals": Device(**rubbing),
+        "at the flywheel": Device(**rubbing, friction_side="flywheel"),
+    }
+    loops("friction_side", devices, 0.5, AMPLITUDE)
+
+
 def end_stops() -> None:
     """End stops at 8 mm."""
     stop = Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)
@@ -188,7 +199,7 @@ def fluid() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, friction_level, load_friction, damping_and_stiffness,
-    inertance, series, end_stops, gas, fluid,
+    inertance, series, friction_side, end_stops, gas, fluid,
 )  # fmt: skip
 
 

@@ -122,8 +122,7 @@ def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequen
         left = force - _law_force(_rubbing(f, p, x, v, state))
         if not p.load_friction:
             return left
-        share = _load_share(f, p, state.speed)
-        return left / (1.0 + f.choose(left < 0.0, -share, share))
+        return left / (1.0 + _load_share(f, p, state.speed) * f.sign(left))
     inertance, rest = flywheel.inertance(f, p, x, v)
     return inertance * a + rest + flywheel.force(f, p, x, v)
 
