@@ -55,6 +55,32 @@ static int check_ranges(InerterDevice* device, char* message) {
   return 0;
 }
 
+// elements of maxwell_slip: each whole, the first ones without a gap
+static int check_slip(const InerterDevice* device, char* message) {
+  int count = slip_count(device);
+  for (int i = 0; i < INERTER_MAXSLIP; i++) {
+    double stiffness = slip_element(device, i)[0], force = slip_element(device, i)[1];
+    if ((stiffness > 0) != (force > 0)) {
+      const char *there = stiffness > 0 ? "stiffness" : "force",
+                 *missing = stiffness > 0 ? "force" : "stiffness";
+      return refuse(message,
+                    "slip_%s_%d is %g %s, but slip_%s_%d is 0; give both > 0, or neither", there,
+                    i + 1, stiffness > 0 ? stiffness : force, stiffness > 0 ? "N/m" : "N", missing,
+                    i + 1);
+    }
+    if (stiffness > 0 && i >= count) {
+      return refuse(message,
+                    "slip_stiffness_%d is %g N/m, but slip_stiffness_%d is 0 N/m; number the "
+                    "elements from 1 without a gap",
+                    i + 1, stiffness, count + 1);
+    }
+  }
+  return count ? 0
+               : refuse(message,
+                        "slip_stiffness_1 is 0 N/m, but friction is \"maxwell_slip\"; give "
+                        "slip_stiffness_1 and slip_force_1 > 0 or friction \"none\"");
+}
+
 static int check_friction(const InerterDevice* device, char* message) {
   int friction = device->friction;
   if (device->static_force < device->coulomb_force) {
@@ -72,6 +98,9 @@ static int check_friction(const InerterDevice* device, char* message) {
                : refuse(message,
                         "bw_stiffness is 0 N/m, but friction is \"bouc_wen\"; give bw_stiffness > "
                         "0 N/m or friction \"none\"");
+  }
+  if (friction == INERTER_FRICTION_maxwell_slip) {
+    return check_slip(device, message);
   }
   int bristle = friction == INERTER_FRICTION_dahl || friction == INERTER_FRICTION_lugre;
   if ((bristle ? device->coulomb_force : device->static_force) <= 0) {
@@ -261,7 +290,10 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
     return -1;
   }
   device->parts = parts_of(device);
-  device->nstate = inerter_friction_nstate(device->friction) + (has(device, PART_SERIES) ? 2 : 0) +
+  device->nfriction = device->friction == INERTER_FRICTION_maxwell_slip
+                          ? slip_count(device)
+                          : inerter_friction_nstate(device->friction);
+  device->nstate = device->nfriction + (has(device, PART_SERIES) ? 2 : 0) +
                    (has(device, PART_BACKLASH) ? 1 : 0);
   return 0;
 }

@@ -85,8 +85,13 @@ const char* inerter_state_name(const InerterDevice* device, int i) {
   if (i < 0 || i >= device->nstate) {
     return NULL;
   }
-  int friction = kFriction[device->friction].nstate;
-  return i < friction ? "friction_state" : kSeries[i - friction];
+  static const char* const kSlip[] = {"friction_state_1", "friction_state_2", "friction_state_3",
+                                      "friction_state_4", "friction_state_5", "friction_state_6",
+                                      "friction_state_7", "friction_state_8"};
+  if (i >= device->nfriction) {
+    return kSeries[i - device->nfriction];
+  }
+  return device->friction == INERTER_FRICTION_maxwell_slip ? kSlip[i] : "friction_state";
 }
 
 const char* inerter_compiler(void) {

@@ -29,7 +29,7 @@ static double law_force(const InerterDevice* device, double stretch, double v, c
   }
   Place place = place_of_friction(device, stretch, v, z);
   if (has_bristle(device)) {
-    return bristle_force(device, place.x, place.v, z[0]);
+    return friction_force(device, place.x, place.v, z);
   }
   return law_of(device)->force(device, place.x, place.v, 0);
 }
@@ -60,7 +60,7 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
   double stretch = stretch_of(device, x);
   Place place = place_of_friction(device, stretch, v, z);
   if (has_bristle(device)) {
-    rate[0] = bristle_rate(device, place.x, place.v, z[0]);
+    friction_rates(device, place.x, place.v, z, rate);
   }
   if (has(device, PART_SERIES)) {
     int first = series_index(device);
@@ -72,7 +72,7 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
 void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
   double stretch = stretch_of(device, x);
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
-    z[0] = bristle_step(device, stretch, v, z[0], h);
+    friction_step(device, stretch, v, z, h);
   }
   if (has(device, PART_SERIES)) {
     series_step(device, stretch, v, 0, 0, z, z + series_index(device), h);
@@ -118,7 +118,13 @@ static double play_of_force(const InerterDevice* device, double x, double v, dou
 void inerter_state_of_force(const InerterDevice* device, double x, double v, double a, double force,
                             double* z) {
   if (!has(device, PART_SERIES)) {
-    if (device->nstate) {
+    for (int i = 0; i < device->nstate; i++) {
+      z[i] = 0;
+    }
+    if (law_of(device)->several && device->nstate) {
+      double wanted = force - inerter_force(device, x, v, a, z).total;
+      law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted, z);
+    } else if (device->nstate) {
       z[0] = play_of_force(device, x, v, a, force);
     }
     return;
@@ -223,8 +229,7 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   double energy = (0.5 * device->stiffness + 0.25 * device->stiffness_cubic * square) * square;
   double y = stretch, w = v;
   if (has_bristle(device)) {
-    double at = place_of_friction(device, stretch, v, z).x;
-    energy += law_of(device)->energy(device, at, bristle_deflection(device, z[0]));
+    energy += friction_energy(device, place_of_friction(device, stretch, v, z).x, z);
   }
   if (has(device, PART_SERIES)) {
     const double* series = z + series_index(device);
@@ -250,8 +255,12 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   double power = (damper + load) * v + friction * rubbing.v;
 
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term
-  if (has_bristle(device)) {
-    const FrictionLaw* law = law_of(device);
+  const FrictionLaw* law = law_of(device);
+  if (has_bristle(device) && law->several) {
+    double rate[INERTER_MAXFRICTION];
+    friction_rates(device, rubbing.x, rubbing.v, z, rate);
+    power -= law->several->stored_power(device, z, rate);
+  } else if (has_bristle(device)) {
     double bristle = bristle_deflection(device, z[0]);
     power -= 2 * law->energy(device, 0, 1) * bristle *
              law->rate(device, rubbing.x, rubbing.v, bristle);

@@ -68,7 +68,9 @@ enum {
   INERTER_INDEX_gas_law,  // not numbers, but they can be given
   INERTER_INDEX_friction_side,
   INERTER_NGIVEN = (INERTER_INDEX_friction_side + 64) / 64,
-  INERTER_MAXSTATE = 4,
+  INERTER_MAXSLIP = 8,                   // elements of maxwell_slip
+  INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
+  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3,
   INERTER_MESSAGE_SIZE = 512
 };
 
@@ -81,7 +83,7 @@ typedef struct InerterDevice_ {
   int friction_side;  // InerterSide
   uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
   uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
-  int nstate;                      // set by inerter_finish
+  int nstate, nfriction;           // states, those of the friction law; set by inerter_finish
 } InerterDevice;
 
 // Whether parameter i (or a name, such as INERTER_INDEX_gas_law) was set; the inertance also when
@@ -125,7 +127,7 @@ typedef struct InerterForce_ {
 // Description of parameter i, or NULL past the end.
 INERTER_API const InerterParameter* inerter_parameter(int i);
 
-// Name, number of states and meaning of friction law i; NULL or -1 past the end.
+// Name, largest number of states and meaning of friction law i; NULL or -1 past the end.
 INERTER_API const char* inerter_friction_name(int i);
 INERTER_API const char* inerter_friction_meaning(int i);
 INERTER_API int inerter_friction_nstate(int i);
@@ -160,7 +162,7 @@ INERTER_API int inerter_nstate(const InerterDevice* device);
 // The compiler that made the library, with its version.
 INERTER_API const char* inerter_compiler(void);
 
-// Name of state i: "friction_state", "series_deflection", "flywheel_velocity", "gap_position"; NULL
+// Name of state i: "friction_state" (of maxwell_slip "friction_state_1", ...), "series_deflection", "flywheel_velocity", "gap_position"; NULL
 // past the end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 

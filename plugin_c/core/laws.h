@@ -58,9 +58,37 @@ static inline double bristle_force(const InerterDevice* p, double x, double v, d
   return p->friction_backlash == 0 ? law_of(p)->force(p, x, v, s) : play_force(p, x, v, s);
 }
 
-// place of the series element's first state, after that of friction
+// a friction law with states, one or several: rates, states after a time, force, stored energy and
+// its rate
+static inline void friction_rates(const InerterDevice* p, double x, double v, const double* z,
+                                  double* rate) {
+  const FrictionStates* several = law_of(p)->several;
+  if (several) {
+    several->rate(p, x, v, z, rate);
+  } else {
+    rate[0] = bristle_rate(p, x, v, z[0]);
+  }
+}
+static inline void friction_step(const InerterDevice* p, double x, double v, double* z, double h) {
+  const FrictionStates* several = law_of(p)->several;
+  if (several) {
+    several->step(p, x, v, z, h);
+  } else {
+    z[0] = bristle_step(p, x, v, z[0], h);
+  }
+}
+static inline double friction_force(const InerterDevice* p, double x, double v, const double* z) {
+  const FrictionStates* several = law_of(p)->several;
+  return several ? several->force(p, z) : bristle_force(p, x, v, z[0]);
+}
+static inline double friction_energy(const InerterDevice* p, double x, const double* z) {
+  const FrictionStates* several = law_of(p)->several;
+  return several ? several->energy(p, z) : law_of(p)->energy(p, x, bristle_deflection(p, z[0]));
+}
+
+// place of the series element's first state, after those of friction
 static inline int series_index(const InerterDevice* p) {
-  return has_bristle(p);
+  return p->nfriction;
 }
 
 // a quantity and its derivative
@@ -122,7 +150,7 @@ static inline double flywheel_force(const InerterDevice* p, double y, double w) 
 double wheel_carried(const InerterDevice* p, double w, double force, double friction);
 
 // over_step.c: force of the friction law over a step h at displacement x to velocity v1. v: velocity
-// at which the level of friction without memory is taken; z: state of a bristle, that of the end
+// at which the level of friction without memory is taken; z: states of the law, those of the end
 // when it returns; share: implicit part of a bristle's spring. friction_grip: how the force rises
 // with the velocity at v [N s/m].
 double friction_over_step(const InerterDevice* p, double x, double v, double v1, double h,

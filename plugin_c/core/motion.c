@@ -14,7 +14,7 @@ static void step_between(const InerterDevice* device, const double* x, const dou
   double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
     double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
-    z[0] = bristle_step(device, middle, mean, z[0], h);
+    friction_step(device, middle, mean, z, h);
   }
   if (has(device, PART_SERIES)) {
     double a = (6 * mean - 4 * v[0] - 2 * v[1]) / h;

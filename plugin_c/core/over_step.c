@@ -81,13 +81,26 @@ static double bristle_over_step(const InerterDevice* device, double x, double v1
   return law->force(device, x, v1, z + share * (*z1 - z));
 }
 
+// the same of a law with several states
+static double states_over_step(const InerterDevice* device, double x, double v1, double h,
+                               double share, double* z) {
+  double mean[INERTER_MAXFRICTION];
+  memcpy(mean, z, sizeof(double) * (size_t)device->nfriction);
+  friction_step(device, x, v1, z, h);
+  for (int i = 0; i < device->nfriction; i++) {
+    mean[i] += share * (z[i] - mean[i]);
+  }
+  return friction_force(device, x, v1, mean);
+}
+
 double friction_over_step(const InerterDevice* device, double x, double v, double v1, double h,
                           double share, double* z) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
   if (has_bristle(device)) {
-    return bristle_over_step(device, x, v1, z[0], h, share, z);
+    return law_of(device)->several ? states_over_step(device, x, v1, h, share, z)
+                                   : bristle_over_step(device, x, v1, z[0], h, share, z);
   }
   InerterStep step = {.device = device, .v = v};
   find_level(&step, x);
@@ -116,10 +129,10 @@ static double friction_with_load(const InerterDevice* device, double friction, d
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
                                      const double* z, double h, double mobility, double* end) {
-  double next[INERTER_MAXSTATE] = {0};
+  double next[INERTER_MAXSTATE];
   double stretch = stretch_of(device, x), v1 = v + h * a;
-  if (z && device->nstate) {
-    memcpy(next, z, sizeof(double) * (size_t)device->nstate);
+  for (int i = 0; i < device->nstate; i++) {
+    next[i] = z ? z[i] : 0;
   }
   InerterForce force;
   if (h == 0) {
@@ -195,6 +208,17 @@ int inerter_step_is_line(const InerterStep* step) {
   return step->kind == STEP_LINE;
 }
 
+// force of a law with states over the step to a velocity v1
+static double state_force(const InerterStep* step, double stretch, double v1, double share) {
+  const InerterDevice* p = step->device;
+  double end[INERTER_MAXFRICTION];
+  if (!law_of(p)->several) {
+    return bristle_over_step(p, stretch, v1, step->z[0], step->h, share, end);
+  }
+  memcpy(end, step->z, sizeof(double) * (size_t)p->nfriction);
+  return states_over_step(p, stretch, v1, step->h, share, end);
+}
+
 double inerter_step_force(const InerterStep* step, double a, double* slope) {
   double line = step->start + step->rise * a;
   switch (step->kind) {
@@ -210,11 +234,10 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
 
     case STEP_BRISTLE: {
       const InerterDevice* p = step->device;
-      double stretch = stretch_of(p, step->x), h = step->h, near = 1e-6 * (1 + fabs(a)), end;
+      double stretch = stretch_of(p, step->x), h = step->h, near = 1e-6 * (1 + fabs(a));
       double share = bristle_share(p, h, step->mobility);
-      double friction = bristle_over_step(p, stretch, step->v + h * a, step->z[0], h, share, &end);
-      double beside =
-          bristle_over_step(p, stretch, step->v + h * (a + near), step->z[0], h, share, &end);
+      double friction = state_force(step, stretch, step->v + h * a, share);
+      double beside = state_force(step, stretch, step->v + h * (a + near), share);
       *slope = step->rise + fmax(0, (beside - friction) / near);
       return line + friction;
     }

@@ -18,6 +18,8 @@
 // Source: the theta method; least share for stability follows from the linear oscillator.
 // Not modelled: impacts within a step, whose times are not searched.
 
+#include <string.h>
+
 #include "laws.h"
 
 enum { S, W, GAP };  // places in z
@@ -134,8 +136,8 @@ typedef struct Rubbing_ {
   double near;              // velocity at which the level is taken
   double w, share, h;       // the force is that of w + share (w1 - w), over a time h
   double implicit;          // share of a bristle's spring
-  const double* bristle;    // its state at the start, NULL without
-  double end;               // at the end
+  const double* start;      // states of the friction law at the start, NULL without
+  double end[INERTER_MAXFRICTION];
 } Rubbing;
 
 static Flywheel held(Flywheel flywheel, double drag) {
@@ -151,9 +153,11 @@ static double misfit(const InerterDevice* p, Element element, Flywheel flywheel,
   double force = common_force(p, element, slowed);
   double w = rubbing->w;
   w += rubbing->share * (slowed.free_w + slowed.give_w * force - w);
-  rubbing->end = rubbing->bristle ? *rubbing->bristle : 0;
+  if (rubbing->start) {
+    memcpy(rubbing->end, rubbing->start, sizeof(double) * (size_t)p->nfriction);
+  }
   double friction = friction_over_step(p, rubbing->y, rubbing->near, w, rubbing->h,
-                                       rubbing->implicit, &rubbing->end);
+                                       rubbing->implicit, rubbing->end);
   return friction + inerter_load_factor(p, w) * fabs(force - drag) - drag;
 }
 
@@ -214,7 +218,7 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
   Element half = element_step(p, z, d, 0.5 * h, 1);
   double midway = v + 0.5 * h * a;
   Flywheel flywheel = flywheel_step(p, x - z[S], z[W], z[W], midway, 0.5 * h, 1);
-  Rubbing rubbing = {x - z[S], z[W], z[W], 1, 0.5 * h, 1, bristle, 0};
+  Rubbing rubbing = {x - z[S], z[W], z[W], 1, 0.5 * h, 1, bristle, {0}};
   flywheel = held(flywheel, drag_of(p, half, flywheel, &rubbing));
   finish_step(p, half, flywheel, common_force(p, half, flywheel), middle);
 
@@ -233,11 +237,11 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
   double share = square > 2 ? 1 - 1 / square : 0.5;
   Element element = element_step(p, z, near, h, share);
   flywheel = flywheel_step(p, y, middle[W], z[W], v + share * h * a, h, share);
-  rubbing = (Rubbing){y, middle[W], z[W], share, h, share, bristle, 0};
+  rubbing = (Rubbing){y, middle[W], z[W], share, h, share, bristle, {0}};
   flywheel = held(flywheel, drag_of(p, element, flywheel, &rubbing));
   finish_step(p, element, flywheel, common_force(p, element, flywheel), z);
   if (bristle) {
-    *bristle = rubbing.end;
+    memcpy(bristle, rubbing.end, sizeof(double) * (size_t)p->nfriction);
   }
 }
 
@@ -284,11 +288,11 @@ double series_over_step(const InerterDevice* p, double x, double v, double* bris
   if (has(p, PART_WHEEL_FRICTION)) {
     int has_state = has_bristle(p);
     double grip = has_state ? least_share(law_of(p)->stiffness(p), 1 / inertance, h) : 0;
-    Rubbing rubbing = {x - z[S], z[W], z[W], 1, h, grip, has_state ? bristle : NULL, 0};
+    Rubbing rubbing = {x - z[S], z[W], z[W], 1, h, grip, has_state ? bristle : NULL, {0}};
     *drag = drag_of(p, element, flywheel, &rubbing);
     flywheel = held(flywheel, *drag);
     if (has_state) {
-      *bristle = rubbing.end;
+      memcpy(bristle, rubbing.end, sizeof(double) * (size_t)p->nfriction);
     }
   }
   double force = common_force(p, element, flywheel);

@@ -83,13 +83,21 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
     step = copysign(step, state[0]);
   }
   mju_copy(there, state, inerter_nstate(device));
-  there[0] += step;
+  for (int i = 0; i < device->nfriction; i++) {
+    // outwards, for an element at its limit sticks on the inner side
+    double outwards = copysign(1e-6 * fabs(state[i]) + 1e-15, state[i]);
+    there[i] += device->nfriction > 1 ? outwards : step;
+  }
   inerter_state_rate(device, x, v, there, beyond);
-  double decay = (rate[0] - beyond[0]) / step, fastest = 2 / m->opt.timestep;
+  double decay = 0, fastest = 2 / m->opt.timestep;
+  for (int i = 0; i < device->nfriction; i++) {
+    double each = (rate[i] - beyond[i]) / (there[i] - state[i]);
+    rate[i] *= each > fastest ? fastest / each : 1;
+    decay = fmax(decay, each);
+  }
   if (!(decay > fastest)) {
     return;
   }
-  rate[0] *= fastest / decay;
   char message[INERTER_MESSAGE_SIZE];
   snprintf(message, sizeof(message),
            "at %g m/s the state of friction \"%s\" relaxes within %.2g s, faster than RK4 resolves "

@@ -144,7 +144,7 @@ def _device_type() -> type[ctypes.Structure]:
     # a bit for each parameter and each word
     words = (len(parameters()) + len(WORDS) + 62) // 64
     fields += [("given", ctypes.c_uint64 * words)]
-    fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int)]
+    fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int), ("nfriction", ctypes.c_int)]
     return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
 
 

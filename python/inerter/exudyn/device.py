@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from inerter.exudyn import beside, flywheel, friction, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
@@ -31,9 +32,9 @@ class Term:
 
 @dataclass(frozen=True)
 class States:
-    """The states by what they are; 0 where there is none."""
+    """The states by what they are; 0 where there is none. Those of maxwell_slip are a tuple."""
 
-    friction: Value = 0.0
+    friction: Any = 0.0
     deflection: Value = 0.0
     speed: Value = 0.0
     gap: Value = 0.0
@@ -52,7 +53,8 @@ def states_of(p: Parameters, z: Sequence[Value]) -> States:
         )
         if name in names
     }
-    return States(**found)
+    several = tuple(z[at] for name, at in names.items() if name.startswith("friction_state_"))
+    return States(**found | ({"friction": several} if several else {}))
 
 
 def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -> list[Term]:
@@ -67,7 +69,10 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     wheel = rubs_flywheel(p)
     if not wheel:
         at_terminals = at_terminals + rubbing.bound
-    if rubbing.rate is not None:
+    if isinstance(rubbing.rate, tuple):
+        for i, each in enumerate(rubbing.rate):
+            found.append(Term(each, 0.0, ((place[f"friction_state_{i + 1}"], 1.0),)))
+    elif rubbing.rate is not None:
         rates = ((place["friction_state"], 1.0),)
         found.append(Term(rubbing.rate, 0.0 if wheel else rubbing.damping, rates))
 
@@ -161,7 +166,9 @@ def dissipated_power(
     heat = beside.dissipated_power(f, p, x, v) + rubbing.bound * speed
     if rubbing.rate is not None:
         stored = friction.stored_power(f, p, place, speed, state.friction, rubbing.rate)
-        heat = heat + rubbing.damping * rubbing.rate * speed - stored
+        if rubbing.damping:
+            heat = heat + rubbing.damping * rubbing.rate * speed
+        heat = heat - stored
     if p.load_friction:
         heat = heat + _load_share(f, p, speed) * f.abs(through) * speed
     if not series.is_there(p):
@@ -183,7 +190,9 @@ def _rubbing(f: Functions, p: Parameters, x: Value, v: Value, state: States) -> 
 
 
 def _law_force(rubbing: friction.Friction) -> Value:
-    return rubbing.bound if rubbing.rate is None else rubbing.bound + rubbing.damping * rubbing.rate
+    if not rubbing.damping:
+        return rubbing.bound
+    return rubbing.bound + rubbing.damping * rubbing.rate
 
 
 def _load_share(f: Functions, p: Parameters, v: Value) -> Value:

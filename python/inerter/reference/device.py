@@ -34,6 +34,7 @@ from .laws import (
     gas,
     inertance,
     load,
+    maxwell_slip,
     parallel,
     series,
 )
@@ -53,15 +54,24 @@ class ReferenceDevice(DeviceParameters):
 
     @property
     def nstate(self) -> int:
-        """Number of states, 0 to 4."""
+        """Number of states."""
         return len(self.state_names)
 
     @property
     def state_names(self) -> tuple[str, ...]:
         """Names of the states in their order."""
-        friction = ("friction_state",) if FRICTION[self.friction].STATES else ()
+        friction = ("friction_state",) if self.friction_states else ()
+        if self.friction == "maxwell_slip":
+            friction = tuple(f"friction_state_{i + 1}" for i in range(self.friction_states))
         flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
         return friction + flywheel + (("gap_position",) if self.backlash > 0.0 else ())
+
+    @property
+    def friction_states(self) -> int:
+        """Number of states of the friction law."""
+        if self.friction == "maxwell_slip":
+            return maxwell_slip.count(self)
+        return FRICTION[self.friction].STATES
 
     @property
     def total_inertance(self) -> float:
@@ -178,7 +188,9 @@ class ReferenceDevice(DeviceParameters):
             return rates[0]
 
         # the flywheel is driven by the series element
-        if not FRICTION[self.friction].STATES:
+        if self.friction_states > 1:
+            rates = list(np.moveaxis(np.asarray(rates[0]), -1, 0))
+        elif not self.friction_states:
             rates = []
         series_rate = v - speed
         if self.rubs_flywheel:
@@ -280,7 +292,7 @@ class ReferenceDevice(DeviceParameters):
                 f"z: shape {array.shape}, but this device has the states "
                 f"{', '.join(self.state_names)} along the last axis"
             )
-        first = FRICTION[self.friction].STATES
-        friction = array[..., 0] if first else 0.0
+        first = self.friction_states
+        friction = array[..., :first] if first > 1 else array[..., 0] if first else 0.0
         gap = array[..., first + 2] if self.backlash > 0.0 else 0.0
         return friction, array[..., first], array[..., first + 1], gap

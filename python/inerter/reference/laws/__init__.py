@@ -21,6 +21,7 @@ from . import (
     inertance,
     load,
     lugre,
+    maxwell_slip,
     none,
     parallel,
     series,
@@ -39,6 +40,7 @@ FRICTION: dict[str, ModuleType] = {
     "lugre": lugre,
     "bouc_wen": bouc_wen,
     "brown_mcphee": brown_mcphee,
+    "maxwell_slip": maxwell_slip,
 }
 
 __all__ = [
@@ -61,6 +63,7 @@ __all__ = [
     "inertance",
     "load",
     "lugre",
+    "maxwell_slip",
     "none",
     "parallel",
     "parameter",
