@@ -31,6 +31,10 @@ FRICTION: Mapping[str, dict[str, Any]] = {
     },
     "bouc_wen": {"bw_stiffness": 1e4, "bw_beta": 600, "bw_gamma": 400},
     "brown_mcphee": {"coulomb_force": 10, "static_force": 15, "stribeck_velocity": 0.01},
+    "maxwell_slip": {
+        "slip_stiffness_1": 1e4, "slip_force_1": 4, "slip_stiffness_2": 2e3, "slip_force_2": 3,
+        "slip_stiffness_3": 6e2, "slip_force_3": 3,
+    },
 }  # fmt: skip
 SERIES = {"inertance": 100, "series_stiffness": 2e5, "series_damping": 400}
 
@@ -111,6 +115,21 @@ def friction_backlash() -> None:
     loops("friction_backlash", devices, 0.5, AMPLITUDE)
 
 
+def memory() -> None:
+    """Small strokes within a large one: one bristle drifts, Maxwell-slip closes its loops."""
+    turns = np.array([0, 8, -8, 4, 0, 4, 0, 4, 3, 4, 3, 4, 8]) * 1e-3
+    x = np.concatenate([np.linspace(a, b, 400) for a, b in zip(turns, turns[1:], strict=False)])
+    v = np.gradient(x) * RATE
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    for axes, law in zip(figure.subplots(1, 2, sharey=True), ("dahl", "maxwell_slip"), strict=True):
+        device = Device(friction=law, **FRICTION[law])
+        force = device.along(1 / RATE, x, v, 0 * x, np.zeros(device.nstate))["total"]
+        axes.plot(1e3 * x, force)
+        axes.set(xlabel="displacement [mm]", title=law)
+    figure.axes[0].set(ylabel="force [N]")
+    _save(figure, "memory")
+
+
 def friction_level() -> None:
     """A friction level that differs with direction, and along the stroke."""
     level = {"friction": "dahl", **FRICTION["dahl"]}
@@ -163,6 +182,17 @@ def series() -> None:
     in_time("series", devices, sine(2.0, 3))
 
 
+def friction_side() -> None:
+    """Friction before and behind the elastic drive."""
+    soft = {"inertance": 100, "series_stiffness": 2e4, "series_damping": 400}
+    rubbing = {**soft, "friction": "coulomb", "coulomb_force": 20, "transition_velocity": 1e-3}
+    devices = {
+        "at the terminals": Device(**rubbing),
+        "at the flywheel": Device(**rubbing, friction_side="flywheel"),
+    }
+    loops("friction_side", devices, 0.5, AMPLITUDE)
+
+
 def end_stops() -> None:
     """End stops at 8 mm."""
     stop = Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)
@@ -187,8 +217,8 @@ def fluid() -> None:
 
 
 GALLERY: Sequence[Callable[[], None]] = (
-    friction, friction_backlash, friction_level, load_friction, damping_and_stiffness,
-    inertance, series, end_stops, gas, fluid,
+    friction, friction_backlash, memory, friction_level, load_friction, damping_and_stiffness,
+    inertance, series, friction_side, end_stops, gas, fluid,
 )  # fmt: skip
 
 

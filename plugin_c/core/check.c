@@ -8,12 +8,6 @@
 #include "configuration.h"
 #include "laws.h"
 
-_Static_assert(INERTER_INDEX_gas_law < 64, "InerterDevice.given has a bit for each");
-
-static int is_given(const InerterDevice* device, int i) {
-  return (int)(device->given >> i & 1);
-}
-
 static int refuse(char* message, const char* format, ...) {
   va_list values;
   va_start(values, format);
@@ -38,7 +32,7 @@ static int check_law(const InerterDevice* device, char* message) {
   const char* law = inerter_friction_name(device->friction);
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
-    if (*p->laws && is_given(device, i) && !listed(p->laws, law)) {
+    if (*p->laws && inerter_is_given(device, i) && !listed(p->laws, law)) {
       return refuse(message,
                     "%s is given, but friction is \"%s\", which does not read it; remove it or "
                     "choose friction from: %s",
@@ -61,6 +55,31 @@ static int check_ranges(InerterDevice* device, char* message) {
   return 0;
 }
 
+// elements of maxwell_slip: each whole, the first ones without a gap
+static int check_slip(const InerterDevice* device, char* message) {
+  int count = slip_count(device);
+  for (int i = 0; i < INERTER_MAXSLIP; i++) {
+    double stiffness = slip_element(device, i)[0], force = slip_element(device, i)[1];
+    if ((stiffness > 0) != (force > 0)) {
+      const char *there = stiffness > 0 ? "stiffness" : "force",
+                 *missing = stiffness > 0 ? "force" : "stiffness";
+      return refuse(message, "slip_%s_%d is %g %s, but slip_%s_%d is 0; give both > 0, or neither",
+                    there, i + 1, stiffness > 0 ? stiffness : force, stiffness > 0 ? "N/m" : "N",
+                    missing, i + 1);
+    }
+    if (stiffness > 0 && i >= count) {
+      return refuse(message,
+                    "slip_stiffness_%d is %g N/m, but slip_stiffness_%d is 0 N/m; number the "
+                    "elements from 1 without a gap",
+                    i + 1, stiffness, count + 1);
+    }
+  }
+  return count ? 0
+               : refuse(message,
+                        "slip_stiffness_1 is 0 N/m, but friction is \"maxwell_slip\"; give "
+                        "slip_stiffness_1 and slip_force_1 > 0 or friction \"none\"");
+}
+
 static int check_friction(const InerterDevice* device, char* message) {
   int friction = device->friction;
   if (device->static_force < device->coulomb_force) {
@@ -78,6 +97,9 @@ static int check_friction(const InerterDevice* device, char* message) {
                : refuse(message,
                         "bw_stiffness is 0 N/m, but friction is \"bouc_wen\"; give bw_stiffness > "
                         "0 N/m or friction \"none\"");
+  }
+  if (friction == INERTER_FRICTION_maxwell_slip) {
+    return check_slip(device, message);
   }
   int bristle = friction == INERTER_FRICTION_dahl || friction == INERTER_FRICTION_lugre;
   if ((bristle ? device->coulomb_force : device->static_force) <= 0) {
@@ -124,9 +146,9 @@ static int check_gas(InerterDevice* device, char* message) {
   if (device->gas_pressure == 0) {
     const int needy[] = {INERTER_INDEX_gas_area, INERTER_INDEX_gas_volume,
                          INERTER_INDEX_gas_exponent};
-    const char* found = is_given(device, INERTER_INDEX_gas_law) ? "gas_law" : NULL;
+    const char* found = inerter_is_given(device, INERTER_INDEX_gas_law) ? "gas_law" : NULL;
     for (int i = 0; i < 3; i++) {
-      if (is_given(device, needy[i]) && *value_of(device, needy[i]) != 0) {
+      if (inerter_is_given(device, needy[i]) && *value_of(device, needy[i]) != 0) {
         found = inerter_parameter(needy[i])->name;
       }
     }
@@ -143,7 +165,7 @@ static int check_gas(InerterDevice* device, char* message) {
     return refuse(message,
                   "gas_area is %s, but gas_pressure is %g Pa; give gas_area > 0 m^2 (or "
                   "piston_area) or remove gas_pressure",
-                  is_given(device, INERTER_INDEX_gas_area) ? "0 m^2" : "unset",
+                  inerter_is_given(device, INERTER_INDEX_gas_area) ? "0 m^2" : "unset",
                   device->gas_pressure);
   }
   if (device->gas_volume == 0) {
@@ -164,7 +186,7 @@ static int check_channel(InerterDevice* device, char* message) {
                         INERTER_INDEX_channel_roughness, INERTER_INDEX_minor_loss};
   const char* found = device->piston_area > 0 && device->gas_pressure == 0 ? "piston_area" : NULL;
   for (int i = 0; i < 6; i++) {
-    if (is_given(device, others[i]) && *value_of(device, others[i]) != 0) {
+    if (inerter_is_given(device, others[i]) && *value_of(device, others[i]) != 0) {
       found = inerter_parameter(others[i])->name;
     }
   }
@@ -186,7 +208,7 @@ static int check_channel(InerterDevice* device, char* message) {
                   found, missing, found);
   }
   double inertance = pipe_inertance(device);
-  if (is_given(device, INERTER_INDEX_inertance)) {
+  if (inerter_is_given(device, INERTER_INDEX_inertance)) {
     return refuse(message,
                   "inertance is %g kg, but the channel gives %g kg; state one of them: remove "
                   "inertance, or the channel's parameters",
@@ -199,11 +221,17 @@ static int check_channel(InerterDevice* device, char* message) {
                   inertance);
   }
   device->inertance = inertance;
-  device->given |= UINT64_C(1) << INERTER_INDEX_inertance;
+  inerter_mark_given(device, INERTER_INDEX_inertance);
   return 0;
 }
 
 static int check_series(const InerterDevice* device, char* message) {
+  if (device->friction_side == INERTER_SIDE_flywheel && device->load_friction >= 1) {
+    return refuse(message,
+                  "load_friction is %g and friction_side is \"flywheel\": the flywheel would lock; "
+                  "give load_friction < 1",
+                  device->load_friction);
+  }
   const int needy[] = {INERTER_INDEX_series_hardening, INERTER_INDEX_backlash};
   const double values[] = {device->series_hardening, device->backlash};
   for (int i = 0; i < 2; i++) {
@@ -233,9 +261,12 @@ static uint32_t parts_of(const InerterDevice* p) {
   int varying =
       p->inertance_gradient != 0 || p->inertance_curvature != 0 || p->inertance_speed_gradient != 0;
   int stops = !isnan(p->stop_lower) || !isnan(p->stop_upper);
+  int rubbing = p->friction != INERTER_FRICTION_none || p->load_friction > 0;
+  int wheel = series && rubbing && p->friction_side == INERTER_SIDE_flywheel;
   return (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) | (gas ? PART_GAS : 0) |
          (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) | (series ? PART_SERIES : 0) |
-         (p->backlash > 0 ? PART_BACKLASH : 0) | (stops ? PART_STOPS : 0);
+         (p->backlash > 0 ? PART_BACKLASH : 0) | (stops ? PART_STOPS : 0) |
+         (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
 int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
@@ -244,6 +275,9 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
   }
   if (!inerter_gas_law_name(device->gas_law)) {
     return refuse(message, "gas_law is %d: no such law", device->gas_law);
+  }
+  if (!inerter_friction_side_name(device->friction_side)) {
+    return refuse(message, "friction_side is %d: no such side", device->friction_side);
   }
   if (isnan(device->static_force)) {
     device->static_force = device->coulomb_force;
@@ -255,7 +289,10 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
     return -1;
   }
   device->parts = parts_of(device);
-  device->nstate = inerter_friction_nstate(device->friction) + (has(device, PART_SERIES) ? 2 : 0) +
-                   (has(device, PART_BACKLASH) ? 1 : 0);
+  device->nfriction = device->friction == INERTER_FRICTION_maxwell_slip
+                          ? slip_count(device)
+                          : inerter_friction_nstate(device->friction);
+  device->nstate =
+      device->nfriction + (has(device, PART_SERIES) ? 2 : 0) + (has(device, PART_BACKLASH) ? 1 : 0);
   return 0;
 }

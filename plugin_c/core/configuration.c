@@ -78,8 +78,8 @@ static int set_law(const char* key, const char* text, const char* (*name)(int), 
       return 0;
     }
   }
-  int length = snprintf(message, INERTER_MESSAGE_SIZE,
-                        "%s is \"%.60s\": no such law; choose one of", key, text);
+  int length = snprintf(message, INERTER_MESSAGE_SIZE, "%s is \"%.60s\": no such %s; choose one of",
+                        key, text, strcmp(key, "friction_side") ? "law" : "side");
   for (int i = 0; name(i) && length < INERTER_MESSAGE_SIZE; i++) {
     length += snprintf(message + length, INERTER_MESSAGE_SIZE - length, " %s", name(i));
   }
@@ -96,7 +96,14 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
     if (set_law(key, text, inerter_gas_law_name, &device->gas_law, message)) {
       return -1;
     }
-    device->given |= UINT64_C(1) << INERTER_INDEX_gas_law;
+    inerter_mark_given(device, INERTER_INDEX_gas_law);
+    return 0;
+  }
+  if (!strcmp(key, "friction_side")) {
+    if (set_law(key, text, inerter_friction_side_name, &device->friction_side, message)) {
+      return -1;
+    }
+    inerter_mark_given(device, INERTER_INDEX_friction_side);
     return 0;
   }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
@@ -121,7 +128,7 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
       return -1;
     }
     *value_of(device, i) = value;
-    device->given |= UINT64_C(1) << i;
+    inerter_mark_given(device, i);
     return 0;
   }
   snprintf(message, INERTER_MESSAGE_SIZE, "\"%.60s\" is not a parameter of the device", key);

@@ -31,6 +31,15 @@ static const struct {
 #undef X
 };
 
+static const struct {
+  const char* name;
+  const char* meaning;
+} kSide[] = {
+#define X(identifier, meaning) {#identifier, meaning},
+    INERTER_FRICTION_SIDES(X)
+#undef X
+};
+
 const FrictionLaw* const inerter_friction_law[] = {
 #define inerter_none inerter_coulomb  // never called: "none" is tested first
 #define X(identifier, nstate, meaning) &inerter_##identifier,
@@ -63,13 +72,26 @@ const char* inerter_gas_law_meaning(int i) {
   return i >= 0 && i < INERTER_NGAS ? kGas[i].meaning : NULL;
 }
 
+const char* inerter_friction_side_name(int i) {
+  return i >= 0 && i < INERTER_NSIDE ? kSide[i].name : NULL;
+}
+
+const char* inerter_friction_side_meaning(int i) {
+  return i >= 0 && i < INERTER_NSIDE ? kSide[i].meaning : NULL;
+}
+
 const char* inerter_state_name(const InerterDevice* device, int i) {
   static const char* const kSeries[] = {"series_deflection", "flywheel_velocity", "gap_position"};
   if (i < 0 || i >= device->nstate) {
     return NULL;
   }
-  int friction = kFriction[device->friction].nstate;
-  return i < friction ? "friction_state" : kSeries[i - friction];
+  static const char* const kSlip[] = {"friction_state_1", "friction_state_2", "friction_state_3",
+                                      "friction_state_4", "friction_state_5", "friction_state_6",
+                                      "friction_state_7", "friction_state_8"};
+  if (i >= device->nfriction) {
+    return kSeries[i - device->nfriction];
+  }
+  return device->friction == INERTER_FRICTION_maxwell_slip ? kSlip[i] : "friction_state";
 }
 
 const char* inerter_compiler(void) {

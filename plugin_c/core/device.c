@@ -6,6 +6,49 @@
 
 #include "laws.h"
 
+//------------------------------ friction ----------------------------------------------------------
+
+// where the friction acts: displacement and velocity
+typedef struct Place_ {
+  double x, v;
+} Place;
+
+static Place place_of_friction(const InerterDevice* device, double stretch, double v,
+                               const double* z) {
+  if (!has(device, PART_WHEEL_FRICTION)) {
+    return (Place){stretch, v};
+  }
+  const double* series = z + series_index(device);
+  return (Place){stretch - series[0], series[1]};
+}
+
+// force of the friction law there
+static double law_force(const InerterDevice* device, double stretch, double v, const double* z) {
+  if (device->friction == INERTER_FRICTION_none) {
+    return 0;
+  }
+  Place place = place_of_friction(device, stretch, v, z);
+  if (has_bristle(device)) {
+    return friction_force(device, place.x, place.v, z);
+  }
+  return law_of(device)->force(device, place.x, place.v, 0);
+}
+
+// what friction at the flywheel takes of the force that comes through the series element
+static double wheel_drag(const InerterDevice* device, double stretch, double v, const double* z) {
+  if (!has(device, PART_WHEEL_FRICTION)) {
+    return 0;
+  }
+  const double* series = z + series_index(device);
+  double force = series_force(device, v, series), friction = law_force(device, stretch, v, z);
+  return force - wheel_carried(device, series[1], force, friction);
+}
+
+// load friction per force at the terminals
+static double load_at_terminals(const InerterDevice* device, double v) {
+  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v);
+}
+
 //------------------------------ states ------------------------------------------------------------
 
 int inerter_nstate(const InerterDevice* device) {
@@ -15,22 +58,24 @@ int inerter_nstate(const InerterDevice* device) {
 void inerter_state_rate(const InerterDevice* device, double x, double v, const double* z,
                         double* rate) {
   double stretch = stretch_of(device, x);
+  Place place = place_of_friction(device, stretch, v, z);
   if (has_bristle(device)) {
-    rate[0] = bristle_rate(device, stretch, v, z[0]);
+    friction_rates(device, place.x, place.v, z, rate);
   }
   if (has(device, PART_SERIES)) {
     int first = series_index(device);
-    series_rate(device, stretch, v, z + first, rate + first);
+    double drag = wheel_drag(device, stretch, v, z);
+    series_rate(device, stretch, v, z + first, drag, rate + first);
   }
 }
 
 void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
   double stretch = stretch_of(device, x);
-  if (has_bristle(device)) {
-    z[0] = bristle_step(device, stretch, v, z[0], h);
+  if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
+    friction_step(device, stretch, v, z, h);
   }
   if (has(device, PART_SERIES)) {
-    series_step(device, stretch, v, 0, 0, z + series_index(device), h);
+    series_step(device, stretch, v, 0, 0, z, z + series_index(device), h);
   }
 }
 
@@ -73,7 +118,13 @@ static double play_of_force(const InerterDevice* device, double x, double v, dou
 void inerter_state_of_force(const InerterDevice* device, double x, double v, double a, double force,
                             double* z) {
   if (!has(device, PART_SERIES)) {
-    if (device->nstate) {
+    for (int i = 0; i < device->nstate; i++) {
+      z[i] = 0;
+    }
+    if (law_of(device)->several && device->nstate) {
+      double wanted = force - inerter_force(device, x, v, a, z).total;
+      law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted, z);
+    } else if (device->nstate) {
       z[0] = play_of_force(device, x, v, a, force);
     }
     return;
@@ -86,7 +137,7 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
   double rest = force - inerter_force_motion(device, x, v, z);
 
   // rest = F_s + load |F_s|
-  double load = inerter_load_factor(device, v);
+  double load = load_at_terminals(device, v);
   double carried = rest / (1 + load * sign(rest));
   if (isfinite(carried)) {
     series_of_force(device, v, carried, series);
@@ -101,14 +152,7 @@ double inerter_bristle(const InerterDevice* device, double* damping) {
 }
 
 double inerter_friction_force(const InerterDevice* device, double x, double v, const double* z) {
-  if (device->friction == INERTER_FRICTION_none) {
-    return 0;
-  }
-  double stretch = stretch_of(device, x);
-  if (has_bristle(device)) {
-    return bristle_force(device, stretch, v, z[0]);
-  }
-  return law_of(device)->force(device, stretch, v, 0);
+  return law_force(device, stretch_of(device, x), v, z);
 }
 
 double inerter_load_factor(const InerterDevice* device, double v) {
@@ -129,7 +173,7 @@ double inerter_inertance(const InerterDevice* device, double x, double v, double
   return inertance;
 }
 
-// N
+// N; F_s with a series element
 static double branch_force(const InerterDevice* device, double x, double v, double a,
                            const double* z) {
   if (has(device, PART_SERIES)) {
@@ -140,8 +184,11 @@ static double branch_force(const InerterDevice* device, double x, double v, doub
 }
 
 double inerter_force_motion(const InerterDevice* device, double x, double v, const double* z) {
-  double force =
-      parallel_force(device, stretch_of(device, x), v) + inerter_friction_force(device, x, v, z);
+  double force = parallel_force(device, stretch_of(device, x), v);
+  if (has(device, PART_WHEEL_FRICTION)) {
+    return force + branch_force(device, x, v, 0, z);
+  }
+  force += inerter_friction_force(device, x, v, z);
   if (has(device, PART_SERIES)) {
     double carried = branch_force(device, x, v, 0, z);
     force += carried + inerter_load_factor(device, v) * fabs(carried);
@@ -162,8 +209,14 @@ double inerter_force_motion_of_rate(const InerterDevice* device, double x, doubl
 InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
                            const double* z) {
   InerterForce force;
-  double bristle = inerter_friction_force(device, x, v, z);
   force.inertance = branch_force(device, x, v, a, z);
+  if (has(device, PART_WHEEL_FRICTION)) {
+    force.friction = wheel_drag(device, stretch_of(device, x), v, z);
+    force.total = force.inertance + parallel_force(device, stretch_of(device, x), v);
+    force.inertance -= force.friction;
+    return force;
+  }
+  double bristle = inerter_friction_force(device, x, v, z);
   force.friction = bristle + inerter_load_factor(device, v) * fabs(force.inertance);
   force.total = force.inertance + parallel_force(device, stretch_of(device, x), v) + force.friction;
   return force;
@@ -176,7 +229,7 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   double energy = (0.5 * device->stiffness + 0.25 * device->stiffness_cubic * square) * square;
   double y = stretch, w = v;
   if (has_bristle(device)) {
-    energy += law_of(device)->energy(device, stretch, bristle_deflection(device, z[0]));
+    energy += friction_energy(device, place_of_friction(device, stretch, v, z).x, z);
   }
   if (has(device, PART_SERIES)) {
     const double* series = z + series_index(device);
@@ -195,15 +248,23 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                 const double* z) {
   double stretch = stretch_of(device, x), w = v;
   double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
-  double load = inerter_load_factor(device, v) * fabs(branch_force(device, x, v, a, z));
-  double power = (damper + load + inerter_friction_force(device, x, v, z)) * v;
+  double load = load_at_terminals(device, v) * fabs(branch_force(device, x, v, a, z));
+  Place rubbing = place_of_friction(device, stretch, v, z);
+  double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, stretch, v, z)
+                                                     : inerter_friction_force(device, x, v, z);
+  double power = (damper + load) * v + friction * rubbing.v;
 
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term
-  if (has_bristle(device)) {
-    const FrictionLaw* law = law_of(device);
+  const FrictionLaw* law = law_of(device);
+  if (has_bristle(device) && law->several) {
+    double rate[INERTER_MAXFRICTION];
+    friction_rates(device, rubbing.x, rubbing.v, z, rate);
+    power -= law->several->stored_power(device, z, rate);
+  } else if (has_bristle(device)) {
     double bristle = bristle_deflection(device, z[0]);
-    power -= 2 * law->energy(device, 0, 1) * bristle * law->rate(device, stretch, v, bristle);
-    power -= 2 * law->energy(device, 1, 0) * stretch * v;
+    power -=
+        2 * law->energy(device, 0, 1) * bristle * law->rate(device, rubbing.x, rubbing.v, bristle);
+    power -= 2 * law->energy(device, 1, 0) * rubbing.x * rubbing.v;
   }
   if (has(device, PART_SERIES)) {
     const double* series = z + series_index(device);

@@ -4,6 +4,8 @@
 //   T = c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction + F_stops
 //   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
 //   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
+//   F = T + F_s,  F_s = N + F_friction(y, w) + mu sign(w) |N|      friction_side = flywheel
+//   N = B(y, w) w' + R(y, w) + G(y, w)                             (wheel_friction.c)
 //
 // N: force through the inertance. B, R: inertance.c. G = flywheel_viscous w + pipe + gas: pipe.c,
 // gas_spring.c. F_s, deflection s [m], flywheel velocity w [m/s]: series.c. F_stops: end_stop.c.
@@ -50,13 +52,25 @@ typedef enum InerterGas_ {
       INERTER_NGAS
 } InerterGas;
 
+// sides on which friction acts: INERTER_SIDE_terminals, INERTER_SIDE_flywheel
+typedef enum InerterSide_ {
+#define X(identifier, meaning) INERTER_SIDE_##identifier,
+  INERTER_FRICTION_SIDES(X)
+#undef X
+      INERTER_NSIDE
+} InerterSide;
+
 enum {
 #define X(name, ...) INERTER_INDEX_##name,
   INERTER_PARAMETERS(X)
 #undef X
       INERTER_NPARAMETER,
-  INERTER_INDEX_gas_law,  // not a number, but it can be given
-  INERTER_MAXSTATE = 4,
+  INERTER_INDEX_gas_law,  // not numbers, but they can be given
+  INERTER_INDEX_friction_side,
+  INERTER_NGIVEN = (INERTER_INDEX_friction_side + 64) / 64,
+  INERTER_MAXSLIP = 8,                    // elements of maxwell_slip
+  INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
+  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3,
   INERTER_MESSAGE_SIZE = 512
 };
 
@@ -64,12 +78,29 @@ typedef struct InerterDevice_ {
 #define X(name, ...) double name;
   INERTER_PARAMETERS(X)
 #undef X
-  int friction;    // InerterFriction
-  int gas_law;     // InerterGas
-  uint64_t given;  // bit i: parameter i was set; inertance also when the channel gives it
-  uint32_t parts;  // which parts there are (laws.h); set by inerter_finish
-  int nstate;      // set by inerter_finish
+  int friction;                    // InerterFriction
+  int gas_law;                     // InerterGas
+  int friction_side;               // InerterSide
+  uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
+  uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
+  int nstate, nfriction;           // states, those of the friction law; set by inerter_finish
 } InerterDevice;
+
+// Whether parameter i (or a name, such as INERTER_INDEX_gas_law) was set; the inertance also when
+// the channel gives it.
+static inline int inerter_is_given(const InerterDevice* device, int i) {
+  return (int)(device->given[i / 64] >> i % 64 & 1);
+}
+static inline int inerter_states_something(const InerterDevice* device) {
+  uint64_t any = 0;
+  for (int i = 0; i < INERTER_NGIVEN; i++) {
+    any |= device->given[i];
+  }
+  return any != 0;
+}
+static inline void inerter_mark_given(InerterDevice* device, int i) {
+  device->given[i / 64] |= UINT64_C(1) << i % 64;
+}
 
 // what is known of one parameter
 typedef struct InerterParameter_ {
@@ -96,7 +127,7 @@ typedef struct InerterForce_ {
 // Description of parameter i, or NULL past the end.
 INERTER_API const InerterParameter* inerter_parameter(int i);
 
-// Name, number of states and meaning of friction law i; NULL or -1 past the end.
+// Name, largest number of states and meaning of friction law i; NULL or -1 past the end.
 INERTER_API const char* inerter_friction_name(int i);
 INERTER_API const char* inerter_friction_meaning(int i);
 INERTER_API int inerter_friction_nstate(int i);
@@ -104,6 +135,10 @@ INERTER_API int inerter_friction_nstate(int i);
 // Name and meaning of law i of the gas spring; NULL past the end.
 INERTER_API const char* inerter_gas_law_name(int i);
 INERTER_API const char* inerter_gas_law_meaning(int i);
+
+// Name and meaning of side i on which friction can act; NULL past the end.
+INERTER_API const char* inerter_friction_side_name(int i);
+INERTER_API const char* inerter_friction_side_meaning(int i);
 
 //------------------------------ configuration -----------------------------------------------------
 
@@ -127,8 +162,8 @@ INERTER_API int inerter_nstate(const InerterDevice* device);
 // The compiler that made the library, with its version.
 INERTER_API const char* inerter_compiler(void);
 
-// Name of state i: "friction_state", "series_deflection", "flywheel_velocity", "gap_position"; NULL
-// past the end.
+// Name of state i: "friction_state" (of maxwell_slip "friction_state_1", ...), "series_deflection",
+// "flywheel_velocity", "gap_position"; NULL past the end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 
 // Rates of the states z at displacement x, velocity v.
@@ -163,7 +198,7 @@ INERTER_API double inerter_force_motion_of_rate(const InerterDevice* device, dou
 // Largest stiffness of the friction law's bristle [N/m], and its damping [N s/m]; 0 without one.
 INERTER_API double inerter_bristle(const InerterDevice* device, double* damping);
 
-// Force of the friction law alone (without load friction).
+// Force of the friction law alone (without load friction), at the terminals or at the flywheel.
 INERTER_API double inerter_friction_force(const InerterDevice* device, double x, double v,
                                           const double* z);
 

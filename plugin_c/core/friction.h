@@ -24,10 +24,21 @@ typedef struct FrictionPath_ {
 // force_of_rate: the force where the rate of the state is known already; NULL where it is no help.
 // along: force and state at samples of a motion, see `friction_along`.
 // over_step: step and force in one, z + share (step - z) in the force, and how the force rises with
-// v; NULL where a small difference of the two says that. level, width: the force of a law with a
-// sharp sign is level(p, x, v) tanh(v / width(p)); the level is even in v but for the asymmetry,
-// which it leaves out. NULL where the law is smooth. Laws without states leave all but force,
-// along, level and width NULL, those with one the latter.
+// v; NULL where a small difference of the two says that.
+// level, width: the force of a law with a sharp sign is level(p, x, v) tanh(v / width(p)); the
+// level is even in v but for the asymmetry, which it leaves out. NULL where the law is smooth. Laws
+// without states leave all but force, along, level and width NULL, those with one the latter.
+// several: the same of a law with several states, whose functions take all of them; then rate,
+// step, straight, force and energy are NULL.
+typedef struct FrictionStates_ {
+  void (*rate)(const InerterDevice* p, double x, double v, const double* z, double* rate);
+  void (*step)(const InerterDevice* p, double x, double v, double* z, double h);
+  double (*force)(const InerterDevice* p, const double* z);
+  double (*energy)(const InerterDevice* p, const double* z);
+  double (*stored_power)(const InerterDevice* p, const double* z, const double* rate);
+  void (*of_force)(const InerterDevice* p, double x, double v, double force, double* z);
+} FrictionStates;
+
 typedef struct FrictionLaw_ {
   double (*rate)(const InerterDevice* p, double x, double v, double z);
   double (*step)(const InerterDevice* p, double x, double v, double z, double h);
@@ -41,6 +52,7 @@ typedef struct FrictionLaw_ {
   double (*width)(const InerterDevice* p);
   double (*over_step)(const InerterDevice* p, double x, double v, double z, double h, double share,
                       double* slope);
+  const FrictionStates* several;
 } FrictionLaw;
 
 extern const FrictionLaw inerter_coulomb;
@@ -49,6 +61,13 @@ extern const FrictionLaw inerter_dahl;
 extern const FrictionLaw inerter_lugre;
 extern const FrictionLaw inerter_bouc_wen;
 extern const FrictionLaw inerter_brown_mcphee;
+extern const FrictionLaw inerter_maxwell_slip;
+
+// maxwell_slip.c: how many elements there are; stiffness and slip force of one, side by side
+int slip_count(const InerterDevice* p);
+static inline const double* slip_element(const InerterDevice* p, int i) {
+  return &p->slip_stiffness_1 + 2 * i;
+}
 
 // by InerterFriction; nothing to call for "none"
 extern const FrictionLaw* const inerter_friction_law[];

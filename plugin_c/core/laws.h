@@ -14,7 +14,8 @@ enum {
   PART_GAS = 1 << 3,
   PART_SERIES = 1 << 4,
   PART_BACKLASH = 1 << 5,
-  PART_STOPS = 1 << 6
+  PART_STOPS = 1 << 6,
+  PART_WHEEL_FRICTION = 1 << 7  // friction at the flywheel behind a series element
 };
 
 static inline int has(const InerterDevice* p, unsigned part) {
@@ -57,9 +58,37 @@ static inline double bristle_force(const InerterDevice* p, double x, double v, d
   return p->friction_backlash == 0 ? law_of(p)->force(p, x, v, s) : play_force(p, x, v, s);
 }
 
-// place of the series element's first state, after that of friction
+// a friction law with states, one or several: rates, states after a time, force, stored energy and
+// its rate
+static inline void friction_rates(const InerterDevice* p, double x, double v, const double* z,
+                                  double* rate) {
+  const FrictionStates* several = law_of(p)->several;
+  if (several) {
+    several->rate(p, x, v, z, rate);
+  } else {
+    rate[0] = bristle_rate(p, x, v, z[0]);
+  }
+}
+static inline void friction_step(const InerterDevice* p, double x, double v, double* z, double h) {
+  const FrictionStates* several = law_of(p)->several;
+  if (several) {
+    several->step(p, x, v, z, h);
+  } else {
+    z[0] = bristle_step(p, x, v, z[0], h);
+  }
+}
+static inline double friction_force(const InerterDevice* p, double x, double v, const double* z) {
+  const FrictionStates* several = law_of(p)->several;
+  return several ? several->force(p, z) : bristle_force(p, x, v, z[0]);
+}
+static inline double friction_energy(const InerterDevice* p, double x, const double* z) {
+  const FrictionStates* several = law_of(p)->several;
+  return several ? several->energy(p, z) : law_of(p)->energy(p, x, bristle_deflection(p, z[0]));
+}
+
+// place of the series element's first state, after those of friction
 static inline int series_index(const InerterDevice* p) {
-  return has_bristle(p);
+  return p->nfriction;
 }
 
 // a quantity and its derivative
@@ -116,9 +145,23 @@ static inline double flywheel_force(const InerterDevice* p, double y, double w) 
   return gas + flywheel_damper(p, w).value;
 }
 
-// series.c: states s, w, gap in z; x, v of the terminals
+// wheel_friction.c: N, of the force F_s that the series element bears and of the friction law's
+// force, at velocity w of the flywheel
+double wheel_carried(const InerterDevice* p, double w, double force, double friction);
+
+// over_step.c: force of the friction law over a step h at displacement x to velocity v1. v:
+// velocity at which the level of friction without memory is taken; z: states of the law, those of
+// the end when it returns; share: implicit part of a bristle's spring. friction_grip: how the force
+// rises with the velocity at v [N s/m].
+double friction_over_step(const InerterDevice* p, double x, double v, double v1, double h,
+                          double share, double* z);
+double friction_grip(const InerterDevice* p, double x, double v);
+
+// series.c: states s, w, gap in z; x, v of the terminals; drag: what friction at the flywheel takes
+// of the force
 double series_force(const InerterDevice* p, double v, const double* z);
-void series_rate(const InerterDevice* p, double x, double v, const double* z, double* rate);
+void series_rate(const InerterDevice* p, double x, double v, const double* z, double drag,
+                 double* rate);
 double series_energy(const InerterDevice* p, const double* z);
 double series_heat(const InerterDevice* p, double v, const double* z);
 int series_valid(const InerterDevice* p, const double* z, char* message);
@@ -141,11 +184,13 @@ int series_frozen(const InerterDevice* p, double x, double v, double a, double j
                   double h, int most);
 
 // series_step.c: states after a time h from x, v, acceleration a and its rate; force over a step
-// and states at its end, where the velocity is v, for a mobility of the terminals
-void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
-                 double h);
-double series_over_step(const InerterDevice* p, double x, double v, double* z, double h,
-                        double mobility);
+// and states at its end, where the velocity is v, for a mobility of the terminals. bristle: state
+// of a friction law at the flywheel; drag: what friction at the flywheel takes of the force;
+// carried: what is left for the inertance
+void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
+                 double* z, double h);
+double series_over_step(const InerterDevice* p, double x, double v, double* bristle, double* z,
+                        double h, double mobility, double* drag);
 
 // Least implicit share of a spring in a step: stable always, neutral where h resolves the spring.
 static inline double least_share(double stiffness, double mobility, double h) {

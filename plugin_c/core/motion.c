@@ -12,14 +12,14 @@
 static void step_between(const InerterDevice* device, const double* x, const double* v, double* z,
                          double h) {
   double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
-  if (has_bristle(device)) {
+  if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
     double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
-    z[0] = bristle_step(device, middle, mean, z[0], h);
+    friction_step(device, middle, mean, z, h);
   }
   if (has(device, PART_SERIES)) {
     double a = (6 * mean - 4 * v[0] - 2 * v[1]) / h;
     double jerk = 6 * (v[0] + v[1] - 2 * mean) / (h * h);
-    series_step(device, start, v[0], a, jerk, z + series_index(device), h);
+    series_step(device, start, v[0], a, jerk, z, z + series_index(device), h);
   }
 }
 

@@ -65,62 +65,88 @@ static void find_level(InerterStep* step, double stretch) {
   }
 }
 
+// implicit share of a bristle's spring
+static double bristle_share(const InerterDevice* device, double h, double mobility) {
+  return has_bristle(device) ? least_share(law_of(device)->stiffness(device), mobility, h) : 0;
+}
+
 // force of a law with a bristle; z, z1: its state at the start and at the end
 static double bristle_over_step(const InerterDevice* device, double x, double v1, double z,
-                                double h, double mobility, double* z1) {
+                                double h, double share, double* z1) {
   const FrictionLaw* law = law_of(device);
   *z1 = bristle_step(device, x, v1, z, h);
-  double share = least_share(law->stiffness(device), mobility, h);
   if (device->friction_backlash > 0) {
     return play_force_over_step(device, x, v1, z, *z1, share, h);
   }
   return law->force(device, x, v1, z + share * (*z1 - z));
 }
 
-// the same, with its slope over v1
-static double bristle_with_slope(const InerterStep* step, double v1, double* slope) {
-  const InerterDevice* p = step->device;
-  const FrictionLaw* law = law_of(p);
-  double x = stretch_of(p, step->x), z = step->z[0], h = step->h, end;
-  if (law->over_step && p->friction_backlash == 0) {
-    double share = least_share(law->stiffness(p), step->mobility, h);
-    return law->over_step(p, x, v1, z, h, share, slope);
+// the same of a law with several states
+static double states_over_step(const InerterDevice* device, double x, double v1, double h,
+                               double share, double* z) {
+  double mean[INERTER_MAXFRICTION];
+  memcpy(mean, z, sizeof(double) * (size_t)device->nfriction);
+  friction_step(device, x, v1, z, h);
+  for (int i = 0; i < device->nfriction; i++) {
+    mean[i] += share * (z[i] - mean[i]);
   }
-  double near = 1e-6 * (h + fabs(v1 - step->v));
-  double friction = bristle_over_step(p, x, v1, z, h, step->mobility, &end);
-  *slope = (bristle_over_step(p, x, v1 + near, z, h, step->mobility, &end) - friction) / near;
-  return friction;
+  return friction_force(device, x, v1, mean);
 }
 
-// z: the bristle's state, that of the end when it returns
-static double friction_over_step(const InerterDevice* device, double x, double v, double v1,
-                                 double h, double mobility, double* z) {
+double friction_over_step(const InerterDevice* device, double x, double v, double v1, double h,
+                          double share, double* z) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
   if (has_bristle(device)) {
-    return bristle_over_step(device, x, v1, z[0], h, mobility, z);
+    return law_of(device)->several ? states_over_step(device, x, v1, h, share, z)
+                                   : bristle_over_step(device, x, v1, z[0], h, share, z);
   }
   InerterStep step = {.device = device, .v = v};
   find_level(&step, x);
   return sharp_friction(&step, v1).value;
 }
 
+double friction_grip(const InerterDevice* device, double x, double v) {
+  if (device->friction == INERTER_FRICTION_none) {
+    return 0;
+  }
+  if (has_bristle(device)) {
+    return device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
+  }
+  InerterStep step = {.device = device, .v = v};
+  find_level(&step, x);
+  return sharp_friction(&step, v).slope;
+}
+
+// friction at the terminals with its load, or at the flywheel
+static double friction_with_load(const InerterDevice* device, double friction, double drag,
+                                 double v1, double carried) {
+  return has(device, PART_WHEEL_FRICTION)
+             ? drag
+             : friction + inerter_load_factor(device, v1) * fabs(carried);
+}
+
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
                                      const double* z, double h, double mobility, double* end) {
-  double next[INERTER_MAXSTATE] = {0};
+  double next[INERTER_MAXSTATE];
   double stretch = stretch_of(device, x), v1 = v + h * a;
-  if (z && device->nstate) {
-    memcpy(next, z, sizeof(double) * (size_t)device->nstate);
+  for (int i = 0; i < device->nstate; i++) {
+    next[i] = z ? z[i] : 0;
   }
   InerterForce force;
   if (h == 0) {
     force = inerter_force(device, x, v, a, z);
   } else {
-    double friction = friction_over_step(device, stretch, v, v1, h, mobility, next);
+    double friction = 0, drag = 0;
+    if (!has(device, PART_WHEEL_FRICTION)) {
+      double share = bristle_share(device, h, mobility);
+      friction = friction_over_step(device, stretch, v, v1, h, share, next);
+    }
     if (has(device, PART_SERIES)) {
       double* series = next + series_index(device);
-      force.inertance = series_over_step(device, stretch, v1, series, h, mobility);
+      force.inertance =
+          series_over_step(device, stretch, v1, next, series, h, mobility, &drag) - drag;
     } else {
       double rest, inertance = inerter_inertance(device, x, v, &rest);
       double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
@@ -129,7 +155,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
     double damper = (device->viscous + device->quadratic_damping * fabs(v1)) * v1;
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
-    force.friction = friction + inerter_load_factor(device, v1) * fabs(force.inertance);
+    force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }
   if (end && device->nstate) {
@@ -182,6 +208,29 @@ int inerter_step_is_line(const InerterStep* step) {
   return step->kind == STEP_LINE;
 }
 
+// force of a law with states over the step to a velocity v1
+static double state_force(const InerterStep* step, double stretch, double v1, double share) {
+  const InerterDevice* p = step->device;
+  double end[INERTER_MAXFRICTION];
+  if (!law_of(p)->several) {
+    return bristle_over_step(p, stretch, v1, step->z[0], step->h, share, end);
+  }
+  memcpy(end, step->z, sizeof(double) * (size_t)p->nfriction);
+  return states_over_step(p, stretch, v1, step->h, share, end);
+}
+
+// the same, with its slope over v1
+static double state_force_with_slope(const InerterStep* step, double v1, double* slope) {
+  const InerterDevice* p = step->device;
+  double x = stretch_of(p, step->x), h = step->h, share = bristle_share(p, h, step->mobility);
+  if (law_of(p)->over_step && p->friction_backlash == 0) {
+    return law_of(p)->over_step(p, x, v1, step->z[0], h, share, slope);
+  }
+  double near = 1e-6 * (h + fabs(v1 - step->v)), force = state_force(step, x, v1, share);
+  *slope = (state_force(step, x, v1 + near, share) - force) / near;
+  return force;
+}
+
 double inerter_step_force(const InerterStep* step, double a, double* slope) {
   double line = step->start + step->rise * a;
   switch (step->kind) {
@@ -196,7 +245,7 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
     }
 
     case STEP_BRISTLE: {
-      double rise, friction = bristle_with_slope(step, step->v + step->h * a, &rise);
+      double rise, friction = state_force_with_slope(step, step->v + step->h * a, &rise);
       *slope = step->rise + step->h * fmax(0, rise);
       return line + friction;
     }

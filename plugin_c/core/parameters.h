@@ -71,12 +71,13 @@
     "speed, v_s, at which 1/e of f_s - f_c is left; brown_mcphee: of the peak")                    \
   X(stribeck_exponent, "1", 2, 0, 10, OPEN, "stribeck lugre", "shape of the fall from f_s to f_c") \
   X(transition_velocity, "m/s", 1e-4, 0, INFINITY, OPEN, "", "width of sign(v) = tanh(v / width)") \
-  X(friction_asymmetry, "1", 0, -0.999, 0.999, CLOSED, "coulomb stribeck dahl lugre brown_mcphee", \
+  X(friction_asymmetry, "1", 0, -0.999, 0.999, CLOSED,                                             \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip",                                       \
     "relative rise of the level for v > 0, fall for v < 0")                                        \
   X(friction_gradient, "1/m", 0, -INFINITY, INFINITY, CLOSED,                                      \
-    "coulomb stribeck dahl lugre brown_mcphee", "relative rise of the level per x")                \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x")   \
   X(friction_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED,                                   \
-    "coulomb stribeck dahl lugre brown_mcphee", "relative rise of the level per x^2")              \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x^2") \
   /* bristles: Dahl and LuGre; free play also Bouc-Wen */                                          \
   X(bristle_stiffness, "N/m", 1e5, 0, INFINITY, OPEN, "dahl lugre",                                \
     "pre-sliding stiffness, sigma0")                                                               \
@@ -90,9 +91,34 @@
   X(bw_gamma, "m^-n", 0.5, -INFINITY, INFINITY, CLOSED, "bouc_wen", "hysteresis shape, gamma")     \
   X(bw_exponent, "1", 1, 1, 20, CLOSED, "bouc_wen", "sharpness of yielding, n")                    \
   X(bw_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "bouc_wen", "k0: F = A k0 x + (1 - A) k0 z")      \
-  X(bw_ratio, "1", 0, -INFINITY, INFINITY, CLOSED, "bouc_wen", "elastic share A")
+  X(bw_ratio, "1", 0, -INFINITY, INFINITY, CLOSED, "bouc_wen", "elastic share A")                  \
+  /* Maxwell-slip: elements from the first to the last, each a spring that slips */                \
+  X(slip_stiffness_1, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 1; 0: no such element")                                                  \
+  X(slip_force_1, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 1 slips")   \
+  X(slip_stiffness_2, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 2; 0: no such element")                                                  \
+  X(slip_force_2, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 2 slips")   \
+  X(slip_stiffness_3, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 3; 0: no such element")                                                  \
+  X(slip_force_3, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 3 slips")   \
+  X(slip_stiffness_4, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 4; 0: no such element")                                                  \
+  X(slip_force_4, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 4 slips")   \
+  X(slip_stiffness_5, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 5; 0: no such element")                                                  \
+  X(slip_force_5, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 5 slips")   \
+  X(slip_stiffness_6, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 6; 0: no such element")                                                  \
+  X(slip_force_6, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 6 slips")   \
+  X(slip_stiffness_7, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 7; 0: no such element")                                                  \
+  X(slip_force_7, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 7 slips")   \
+  X(slip_stiffness_8, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
+    "stiffness of element 8; 0: no such element")                                                  \
+  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips")
 
-// the friction laws: X(identifier, number of states, meaning)
+// the friction laws: X(identifier, largest number of states, meaning)
 #define INERTER_FRICTION_LAWS(X)                                       \
   X(none, 0, "no friction")                                            \
   X(coulomb, 0, "constant level against the motion")                   \
@@ -100,11 +126,17 @@
   X(dahl, 1, "bristle that yields at f_c: memory, no Stribeck effect") \
   X(lugre, 1, "bristle with Stribeck effect and micro-damping")        \
   X(bouc_wen, 1, "smooth hysteresis with an elastic share")            \
-  X(brown_mcphee, 0, "smooth Stribeck curve without states")
+  X(brown_mcphee, 0, "smooth Stribeck curve without states")           \
+  X(maxwell_slip, 8, "springs that slip, side by side: memory of every reversal")
 
 // the laws of the gas spring: X(identifier, meaning)
 #define INERTER_GAS_LAWS(X)              \
   X(polytropic, "p V^gamma is constant") \
   X(expanded, "second order of that, as a paper prints it")
+
+// where the friction law and the load friction act: X(identifier, meaning)
+#define INERTER_FRICTION_SIDES(X)                                  \
+  X(terminals, "between the terminals, before the series element") \
+  X(flywheel, "beside the inertance, behind the series element")
 
 #endif  // INERTER_CORE_PARAMETERS_H_

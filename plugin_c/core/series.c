@@ -56,11 +56,12 @@ double series_force(const InerterDevice* p, double v, const double* z) {
   return z[GAP] <= -p->backlash ? fmin(0, force) : 0;
 }
 
-void series_rate(const InerterDevice* p, double x, double v, const double* z, double* rate) {
+void series_rate(const InerterDevice* p, double x, double v, const double* z, double drag,
+                 double* rate) {
   double rest, y = x - z[S], inertance = inertance_felt(p, y, z[W], &rest);
   rest += flywheel_force(p, y, z[W]);
   rate[S] = v - z[W];
-  rate[W] = (series_force(p, v, z) - rest) / inertance;
+  rate[W] = (series_force(p, v, z) - drag - rest) / inertance;
   if (has(p, PART_BACKLASH)) {
     rate[GAP] = gap_rate(p, v, z);
   }

@@ -12,8 +12,13 @@
 // with s1, so that with the flywheel's line there is one F.
 //
 // v, w, s, d, phi, B, R, G, h [s]: as in series.c; share 1/2 ... 1: implicit part of the step.
+// Friction at the flywheel (wheel_friction.c) takes a force D of F there, that of the velocity
+//            w + share (w1 - w): one equation in D, which does not fall with w1, found by bisection
+//            and inverse quadratic interpolation.
 // Source: the theta method; least share for stability follows from the linear oscillator.
 // Not modelled: impacts within a step, whose times are not searched.
+
+#include <string.h>
 
 #include "laws.h"
 
@@ -123,47 +128,143 @@ static void finish_step(const InerterDevice* p, Element element, Flywheel flywhe
   }
 }
 
+//------------------------------ friction at the flywheel ------------------------------------------
+
+// a step of the friction at the flywheel
+typedef struct Rubbing_ {
+  double y;             // displacement of the flywheel
+  double near;          // velocity at which the level is taken
+  double w, share, h;   // the force is that of w + share (w1 - w), over a time h
+  double implicit;      // share of a bristle's spring
+  const double* start;  // states of the friction law at the start, NULL without
+  double end[INERTER_MAXFRICTION];
+} Rubbing;
+
+static Flywheel held(Flywheel flywheel, double drag) {
+  flywheel.free_u += flywheel.give_u * drag;
+  flywheel.free_w -= flywheel.give_w * drag;
+  return flywheel;
+}
+
+// by how much friction at a drag differs from it
+static double misfit(const InerterDevice* p, Element element, Flywheel flywheel, Rubbing* rubbing,
+                     double drag) {
+  Flywheel slowed = held(flywheel, drag);
+  double force = common_force(p, element, slowed);
+  double w = rubbing->w;
+  w += rubbing->share * (slowed.free_w + slowed.give_w * force - w);
+  if (rubbing->start) {
+    memcpy(rubbing->end, rubbing->start, sizeof(double) * (size_t)p->nfriction);
+  }
+  double friction = friction_over_step(p, rubbing->y, rubbing->near, w, rubbing->h,
+                                       rubbing->implicit, rubbing->end);
+  return friction + inerter_load_factor(p, w) * fabs(force - drag) - drag;
+}
+
+enum { MOST_TURNS = 100 };
+
+// The drag that friction has at the velocity which it leaves; 0 without friction there. Between 0
+// and what the flywheel would feel without it: Chandrupatla's method.
+static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel,
+                      Rubbing* rubbing) {
+  if (!has(p, PART_WHEEL_FRICTION)) {
+    return 0;
+  }
+  double a = 0, fa = misfit(p, element, flywheel, rubbing, 0), b = fa;
+  if (!(fabs(fa) > 0 && isfinite(fa))) {
+    return 0;
+  }
+  double fb = misfit(p, element, flywheel, rubbing, b);
+  for (int i = 0; i < MOST_TURNS && fa * fb > 0; i++) {
+    a = b;
+    fa = fb;
+    b *= 2;
+    fb = misfit(p, element, flywheel, rubbing, b);
+  }
+  for (double part = 0.5, turns = 0; turns < MOST_TURNS; turns++) {
+    // the bracket is a, b with a the newest; c the one before
+    double next = a + part * (b - a), value = misfit(p, element, flywheel, rubbing, next);
+    double c = value * fa > 0 ? a : b, fc = value * fa > 0 ? fa : fb;
+    if (c == b) {
+      b = a;
+      fb = fa;
+    }
+    a = next;
+    fa = value;
+    double least = 4e-16 * fmax(fabs(a), fabs(b)) / fabs(b - a);
+    if (fa == 0 || fb == 0 || !(least < 0.5)) {
+      break;
+    }
+    double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
+    part = 0.5;
+    if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+      part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
+    }
+    part = clamp(part, least, 1 - least);
+  }
+  double best = fabs(fa) < fabs(fb) ? a : b;
+  misfit(p, element, flywheel, rubbing, best);
+  return best;
+}
+
 // One step from velocity v at acceleration a: a backward half step to the middle, then the whole
 // with the coefficients there. Second order with share 1/2; the share rises where h does not
 // resolve the element, so that it settles.
-static void substep(const InerterDevice* p, double x, double v, double a, double* z, double h) {
+static void substep(const InerterDevice* p, double x, double v, double a, double* bristle,
+                    double* z, double h) {
   double middle[3] = {z[S], z[W], has(p, PART_BACKLASH) ? z[GAP] : 0};
   double d = z[S] - series_gap(p, z);
   Element half = element_step(p, z, d, 0.5 * h, 1);
   double midway = v + 0.5 * h * a;
   Flywheel flywheel = flywheel_step(p, x - z[S], z[W], z[W], midway, 0.5 * h, 1);
+  Rubbing rubbing = {x - z[S], z[W], z[W], 1, 0.5 * h, 1, bristle, {0}};
+  flywheel = held(flywheel, drag_of(p, half, flywheel, &rubbing));
   finish_step(p, half, flywheel, common_force(p, half, flywheel), middle);
 
   double near = middle[S] - series_gap(p, middle);
   double y = x + 0.25 * h * (v + midway) - middle[S];
   double inertance = inertance_felt(p, y, middle[W], NULL);
-  double damping = p->series_damping;
+  double damping = p->series_damping, stiffness = series_spring(p, near).slope;
   if (has(p, PART_FLYWHEEL)) {
     damping += flywheel_damper(p, middle[W]).slope;
   }
-  double square = h * (h * series_spring(p, near).slope + damping) / inertance;
+  if (has(p, PART_WHEEL_FRICTION)) {
+    damping += friction_grip(p, y, middle[W]);
+    stiffness += bristle ? law_of(p)->stiffness(p) : 0;
+  }
+  double square = h * (h * stiffness + damping) / inertance;
   double share = square > 2 ? 1 - 1 / square : 0.5;
   Element element = element_step(p, z, near, h, share);
   flywheel = flywheel_step(p, y, middle[W], z[W], v + share * h * a, h, share);
+  rubbing = (Rubbing){y, middle[W], z[W], share, h, share, bristle, {0}};
+  flywheel = held(flywheel, drag_of(p, element, flywheel, &rubbing));
   finish_step(p, element, flywheel, common_force(p, element, flywheel), z);
+  if (bristle) {
+    memcpy(bristle, rubbing.end, sizeof(double) * (size_t)p->nfriction);
+  }
 }
 
 // parts of a sixteenth of a radian as long as they are not too many, else a few that settle
 enum { PER_RADIAN = 16, MOST_PARTS = 256, FEW_PARTS = 4 };
 
-void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
-                 double h) {
+void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
+                 double* z, double h) {
   if (h == 0) {
     return;
   }
   double inertance = inertance_felt(p, x - z[S], z[W], NULL);
   double stiffness = series_spring(p, z[S] - series_gap(p, z)).slope;
+  int rubs = has(p, PART_WHEEL_FRICTION);
+  if (rubs && has_bristle(p)) {
+    stiffness += law_of(p)->stiffness(p);
+  }
   double rate = sqrt(stiffness / inertance) + p->series_damping / inertance;
   double parts = PER_RADIAN * fabs(h) * rate;
   int count = FEW_PARTS;
   if (parts < MOST_PARTS) {
     count = 1 + (int)parts;
-    if (series_exact(p, v, a, jerk, z, h) || series_frozen(p, x, v, a, jerk, z, h, 1 + count / 2)) {
+    if (!rubs && (series_exact(p, v, a, jerk, z, h) ||
+                  series_frozen(p, x, v, a, jerk, z, h, 1 + count / 2))) {
       return;
     }
   }
@@ -171,17 +272,28 @@ void series_step(const InerterDevice* p, double x, double v, double a, double je
   for (int i = 0; i < count; i++) {
     double t = part * i;
     double here = x + (v + (0.5 * a + jerk * t / 6) * t) * t;
-    substep(p, here, v + (a + 0.5 * jerk * t) * t, a + jerk * (t + 0.5 * part), z, part);
+    substep(p, here, v + (a + 0.5 * jerk * t) * t, a + jerk * (t + 0.5 * part),
+            rubs && has_bristle(p) ? bristle : NULL, z, part);
   }
 }
 
-double series_over_step(const InerterDevice* p, double x, double v, double* z, double h,
-                        double mobility) {
+double series_over_step(const InerterDevice* p, double x, double v, double* bristle, double* z,
+                        double h, double mobility, double* drag) {
   double inertance = inertance_felt(p, x - z[S], z[W], NULL), d = z[S] - series_gap(p, z);
   double stiffness = series_spring(p, d).slope;
   double share = least_share(stiffness, mobility + 1 / inertance, h);
   Element element = element_step(p, z, d, h, share);
   Flywheel flywheel = flywheel_step(p, x - z[S], z[W], z[W], v, h, 1);
+  if (has(p, PART_WHEEL_FRICTION)) {
+    int has_state = has_bristle(p);
+    double grip = has_state ? least_share(law_of(p)->stiffness(p), 1 / inertance, h) : 0;
+    Rubbing rubbing = {x - z[S], z[W], z[W], 1, h, grip, has_state ? bristle : NULL, {0}};
+    *drag = drag_of(p, element, flywheel, &rubbing);
+    flywheel = held(flywheel, *drag);
+    if (has_state) {
+      memcpy(bristle, rubbing.end, sizeof(double) * (size_t)p->nfriction);
+    }
+  }
   double force = common_force(p, element, flywheel);
   finish_step(p, element, flywheel, force, z);
   return force;

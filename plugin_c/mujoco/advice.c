@@ -9,13 +9,12 @@
 
 int advice_on_content(const mjModel* m, int instance, const Instance* self,
                       char message[INERTER_MESSAGE_SIZE]) {
-  uint64_t inertance = UINT64_C(1) << INERTER_INDEX_inertance;
   int native = m->actuator_armature[self->actuator] != 0;
   int damped = m->actuator_damping[self->actuator] != 0;
-  if (self->device.given & inertance || native) {
+  if (inerter_is_given(&self->device, INERTER_INDEX_inertance) || native) {
     return 0;
   }
-  if (!self->stated.given && !self->nlive && !damped &&
+  if (!inerter_states_something(&self->stated) && !self->nlive && !damped &&
       self->stated.friction == INERTER_FRICTION_none) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "nothing is configured: the device would do nothing; state inertance, or what else it "

@@ -8,6 +8,7 @@ const char* const kAttributes[NATTRIBUTE] = {
 #undef X
         "friction",
     "gas_law",
+    "friction_side",
 };
 
 int configuration_read(const mjModel* m, int instance, InerterDevice* device,

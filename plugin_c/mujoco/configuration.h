@@ -5,8 +5,8 @@
 
 #include "mujoco/instance.h"
 
-// names of the attributes: every parameter of the device, "friction" and "gas_law"
-enum { NATTRIBUTE = INERTER_NPARAMETER + 2 };
+// names of the attributes: every parameter of the device, "friction", "gas_law", "friction_side"
+enum { NATTRIBUTE = INERTER_NPARAMETER + 3 };
 extern const char* const kAttributes[NATTRIBUTE];
 
 // Read what is stated of the device of an instance; inerter_finish makes it whole. Return 0, or -1

@@ -123,6 +123,11 @@ static inline int instance_has_sharp_friction(const InerterDevice* device) {
   return device->friction != INERTER_FRICTION_none && !instance_has_bristle(device);
 }
 
+// Whether friction acts at the flywheel, behind a series element.
+static inline int instance_rubs_flywheel(const InerterDevice* device) {
+  return instance_has_series(device) && device->friction_side == INERTER_SIDE_flywheel;
+}
+
 // Whether a device needs the acceleration although the engine integrates b: load friction, or an
 // inertance that varies.
 static inline int instance_varies(const InerterDevice* device) {

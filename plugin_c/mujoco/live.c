@@ -137,7 +137,7 @@ int live_derive(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_S
     LiveParameter* live = self->live + k;
     live->value = m->numeric_data[live->address];
     *value_of(&self->device, live->parameter) = live->value;
-    self->device.given |= UINT64_C(1) << live->parameter;
+    inerter_mark_given(&self->device, live->parameter);
   }
   if (inerter_finish(&self->device, message)) {
     return -1;

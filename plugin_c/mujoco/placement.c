@@ -111,7 +111,7 @@ static int merge(const mjModel* m, int actuator, const InerterDevice* device, in
                  mjtNum configured, const char* attribute, mjtNum* value,
                  char message[INERTER_MESSAGE_SIZE]) {
   const InerterParameter* parameter = inerter_parameter(index);
-  int given = (int)(device->given >> index & 1);
+  int given = inerter_is_given(device, index);
   mjtNum* mark = written(m, actuator, slot);
   int own = *mark != 0 && same_in_xml(*value, *mark);
   int edited = *mark != 0 && *value != 0 && !own && given && same_in_xml(configured, *mark);

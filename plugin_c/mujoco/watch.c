@@ -68,6 +68,10 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
     return;
   }
 
+  if (instance_rubs_flywheel(device)) {
+    v = state[1];
+  }
+
   // slope of the rate over the state, a little beyond the state
   double there[INERTER_MAXSTATE], beyond[INERTER_MAXSTATE];
   double step = 1e-6 * fabs(state[0]) + 1e-15;
@@ -79,13 +83,21 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
     step = copysign(step, state[0]);
   }
   mju_copy(there, state, inerter_nstate(device));
-  there[0] += step;
+  for (int i = 0; i < device->nfriction; i++) {
+    // outwards, for an element at its limit sticks on the inner side
+    double outwards = copysign(1e-6 * fabs(state[i]) + 1e-15, state[i]);
+    there[i] += device->nfriction > 1 ? outwards : step;
+  }
   inerter_state_rate(device, x, v, there, beyond);
-  double decay = (rate[0] - beyond[0]) / step, fastest = 2 / m->opt.timestep;
+  double decay = 0, fastest = 2 / m->opt.timestep;
+  for (int i = 0; i < device->nfriction; i++) {
+    double each = (rate[i] - beyond[i]) / (there[i] - state[i]);
+    rate[i] *= each > fastest ? fastest / each : 1;
+    decay = fmax(decay, each);
+  }
   if (!(decay > fastest)) {
     return;
   }
-  rate[0] *= fastest / decay;
   char message[INERTER_MESSAGE_SIZE];
   snprintf(message, sizeof(message),
            "at %g m/s the state of friction \"%s\" relaxes within %.2g s, faster than RK4 resolves "
@@ -114,9 +126,13 @@ static double mobility(const mjModel* m, int actuator) {
 
 // slope of the friction force over velocity at rest, for laws without memory [N s/m]
 static double friction_slope(const InerterDevice* device) {
-  const double none[INERTER_MAXSTATE] = {0}, small = 1e-9;
+  const double small = 1e-9;
+  double state[INERTER_MAXSTATE] = {0};
+  if (instance_rubs_flywheel(device)) {
+    state[1] = small;  // the velocity of the flywheel: such a law has no state before it
+  }
   return instance_has_sharp_friction(device)
-             ? inerter_friction_force(device, 0, small, none) / small
+             ? inerter_friction_force(device, 0, small, state) / small
              : 0;
 }
 
@@ -172,7 +188,7 @@ void watch_stiffness(const mjModel* m, Instance* self) {
     consider(&fastest, p->viscous * light, decay, "viscous", implicit);
     consider(&fastest, p->flywheel_viscous * wheel, decay, "flywheel_viscous", implicit);
     consider(&fastest, sqrt(p->stop_stiffness * light), swing, "stop_stiffness", implicit);
-    consider(&fastest, friction_slope(p) * light, decay,
+    consider(&fastest, friction_slope(p) * (instance_rubs_flywheel(p) ? wheel : light), decay,
              p->friction == INERTER_FRICTION_brown_mcphee
                  ? "the change of sign of friction within stribeck_velocity"
                  : "the change of sign of friction within transition_velocity",

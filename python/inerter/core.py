@@ -43,6 +43,8 @@ class _CParameter(ctypes.Structure):
 
 
 _FORCES = ("total", "inertance", "friction")
+WORDS = ("friction", "gas_law", "friction_side")
+"""What of a device is stated by a name and not by a number."""
 
 
 class _CForce(ctypes.Structure):
@@ -83,9 +85,10 @@ def _library() -> ctypes.CDLL:
         )
     library = ctypes.CDLL(os.fspath(path))
     library.inerter_parameter.restype = ctypes.POINTER(_CParameter)
-    library.inerter_friction_name.restype = ctypes.c_char_p
-    for name in ("friction_meaning", "gas_law_name", "gas_law_meaning", "state_name"):
-        getattr(library, f"inerter_{name}").restype = ctypes.c_char_p
+    library.inerter_state_name.restype = ctypes.c_char_p
+    for word in WORDS:
+        for what in ("name", "meaning"):
+            getattr(library, f"inerter_{word}_{what}").restype = ctypes.c_char_p
     at, number = ctypes.c_void_p, ctypes.c_double
     library.inerter_state_step.argtypes = [at, number, number, at, number]
     library.inerter_state_of_force.argtypes = [at, *[number] * 4, at]
@@ -120,6 +123,12 @@ def gas_laws() -> Mapping[str, str]:
     return _laws("gas_law")
 
 
+@functools.cache
+def friction_sides() -> Mapping[str, str]:
+    """The sides on which friction can act by name, with their meaning."""
+    return _laws("friction_side")
+
+
 def _laws(kind: str) -> Mapping[str, str]:
     name, meaning = (getattr(_library(), f"inerter_{kind}_{what}") for what in ("name", "meaning"))
     found: dict[str, str] = {}
@@ -131,8 +140,11 @@ def _laws(kind: str) -> Mapping[str, str]:
 @functools.cache
 def _device_type() -> type[ctypes.Structure]:
     fields: list[tuple[str, Any]] = [(name, ctypes.c_double) for name in parameters()]
-    fields += [("friction", ctypes.c_int), ("gas_law", ctypes.c_int), ("given", ctypes.c_uint64)]
-    fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int)]
+    fields += [(name, ctypes.c_int) for name in WORDS]
+    # a bit for each parameter and each word
+    words = (len(parameters()) + len(WORDS) + 62) // 64
+    fields += [("given", ctypes.c_uint64 * words)]
+    fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int), ("nfriction", ctypes.c_int)]
     return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
 
 
@@ -149,8 +161,8 @@ class Device:
     Parameters
     ----------
     **values : float or str
-        Parameters by name (see `parameters()`), SI units, and the names of laws: `friction`,
-        `gas_law`. What is not given has its default.
+        Parameters by name (see `parameters()`), SI units, and names: `friction`, `gas_law`,
+        `friction_side`. What is not given has its default.
 
     Raises
     ------
@@ -168,7 +180,7 @@ class Device:
             if text is None or key is None:
                 raise DeviceError(f"{name!a} is {value!a:.80}: give a number, or the name of a law")
             if library.inerter_set(at, key.encode(), text.encode(), message):
-                names = [*known, "friction", "gas_law"]
+                names = [*known, *WORDS]
                 raise DeviceError(with_suggestion(name, _text(message), names))
         if library.inerter_finish(at, message):
             raise DeviceError(_text(message))
@@ -188,6 +200,11 @@ class Device:
     def gas_law(self) -> str:
         """Name of the law of the gas spring."""
         return list(gas_laws())[self._c.gas_law]  # type: ignore[attr-defined]
+
+    @property
+    def friction_side(self) -> str:
+        """Where friction acts: terminals, or flywheel."""
+        return list(friction_sides())[self._c.friction_side]  # type: ignore[attr-defined]
 
     @property
     def nstate(self) -> int:

@@ -13,13 +13,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import WORDS, Device, DeviceError, parameters
 from inerter.input_file import read_toml
 from inerter.printable import printable
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
 SCHEMA = "inerter.device/1"
-LAWS = ("friction", "gas_law")  # keys whose value is a name
 LARGEST = 1e15
 """Size of a parameter, in SI units, beyond which no unit can be right."""
 LARGEST_DELAY = 0.05
@@ -46,7 +45,7 @@ def read_device(path: Path) -> Device:
             raise DeviceError(
                 f"{path}: {key} is {_shown(value)}; give a number, or a text with a unit"
             )
-        if isinstance(value, str) and key not in LAWS:
+        if isinstance(value, str) and key not in WORDS:
             value = _with_unit(path, key, value)
         values[key] = value
     try:
@@ -170,7 +169,7 @@ def device_text(
         text = f'"{value}"' if isinstance(value, str) else repr(float(value))
         if isinstance(value, float) and not math.isfinite(value):
             continue
-        note = comments.get(name, "" if name in LAWS else parameters()[name].unit)
+        note = comments.get(name, "" if name in WORDS else parameters()[name].unit)
         lines.append(f"{name} = {text}" + (f"  # {note}" if note and note != "1" else ""))
     if delay:
         lines += [

@@ -11,6 +11,7 @@ from inerter.core import Device
 from laws.core_draws import (  # pyright: ignore[reportMissingImports]
     LAWS,
     MEMORY,
+    SEVERAL,
     draw_complete,
     draw_friction,
     draw_levels,
@@ -33,7 +34,7 @@ POINTS = 8
 @functools.cache
 def devices(friction: str) -> list[tuple[Device, Array, Array]]:
     """Random complete devices with one friction law, motions (points, 3), states."""
-    rng = np.random.default_rng(LAWS.index(friction))
+    rng = np.random.default_rng((LAWS + SEVERAL).index(friction))
     found = []
     for _ in range(80):
         chosen = draw_complete(rng)
@@ -87,7 +88,7 @@ def core_telling(device: Device, motion: Array, states: Array) -> dict[str, Arra
     return device.evaluate(x, v, a, states if device.nstate else 0.0)
 
 
-@pytest.mark.parametrize("friction", LAWS)
+@pytest.mark.parametrize("friction", LAWS + SEVERAL)
 def test_forces_and_energies_are_the_cores(friction: str) -> None:
     worst: dict[str, float] = {}
     for device, motion, states in devices(friction):
@@ -100,7 +101,7 @@ def test_forces_and_energies_are_the_cores(friction: str) -> None:
     assert max(worst.values()) < SAME, worst
 
 
-@pytest.mark.parametrize("friction", LAWS)
+@pytest.mark.parametrize("friction", LAWS + SEVERAL)
 def test_terms_add_up_to_the_force_and_the_state_rates(friction: str) -> None:
     """What Exudyn integrates: mass times acceleration plus the terms, and the terms' rates."""
     for device, motion, states in devices(friction):
@@ -142,7 +143,7 @@ def test_a_gap_position_beyond_the_edge() -> None:
 
 
 @pytest.mark.parametrize("heat", [False, True])
-@pytest.mark.parametrize("friction", LAWS)
+@pytest.mark.parametrize("friction", LAWS + SEVERAL)
 def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
     """Plain numbers, the tape in C, and matrices with expressions that Exudyn evaluates."""
     compared = 0

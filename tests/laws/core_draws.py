@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 LAWS = ("none", "coulomb", "stribeck", "dahl", "lugre", "bouc_wen", "brown_mcphee")
 MEMORY = ("dahl", "lugre", "bouc_wen")
+SEVERAL = ("maxwell_slip",)
+"""Laws with several states; they have tests of their own."""
 
 Parameters = dict[str, Any]
 Array = NDArray[np.float64]
@@ -38,8 +40,15 @@ def draw_friction(rng: np.random.Generator, law: str, wide: float = 1.0) -> Para
             "bw_ratio": float(rng.uniform(-0.5, 1.5)),
         }
 
+    if law == "maxwell_slip":
+        drawn: Parameters = {"friction": law}
+        for i in range(1, int(rng.integers(2, 9))):
+            drawn[f"slip_stiffness_{i}"] = around(rng, 1e4, wide)
+            drawn[f"slip_force_{i}"] = around(rng, 5.0, wide)
+        return drawn
+
     level = around(rng, 20.0, wide)
-    drawn: Parameters = {"friction": law, "coulomb_force": level}
+    drawn = {"friction": law, "coulomb_force": level}
     if law != "dahl":
         drawn["static_force"] = level * float(rng.uniform(1.0, 5.0))
     if law in ("stribeck", "lugre", "brown_mcphee"):
@@ -150,6 +159,8 @@ def draw_complete(rng: np.random.Generator) -> Parameters:
     drawn |= draw_branches(rng) | draw_flywheel(rng, channel, gas)
     drawn |= draw_stops(rng) if stops else {}
     drawn |= draw_series(rng, backlash) if series else {}
+    if rng.random() < 0.4:
+        drawn["friction_side"] = "flywheel"
     if channel:
         del drawn["inertance"]
     return drawn
@@ -158,6 +169,13 @@ def draw_complete(rng: np.random.Generator) -> Parameters:
 def draw_states(rng: np.random.Generator, count: int, p: Parameters) -> Array:
     """States (count, nstate) of such a device: the gap inside, at either side, a little outside."""
     columns = []
+    if p["friction"] == "maxwell_slip":
+        for i in range(1, 1 + sum(name.startswith("slip_stiffness") for name in p)):
+            limit = p[f"slip_force_{i}"] / p[f"slip_stiffness_{i}"]
+            # at its limit on either side, within, beyond
+            columns.append(limit * rng.choice([-1.0, 1.0], count))
+            inside = rng.uniform(-1.5, 1.5, count) * limit
+            columns[-1] = np.where(rng.random(count) < 0.7, inside, columns[-1])
     if p["friction"] in MEMORY:
         columns.append(rng.uniform(-2.0, 2.0, count) * state_limit(p))
     if p.get("series_stiffness", 0.0) > 0.0 or p.get("series_damping", 0.0) > 0.0:

@@ -34,7 +34,8 @@ class Telling:
 
     def __init__(self, **stated: Any) -> None:
         self.p: dict[str, Any] = {name: entry.initial for name, entry in parameters().items()}
-        self.p |= {"friction": "none", "gas_law": "polytropic"} | stated
+        names = {"friction": "none", "gas_law": "polytropic", "friction_side": "terminals"}
+        self.p |= names | stated
         p = self.p
         if np.isnan(p["gas_area"]):
             p["gas_area"] = p["piston_area"]
@@ -43,6 +44,7 @@ class Telling:
             p["inertance"] = mass * (p["piston_area"] / p["channel_area"]) ** 2
         self.bristle = p["friction"] == "dahl"
         self.series = p["series_stiffness"] > 0.0 or p["series_damping"] > 0.0
+        self.wheel = self.series and p["friction_side"] == "flywheel"
 
     def inertance(self, y: Array, w: Array) -> tuple[Pair, Pair, Pair]:
         """B, R and the kinetic energy."""
@@ -186,35 +188,42 @@ class Telling:
         p = self.p
         x = x - p["rest_length"]
         place = 1 if self.bristle else 0
-        friction, bristle_rate, bristle_energy, friction_heat = self.friction(v, z)
         s, w = (z[:, place], z[:, place + 1]) if self.series else (0.0 * x, v)
+        slide = w if self.wheel else v
+        friction, bristle_rate, bristle_energy, friction_heat = self.friction(slide, z)
         felt, rest, kinetic = self.inertance(x - s, w)
         damper = self.flywheel_damper(w)
         gas, gas_energy = self.gas(x - s)
         stops, stop_energy, stop_heat = self.stops(x, v)
         rates = [bristle_rate] if self.bristle else []
         element: dict[str, Pair] = {}
+        share = p["load_friction"] * np.tanh(slide / p["transition_velocity"])
+        through = term(0.0 * x)
         if self.series:
             element = self.element(v, z[:, place:])
-            carried = element["force"]
+            carried = through = element["force"]
+            if self.wheel:
+                # what is left of the shaft's force by the friction law, and by its own load
+                left, size = add(carried, (-friction[0], friction[1]))
+                part = 1.0 / np.where(left > 0.0, 1.0 + share, 1.0 - share)
+                carried = left * part, size * part * (1.0 + 1.0 / (1.0 - abs(share)))
             speed_up = add(carried, rest, damper, gas)[1] / abs(felt[0])
             turned = (carried[0] - rest[0] - damper[0] - gas[0]) / felt[0]
             rates += [(v - w, abs(v) + abs(w)), (turned, speed_up * felt[1] / abs(felt[0]))]
             rates += [element["gap_rate"]] if p["backlash"] else []
         else:
             carried = add((felt[0] * a, felt[1] * abs(a)), rest, damper, gas)
-        share = p["load_friction"] * np.tanh(v / p["transition_velocity"])
         load = share * abs(carried[0]), abs(share) * carried[1]
         spring = term(p["stiffness"] * x), term(p["stiffness_cubic"] * x**3)
         own_damper = term(p["viscous"] * v), term(p["quadratic_damping"] * v * abs(v))
         rubbing = add(friction, load)
-        total = add(
-            carried, *spring, *own_damper, stops, rubbing, term(p["force_offset"] + 0.0 * x)
-        )
+        felt_there = (through,) if self.wheel else (carried, rubbing)
+        total = add(*felt_there, *spring, *own_damper, stops, term(p["force_offset"] + 0.0 * x))
         none = term(0.0 * x)
         springs = term(p["stiffness"] * x**2 / 2.0), term(p["stiffness_cubic"] * x**4 / 4.0)
         series_energy, series_heat = element.get("energy", none), element.get("heat", none)
-        heat = [(value * v, size * abs(v)) for value, size in (*own_damper, load)]
+        heat = [(value * v, size * abs(v)) for value, size in own_damper]
+        heat.append((load[0] * slide, load[1] * abs(slide)))
         stored = add(kinetic, *springs, bristle_energy, series_energy, gas_energy, stop_energy)
         lost = add(
             *heat, friction_heat, series_heat, (damper[0] * w, damper[1] * abs(w)), stop_heat

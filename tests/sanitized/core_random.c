@@ -52,6 +52,11 @@ static int random_device(InerterDevice* device, int tame) {
       abort();
     }
   }
+  if (below(&source, 3) == 0 &&
+      inerter_set(device, "friction_side", inerter_friction_side_name(below(&source, INERTER_NSIDE)),
+                  message)) {
+    abort();
+  }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
     int read = !*p->laws || strstr(p->laws, inerter_friction_name(law));
@@ -120,6 +125,8 @@ int main(void) {
     if ((i >= 0 && i < INERTER_NPARAMETER) != (inerter_parameter(i) != NULL)) abort();
     if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_name(i) != NULL)) abort();
     if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_meaning(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_name(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_meaning(i) != NULL)) abort();
   }
 
   for (int round = 0; round < 20000; round++) {

@@ -21,9 +21,10 @@
 static const char* key_of(char* line) {
   unsigned choice = (unsigned char)*line;
   if (choice >= 0x80) {
-    int i = (int)(choice - 0x80) % (INERTER_NPARAMETER + 2);
+    int i = (int)(choice - 0x80) % (INERTER_NPARAMETER + 3);
     const InerterParameter* p = inerter_parameter(i);
-    return p ? p->name : i == INERTER_NPARAMETER ? "friction" : "gas_law";
+    const char* names[] = {"friction", "gas_law", "friction_side"};
+    return p ? p->name : names[i - INERTER_NPARAMETER];
   }
   return line;
 }
@@ -34,9 +35,12 @@ static const char* value_of_line(const char* text) {
   if (choice < 0x80) {
     return text;
   }
-  int i = (int)(choice - 0x80) % (INERTER_NFRICTION + INERTER_NGAS);
-  return i < INERTER_NFRICTION ? inerter_friction_name(i)
-                               : inerter_gas_law_name(i - INERTER_NFRICTION);
+  int i = (int)(choice - 0x80) % (INERTER_NFRICTION + INERTER_NGAS + INERTER_NSIDE);
+  if (i < INERTER_NFRICTION) {
+    return inerter_friction_name(i);
+  }
+  i -= INERTER_NFRICTION;
+  return i < INERTER_NGAS ? inerter_gas_law_name(i) : inerter_friction_side_name(i - INERTER_NGAS);
 }
 
 // every value a finite number within its bounds, or unset
@@ -44,7 +48,7 @@ static void check_values(const InerterDevice* device, const char* message) {
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
     double value = *(const double*)((const char*)device + p->offset);
-    if (device->given >> i & 1) {
+    if (inerter_is_given(device, i)) {
       REQUIRE(isfinite(value) && value >= p->lower && value <= p->upper);
       REQUIRE(!p->lower_open || value > p->lower);
     }

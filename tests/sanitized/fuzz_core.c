@@ -22,7 +22,7 @@ static void fail(int line, const char* promise) {
           inerter_friction_name(device.friction));
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
-    if (device.given >> i & 1) {
+    if (inerter_is_given(&device, i)) {
       fprintf(stderr, "%s %.17g\n", p->name, *(const double*)((const char*)&device + p->offset));
     }
   }

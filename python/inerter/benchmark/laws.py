@@ -20,6 +20,10 @@ LAWS: dict[str, dict[str, Any]] = {
     "lugre": {**_FALL, **_BRISTLE, "bristle_damping": 200.0},
     "bouc_wen": {"bw_stiffness": 5e4, "bw_beta": 500.0, "bw_gamma": 125.0},
     "brown_mcphee": _FALL,
+    "maxwell_slip": {
+        **{f"slip_stiffness_{i}": k for i, k in enumerate((2e4, 1e4, 5e3, 5e3), 1)},
+        **{f"slip_force_{i}": 20.0 for i in range(1, 5)},
+    },
 }
 """Parameters by law; the yield deflection of the bristles is 1.6 mm."""
 

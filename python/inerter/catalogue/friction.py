@@ -140,6 +140,12 @@ _ALL = (
         grid={"presliding": (0.01, 0.1, 0.5), "bw_shape": (0.6, 1.0)},
         begin={"bw_exponent": 1.2}, rich=True,
     ),
+    # held as it is stated: no fit changes it yet, no trial takes it
+    FrictionLaw(
+        name="maxwell_slip", words="Maxwell-slip", effect="hysteretic_friction", level="",
+        constants=tuple(f"slip_{what}_{i}" for i in range(1, 9) for what in ("stiffness", "force")),
+        memory=True,
+    ),
 )  # fmt: skip
 
 FRICTION: Mapping[str, FrictionLaw] = MappingProxyType({law.name: law for law in _ALL})

@@ -5,12 +5,16 @@
 T: `beside.py`; friction: `friction.py`; N, through the inertance: `flywheel.py`, behind the series
 element of `series.py` if there is one. States z: friction_state, series_deflection s,
 flywheel_velocity w, gap_position, each only where it is needed.
+
+With `friction_side` "flywheel" and a series element, whose force is S: F = T + S, and
+S = N + F_friction + mu tanh(w / v_t) |N| at the flywheel's displacement and velocity w.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from inerter.exudyn import beside, flywheel, friction, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
@@ -28,9 +32,9 @@ class Term:
 
 @dataclass(frozen=True)
 class States:
-    """The states by what they are; 0 where there is none."""
+    """The states by what they are; 0 where there is none. Those of maxwell_slip are a tuple."""
 
-    friction: Value = 0.0
+    friction: Any = 0.0
     deflection: Value = 0.0
     speed: Value = 0.0
     gap: Value = 0.0
@@ -49,7 +53,8 @@ def states_of(p: Parameters, z: Sequence[Value]) -> States:
         )
         if name in names
     }
-    return States(**found)
+    several = tuple(z[at] for name, at in names.items() if name.startswith("friction_state_"))
+    return States(**found | ({"friction": several} if several else {}))
 
 
 def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -> list[Term]:
@@ -58,12 +63,18 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     x [m] is the length minus rest_length, v [m/s] its rate.
     """
     state, place = states_of(p, z), {name: i for i, name in enumerate(p.state_names)}
-    rubbing = friction.LAWS[p.friction](f, p, x, v, state.friction)
-    at_terminals = beside.force(f, p, x, v) + rubbing.bound
+    rubbing = _rubbing(f, p, x, v, state)
+    at_terminals = beside.force(f, p, x, v)
     found: list[Term] = []
-    if rubbing.rate is not None:
+    wheel = rubs_flywheel(p)
+    if not wheel:
+        at_terminals = at_terminals + rubbing.bound
+    if isinstance(rubbing.rate, tuple):
+        for i, each in enumerate(rubbing.rate):
+            found.append(Term(each, 0.0, ((place[f"friction_state_{i + 1}"], 1.0),)))
+    elif rubbing.rate is not None:
         rates = ((place["friction_state"], 1.0),)
-        found.append(Term(rubbing.rate, rubbing.damping, rates))
+        found.append(Term(rubbing.rate, 0.0 if wheel else rubbing.damping, rates))
 
     if not series.is_there(p):
         rest = flywheel.inertance(f, p, x, v)[1] + flywheel.force(f, p, x, v)
@@ -73,7 +84,10 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     shaft = series.at(f, p, state.deflection, rate, state.gap)
     mass, rest = flywheel.inertance(f, p, y, state.speed)
     rest = rest + flywheel.force(f, p, y, state.speed)
-    if p.load_friction:
+    if wheel:
+        # all that friction takes of the shaft's force
+        rest = rest + shaft.force - carried(f, p, x, v, 0.0, z)
+    elif p.load_friction:
         at_terminals = at_terminals + _load_share(f, p, v) * f.abs(shaft.force)
     spinning = place["flywheel_velocity"]
     if flywheel.varies(p):
@@ -107,7 +121,13 @@ def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequen
     if series.is_there(p):
         state = states_of(p, z)
         rate = v - state.speed
-        return series.at(f, p, state.deflection, rate, state.gap).force
+        force = series.at(f, p, state.deflection, rate, state.gap).force
+        if not rubs_flywheel(p):
+            return force
+        left = force - _law_force(_rubbing(f, p, x, v, state))
+        if not p.load_friction:
+            return left
+        return left / (1.0 + _load_share(f, p, state.speed) * f.sign(left))
     inertance, rest = flywheel.inertance(f, p, x, v)
     return inertance * a + rest + flywheel.force(f, p, x, v)
 
@@ -116,13 +136,11 @@ def forces(
     p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value], f: Functions = NUMBERS
 ) -> dict[str, Value]:
     """Total force, force through the inertance, friction with load friction [N]."""
-    through = carried(f, p, x, v, a, z)
-    rubbing = friction.LAWS[p.friction](f, p, x, v, states_of(p, z).friction)
-    rub = rubbing.bound
-    if rubbing.rate is not None:
-        rub = rub + rubbing.damping * rubbing.rate
+    through, state = carried(f, p, x, v, a, z), states_of(p, z)
+    rub = _law_force(_rubbing(f, p, x, v, state))
     if p.load_friction:
-        rub = rub + _load_share(f, p, v) * f.abs(through)
+        speed = state.speed if rubs_flywheel(p) else v
+        rub = rub + _load_share(f, p, speed) * f.abs(through)
     total = beside.force(f, p, x, v) + rub + through
     return {"total": total, "inertance": through, "friction": rub}
 
@@ -130,7 +148,8 @@ def forces(
 def stored_energy(p: Parameters, x: float, v: float, z: Sequence[float]) -> float:
     """Kinetic, elastic, bristle, gas and stop energy [J]."""
     state = states_of(p, z)
-    energy = beside.stored_energy(p, x) + friction.stored_energy(p, x, state.friction)
+    place = x - state.deflection if rubs_flywheel(p) else x
+    energy = beside.stored_energy(p, x) + friction.stored_energy(p, place, state.friction)
     if not series.is_there(p):
         return energy + flywheel.stored_energy(p, x, v)
     shaft = series.stored_energy(p, state.deflection, state.gap)
@@ -142,17 +161,38 @@ def dissipated_power(
 ) -> Value:
     """Power turned into heat [W]; `through` is N [N], read for load friction only."""
     state = states_of(p, z)
-    rubbing = friction.LAWS[p.friction](f, p, x, v, state.friction)
-    heat = beside.dissipated_power(f, p, x, v) + rubbing.bound * v
+    rubbing = _rubbing(f, p, x, v, state)
+    place, speed = (x - state.deflection, state.speed) if rubs_flywheel(p) else (x, v)
+    heat = beside.dissipated_power(f, p, x, v) + rubbing.bound * speed
     if rubbing.rate is not None:
-        stored = friction.stored_power(f, p, x, v, state.friction, rubbing.rate)
-        heat = heat + rubbing.damping * rubbing.rate * v - stored
+        stored = friction.stored_power(f, p, place, speed, state.friction, rubbing.rate)
+        if rubbing.damping:
+            heat = heat + rubbing.damping * rubbing.rate * speed
+        heat = heat - stored
     if p.load_friction:
-        heat = heat + _load_share(f, p, v) * f.abs(through) * v
+        heat = heat + _load_share(f, p, speed) * f.abs(through) * speed
     if not series.is_there(p):
         return heat + flywheel.dissipated_power(f, p, v)
     shaft = series.dissipated_power(f, p, state.deflection, v - state.speed, state.gap)
     return heat + shaft + flywheel.dissipated_power(f, p, state.speed)
+
+
+def rubs_flywheel(p: Parameters) -> bool:
+    """Whether friction acts behind a series element."""
+    return p.friction_side == "flywheel" and series.is_there(p)
+
+
+def _rubbing(f: Functions, p: Parameters, x: Value, v: Value, state: States) -> friction.Friction:
+    """The friction law where it acts."""
+    if rubs_flywheel(p):
+        x, v = x - state.deflection, state.speed
+    return friction.LAWS[p.friction](f, p, x, v, state.friction)
+
+
+def _law_force(rubbing: friction.Friction) -> Value:
+    if not rubbing.damping:
+        return rubbing.bound
+    return rubbing.bound + rubbing.damping * rubbing.rate
 
 
 def _load_share(f: Functions, p: Parameters, v: Value) -> Value:

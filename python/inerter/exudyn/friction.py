@@ -6,8 +6,8 @@ laws in `plugin_c/core`; here they are written anew, so that agreement means som
 
     force = bound + damping * rate      z' = rate
 
-`rate` is None for a law without state. The form lets an expression for the rate be evaluated once
-for both. Sign: tension positive.
+`rate` is None for a law without state, and a tuple for one with several. The form lets an
+expression for the rate be evaluated once for both. Sign: tension positive.
 
 Free play before a bristle: its state s is place in the play and deflection z in one, z = s less s
 limited to +-eps (`friction_backlash`). Within the play s' = v and the bristle's force is 0; beyond
@@ -17,7 +17,7 @@ of the jump: the damper bears at most `EAGER` times what the bristle's spring do
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
@@ -28,7 +28,7 @@ class Friction(NamedTuple):
 
     bound: Value
     damping: float = 0.0
-    rate: Value | None = None
+    rate: Any = None
 
 
 LEAST_LEVEL = 1e-3
@@ -148,12 +148,43 @@ def brown_mcphee(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> F
     return Friction((p.coulomb_force * f.tanh(4.0 * ratio) + peak) * level(f, p, x, v))
 
 
-LAWS = {law.__name__: law for law in (none, coulomb, stribeck, dahl, lugre, bouc_wen, brown_mcphee)}
+REACHED = 1e-12
+"""Share of its limit within which an element of maxwell_slip counts as being there."""
+
+
+def elements(p: Parameters) -> list[tuple[float, float]]:
+    """Stiffness [N/m] and slip force [N] of each element of maxwell_slip."""
+    pairs = ((f"slip_stiffness_{i}", f"slip_force_{i}") for i in range(1, 9))
+    found = [(getattr(p, spring), getattr(p, slip)) for spring, slip in pairs]
+    return [pair for pair in found if pair[0]]
+
+
+def maxwell_slip(f: Functions, p: Parameters, x: Value, v: Value, z: Any) -> Friction:
+    """Z_i' = v while it sticks, v u_i where u_i = 1 - k_i z_i sgn(v) / (f_i level) is not above 0.
+
+    F = sum of k_i z_i.
+    """
+    factor, side = level(f, p, x, v), f.sign(v)
+    total: Value = 0.0
+    rates = []
+    for (spring, slip), each in zip(elements(p), z, strict=True):
+        u = 1.0 - spring * each * side / (slip * factor)
+        rates.append(v * f.choose(u > REACHED, 1.0, u))
+        total = total + spring * each
+    return Friction(total, 0.0, tuple(rates))
+
+
+_ALL = (none, coulomb, stribeck, dahl, lugre, bouc_wen, brown_mcphee, maxwell_slip)
+LAWS = {law.__name__: law for law in _ALL}
 """The laws by their names."""
 
 
-def stored_energy(p: Parameters, x: float, z: float) -> float:
-    """Energy in the bristle or the elastic branch [J]."""
+def stored_energy(p: Parameters, x: float, z: Any) -> float:
+    """Energy in the bristle, the elements or the elastic branch [J]."""
+    if p.friction == "maxwell_slip":
+        return sum(
+            0.5 * spring * each * each for (spring, _), each in zip(elements(p), z, strict=True)
+        )
     z = bristle(NUMBERS, p, z)
     if p.friction in ("dahl", "lugre"):
         return 0.5 * p.bristle_stiffness * z * z
@@ -163,8 +194,13 @@ def stored_energy(p: Parameters, x: float, z: float) -> float:
     return 0.0
 
 
-def stored_power(f: Functions, p: Parameters, x: Value, v: Value, z: Value, rate: Value) -> Value:
+def stored_power(f: Functions, p: Parameters, x: Value, v: Value, z: Any, rate: Any) -> Value:
     """Rate of the stored energy [W]; `rate` that of an engaged bristle."""
+    if p.friction == "maxwell_slip":
+        total: Value = 0.0
+        for (spring, _), each, changing in zip(elements(p), z, rate, strict=True):
+            total = total + spring * each * changing
+        return total
     z = bristle(f, p, z)
     if p.friction in ("dahl", "lugre"):
         return p.bristle_stiffness * z * rate

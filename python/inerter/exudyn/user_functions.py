@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.exudyn import device as law
-from inerter.exudyn import series
 from inerter.exudyn.element import HEAT, Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.functions import Functions, Value, expressions
@@ -158,10 +157,8 @@ def _parts(element: Element, f: Functions, q: Any, q_t: Any) -> list[tuple[Any, 
             weights[place] += share
         found.append((term.value, weights))
     if element.heat:
-        through = 0.0
-        if p.load_friction:
-            state = law.states_of(p, z)
-            through = series.at(f, p, state.deflection, v - state.speed, state.gap).force
+        # with load friction only behind a series element: it asks for no acceleration there
+        through = law.carried(f, p, x, v, 0.0, z) if p.load_friction else 0.0
         weights = np.zeros(element.size)
         weights[element.first + element.own.index(HEAT)] = 1.0
         found.append((law.dissipated_power(f, p, x, v, z, through), weights))

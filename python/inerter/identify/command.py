@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from inerter.console import AsJson, Folder, out, progress_bar, refusing
+from inerter.core import WORDS
 
 
 def identify_command(
@@ -96,8 +97,8 @@ def _fixed(pairs: list[str]) -> dict[str, float | str]:
         key, sign, value = pair.partition("=")
         if not sign or not value.strip():
             raise ValueError(f"--fix {pair!r}: give KEY=VALUE, as in inertance=113")
-        if key.strip() == "gas_law":
-            found["gas_law"] = value.strip()
+        if key.strip() in WORDS:
+            found[key.strip()] = value.strip()
             continue
         try:
             found[key.strip()] = float(value)

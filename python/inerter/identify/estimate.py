@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from inerter.catalogue.coordinates import CHANNEL_UNITS, NUISANCES, parameters_of, search_range
 from inerter.catalogue.friction import FRICTION
-from inerter.core import Device, parameters
+from inerter.core import WORDS, Device, parameters
 from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_correlation, parameter_errors
 from inerter.identify.identifiability import identifiability
@@ -105,7 +105,7 @@ def identify(
     chosen = [law_named(name) for name in laws]
     known = dict(fixed or {})
     for name in known:
-        if name not in (*parameters(), "gas_law"):
+        if name not in (*parameters(), *WORDS):
             # says what it may have meant
             Device(**{name: known[name]})
     given, records = records, without_copies(records, holdout)

@@ -5,6 +5,8 @@
     without a series element:  N = B(x, v) a + R(x, v) + G(x, v)
     with one:                  N = F_s(s, s', gap),   B(y, w) w' + R(y, w) + G(y, w) = F_s
     G(y, w) = c_w w + pipe(w) + gas(y)                                    at the flywheel
+    friction_side "flywheel" with a series element: F = T + F_s, T without friction, and
+    F_s = N + F_friction(y, w, z) + lambda(w) |N|,   N = B(y, w) w' + R(y, w) + G(y, w)
 
 Symbols: x = x2 - x1 (length minus rest_length); s = x - y series deflection, y and w = y'
 displacement and velocity of the flywheel side; c_w `flywheel_viscous` [N s/m]. Without a series
@@ -32,6 +34,7 @@ from .laws import (
     gas,
     inertance,
     load,
+    maxwell_slip,
     parallel,
     series,
 )
@@ -51,15 +54,24 @@ class ReferenceDevice(DeviceParameters):
 
     @property
     def nstate(self) -> int:
-        """Number of states, 0 to 4."""
+        """Number of states."""
         return len(self.state_names)
 
     @property
     def state_names(self) -> tuple[str, ...]:
         """Names of the states in their order."""
-        friction = ("friction_state",) if FRICTION[self.friction].STATES else ()
+        friction = ("friction_state",) if self.friction_states else ()
+        if self.friction == "maxwell_slip":
+            friction = tuple(f"friction_state_{i + 1}" for i in range(self.friction_states))
         flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
         return friction + flywheel + (("gap_position",) if self.backlash > 0.0 else ())
+
+    @property
+    def friction_states(self) -> int:
+        """Number of states of the friction law."""
+        if self.friction == "maxwell_slip":
+            return maxwell_slip.count(self)
+        return FRICTION[self.friction].STATES
 
     @property
     def total_inertance(self) -> float:
@@ -77,6 +89,8 @@ class ReferenceDevice(DeviceParameters):
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
         """Total force F [N], tension positive."""
+        if self.rubs_flywheel:
+            return self._series_force(x, v, z, contact) + self._beside(x, v)
         carried = self.inertance_force(x, v, a, z, contact=contact)
         return carried + self.load_friction_force(v, carried) + self.rest_force(x, v, z)
 
@@ -97,21 +111,29 @@ class ReferenceDevice(DeviceParameters):
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
         """The force through the inertance branch N [N]."""
+        if self.rubs_flywheel:
+            return self._flywheel_share(x, v, z, contact)
         mass, rest = self.branch(x, v, z, contact=contact)
         return mass * a + rest
 
     def rest_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """The part T of F [N] that stands beside the inertance branch."""
-        stretch = x - self.rest_length
-        spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
-        damper = parallel.damping_force(v, self.viscous, self.quadratic_damping)
-        beside = spring + damper + self.force_offset + self.friction_force(x, v, z)
-        return beside + end_stops.force(self, stretch, v)
+        if self.rubs_flywheel:
+            return self._beside(x, v)
+        return self._beside(x, v) + self.friction_force(x, v, z)
+
+    def total_friction(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
+        """Friction law and load friction [N], on the side where they act."""
+        speed = self._states(z)[2] if self.rubs_flywheel else v
+        carried = self.inertance_force(x, v, a, z)
+        return self.friction_force(x, v, z) + self.load_friction_force(speed, carried)
 
     def friction_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Force of the friction law alone [N], without load friction and without `viscous`."""
-        state = self._states(z)[0]
-        return FRICTION[self.friction].force(self, x - self.rest_length, v, state)
+        state, deflection, speed, _ = self._states(z)
+        stretch = x - self.rest_length
+        place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
+        return FRICTION[self.friction].force(self, place, rate, state)
 
     def load_friction_force(self, v: Quantity, carried: Quantity) -> Quantity:
         """Load-dependent friction mu |N| tanh(v / v_t) [N], N the force carried."""
@@ -123,7 +145,10 @@ class ReferenceDevice(DeviceParameters):
         )
 
     def load_share(self, v: Quantity) -> Quantity:
-        """The factor lambda = mu tanh(v / v_t) [-] on |N|."""
+        """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals."""
+        return 0.0 * v if self.rubs_flywheel else self._load_factor(v)
+
+    def _load_factor(self, v: Quantity) -> Quantity:
         return load.share(
             v, load_friction=self.load_friction, transition_velocity=self.transition_velocity
         )
@@ -157,15 +182,21 @@ class ReferenceDevice(DeviceParameters):
         """Rates of the states, in the form of `z`; zero for a device without any."""
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
-        rates = [FRICTION[self.friction].rate(self, stretch, v, friction)]
+        place, rubbing = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
+        rates = [FRICTION[self.friction].rate(self, place, rubbing, friction)]
         if not self.has_series:
             return rates[0]
 
         # the flywheel is driven by the series element
-        if not FRICTION[self.friction].STATES:
+        if self.friction_states > 1:
+            rates = list(np.moveaxis(np.asarray(rates[0]), -1, 0))
+        elif not self.friction_states:
             rates = []
         series_rate = v - speed
-        pull = series.force(self, deflection, series_rate, gap, contact)
+        if self.rubs_flywheel:
+            pull = self._flywheel_share(x, v, z, contact)
+        else:
+            pull = series.force(self, deflection, series_rate, gap, contact)
         position = stretch - deflection
         mass, rest = inertance.branch(self, self.total_inertance, position, speed)
         rates += [series_rate, (pull - rest - self._flywheel_side(position, speed)) / mass]
@@ -179,7 +210,8 @@ class ReferenceDevice(DeviceParameters):
         stretch = x - self.rest_length
         position, speed = (stretch - deflection, speed) if self.has_series else (stretch, v)
         energy = parallel.spring_energy(stretch, self.stiffness, self.stiffness_cubic)
-        energy = energy + FRICTION[self.friction].stored_energy(self, stretch, v, friction)
+        place, rate = (position, speed) if self.rubs_flywheel else (stretch, v)
+        energy = energy + FRICTION[self.friction].stored_energy(self, place, rate, friction)
         energy = energy + end_stops.stored_energy(self, stretch)
         energy = energy + inertance.stored_energy(self, self.total_inertance, position, speed)
         energy = energy + gas.stored_energy(self, position)
@@ -197,9 +229,10 @@ class ReferenceDevice(DeviceParameters):
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
         heat = parallel.damping_force(v, self.viscous, self.quadratic_damping) * v
-        heat = heat + FRICTION[self.friction].dissipated_power(self, stretch, v, friction)
+        place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
+        heat = heat + FRICTION[self.friction].dissipated_power(self, place, rate, friction)
         heat = heat + end_stops.dissipated_power(self, stretch, v)
-        heat = heat + self.load_friction_force(v, self.inertance_force(x, v, a, z)) * v
+        heat = heat + self.load_friction_force(rate, self.inertance_force(x, v, a, z)) * rate
         if self.has_series:
             heat = heat + series.dissipated_power(self, deflection, v - speed, gap)
         else:
@@ -226,6 +259,18 @@ class ReferenceDevice(DeviceParameters):
         """Every parameter by name, defaults included; NaN for one that is not given."""
         return asdict(self)
 
+    def _beside(self, x: Quantity, v: Quantity) -> Quantity:
+        """T [N] without friction."""
+        stretch = x - self.rest_length
+        spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
+        damper = parallel.damping_force(v, self.viscous, self.quadratic_damping)
+        return spring + damper + self.force_offset + end_stops.force(self, stretch, v)
+
+    def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
+        """N [N] where friction takes its part of F_s behind the series element."""
+        left = self._series_force(x, v, z, contact) - self.friction_force(x, v, z)
+        return left / (1.0 + self._load_factor(self._states(z)[2]) * np.sign(left))
+
     def _series_force(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         _, deflection, speed, gap = self._states(z)
         return series.force(self, deflection, v - speed, gap, contact) + 0.0 * x
@@ -247,7 +292,7 @@ class ReferenceDevice(DeviceParameters):
                 f"z: shape {array.shape}, but this device has the states "
                 f"{', '.join(self.state_names)} along the last axis"
             )
-        first = FRICTION[self.friction].STATES
-        friction = array[..., 0] if first else 0.0
+        first = self.friction_states
+        friction = array[..., :first] if first > 1 else array[..., 0] if first else 0.0
         gap = array[..., first + 2] if self.backlash > 0.0 else 0.0
         return friction, array[..., first], array[..., first + 1], gap

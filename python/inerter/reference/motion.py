@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 
 from .contacts import Clutch, Contacts, integrate
 from .device import ReferenceDevice
-from .laws import Quantity
+from .laws import Quantity, maxwell_slip
 
 Signal = Callable[[Quantity], Quantity]
 
@@ -50,8 +50,8 @@ class Motion:
 class Response:
     """A device's answer, arrays of shape (times,).
 
-    `state` is the friction law's state, zero for a law without one; `states` holds all states of
-    the device in its order, shape (times, nstate).
+    `state` is the friction law's (first) state, zero for a law without one; `states` holds
+    all states of the device in its order, shape (times, nstate).
     """
 
     time: NDArray[np.float64]
@@ -134,7 +134,7 @@ def response(
     initial_state
         States at `times[0]`, shape (nstate,); a number stands for each of them.
     method
-        "LSODA" (fast) or any stiff method of `scipy.integrate.solve_ivp`, for instance "Radau".
+        "LSODA" (fast; RK23 in its place for maxwell_slip) or any stiff method of `scipy.integrate.solve_ivp`, for instance "Radau".
     rtol
         Relative tolerance; the absolute one is `rtol` times the state's own scale.
     scan_step
@@ -157,10 +157,13 @@ def response(
     a = _along(motion.acceleration, at)
     states = np.empty((at.size, device.nstate))
     states[:] = np.asarray(initial_state, dtype=np.float64)
+    if method == "LSODA" and device.friction == "maxwell_slip":
+        # every element that begins to slip is a corner, at which a method of many steps stumbles
+        method = "RK23"
     if device.nstate and at.size > 1:
         _integrate(device, motion, at, states, method, rtol, scan_step)
     force = np.asarray(device.force(x, v, a, device.state_argument(states)), dtype=np.float64)
-    friction = "friction_state" in device.state_names
+    friction = device.friction_states > 0
     state = states[:, 0].copy() if friction else np.zeros(at.shape)
     return Response(
         time=at, displacement=x, velocity=v, acceleration=a, state=state, force=force, states=states
@@ -177,6 +180,9 @@ def state_scales(device: ReferenceDevice) -> NDArray[np.float64]:
         "flywheel_velocity": lambda _: 1e-2,
         "gap_position": lambda d: min(d.backlash, 10.0 / stiffness),
     }
+    elements = maxwell_slip.elements(device)
+    for i, (spring, slip) in enumerate(zip(*elements, strict=True)):
+        sizes[f"friction_state_{i + 1}"] = lambda _, size=slip / spring: size
     return np.array([sizes[name](device) for name in device.state_names])
 
 
@@ -263,7 +269,7 @@ def _integrate(
                 atol=absolute,
                 max_step=scan_step,
             )
-        elif device.friction_backlash > 0.0:
+        elif device.friction_backlash > 0.0 and not device.rubs_flywheel:
             direction = float(np.sign(velocity(0.5 * (left + right))))
             path = _through_play(
                 device, rate, velocity, direction, z, stops, method, rtol, absolute, scan_step

@@ -22,6 +22,7 @@ TOTAL, INERTANCE, FRICTION = "after", "measured", "before"
 _COLORS = ("after", "before", "measured", "warn", "shade", "text")
 STATE_UNITS = {
     "friction_state": "m",
+    **{f"friction_state_{i}": "m" for i in range(1, 9)},
     "series_deflection": "m",
     "flywheel_velocity": "m/s",
     "gap_position": "m",

@@ -139,7 +139,7 @@ def force_change(case: Case, true: ValidationRun, displacement: float, velocity:
         for dx in (-slack[0][i], slack[0][i]):
             for dv in (-slack[1][i], slack[1][i]):
                 moved = device.rest_force(x + dx, v + dv, z)
-                moved = moved + carried + device.load_friction_force(v + dv, carried)
+                moved = moved + carried + device.load_share(v + dv) * np.abs(carried)
                 worst = max(worst, float(np.abs(moved - force).max() / np.abs(force).max()))
     return worst
 

@@ -82,6 +82,8 @@ def with_law(device: Device, law: str) -> Device:
     elif law == "bouc_wen":
         shape = STIFFNESS / (2 * level)
         needed = {"bw_stiffness": STIFFNESS, "bw_beta": shape, "bw_gamma": shape}
+    elif law == "maxwell_slip":
+        needed = {"slip_stiffness_1": STIFFNESS, "slip_force_1": level}
     return Device(**{**needed, **kept, "friction": law})
 
 

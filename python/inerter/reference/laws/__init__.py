@@ -21,13 +21,14 @@ from . import (
     inertance,
     load,
     lugre,
+    maxwell_slip,
     none,
     parallel,
     series,
     series_spring,
     stribeck,
 )
-from .device_parameters import GAS_LAWS, DeviceParameters
+from .device_parameters import FRICTION_SIDES, GAS_LAWS, DeviceParameters
 from .level import friction_level
 from .parameters import FRICTION_LAWS, FrictionParameters, Quantity, parameter
 
@@ -39,11 +40,13 @@ FRICTION: dict[str, ModuleType] = {
     "lugre": lugre,
     "bouc_wen": bouc_wen,
     "brown_mcphee": brown_mcphee,
+    "maxwell_slip": maxwell_slip,
 }
 
 __all__ = [
     "FRICTION",
     "FRICTION_LAWS",
+    "FRICTION_SIDES",
     "GAS_LAWS",
     "DeviceParameters",
     "FrictionParameters",
@@ -60,6 +63,7 @@ __all__ = [
     "inertance",
     "load",
     "lugre",
+    "maxwell_slip",
     "none",
     "parallel",
     "parameter",

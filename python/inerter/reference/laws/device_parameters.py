@@ -9,6 +9,7 @@ import numpy as np
 from .parameters import UNSET, FrictionParameters, parameter
 
 GAS_LAWS = ("polytropic", "expanded")
+FRICTION_SIDES = ("terminals", "flywheel")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,6 +37,8 @@ class DeviceParameters(FrictionParameters):
     load_friction: float = parameter(
         0.0, "-", "friction share mu of the inertance force", at_least=0.0, at_most=1.0
     )
+
+    friction_side: str = "terminals"
 
     series_stiffness: float = parameter(0.0, "N/m", "spring in series k_s", at_least=0.0)
     series_damping: float = parameter(0.0, "N s/m", "damper in series c_s", at_least=0.0)
@@ -67,13 +70,30 @@ class DeviceParameters(FrictionParameters):
         """Whether something stands in series with the inertance."""
         return self.series_stiffness > 0.0 or self.series_damping > 0.0
 
+    @property
+    def rubs_flywheel(self) -> bool:
+        """Whether friction acts behind a series element."""
+        return self.has_series and self.friction_side == "flywheel"
+
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
         super().__post_init__()
+        self._check_side()
         self._check_channel()
         self._check_series()
         self._check_stops()
         self._check_gas()
+
+    def _check_side(self) -> None:
+        if self.friction_side not in FRICTION_SIDES:
+            raise ValueError(
+                f"friction_side: '{self.friction_side}' is not one of {', '.join(FRICTION_SIDES)}"
+            )
+        if self.friction_side == "flywheel" and self.load_friction >= 1.0:
+            raise ValueError(
+                f"load_friction: {self.load_friction} locks the flywheel that it acts on; give "
+                "less than 1"
+            )
 
     def _check_series(self) -> None:
         if self.series_stiffness == 0.0:

@@ -23,6 +23,7 @@ FRICTION_LAWS = (
     "lugre",
     "bouc_wen",
     "brown_mcphee",
+    "maxwell_slip",
 )
 
 
@@ -77,6 +78,23 @@ class FrictionParameters:
     bw_exponent: float = parameter(1.0, "-", "sharpness n of the yield", at_least=1.0, at_most=20.0)
     bw_stiffness: float = parameter(0.0, "N/m", "stiffness k0", at_least=0.0)
     bw_ratio: float = parameter(0.0, "-", "share A of the elastic branch")
+
+    slip_stiffness_1: float = parameter(0.0, "N/m", "stiffness of element 1", at_least=0.0)
+    slip_force_1: float = parameter(0.0, "N", "force at which element 1 slips", at_least=0.0)
+    slip_stiffness_2: float = parameter(0.0, "N/m", "stiffness of element 2", at_least=0.0)
+    slip_force_2: float = parameter(0.0, "N", "force at which element 2 slips", at_least=0.0)
+    slip_stiffness_3: float = parameter(0.0, "N/m", "stiffness of element 3", at_least=0.0)
+    slip_force_3: float = parameter(0.0, "N", "force at which element 3 slips", at_least=0.0)
+    slip_stiffness_4: float = parameter(0.0, "N/m", "stiffness of element 4", at_least=0.0)
+    slip_force_4: float = parameter(0.0, "N", "force at which element 4 slips", at_least=0.0)
+    slip_stiffness_5: float = parameter(0.0, "N/m", "stiffness of element 5", at_least=0.0)
+    slip_force_5: float = parameter(0.0, "N", "force at which element 5 slips", at_least=0.0)
+    slip_stiffness_6: float = parameter(0.0, "N/m", "stiffness of element 6", at_least=0.0)
+    slip_force_6: float = parameter(0.0, "N", "force at which element 6 slips", at_least=0.0)
+    slip_stiffness_7: float = parameter(0.0, "N/m", "stiffness of element 7", at_least=0.0)
+    slip_force_7: float = parameter(0.0, "N", "force at which element 7 slips", at_least=0.0)
+    slip_stiffness_8: float = parameter(0.0, "N/m", "stiffness of element 8", at_least=0.0)
+    slip_force_8: float = parameter(0.0, "N", "force at which element 8 slips", at_least=0.0)
 
     friction_backlash: float = parameter(
         0.0, "m", "half of the free play before a bristle", at_least=0.0
@@ -143,6 +161,9 @@ class FrictionParameters:
                 "bw_stiffness: 0 N/m leaves friction='bouc_wen' without a force; give "
                 "bw_stiffness > 0, or friction='none'"
             )
+        if self.friction == "maxwell_slip":
+            self._check_elements()
+            return
         # a law with a bristle divides by its friction level
         bristle = self.friction in ("dahl", "lugre")
         level = self.coulomb_force if bristle else self.breakaway_force
@@ -150,4 +171,27 @@ class FrictionParameters:
             raise ValueError(
                 f"coulomb_force: {self.coulomb_force} N leaves friction='{self.friction}' without "
                 "a level to slide at; give coulomb_force > 0, or friction='none'"
+            )
+
+    def _check_elements(self) -> None:
+        """Maxwell-slip elements are whole and numbered without a gap."""
+        last = True
+        for i in range(1, 9):
+            pair = [getattr(self, f"slip_{name}_{i}") for name in ("stiffness", "force")]
+            there = pair[0] > 0.0
+            if there != (pair[1] > 0.0):
+                raise ValueError(
+                    f"slip_stiffness_{i}: {pair[0]} N/m with slip_force_{i} {pair[1]} N is half an "
+                    "element; give both above 0, or neither"
+                )
+            if there and not last:
+                raise ValueError(
+                    f"slip_stiffness_{i}: {pair[0]} N/m comes after element {i - 1}, which is not "
+                    "there; number the elements from 1 without a gap"
+                )
+            last = there
+        if self.slip_stiffness_1 == 0.0:
+            raise ValueError(
+                "slip_stiffness_1: 0 N/m leaves friction='maxwell_slip' without an element; give "
+                "slip_stiffness_1 and slip_force_1 above 0, or friction='none'"
             )

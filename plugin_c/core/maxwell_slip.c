@@ -1,0 +1,133 @@
+// Maxwell-slip friction: springs side by side, each of which slips at a force of its own.
+//
+//   z_i' = v                       while element i sticks: u_i > 0
+//   z_i' = v min(u_i, 0)           at its limit, or beyond
+//   u_i  = 1 - k_i z_i sgn(v) / (f_i level)
+//   F    = sum of k_i z_i
+//
+// z_i [m] deflection of element i; k_i [N/m] slip_stiffness_i, f_i [N] slip_force_i, level:
+// friction.h. Elements 1 to 8, numbered without a gap. Stored energy: sum of k_i z_i^2 / 2.
+// Breakaway and sliding: sum of f_i. From rest F(x) is a polygon with corners at f_i / k_i.
+// Why: one bristle (dahl.c, lugre.c, bouc_wen.c) has one number of memory, and forgets a loop
+// within a loop. Here every reversal is remembered until a larger one wipes it out, and loops
+// between the same ends are congruent: hysteresis with non-local memory (Masing's rules).
+// Rate-independent. An element is beyond its limit only where the level has just fallen (along the
+// stroke, with the direction); it comes back along a path of f_i / k_i, without giving energy.
+// Exact at constant v and level. Passive.
+// Source: Iwan 1966; Lampaert, Al-Bender, Swevers 2003 (without its sliding dynamics); Masing 1926.
+// Not modelled: Stribeck effect, micro-damping, free play before the elements.
+
+#include "friction.h"
+
+// u of an element at its limit, but for rounding: it stays there
+static const double kReached = 1e-12;
+
+int slip_count(const InerterDevice* p) {
+  int count = 0;
+  while (count < INERTER_MAXSLIP && slip_element(p, count)[0] > 0) {
+    count++;
+  }
+  return count;
+}
+
+static void rate(const InerterDevice* p, double x, double v, const double* z, double* rates) {
+  double level = friction_level(p, x, v), side = sign(v);
+  for (int i = 0; i < p->nfriction; i++) {
+    const double* element = slip_element(p, i);
+    double u = 1 - element[0] * z[i] * side / (element[1] * level);
+    rates[i] = u > kReached ? v : v * u;
+  }
+}
+
+static void step(const InerterDevice* p, double x, double v, double* z, double h) {
+  if (v == 0) {
+    return;
+  }
+  double level = friction_level(p, x, v), side = sign(v), path = fabs(v) * h;
+  for (int i = 0; i < p->nfriction; i++) {
+    const double* element = slip_element(p, i);
+    double limit = element[1] * level / element[0], q = side * z[i];
+    z[i] = side * (q > limit ? limit + (q - limit) * exp(-path / limit) : fmin(q + path, limit));
+  }
+}
+
+static double force(const InerterDevice* p, const double* z) {
+  double sum = 0;
+  for (int i = 0; i < p->nfriction; i++) {
+    sum += slip_element(p, i)[0] * z[i];
+  }
+  return sum;
+}
+
+static double energy(const InerterDevice* p, const double* z) {
+  double sum = 0;
+  for (int i = 0; i < p->nfriction; i++) {
+    sum += 0.5 * slip_element(p, i)[0] * z[i] * z[i];
+  }
+  return sum;
+}
+
+static double stored_power(const InerterDevice* p, const double* z, const double* rates) {
+  double sum = 0;
+  for (int i = 0; i < p->nfriction; i++) {
+    sum += slip_element(p, i)[0] * z[i] * rates[i];
+  }
+  return sum;
+}
+
+static double stiffness(const InerterDevice* p) {
+  double sum = 0;
+  for (int i = 0; i < p->nfriction; i++) {
+    sum += slip_element(p, i)[0];
+  }
+  return sum;
+}
+
+// on the curve from rest: one deflection for all, those at their limit left behind
+static void of_force(const InerterDevice* p, double x, double v, double wanted, double* z) {
+  double level = friction_level(p, x, v), side = sign(wanted), deflection = 0;
+  for (int round = 0; round <= p->nfriction; round++) {
+    double rest = fabs(wanted), stiff = 0;
+    for (int i = 0; i < p->nfriction; i++) {
+      const double* element = slip_element(p, i);
+      if (element[0] * deflection >= element[1] * level && round) {
+        rest -= element[1] * level;
+      } else {
+        stiff += element[0];
+      }
+    }
+    deflection = stiff > 0 && isfinite(rest) ? fmax(deflection, rest / stiff) : deflection;
+  }
+  for (int i = 0; i < p->nfriction; i++) {
+    const double* element = slip_element(p, i);
+    z[i] = side * fmin(deflection, element[1] * level / element[0]);
+  }
+}
+
+static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
+  const double *x = path->x, *v = path->v;
+  double rest = p->rest_length;
+  int n = p->nfriction;
+  (void)v;
+  for (int i = path->first; i < path->last; i++) {
+    if (i) {
+      step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / path->h, z, path->h);
+    }
+    forces[i - path->first] = force(p, z);
+    for (int k = 0; k < n && path->states; k++) {
+      path->states[(size_t)i * (size_t)n + (size_t)k] = z[k];
+    }
+  }
+}
+
+static const FrictionStates kStates = {
+    .rate = rate,
+    .step = step,
+    .force = force,
+    .energy = energy,
+    .stored_power = stored_power,
+    .of_force = of_force,
+};
+
+const FrictionLaw inerter_maxwell_slip = {
+    .stiffness = stiffness, .along = along, .several = &kStates};
