@@ -90,7 +90,22 @@
   X(bw_gamma, "m^-n", 0.5, -INFINITY, INFINITY, CLOSED, "bouc_wen", "hysteresis shape, gamma")     \
   X(bw_exponent, "1", 1, 1, 20, CLOSED, "bouc_wen", "sharpness of yielding, n")                    \
   X(bw_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "bouc_wen", "k0: F = A k0 x + (1 - A) k0 z")      \
-  X(bw_ratio, "1", 0, -INFINITY, INFINITY, CLOSED, "bouc_wen", "elastic share A")
+  X(bw_ratio, "1", 0, -INFINITY, INFINITY, CLOSED, "bouc_wen", "elastic share A")                  \
+  /* along the stroke */                                                                           \
+  X(curve_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the first value of every curve") \
+  X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")
+
+// What changes along the stroke (curve.c): X(name, unit, laws, meaning). Each has two lists of
+// numbers: NAME_curve, values at evenly spaced places, and NAME_periods, three numbers for each.
+#define INERTER_STROKES(X)                                                   \
+  X(friction, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee",      \
+    "relative rise of the friction level")                                   \
+  X(friction_back, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee", \
+    "the same for v < 0, where it differs")                                  \
+  X(inertance, "1", "", "relative rise of the inertance")                    \
+  X(inertance_back, "1", "", "the same for v < 0, where it differs")         \
+  X(force, "N", "", "force of the place alone")                              \
+  X(viscous, "N*s/m", "", "viscous damping beside viscous")
 
 // the friction laws: X(identifier, number of states, meaning)
 #define INERTER_FRICTION_LAWS(X)                                       \

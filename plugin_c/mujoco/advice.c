@@ -15,7 +15,7 @@ int advice_on_content(const mjModel* m, int instance, const Instance* self,
   if (self->device.given & inertance || native) {
     return 0;
   }
-  if (!self->stated.given && !self->nlive && !damped &&
+  if (!self->stated.given && !self->device.parts && !self->nlive && !damped &&
       self->stated.friction == INERTER_FRICTION_none) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "nothing is configured: the device would do nothing; state inertance, or what else it "

@@ -8,6 +8,9 @@ const char* const kAttributes[NATTRIBUTE] = {
 #undef X
         "friction",
     "gas_law",
+#define X(name, ...) #name "_curve", #name "_periods",
+    INERTER_STROKES(X)
+#undef X
 };
 
 int configuration_read(const mjModel* m, int instance, InerterDevice* device,

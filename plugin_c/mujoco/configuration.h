@@ -5,8 +5,8 @@
 
 #include "mujoco/instance.h"
 
-// names of the attributes: every parameter of the device, "friction" and "gas_law"
-enum { NATTRIBUTE = INERTER_NPARAMETER + 2 };
+// names of the attributes: every parameter of the device, "friction", "gas_law", every list
+enum { NATTRIBUTE = INERTER_NPARAMETER + 2 + INERTER_NLIST };
 extern const char* const kAttributes[NATTRIBUTE];
 
 // Read what is stated of the device of an instance; inerter_finish makes it whole. Return 0, or -1
