@@ -205,6 +205,19 @@ static int falls_below(const InerterCurve* c, double base, double least, double*
       *where = x;
     }
   }
+
+  // the bottom between the neighbours
+  double step = whole / count;
+  for (int i = 0; i < 40; i++) {
+    step *= 0.5;
+    for (int side = -1; side <= 1; side += 2) {
+      double x = *where + side * step, here = base + curve_value(c, x);
+      if (here < *value) {
+        *value = here;
+        *where = x;
+      }
+    }
+  }
   return *value < least;
 }
 
