@@ -9,6 +9,8 @@
 // beta >= |gamma| and 0 <= A <= 1.
 // Source: Bouc 1967, Wen 1976; eq. (12)-(13) of the hysteretic inerter paper. The parameters are
 // redundant: scaling z changes alpha, beta, gamma, k0 and leaves F alone.
+// Along the stroke (friction.h) beta and gamma are divided by level^n: |z| yields at that share of
+// where it did, with the same stiffness and the same stored energy.
 // Free play before the yielding share: friction_play.c.
 // Not modelled: pinching, degradation.
 
@@ -16,18 +18,27 @@
 
 // z' along the path: rate per unit |v| in direction s = sgn(v), and its slope over z. `loading`: z
 // has the direction of s, or is 0 and about to have it; else it has the other one.
-static double slope(const InerterDevice* p, double s, double z, int loading, double* derivative) {
+// c: narrowing of the law, `narrow` that of the level.
+static double slope(const InerterDevice* p, double narrow, double s, double z, int loading,
+                    double* derivative) {
   double n = p->bw_exponent;
-  double c = loading ? p->bw_gamma + p->bw_beta : p->bw_gamma - p->bw_beta;
+  double c = (loading ? p->bw_gamma + p->bw_beta : p->bw_gamma - p->bw_beta) * narrow;
   double power = n == 1 ? 1 : pow(fabs(z), n - 1);
   *derivative = (loading ? -c : c) * n * power;
   return s * (p->bw_alpha - c * power * fabs(z));
 }
 
+// level, and what it makes of beta and gamma
+static double level_at(const InerterDevice* p, double x, double v) {
+  return p->parts & PART_FRICTION_CURVE ? friction_level(p, x, v) : 1;
+}
+static double narrowing(const InerterDevice* p, double level) {
+  return level == 1 ? 1 : pow(level, -p->bw_exponent);
+}
+
 static double rate(const InerterDevice* p, double x, double v, double z) {
-  (void)x;
-  double derivative;
-  return fabs(v) * slope(p, sign(v), z, v * z >= 0, &derivative);
+  double derivative, narrow = narrowing(p, level_at(p, x, v));
+  return fabs(v) * slope(p, narrow, sign(v), z, v * z >= 0, &derivative);
 }
 
 // (e^x - 1) / x
@@ -37,10 +48,10 @@ static double growth(double x) {
 
 // Exponential step along a path in direction s: exact where the slope is linear in z, that is for
 // n = 1 within one sign of z. The change of slope at z = 0 is found on the way.
-static double advance(const InerterDevice* p, double s, double z, double path) {
+static double advance(const InerterDevice* p, double narrow, double s, double z, double path) {
   double derivative;
   if (z * s < 0) {
-    double value = slope(p, s, z, 0, &derivative);
+    double value = slope(p, narrow, s, z, 0, &derivative);
     double next = z + path * growth(derivative * path) * value;
     if (next * s < 0) {
       return next;
@@ -51,7 +62,7 @@ static double advance(const InerterDevice* p, double s, double z, double path) {
     path -= fabs(x) < 1e-8 ? -z / value : log1p(x) / derivative;
     z = 0;
   }
-  double value = slope(p, s, z, 1, &derivative);
+  double value = slope(p, narrow, s, z, 1, &derivative);
   return z + fmax(path, 0) * growth(derivative * fmax(path, 0)) * value;
 }
 
@@ -59,32 +70,32 @@ static double advance(const InerterDevice* p, double s, double z, double path) {
 // as the slope changes, then one that ends at the limit of z. The tangent passes over a sharp knee,
 // so that the limit has to be kept here.
 static double step(const InerterDevice* p, double x, double v, double z, double h) {
-  (void)x;
+  double level = level_at(p, x, v), narrow = narrowing(p, level);
   double s = sign(v);
   double path = fabs(v) * h;
   double n = p->bw_exponent;
   double limit = p->bw_beta + p->bw_gamma;
   if (n == 1 || limit <= 0) {
-    return advance(p, s, z, path);
+    return advance(p, narrow, s, z, path);
   }
-  double bound = pow(p->bw_alpha / limit, 1 / n);
+  double bound = pow(p->bw_alpha / limit, 1 / n) * level;
   double part = 0.25 * bound / p->bw_alpha;
   int inside = s * z <= bound;
   for (int i = 0; i < 16 && path > part; i++) {
-    z = advance(p, s, z, part);
+    z = advance(p, narrow, s, z, part);
     path -= part;
   }
-  z = advance(p, s, z, path);
+  z = advance(p, narrow, s, z, path);
   return inside && s * z > bound ? s * bound : z;
 }
 
 // Time until z = 0, d|z|/dt = -|v| (alpha + (beta - gamma) |z|^n): closed for n = 1, else by the
 // five-point rule of Gauss over |z|. Infinite where z does not come back.
 static double straight(const InerterDevice* p, double x, double v, double z) {
-  (void)x;
   const double points[] = {0.5384693101056831, 0.9061798459386640};
   const double weights[] = {0.4786286704993665, 0.2369268850561891};
-  double n = p->bw_exponent, rise = p->bw_beta - p->bw_gamma, size = fabs(z);
+  double n = p->bw_exponent, size = fabs(z);
+  double rise = (p->bw_beta - p->bw_gamma) * narrowing(p, level_at(p, x, v));
   double ratio = rise * pow(size, n) / p->bw_alpha;
   if (!(ratio > -1)) {
     return INFINITY;

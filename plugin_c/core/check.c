@@ -263,10 +263,10 @@ static uint32_t parts_of(const InerterDevice* p) {
   int stops = !isnan(p->stop_lower) || !isnan(p->stop_upper);
   int rubbing = p->friction != INERTER_FRICTION_none || p->load_friction > 0;
   int wheel = series && rubbing && p->friction_side == INERTER_SIDE_flywheel;
-  return (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) | (gas ? PART_GAS : 0) |
-         (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) | (series ? PART_SERIES : 0) |
-         (p->backlash > 0 ? PART_BACKLASH : 0) | (stops ? PART_STOPS : 0) |
-         (wheel ? PART_WHEEL_FRICTION : 0);
+  return curve_parts(p) | (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) |
+         (gas ? PART_GAS : 0) | (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) |
+         (series ? PART_SERIES : 0) | (p->backlash > 0 ? PART_BACKLASH : 0) |
+         (stops ? PART_STOPS : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
 int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
@@ -285,14 +285,18 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
   if (check_law(device, message) || check_ranges(device, message) ||
       check_friction(device, message) || check_stops(device, message) ||
       check_gas(device, message) || check_channel(device, message) ||
-      check_series(device, message)) {
+      check_series(device, message) || curve_check(device, message)) {
     return -1;
   }
+  inerter_find_parts(device);
+  return 0;
+}
+
+void inerter_find_parts(InerterDevice* device) {
   device->parts = parts_of(device);
   device->nfriction = device->friction == INERTER_FRICTION_maxwell_slip
                           ? slip_count(device)
                           : inerter_friction_nstate(device->friction);
   device->nstate =
       device->nfriction + (has(device, PART_SERIES) ? 2 : 0) + (has(device, PART_BACKLASH) ? 1 : 0);
-  return 0;
 }

@@ -86,6 +86,83 @@ static int set_law(const char* key, const char* text, const char* (*name)(int), 
   return -1;
 }
 
+const double* inerter_list_values(const InerterDevice* device, int i, int* count) {
+  const InerterCurve* curve = &device->curve[i / 2];
+  *count = i % 2 ? 3 * curve->nperiod : curve->nvalue;
+  return i % 2 ? curve->period : curve->value;
+}
+
+int inerter_set_list(InerterDevice* device, int i, int count, const double* values,
+                     char message[INERTER_MESSAGE_SIZE]) {
+  const InerterList* list = inerter_list(i);
+  if (count > list->most || (list->periods ? count % 3 : count == 1)) {
+    snprintf(message, INERTER_MESSAGE_SIZE, "%s has %d numbers; give %s", list->name, count,
+             list->periods ? "three for each period (length [m] > 0, amplitude, phase [rad]), at "
+                             "most 8 periods"
+                           : "2 to 64");
+    return -1;
+  }
+  for (int k = 0; k < count; k++) {
+    int length = list->periods && k % 3 == 0;
+    if (!isfinite(values[k]) || (length && values[k] <= 0)) {
+      snprintf(message, INERTER_MESSAGE_SIZE, "%s: number %d is %g; give a finite number%s",
+               list->name, k + 1, values[k], length ? " > 0, the length of a period in m" : "");
+      return -1;
+    }
+  }
+  InerterCurve* curve = &device->curve[i / 2];
+  *(list->periods ? &curve->nperiod : &curve->nvalue) = list->periods ? count / 3 : count;
+  if (count) {
+    memcpy(list->periods ? curve->period : curve->value, values, sizeof(double) * (size_t)count);
+  }
+  return 0;
+}
+
+// numbers separated by blanks
+static int set_list(InerterDevice* device, int i, const char* text, char* message) {
+  const InerterList* list = inerter_list(i);
+  double values[INERTER_MAXCURVE];
+  int count = 0;
+  for (const char* at = text;;) {
+    while (isspace((unsigned char)*at)) {
+      at++;
+    }
+    if (!*at) {
+      break;
+    }
+    char word[64];
+    size_t length = 0;
+    while (at[length] && !isspace((unsigned char)at[length])) {
+      length++;
+    }
+    const char* end = word;
+    if (length < sizeof(word)) {
+      memcpy(word, at, length);
+      word[length] = 0;
+    } else {
+      word[0] = 0;
+    }
+    double value = number(word, &end);
+    if (!*word || *end) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "%s: \"%.*s\" is not a number; give numbers separated by blanks (%s)", list->name,
+               (int)(length < 60 ? length : 60), at, list->meaning);
+      return -1;
+    }
+    if (count < INERTER_MAXCURVE) {
+      values[count] = value;
+    }
+    count++;
+    at += length;
+  }
+  if (count == 0) {
+    snprintf(message, INERTER_MESSAGE_SIZE, "%s is empty; give numbers separated by blanks (%s)",
+             list->name, list->meaning);
+    return -1;
+  }
+  return inerter_set_list(device, i, count, values, message);
+}
+
 int inerter_set(InerterDevice* device, const char* key, const char* text,
                 char message[INERTER_MESSAGE_SIZE]) {
   char range[128];
@@ -105,6 +182,11 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
     }
     inerter_mark_given(device, INERTER_INDEX_friction_side);
     return 0;
+  }
+  for (int i = 0; i < INERTER_NLIST; i++) {
+    if (!strcmp(key, inerter_list(i)->name)) {
+      return set_list(device, i, text, message);
+    }
   }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);

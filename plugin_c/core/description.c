@@ -48,6 +48,32 @@ const FrictionLaw* const inerter_friction_law[] = {
 #undef inerter_none
 };
 
+static const InerterList kLists[] = {
+#define X(name, unit, laws, meaning)                                \
+  {#name "_curve",                                                  \
+   unit,                                                            \
+   INERTER_MAXCURVE,                                                \
+   0,                                                               \
+   laws,                                                            \
+   meaning ", at evenly spaced x from curve_lower to curve_upper"}, \
+      {#name "_periods",                                            \
+       unit,                                                        \
+       3 * INERTER_MAXPERIOD,                                       \
+       1,                                                           \
+       laws,                                                        \
+       meaning ", length [m], amplitude and phase [rad] of each sine of x"},
+    INERTER_STROKES(X)
+#undef X
+};
+
+const InerterList* inerter_list(int i) {
+  return i >= 0 && i < INERTER_NLIST ? &kLists[i] : NULL;
+}
+
+size_t inerter_device_size(void) {
+  return sizeof(InerterDevice);
+}
+
 const InerterParameter* inerter_parameter(int i) {
   return i >= 0 && i < INERTER_NPARAMETER ? &kParameters[i] : NULL;
 }

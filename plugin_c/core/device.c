@@ -92,8 +92,9 @@ static double bristle_of_force(const InerterDevice* device, double x, double v, 
   // a state cannot be beyond where an endless slide in its direction leads, slow or fast: slow has
   // the Stribeck peak, fast the full asymmetry
   double speed = (z < 0 ? -10 : 10) * device->transition_velocity;
-  double slow = law_of(device)->step(device, x, copysign(1e-200, z), 0, 1e215);
-  double fast = law_of(device)->step(device, x, speed, 0, 1e15 / fabs(speed));
+  double stretch = stretch_of(device, x);
+  double slow = law_of(device)->step(device, stretch, copysign(1e-200, z), 0, 1e215);
+  double fast = law_of(device)->step(device, stretch, speed, 0, 1e15 / fabs(speed));
   double limit = fmax(fabs(slow), fabs(fast));
   return isfinite(limit) ? copysign(fmin(fabs(z), limit), z) : z;
 }
@@ -149,6 +150,10 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
 double inerter_bristle(const InerterDevice* device, double* damping) {
   *damping = device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
   return has_bristle(device) ? law_of(device)->stiffness(device) : 0;
+}
+
+double inerter_viscous(const InerterDevice* device, double x) {
+  return damping_at(device, stretch_of(device, x));
 }
 
 double inerter_friction_force(const InerterDevice* device, double x, double v, const double* z) {
@@ -227,6 +232,9 @@ InerterForce inerter_force(const InerterDevice* device, double x, double v, doub
 double inerter_stored_energy(const InerterDevice* device, double x, double v, const double* z) {
   double stretch = stretch_of(device, x), square = stretch * stretch;
   double energy = (0.5 * device->stiffness + 0.25 * device->stiffness_cubic * square) * square;
+  if (has(device, PART_FORCE_CURVE)) {
+    energy += curve_integral(&device->curve[INERTER_STROKE_force], stretch);
+  }
   double y = stretch, w = v;
   if (has_bristle(device)) {
     energy += friction_energy(device, place_of_friction(device, stretch, v, z).x, z);
@@ -247,7 +255,7 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
 double inerter_dissipated_power(const InerterDevice* device, double x, double v, double a,
                                 const double* z) {
   double stretch = stretch_of(device, x), w = v;
-  double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
+  double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v)) * v;
   double load = load_at_terminals(device, v) * fabs(branch_force(device, x, v, a, z));
   Place rubbing = place_of_friction(device, stretch, v, z);
   double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, stretch, v, z)

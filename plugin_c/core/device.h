@@ -1,17 +1,18 @@
 // A device: forces at the terminals, and an inertance, perhaps behind a series element.
 //
 //   F = T(x, v, z) + N + mu sign(v) |N|
-//   T = c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction + F_stops
+//   T = c(x) v + c2 v|v| + k x + k3 x^3 + f(x) + F_0 + F_friction + F_stops
 //   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
 //   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
 //   F = T + F_s,  F_s = N + F_friction(y, w) + mu sign(w) |N|      friction_side = flywheel
 //   N = B(y, w) w' + R(y, w) + G(y, w)                             (wheel_friction.c)
 //
 // N: force through the inertance. B, R: inertance.c. G = flywheel_viscous w + pipe + gas: pipe.c,
-// gas_spring.c. F_s, deflection s [m], flywheel velocity w [m/s]: series.c. F_stops: end_stop.c.
-// x, v, a: displacement [m] (length minus rest_length), velocity [m/s] and acceleration [m/s^2] of
-// terminal 2 relative to terminal 1, positive = longer. Functions take the length. F [N]: the force
-// that lengthens the device, tension positive. For a rotational device read rad, N m and kg m^2.
+// gas_spring.c. c(x), f(x) and other curves along the stroke: curve.c. F_s, deflection s [m],
+// flywheel velocity w [m/s]: series.c. F_stops: end_stop.c. x, v, a: displacement [m] (length minus
+// rest_length), velocity [m/s] and acceleration [m/s^2] of terminal 2 relative to terminal 1,
+// positive = longer. Functions take the length. F [N]: the force that lengthens the device, tension
+// positive. For a rotational device read rad, N m and kg m^2.
 //
 // States z, each only where it is needed, in this order: the friction law's, s, w, the position of
 // the free play. All 0: unloaded, the flywheel at rest, in the middle of the play.
@@ -71,8 +72,28 @@ enum {
   INERTER_MAXSLIP = 8,                    // elements of maxwell_slip
   INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
   INERTER_MAXSTATE = INERTER_MAXFRICTION + 3,
+  INERTER_MAXCURVE = 64,  // most values of a curve
+  INERTER_MAXPERIOD = 8,  // most periods of a sum
   INERTER_MESSAGE_SIZE = 512
 };
+
+// what changes along the stroke: INERTER_STROKE_friction, ...
+typedef enum InerterStroke_ {
+#define X(name, ...) INERTER_STROKE_##name,
+  INERTER_STROKES(X)
+#undef X
+      INERTER_NSTROKE,
+  INERTER_NLIST = 2 * INERTER_NSTROKE  // lists: curve and periods of each
+} InerterStroke;
+
+// a quantity along the stroke: a curve through values, and a sum of periods (curve.c)
+typedef struct InerterCurve_ {
+  int nvalue, nperiod;                   // 0: none
+  double lower, rate;                    // place of the first value [m], values per metre
+  double value[INERTER_MAXCURVE];        // as stated
+  double fit[INERTER_MAXCURVE + 2];      // of the curve through them; set by inerter_finish
+  double period[3 * INERTER_MAXPERIOD];  // length [m], amplitude, phase [rad] of each
+} InerterCurve;
 
 typedef struct InerterDevice_ {
 #define X(name, ...) double name;
@@ -84,6 +105,7 @@ typedef struct InerterDevice_ {
   uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
   uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
   int nstate, nfriction;           // states, those of the friction law; set by inerter_finish
+  InerterCurve curve[INERTER_NSTROKE];
 } InerterDevice;
 
 // Whether parameter i (or a name, such as INERTER_INDEX_gas_law) was set; the inertance also when
@@ -115,6 +137,16 @@ typedef struct InerterParameter_ {
   const char* meaning;
 } InerterParameter;
 
+// what is known of one list of numbers
+typedef struct InerterList_ {
+  const char* name;
+  const char* unit;
+  int most;          // numbers
+  int periods;       // 1: three numbers each: length [m], amplitude [unit], phase [rad]
+  const char* laws;  // as of a parameter
+  const char* meaning;
+} InerterList;
+
 // parts of a force, in N
 typedef struct InerterForce_ {
   double total;
@@ -126,6 +158,13 @@ typedef struct InerterForce_ {
 
 // Description of parameter i, or NULL past the end.
 INERTER_API const InerterParameter* inerter_parameter(int i);
+
+// Description of list i, or NULL past the end; its numbers in a device, `count` of them.
+INERTER_API const InerterList* inerter_list(int i);
+INERTER_API const double* inerter_list_values(const InerterDevice* device, int i, int* count);
+
+// Size of a device in bytes.
+INERTER_API size_t inerter_device_size(void);
 
 // Name, largest number of states and meaning of friction law i; NULL or -1 past the end.
 INERTER_API const char* inerter_friction_name(int i);
@@ -149,6 +188,13 @@ INERTER_API void inerter_default(InerterDevice* device);
 // names the key, the value and what is allowed.
 INERTER_API int inerter_set(InerterDevice* device, const char* key, const char* text,
                             char message[INERTER_MESSAGE_SIZE]);
+
+// The same for list i from numbers; 0 numbers take it away.
+INERTER_API int inerter_set_list(InerterDevice* device, int i, int count, const double* values,
+                                 char message[INERTER_MESSAGE_SIZE]);
+
+// What follows of a finished device after a part of it was taken away, without checks.
+INERTER_API void inerter_find_parts(InerterDevice* device);
 
 // Check every value and how they fit together, and derive what was not set. Return 0, or -1 with a
 // message as above. Every function below wants a finished device.
@@ -254,6 +300,15 @@ INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, 
 // Power turned into heat [W]: F v - d(stored energy)/dt - F_0 v. The constant force is external.
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                             double a, const double* z);
+
+// Whether something changes along the stroke; the largest size of its slope [unit/m].
+static inline int inerter_has_curve(const InerterDevice* device, InerterStroke stroke) {
+  return device->curve[stroke].nvalue > 0 || device->curve[stroke].nperiod > 0;
+}
+INERTER_API double inerter_curve_steepest(const InerterDevice* device, InerterStroke stroke);
+
+// Viscous damping at x [N s/m].
+INERTER_API double inerter_viscous(const InerterDevice* device, double x);
 
 // Whether x and z are finite numbers that lie where the laws hold: 1, or 0 with a message that
 // names law, value and limit. Every other function answers a number that is none with such a

@@ -18,6 +18,13 @@ typedef struct FrictionPath_ {
   double* states;
 } FrictionPath;
 
+// bit of InerterDevice.parts: the level has a curve or periods (curve.c)
+enum { PART_FRICTION_CURVE = 1 << 16 };
+
+// curve.c: factor on the level in the mean of both directions, at a displacement where the
+// polynomial rises it by `rise`; lean: so that it is that times 1 + lean sign(v)
+double friction_curve_level(const InerterDevice* p, double x, double rise, double* lean);
+
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
 // straight: time until a state that v straightens is 0; asked for where z v < 0 only.
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
@@ -87,18 +94,25 @@ static inline double friction_direction(const InerterDevice* p, double v) {
 }
 
 // Factor on both friction levels: it differs between the directions and along the stroke.
-//   (1 + asymmetry sign(v)) max(0.001, 1 + gradient x + curvature x^2)
+//   (1 + asymmetry sign(v)) max(0.001, 1 + gradient x + curvature x^2 + curve(x))
+// with a curve for v > 0 and another for v < 0, where they differ (then without asymmetry).
 // The floor keeps bristles from facing a yield level of zero.
-static inline double friction_along_stroke(const InerterDevice* p, double x) {
-  if (p->friction_gradient == 0 && p->friction_curvature == 0) {
-    return 1;
+static inline double friction_levels(const InerterDevice* p, double x, double* lean) {
+  *lean = p->friction_asymmetry;
+  double rise = (p->friction_gradient + p->friction_curvature * x) * x;
+  if (p->parts & PART_FRICTION_CURVE) {
+    return friction_curve_level(p, x, rise, lean);
   }
-  return fmax(1e-3, 1 + (p->friction_gradient + p->friction_curvature * x) * x);
+  return p->friction_gradient == 0 && p->friction_curvature == 0 ? 1 : fmax(1e-3, 1 + rise);
+}
+static inline double friction_along_stroke(const InerterDevice* p, double x) {
+  double lean;
+  return friction_levels(p, x, &lean);
 }
 static inline double friction_level(const InerterDevice* p, double x, double v) {
-  double level = friction_along_stroke(p, x);
-  if (p->friction_asymmetry != 0) {
-    level *= 1 + p->friction_asymmetry * friction_direction(p, v);
+  double lean, level = friction_levels(p, x, &lean);
+  if (lean != 0) {
+    level *= 1 + lean * friction_direction(p, v);
   }
   return level;
 }

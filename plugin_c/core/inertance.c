@@ -1,14 +1,15 @@
 // Inertance that varies along the stroke and with speed.
 //
 //   force = B(y, w) w' + R(y, w),   B = b X(y) V(w),   R = b X'(y) E(w)
-//   X = max(0.01, 1 + gradient y + curvature y^2)
+//   X = max(0.01, 1 + gradient y + curvature y^2 + curve(y))
 //   V = max(0.01, 1 + g |w|)
 //   E = integral from 0 to w of u V(u) du = w^2 / 2 + g |w|^3 / 3
 //
 // y, w: displacement [m], velocity [m/s] of the flywheel; b [kg] inertance; gradient [1/m]
 // inertance_gradient, curvature [1/m^2] inertance_curvature, g [s/m] inertance_speed_gradient.
-// Positive force lengthens. Stored energy b X E; R makes the force keep it: F w = d(b X E)/dt.
-// Where a floor holds, X' = 0, and V stays 0.01.
+// curve: curve.c; another one for w < 0 where the directions differ, as the flanks of teeth do: B
+// jumps where w = 0, where there is no energy to change. Positive force lengthens. Stored energy b
+// X E; R makes the force keep it: F w = d(b X E)/dt. Where a floor holds, X' = 0, and V stays 0.01.
 // Source: Lagrange with the co-energy whose momentum is b X P(w), P' = V. With g = 0 this is
 // b(x) a + b'(x) v^2 / 2 of a ball screw of varying lead.
 // Not modelled: an inertance that depends on the history of the motion.
@@ -20,13 +21,20 @@
 static const double kFloor = 0.01;
 
 // X, with its slope
-static Tangent along_stroke(const InerterDevice* p, double y) {
+static Tangent along_stroke(const InerterDevice* p, double y, double w) {
   double linear = p->inertance_gradient, square = p->inertance_curvature;
-  double factor = 1 + (linear + square * y) * y;
+  double factor = 1 + (linear + square * y) * y, slope = linear + 2 * square * y;
+  if (has(p, PART_INERTANCE_CURVE)) {
+    int back = has(p, PART_INERTANCE_BACK) && w < 0;
+    Tangent curve =
+        curve_at(&p->curve[back ? INERTER_STROKE_inertance_back : INERTER_STROKE_inertance], y);
+    factor += curve.value;
+    slope += curve.slope;
+  }
   if (factor < kFloor) {
     return (Tangent){kFloor, 0};
   }
-  return (Tangent){factor, linear + 2 * square * y};
+  return (Tangent){factor, slope};
 }
 
 // E
@@ -43,7 +51,7 @@ static double kinetic(const InerterDevice* p, double w) {
 }
 
 double inertance_felt(const InerterDevice* p, double y, double w, double* rest) {
-  Tangent stroke = along_stroke(p, y);
+  Tangent stroke = along_stroke(p, y, w);
   if (rest) {
     *rest = stroke.slope != 0 ? p->inertance * stroke.slope * kinetic(p, w) : 0;
   }
@@ -51,13 +59,30 @@ double inertance_felt(const InerterDevice* p, double y, double w, double* rest) 
 }
 
 double inertance_energy(const InerterDevice* p, double y, double w) {
-  return p->inertance * along_stroke(p, y).value * kinetic(p, w);
+  return p->inertance * along_stroke(p, y, w).value * kinetic(p, w);
 }
 
 int inertance_valid(const InerterDevice* p, double y, char* message) {
   double factor = 1 + (p->inertance_gradient + p->inertance_curvature * y) * y;
+  if (has(p, PART_INERTANCE_CURVE)) {
+    double forth = curve_value(&p->curve[INERTER_STROKE_inertance], y), back = forth;
+    if (has(p, PART_INERTANCE_BACK)) {
+      back = curve_value(&p->curve[INERTER_STROKE_inertance_back], y);
+    }
+    factor += fmin(forth, back);
+    if (factor < kFloor) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "at x = %g m the curves and periods of the inertance, with inertance_gradient %g "
+               "1/m and inertance_curvature %g 1/m^2, leave %.2g of the inertance; below %g it is "
+               "held there: fit them to the whole stroke",
+               y, p->inertance_gradient, p->inertance_curvature, factor, kFloor);
+    }
+  }
   if (factor >= kFloor) {
     return 1;
+  }
+  if (has(p, PART_INERTANCE_CURVE)) {
+    return 0;
   }
   snprintf(
       message, INERTER_MESSAGE_SIZE,

@@ -15,7 +15,14 @@ enum {
   PART_SERIES = 1 << 4,
   PART_BACKLASH = 1 << 5,
   PART_STOPS = 1 << 6,
-  PART_WHEEL_FRICTION = 1 << 7  // friction at the flywheel behind a series element
+  PART_WHEEL_FRICTION = 1 << 7,  // friction at the flywheel behind a series element
+
+  // along the stroke (curve.c); that of friction is in friction.h
+  PART_FRICTION_BACK = 1 << 17,
+  PART_INERTANCE_CURVE = 1 << 18,
+  PART_INERTANCE_BACK = 1 << 19,
+  PART_FORCE_CURVE = 1 << 20,
+  PART_VISCOUS_CURVE = 1 << 21
 };
 
 static inline int has(const InerterDevice* p, unsigned part) {
@@ -120,10 +127,33 @@ double stop_force(const InerterDevice* p, double x, double v);
 double stop_energy(const InerterDevice* p, double x);
 double stop_heat(const InerterDevice* p, double x, double v);
 
+// curve.c: curve and periods at x, with the slope; their value alone; their integral from 0 to x.
+// curve_check: see that those of a device fit, and make the curves; -1 with a message if not.
+Tangent curve_at(const InerterCurve* c, double x);
+double curve_value(const InerterCurve* c, double x);
+double curve_integral(const InerterCurve* c, double x);
+int curve_check(InerterDevice* device, char* message);
+uint32_t curve_parts(const InerterDevice* device);
+
+// k x + k3 x^3 + f(x), at displacement `stretch`
+static inline double spring_force(const InerterDevice* device, double stretch) {
+  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
+  return has(device, PART_FORCE_CURVE)
+             ? spring + curve_value(&device->curve[INERTER_STROKE_force], stretch)
+             : spring;
+}
+
+// c(x)
+static inline double damping_at(const InerterDevice* device, double stretch) {
+  return has(device, PART_VISCOUS_CURVE)
+             ? device->viscous + curve_value(&device->curve[INERTER_STROKE_viscous], stretch)
+             : device->viscous;
+}
+
 // T without friction, at displacement `stretch`
 static inline double parallel_force(const InerterDevice* device, double stretch, double v) {
-  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
-  double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
+  double spring = spring_force(device, stretch);
+  double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v)) * v;
   double stops = has(device, PART_STOPS) ? stop_force(device, stretch, v) : 0;
   return spring + damper + device->force_offset + stops;
 }

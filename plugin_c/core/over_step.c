@@ -1,7 +1,8 @@
 // Force over a step at whose end the velocity is v1 = v + h a, for implicit time stepping.
 //
 //   dampers, direction of friction without memory and of the load friction: at v1
-//   level of friction without memory: at v;  springs and constant force: at x
+//   level of friction without memory: at v;  springs, constant force, what changes along the
+//   stroke: at x
 //   end stops: at x + h v1, v1
 //   bristle: z1 = step(x, v1, z, h), force at v1 and z + share (z1 - z); behind free play its
 //   damper at the mean rate (friction_play.c)
@@ -58,7 +59,7 @@ static void find_level(InerterStep* step, double stretch) {
   }
   step->level = law_of(p)->level(p, stretch, step->v);
   step->width = law_of(p)->width(p);
-  step->lean = p->friction_asymmetry;
+  friction_levels(p, stretch, &step->lean);
   if (fabs(step->lean) > kMildAsymmetry) {
     step->level *= 1 + step->lean * friction_direction(p, step->v);
     step->lean = 0;
@@ -152,8 +153,8 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
       force.inertance = (inertance + slope * h) * a + rest;
     }
-    double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
-    double damper = (device->viscous + device->quadratic_damping * fabs(v1)) * v1;
+    double spring = spring_force(device, stretch);
+    double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v1)) * v1;
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
     force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
@@ -178,9 +179,9 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
   // a line, or a line and friction
   double rest, inertance = inerter_inertance(device, x, v, &rest), stretch = stretch_of(device, x);
   double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
-  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
-  step->start = rest + spring + device->viscous * v + device->force_offset;
-  step->rise = inertance + h * (slope + device->viscous);
+  double viscous = damping_at(device, stretch);
+  step->start = rest + spring_force(device, stretch) + viscous * v + device->force_offset;
+  step->rise = inertance + h * (slope + viscous);
   step->kind = STEP_LINE;
   if (has_bristle(device)) {
     step->kind = STEP_BRISTLE;

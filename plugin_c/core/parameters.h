@@ -116,7 +116,22 @@
   X(slip_force_7, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 7 slips")   \
   X(slip_stiffness_8, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 8; 0: no such element")                                                  \
-  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips")
+  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips")   \
+  /* along the stroke */                                                                           \
+  X(curve_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the first value of every curve") \
+  X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")
+
+// What changes along the stroke (curve.c): X(name, unit, laws, meaning). Each has two lists of
+// numbers: NAME_curve, values at evenly spaced places, and NAME_periods, three numbers for each.
+#define INERTER_STROKES(X)                                                   \
+  X(friction, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee",      \
+    "relative rise of the friction level")                                   \
+  X(friction_back, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee", \
+    "the same for v < 0, where it differs")                                  \
+  X(inertance, "1", "", "relative rise of the inertance")                    \
+  X(inertance_back, "1", "", "the same for v < 0, where it differs")         \
+  X(force, "N", "", "force of the place alone")                              \
+  X(viscous, "N*s/m", "", "viscous damping beside viscous")
 
 // the friction laws: X(identifier, largest number of states, meaning)
 #define INERTER_FRICTION_LAWS(X)                                       \

@@ -14,7 +14,7 @@ int advice_on_content(const mjModel* m, int instance, const Instance* self,
   if (inerter_is_given(&self->device, INERTER_INDEX_inertance) || native) {
     return 0;
   }
-  if (!inerter_states_something(&self->stated) && !self->nlive && !damped &&
+  if (!inerter_states_something(&self->stated) && !self->device.parts && !self->nlive && !damped &&
       self->stated.friction == INERTER_FRICTION_none) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "nothing is configured: the device would do nothing; state inertance, or what else it "

@@ -5,8 +5,9 @@
 
 #include "mujoco/instance.h"
 
-// names of the attributes: every parameter of the device, "friction", "gas_law", "friction_side"
-enum { NATTRIBUTE = INERTER_NPARAMETER + 3 };
+// names of the attributes: every parameter of the device, "friction", "gas_law", "friction_side",
+// every list
+enum { NATTRIBUTE = INERTER_NPARAMETER + 3 + INERTER_NLIST };
 extern const char* const kAttributes[NATTRIBUTE];
 
 // Read what is stated of the device of an instance; inerter_finish makes it whole. Return 0, or -1

@@ -33,7 +33,8 @@ int coupled_needed(const mjModel* m, const Instance* self) {
     return !series && (inertance || share->load_friction > 0);
   }
   return !self->native || series || inertance || share->load_friction > 0 ||
-         instance_has_stop(share) || instance_has_sharp_friction(share) || self->stiff_bristle;
+         instance_has_stop(share) || instance_has_sharp_friction(share) || self->stiff_bristle ||
+         inerter_has_curve(share, INERTER_STROKE_viscous);
 }
 
 // whether the force over a step depends on how easily the terminals give way

@@ -95,8 +95,12 @@ static InerterDevice matter_of(const InerterDevice* share) {
   matter.inertance_curvature = share->inertance_curvature;
   matter.inertance_speed_gradient = share->inertance_speed_gradient;
   matter.viscous = share->viscous;
-  char message[INERTER_MESSAGE_SIZE];
-  inerter_finish(&matter, message);
+  const int kept[] = {INERTER_STROKE_inertance, INERTER_STROKE_inertance_back,
+                      INERTER_STROKE_viscous};
+  for (int i = 0; i < 3; i++) {
+    matter.curve[kept[i]] = share->curve[kept[i]];
+  }
+  inerter_find_parts(&matter);
   return matter;
 }
 
@@ -140,6 +144,11 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
 
   // an inertance that is not the engine's constant is the plugin's as a whole, be it 0 at present
   self->share = *device;
+  if (undamped && inerter_has_curve(device, INERTER_STROKE_viscous)) {
+    InerterCurve* curve = &self->share.curve[INERTER_STROKE_viscous];
+    curve->nvalue = curve->nperiod = 0;
+    inerter_find_parts(&self->share);
+  }
   self->replaced = 0;
   if (self->native) {
     self->share.viscous -= damping;

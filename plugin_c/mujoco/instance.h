@@ -12,11 +12,15 @@ _Static_assert(sizeof(mjtNum) == sizeof(double), "the plugin is built for double
 // most stages of an integrator
 enum { MAXSTAGE = 4 };
 
-// a parameter that a numeric of the model holds (live.h)
+// What can be live: a parameter by its index, list i by LIVE_LIST + i.
+enum { LIVE_LIST = INERTER_NPARAMETER + 1, NLIVE = LIVE_LIST + INERTER_NLIST };
+
+// a parameter, or a list, that a numeric of the model holds (live.h)
 typedef struct LiveParameter_ {
-  int parameter;  // index of the parameter
+  int parameter;  // which
   int address;    // place in numeric_data
-  mjtNum value;   // last value seen
+  int count;      // numbers there
+  mjtNum value;   // last value seen; of several, a sum that tells them apart
 } LiveParameter;
 
 // What an mjData keeps of an instance between the callbacks of one step. Everything that has to
@@ -44,7 +48,7 @@ typedef struct Instance_ {
   int probing;         // 1: the engine is asked what it does without the forces (coupled.c)
   int disabled;        // 1: its actuator is, so that only matter is left
   int nlive;           // number of live parameters
-  LiveParameter live[INERTER_NPARAMETER];
+  LiveParameter live[NLIVE];
 
   // where the rates of the states were last asked for, and what they are there
   mjtNum rate_x, rate_v;
@@ -132,7 +136,9 @@ static inline int instance_rubs_flywheel(const InerterDevice* device) {
 // inertance that varies.
 static inline int instance_varies(const InerterDevice* device) {
   return device->load_friction != 0 || device->inertance_gradient != 0 ||
-         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0;
+         device->inertance_curvature != 0 || device->inertance_speed_gradient != 0 ||
+         inerter_has_curve(device, INERTER_STROKE_inertance) ||
+         inerter_has_curve(device, INERTER_STROKE_inertance_back);
 }
 
 // Whether a numeric of the model holds a parameter of the device; one that the inertance comes

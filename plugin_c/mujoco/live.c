@@ -13,6 +13,24 @@ static double* value_of(InerterDevice* device, int parameter) {
   return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
 }
 
+// name of what can be live; NULL where there is nothing
+static const char* key_of(int which) {
+  if (which < INERTER_NPARAMETER) {
+    return inerter_parameter(which)->name;
+  }
+  return which < LIVE_LIST ? NULL : inerter_list(which - LIVE_LIST)->name;
+}
+
+// what the numbers that a live parameter has come to
+static mjtNum sum_of(const mjModel* m, const LiveParameter* live) {
+  const mjtNum* values = m->numeric_data + live->address;
+  mjtNum sum = values[0];
+  for (int k = 1; k < live->count; k++) {
+    sum = sum * 0.6180339887498949 + values[k];
+  }
+  return sum;
+}
+
 //------------------------------ names -------------------------------------------------------------
 
 // whether two pieces together are a name
@@ -43,8 +61,11 @@ static int owner(const mjModel* m, const char* name, int* parameter) {
   int found = -1;
   size_t shortest = SIZE_MAX;
   for (const char* dot = strchr(name, '.'); dot; dot = strchr(dot + 1, '.')) {
-    for (int i = 0; i < INERTER_NPARAMETER; i++) {
-      const char* key = inerter_parameter(i)->name;
+    for (int i = 0; i < NLIVE; i++) {
+      const char* key = key_of(i);
+      if (!key) {
+        continue;
+      }
       const char* tail = dot + 1 + strlen(key);
       if (strncmp(dot + 1, key, strlen(key)) != 0 || strlen(tail) >= shortest) {
         continue;
@@ -69,7 +90,7 @@ int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZ
     if (!name || owner(m, name, &parameter) != instance) {
       continue;
     }
-    if (m->numeric_size[i] != 1) {
+    if (m->numeric_size[i] != 1 && parameter < INERTER_NPARAMETER) {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "numeric \"%.120s\" has %d values; a live parameter is one number", name,
                m->numeric_size[i]);
@@ -79,13 +100,14 @@ int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZ
       snprintf(message, INERTER_MESSAGE_SIZE,
                "numeric \"%.120s\" is the second one that holds its %s: one is named after the "
                "actuator, one after the instance; remove one",
-               name, inerter_parameter(parameter)->name);
+               name, key_of(parameter));
       return -1;
     }
     LiveParameter* live = self->live + self->nlive++;
     live->parameter = parameter;
     live->address = m->numeric_adr[i];
-    live->value = m->numeric_data[live->address];
+    live->count = m->numeric_size[i];
+    live->value = sum_of(m, live);
   }
   return 0;
 }
@@ -115,8 +137,8 @@ int live_check_names(const mjModel* m, char message[INERTER_MESSAGE_SIZE]) {
                name, rest);
       return -1;
     }
-    for (int k = 0; last && k < INERTER_NPARAMETER; k++) {
-      if (!strcmp(last + 1, inerter_parameter(k)->name)) {
+    for (int k = 0; last && k < NLIVE; k++) {
+      if (key_of(k) && !strcmp(last + 1, key_of(k))) {
         snprintf(message, INERTER_MESSAGE_SIZE,
                  "numeric \"%.120s\" has the name of a live parameter, but no device is named "
                  "\"%.*s\" (neither its actuator nor its instance), so that it would hold nothing; "
@@ -135,7 +157,14 @@ int live_derive(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_S
   self->device = self->stated;
   for (int k = 0; k < self->nlive; k++) {
     LiveParameter* live = self->live + k;
-    live->value = m->numeric_data[live->address];
+    live->value = sum_of(m, live);
+    if (live->parameter >= LIVE_LIST) {
+      if (inerter_set_list(&self->device, live->parameter - LIVE_LIST, live->count,
+                           m->numeric_data + live->address, message)) {
+        return -1;
+      }
+      continue;
+    }
     *value_of(&self->device, live->parameter) = live->value;
     inerter_mark_given(&self->device, live->parameter);
   }
@@ -161,7 +190,7 @@ int live_derive(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_S
 void live_update(const mjModel* m, Instance* self) {
   int changed = 0;
   for (int k = 0; k < self->nlive; k++) {
-    changed |= m->numeric_data[self->live[k].address] != self->live[k].value;
+    changed |= sum_of(m, self->live + k) != self->live[k].value;
   }
   if (!changed) {
     instance_refresh(m, self, 0);

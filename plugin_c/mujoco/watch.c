@@ -182,6 +182,8 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   const char* implicit = ", or integrator=\"implicitfast\"";
   Fastest fastest = {1, NULL, NULL};
   consider(&fastest, sqrt(fabs(p->stiffness) * light), swing, "stiffness", tendon);
+  double steepest = inerter_curve_steepest(p, INERTER_STROKE_force);
+  consider(&fastest, sqrt(steepest * light), swing, "force along the stroke", tendon);
   consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
   if (stages) {
     double both = light + wheel;

@@ -3,149 +3,54 @@
 from __future__ import annotations
 
 import ctypes
-import functools
 import os
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.checked_motion import checked_motion
+from inerter.core_library import (
+    FORCES,
+    LIBRARY_FOLDER,
+    MESSAGE_SIZE,
+    WORDS,
+    NumberList,
+    Parameter,
+    device_type,
+    friction_laws,
+    friction_sides,
+    gas_laws,
+    library,
+    library_path,
+    lists,
+    names,
+    parameters,
+)
 from inerter.parameter_text import value_text, with_suggestion
 
-# beside this file; where the package is installed in place, in its other folder
-_FOLDERS = [Path(place) / "lib" for place in sys.modules["inerter"].__path__]
-LIBRARY_FOLDER = next((each for each in _FOLDERS if each.is_dir()), Path(__file__).parent / "lib")
-_MESSAGE_SIZE = 512
+__all__ = [
+    "LIBRARY_FOLDER",
+    "WORDS",
+    "Device",
+    "DeviceError",
+    "NumberList",
+    "Parameter",
+    "along_many",
+    "friction_laws",
+    "friction_sides",
+    "gas_laws",
+    "library_path",
+    "lists",
+    "names",
+    "parameters",
+]
 
 
 class DeviceError(ValueError):
     """A device that cannot be: names the parameter, its value, what is allowed."""
-
-
-class _CParameter(ctypes.Structure):
-    _fields_ = [
-        ("name", ctypes.c_char_p),
-        ("unit", ctypes.c_char_p),
-        ("initial", ctypes.c_double),
-        ("lower", ctypes.c_double),
-        ("upper", ctypes.c_double),
-        ("lower_open", ctypes.c_int),
-        ("offset", ctypes.c_size_t),
-        ("laws", ctypes.c_char_p),
-        ("meaning", ctypes.c_char_p),
-    ]
-
-
-_FORCES = ("total", "inertance", "friction")
-WORDS = ("friction", "gas_law", "friction_side")
-"""What of a device is stated by a name and not by a number."""
-
-
-class _CForce(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_double) for name in _FORCES]
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """What the core says of one parameter.
-
-    `initial` is the default (NaN: derived from others, or the part is absent), `laws` the friction
-    laws that read it (empty: the device itself).
-    """
-
-    name: str
-    unit: str
-    initial: float
-    lower: float
-    upper: float
-    lower_open: bool
-    laws: tuple[str, ...]
-    meaning: str
-
-
-def library_path(stem: str, folder: str = "") -> Path:
-    """Path of a shared library of this package, by its stem and the folder within `lib`."""
-    suffix = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
-    prefix = "" if sys.platform == "win32" else "lib"
-    return LIBRARY_FOLDER / folder / f"{prefix}{stem}{suffix}"
-
-
-@functools.cache
-def _library() -> ctypes.CDLL:
-    path = library_path("inerter_core")
-    if not path.exists():
-        raise ImportError(
-            f"{path} is missing: reinstall with `pip install --force-reinstall inerter`"
-        )
-    library = ctypes.CDLL(os.fspath(path))
-    library.inerter_parameter.restype = ctypes.POINTER(_CParameter)
-    library.inerter_state_name.restype = ctypes.c_char_p
-    for word in WORDS:
-        for what in ("name", "meaning"):
-            getattr(library, f"inerter_{word}_{what}").restype = ctypes.c_char_p
-    at, number = ctypes.c_void_p, ctypes.c_double
-    library.inerter_state_step.argtypes = [at, number, number, at, number]
-    library.inerter_state_of_force.argtypes = [at, *[number] * 4, at]
-    library.inerter_valid.argtypes = [at, number, at, ctypes.c_char_p]
-    library.inerter_force_over_step.argtypes = [at, *[number] * 3, at, number, number, at]
-    library.inerter_force_over_step.restype = _CForce
-    library.inerter_along.argtypes = [at, ctypes.c_int, number, *[at] * 7]
-    return library
-
-
-@functools.cache
-def parameters() -> Mapping[str, Parameter]:
-    """Every parameter of a device by name, as declared in the core."""
-    found: dict[str, Parameter] = {}
-    while entry := _library().inerter_parameter(len(found)):
-        c = entry.contents
-        name, unit, laws, meaning = (text.decode() for text in (c.name, c.unit, c.laws, c.meaning))
-        limits = (c.initial, c.lower, c.upper, bool(c.lower_open))
-        found[name] = Parameter(name, unit, *limits, tuple(laws.split()), meaning)
-    return found
-
-
-@functools.cache
-def friction_laws() -> Mapping[str, str]:
-    """The friction laws by name, with their meaning."""
-    return _laws("friction")
-
-
-@functools.cache
-def gas_laws() -> Mapping[str, str]:
-    """The laws of the gas spring by name, with their meaning."""
-    return _laws("gas_law")
-
-
-@functools.cache
-def friction_sides() -> Mapping[str, str]:
-    """The sides on which friction can act by name, with their meaning."""
-    return _laws("friction_side")
-
-
-def _laws(kind: str) -> Mapping[str, str]:
-    name, meaning = (getattr(_library(), f"inerter_{kind}_{what}") for what in ("name", "meaning"))
-    found: dict[str, str] = {}
-    while text := name(len(found)):
-        found[text.decode()] = meaning(len(found)).decode()
-    return found
-
-
-@functools.cache
-def _device_type() -> type[ctypes.Structure]:
-    fields: list[tuple[str, Any]] = [(name, ctypes.c_double) for name in parameters()]
-    fields += [(name, ctypes.c_int) for name in WORDS]
-    # a bit for each parameter and each word
-    words = (len(parameters()) + len(WORDS) + 62) // 64
-    fields += [("given", ctypes.c_uint64 * words)]
-    fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int), ("nfriction", ctypes.c_int)]
-    return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
 
 
 def _made_again(given: dict[str, float | str]) -> Device:
@@ -161,8 +66,9 @@ class Device:
     Parameters
     ----------
     **values : float or str
-        Parameters by name (see `parameters()`), SI units, and names: `friction`, `gas_law`,
-        `friction_side`. What is not given has its default.
+        Parameters by name (see `parameters()`), SI units, lists of numbers (see `lists()`; a
+        sequence, or a text with blanks), and names: `friction`, `gas_law`, `friction_side`. What is
+        not given has its default.
 
     Raises
     ------
@@ -170,25 +76,27 @@ class Device:
         An unknown name, a value out of range, values that do not fit together.
     """
 
-    def __init__(self, **values: float | str) -> None:
-        self._c = _device_type()()
-        library, message = _library(), ctypes.create_string_buffer(_MESSAGE_SIZE)
+    def __init__(self, **values: float | str | Sequence[Any]) -> None:
+        self._c = device_type()()
+        core, message = library(), ctypes.create_string_buffer(MESSAGE_SIZE)
         at, known = ctypes.byref(self._c), parameters()
-        library.inerter_default(at)
+        core.inerter_default(at)
         for name, value in values.items():
             text, key = value_text(value), name if name in known else value_text(name)
             if text is None or key is None:
                 raise DeviceError(f"{name!a} is {value!a:.80}: give a number, or the name of a law")
-            if library.inerter_set(at, key.encode(), text.encode(), message):
-                names = [*known, *WORDS]
-                raise DeviceError(with_suggestion(name, _text(message), names))
-        if library.inerter_finish(at, message):
+            if core.inerter_set(at, key.encode(), text.encode(), message):
+                raise DeviceError(with_suggestion(name, _text(message), names()))
+        if core.inerter_finish(at, message):
             raise DeviceError(_text(message))
-        self._given = {name: getattr(self._c if name in known else self, name) for name in values}
+        self._given: dict[str, float | str] = {
+            name: value_text(getattr(self, name)) if name in lists() else getattr(self, name)
+            for name in values
+        }
 
     @property
     def given(self) -> dict[str, float | str]:
-        """What was stated, by name."""
+        """What was stated, by name; a list of numbers as a text, separated by blanks."""
         return dict(self._given)
 
     @property
@@ -214,13 +122,17 @@ class Device:
     @property
     def state_names(self) -> tuple[str, ...]:
         """Names of the states, such as friction_state."""
-        name, at = _library().inerter_state_name, ctypes.byref(self._c)
+        name, at = library().inerter_state_name, ctypes.byref(self._c)
         return tuple(name(at, i).decode() for i in range(self.nstate))
 
-    def __getattr__(self, name: str) -> float:
-        if name.startswith("_") or name not in parameters():
+    def __getattr__(self, name: str) -> Any:
+        if name in parameters():
+            return getattr(self._c, name)
+        if name not in lists():
             raise AttributeError(name)
-        return getattr(self._c, name)
+        count, place = ctypes.c_int(), list(lists()).index(name)
+        at = library().inerter_list_values(ctypes.byref(self._c), place, ctypes.byref(count))
+        return tuple(at[: count.value])
 
     def __setattr__(self, name: str, value: object) -> None:
         if not name.startswith("_"):
@@ -236,7 +148,7 @@ class Device:
     def __repr__(self) -> str:
         return "Device(" + ", ".join(f"{k}={v!r}" for k, v in self._given.items()) + ")"
 
-    def replace(self, **values: float | str) -> Device:
+    def replace(self, **values: float | str | Sequence[Any]) -> Device:
         """The same device with some values stated anew."""
         return Device(**{**self._given, **values})
 
@@ -259,17 +171,17 @@ class Device:
             total, inertance, friction [N]; stored_energy [J]; dissipated_power [W]; state_rate,
             (n, nstate) with several states or where z has their axis.
         """
-        names = (*_FORCES, "stored_energy", "dissipated_power")
+        told = (*FORCES, "stored_energy", "dissipated_power")
         (x, v, a), z, axis = self._points((x, v, a), np.asarray(z, dtype=float))
-        result, rates = np.empty((len(names), x.size)), np.zeros((x.size, max(1, self.nstate)))
-        _library().inerter_evaluate(
+        result, rates = np.empty((len(told), x.size)), np.zeros((x.size, max(1, self.nstate)))
+        library().inerter_evaluate(
             ctypes.byref(self._c),
             x.size,
             *(_pointer(value) for value in (x, v, a, z)),
             _pointer(result),
             _pointer(rates),
         )
-        found = dict(zip(names, result.reshape(len(names), *x.shape), strict=True))
+        found = dict(zip(told, result.reshape(len(told), *x.shape), strict=True))
         wide = (self.nstate,) if axis else ()
         return found | {"state_rate": rates[:, : sum(wide) if axis else 1].reshape(*x.shape, *wide)}
 
@@ -313,7 +225,7 @@ class Device:
     def step(self, x: float, v: float, z: Any, h: float) -> float | NDArray[np.float64]:
         """States after a time h at constant velocity v from displacement x, in the form of z."""
         states = self._states(z)
-        _library().inerter_state_step(ctypes.byref(self._c), x, v, states.ctypes.data, h)
+        library().inerter_state_step(ctypes.byref(self._c), x, v, states.ctypes.data, h)
         return states if np.ndim(z) else float(states[0]) if self.nstate else 0.0
 
     def state_of_force(
@@ -326,7 +238,7 @@ class Device:
         (`friction_backlash`) a friction force of 0 has many states: the middle is given.
         """
         states = np.zeros(self.nstate)
-        _library().inerter_state_of_force(ctypes.byref(self._c), x, v, a, force, states.ctypes.data)
+        library().inerter_state_of_force(ctypes.byref(self._c), x, v, a, force, states.ctypes.data)
         return states if self.nstate > 1 else float(states.sum())
 
     def over_step(
@@ -349,15 +261,15 @@ class Device:
         """
         states = self._states(z)
         end = np.zeros_like(states)
-        force = _library().inerter_force_over_step(
+        force = library().inerter_force_over_step(
             ctypes.byref(self._c), x, v, a, states.ctypes.data, h, mobility, end.ctypes.data
         )
-        return {name: getattr(force, name) for name in _FORCES}, end
+        return {name: getattr(force, name) for name in FORCES}, end
 
     def validity(self, x: float, z: ArrayLike = 0.0) -> str | None:
         """None where the laws hold at displacement x and states z, else which one does not."""
-        states, message = self._states(z), ctypes.create_string_buffer(_MESSAGE_SIZE)
-        if _library().inerter_valid(ctypes.byref(self._c), x, states.ctypes.data, message):
+        states, message = self._states(z), ctypes.create_string_buffer(MESSAGE_SIZE)
+        if library().inerter_valid(ctypes.byref(self._c), x, states.ctypes.data, message):
             return None
         return _text(message)
 
@@ -396,7 +308,7 @@ class Device:
         result, states = np.empty((2, x.size)), np.empty((x.size, self.nstate))
         now = self._states(state)
         at, row = result.ctypes.data, result.strides[0]
-        _library().inerter_along(
+        library().inerter_along(
             ctypes.byref(self._c),
             x.size,
             h,
@@ -440,13 +352,13 @@ def along_many(
     """
     x, v, a = checked_motion(h, x, v, a)
     total = np.empty((len(devices), x.size))
-    array = (_device_type() * len(devices))(*(device._c for device in devices))
-    size = ctypes.sizeof(_device_type())
+    array = (device_type() * len(devices))(*(device._c for device in devices))
+    size = ctypes.sizeof(device_type())
 
     def run(first: int, count: int) -> None:
         start, motion = ctypes.byref(array, first * size), (x, v, a, total[first:])
         pointers = map(_pointer, motion)
-        _library().inerter_along_many(start, count, x.size, ctypes.c_double(h), *pointers)
+        library().inerter_along_many(start, count, x.size, ctypes.c_double(h), *pointers)
 
     workers = min(threads or os.cpu_count() or 1, len(devices)) or 1
     bounds = np.linspace(0, len(devices), workers + 1).astype(int)

@@ -4,6 +4,7 @@
 inertance = 113.0           # SI units, or a text with a unit: "113 kg"
 friction = "lugre"
 coulomb_force = "10 N"
+force_periods = [[0.02, 3.0, 0.0]]  # lists in SI units
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from inerter.core import WORDS, Device, DeviceError, parameters
+from inerter.core import WORDS, Device, DeviceError, lists, parameters
 from inerter.input_file import read_toml
 from inerter.printable import printable
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
@@ -39,8 +40,11 @@ def read_device(path: Path) -> Device:
         raise DeviceError(
             f"{path}: no [device] table; write one, with keys such as inertance = 113.0"
         )
-    values: dict[str, float | str] = {}
+    values: dict[str, Any] = {}
     for key, value in table.items():
+        if key in lists():
+            values[key] = _numbers(path, key, value)
+            continue
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise DeviceError(
                 f"{path}: {key} is {_shown(value)}; give a number, or a text with a unit"
@@ -98,6 +102,25 @@ def read_delay(path: Path) -> float:
             "and leave force_delay out"
         )
     return float(delay)
+
+
+def _numbers(path: Path, key: str, value: Any) -> Any:
+    """A list of numbers, perhaps in threes; or a text with blanks, as MJCF has it."""
+    flat: list[Any] = []
+    for each in value if isinstance(value, list) else [value]:
+        flat += each if isinstance(each, list) else [each]
+    number = all(isinstance(each, (int, float)) and not isinstance(each, bool) for each in flat)
+    if not number and not isinstance(value, str):
+        raise DeviceError(f"{path}: {key} is {_shown(value)}; give a list of numbers in SI units")
+    return value if isinstance(value, str) else flat
+
+
+def _list_toml(device: Device, name: str) -> str:
+    """A list as TOML has it, periods in threes."""
+    numbers = list(getattr(device, name))
+    if not lists()[name].periods:
+        return repr(numbers)
+    return repr([numbers[i : i + 3] for i in range(0, len(numbers), 3)])
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -166,6 +189,9 @@ def device_text(
     lines = [f"# {printable(line)}" for line in title.splitlines()]
     lines += [f'schema = "{SCHEMA}"', "", "[device]"]
     for name, value in device.given.items():
+        if name in lists():
+            lines.append(f"{name} = {_list_toml(device, name)}")
+            continue
         text = f'"{value}"' if isinstance(value, str) else repr(float(value))
         if isinstance(value, float) and not math.isfinite(value):
             continue

@@ -13,7 +13,8 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import Device, DeviceError, lists, parameters
+from inerter.parameter_text import value_text
 from inerter.plugin import plugin_path
 
 PLUGIN = "inerter.device"
@@ -82,8 +83,17 @@ class DeviceInModel:
             The values cannot be; an armature that is edited where a channel states the inertance
             is among them, as no channel has that inertance and these losses.
         """
-        live = {key: float(model.numeric_data[place]) for key, place in self.live.items()}
-        return self.device.replace(**{**self._edited(model), **live, "rest_length": 0.0})
+        edited: dict[str, Any] = self._edited(model)
+        return self.device.replace(**{**edited, **self._held(model), "rest_length": 0.0})
+
+    def _held(self, model: mujoco.MjModel) -> dict[str, Any]:
+        """What the live parameters and lists are."""
+        found = {}
+        for key, place in self.live.items():
+            size = int(model.numeric_size[np.flatnonzero(model.numeric_adr == place)[0]])
+            values = model.numeric_data[place : place + size].tolist()
+            found[key] = value_text(values) if key in lists() else values[0]
+        return found
 
     def _edited(self, model: mujoco.MjModel) -> dict[str, float]:
         """What the engine integrates, where it is not what is configured."""
@@ -98,8 +108,7 @@ class DeviceInModel:
 
     def stated(self, model: mujoco.MjModel) -> dict[str, float | str]:
         """What configuration and live parameters state, by name, SI units."""
-        live = {key: float(model.numeric_data[place]) for key, place in self.live.items()}
-        return {**self.device.given, **live}
+        return {**self.device.given, **self._held(model)}
 
     def rest_length(self, model: mujoco.MjModel) -> float:
         """Length of the actuator at which the displacement is 0 [m] (a hinge: rad)."""
@@ -199,7 +208,9 @@ def _device(model: mujoco.MjModel, actuator: int, instance: int) -> DeviceInMode
 def _live(model: mujoco.MjModel, instance: int) -> dict[str, int]:
     """Addresses of the numerics that hold parameters of an instance, as the plugin finds them."""
     found = {}
-    for i, key in enumerate(parameters() if model.nnumeric else ()):
+    # one place between them, that of gas_law
+    keys = (*parameters(), "", *lists())
+    for i, key in enumerate(keys if model.nnumeric else ()):
         address = plugin_library().inerter_live_address(model._address, instance, i)
         if address >= 0:
             found[key] = address

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from inerter.core import WORDS, parameters
+from inerter.core import names
 from inerter.parameter_text import with_suggestion
 
 
@@ -36,5 +36,4 @@ def _meant(text: str) -> str:
     found = re.match(r"unrecognized attribute 'plugin:(.*?)' for plugin inerter\.device", text)
     if not found:
         return ""
-    names = [*parameters(), *WORDS]
-    return with_suggestion(found[1], "", names)
+    return with_suggestion(found[1], "", names())

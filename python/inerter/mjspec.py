@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from inerter.controls import remove_control
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import Device, DeviceError, lists, parameters
 from inerter.device_in_model import PLUGIN, DeviceInModel, device_of, devices_of
 from inerter.mjspec_blank import blank
 from inerter.mjspec_remove import devices_in, new_name, remove
@@ -91,7 +91,7 @@ def add_device(
     sensor: bool = True,
     live: Sequence[str] = (),
     control: bool = False,
-    **values: float | str,
+    **values: float | str | Sequence[Any],
 ) -> AddedDevice:
     """Add a device to a model under construction, with everything that it needs.
 
@@ -117,8 +117,8 @@ def add_device(
     sensor : bool
         Add a sensor that shows forces, states and energies.
     live : sequence of str
-        Parameters to read from the model at every step: each becomes a numeric "NAME.key", whose
-        value in `mjModel.numeric_data` can be changed without compiling again.
+        Parameters and lists to read from the model at every step: each becomes a numeric
+        "NAME.key", whose values in `mjModel.numeric_data` can be changed without compiling again.
     control : bool
         Give the device a control, a force beside it [N]; without, `nu` stays as it was. A model
         that is saved as XML has the control again.
@@ -169,8 +169,8 @@ def add_device(
     _add(spec, name, device, sites, target, gear, sensor, is_joint=joint is not None)
     if not control:
         remove_control(spec.actuator(name))
-    for key, value in numerics.items():
-        spec.add_numeric(name=f"{name}.{key}", data=[value], size=1)
+    for key, found in numerics.items():
+        spec.add_numeric(name=f"{name}.{key}", data=found, size=len(found))
     return AddedDevice(
         name=name,
         device=device,
@@ -219,7 +219,7 @@ def remove_device(spec: mujoco.MjSpec, device: AddedDevice | str) -> None:
     )
 
 
-def _device(device: Device | None, values: dict[str, float | str]) -> Device:
+def _device(device: Device | None, values: dict[str, Any]) -> Device:
     if device is None:
         return Device(**values)
     if not isinstance(device, Device):
@@ -377,23 +377,23 @@ def _suggestion(given: str, names: Sequence[str]) -> str:
 
 def _live_values(
     spec: mujoco.MjSpec, name: str, device: Device, keys: Sequence[str]
-) -> dict[str, float]:
-    """The numerics to make: value by key."""
+) -> dict[str, list[float]]:
+    """The numerics to make: values by key."""
     if isinstance(keys, str):
         raise ValueError(f"live is {keys!r}: give a sequence of names, such as ({keys!r},)")
     found = {}
     for key in keys:
-        if key not in parameters():
+        if key not in parameters() and key not in lists():
             raise ValueError(
                 f"live parameter {key!r} is not a number of a device"
-                f"{_suggestion(key, list(parameters()))}"
+                f"{_suggestion(key, [*parameters(), *lists()])}"
             )
         if spec.numeric(f"{name}.{key}") is not None:
             raise ValueError(f"a numeric {name}.{key} is there already; remove it or the live key")
-        value = getattr(device, key)
-        if not np.isfinite(value):
+        values = np.atleast_1d(getattr(device, key)).astype(float)
+        if not (values.size and np.isfinite(values).all()):
             raise DeviceError(f"live parameter {key!r} has no value; state it")
-        found[key] = float(value)
+        found[key] = values.tolist()
     return found
 
 

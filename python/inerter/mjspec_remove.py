@@ -10,7 +10,7 @@ from typing import Any
 
 import mujoco
 
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import Device, DeviceError, names
 from inerter.device_in_model import PLUGIN
 
 # what the fields are called that name a tendon or a site
@@ -140,7 +140,7 @@ def _numerics(spec: mujoco.MjSpec, name: str) -> list[Any]:
         if dot and name.startswith(head):
             suffix = name[len(head) :]
             key = tail.removesuffix(suffix) if suffix else tail
-            if tail.endswith(suffix) and key in parameters():
+            if tail.endswith(suffix) and key in names():
                 found.append(numeric)
     return found
 

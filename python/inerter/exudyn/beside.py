@@ -1,6 +1,8 @@
 """What acts straight between the terminals: springs, dampers, a constant force, end stops.
 
-    T = c v + c2 v |v| + k x + k3 x^3 + F_0 + stops
+    T = c v + c2 v |v| + k x + k3 x^3 + F_0 + stops + f(x) + c_x(x) v
+
+f and c_x, force and damping of the place: `stroke.py`.
 
 Sign: tension positive. A stop at x_e pushes back with k_e delta (1 + e delta'), delta its
 compression, and never pulls (Hunt and Crossley 1975, exponent 1).
@@ -10,6 +12,7 @@ from __future__ import annotations
 
 import math
 
+from inerter.exudyn import stroke
 from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -25,6 +28,10 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
         total = total + p.stiffness * x
     if p.stiffness_cubic:
         total = total + p.stiffness_cubic * x * x * x
+    if stroke.there(p, "force"):
+        total = total + stroke.value(f, p, "force", x)
+    if stroke.there(p, "viscous"):
+        total = total + stroke.value(f, p, "viscous", x) * v
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = f.greatest(0.0, 1.0 + p.stop_damping * direction * v)
@@ -35,6 +42,7 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
 def stored_energy(p: Parameters, x: float) -> float:
     """Energy in springs and stops [J]."""
     energy = 0.5 * p.stiffness * x**2 + 0.25 * p.stiffness_cubic * x**4
+    energy += stroke.integral(p, "force", x)
     for direction, place in _stops(p):
         energy += 0.5 * p.stop_stiffness * max(0.0, direction * (x - place)) ** 2
     return energy
@@ -43,6 +51,8 @@ def stored_energy(p: Parameters, x: float) -> float:
 def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """Heat in dampers and stops [W]."""
     heat = (p.viscous + p.quadratic_damping * f.abs(v)) * v * v
+    if stroke.there(p, "viscous"):
+        heat = heat + stroke.value(f, p, "viscous", x) * v * v
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = direction * v

@@ -2,6 +2,7 @@
 
     N = B(y, w) w' + R(y, w) + G(y, w)
     B = b X(y) V(w),  R = b X'(y) E(w),  E' = w V       X, V not below 0.01
+    X = 1 + q y + r y^2 + f(y), f from `stroke.py`, another one for w < 0 where it is given
     G = c_w w + pipe(w) + gas(y)
 
 y [m] and w [m/s] are the flywheel's displacement and velocity, those of the terminals if there is
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 import math
 
+from inerter.exudyn import stroke
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -24,14 +26,19 @@ LEAST_VOLUME = 0.05
 
 def varies(p: Parameters) -> bool:
     """Whether the inertance depends on displacement or speed."""
-    return bool(p.inertance_gradient or p.inertance_curvature or p.inertance_speed_gradient)
+    polynomial = p.inertance_gradient or p.inertance_curvature or p.inertance_speed_gradient
+    return bool(polynomial) or _curved(p)
+
+
+def _curved(p: Parameters) -> bool:
+    return stroke.there(p, "inertance") or stroke.there(p, "inertance_back")
 
 
 def inertance(f: Functions, p: Parameters, y: Value, w: Value) -> tuple[Value, Value]:
     """B [kg] and R [N]."""
     if not varies(p):
         return p.inertance, 0.0
-    factor, slope = _along(f, p, y)
+    factor, slope = _along(f, p, y, w)
     speed = f.greatest(FLOOR, 1.0 + p.inertance_speed_gradient * f.abs(w))
     return p.inertance * factor * speed, p.inertance * slope * _kinetic(f, p, w)
 
@@ -50,7 +57,7 @@ def force(f: Functions, p: Parameters, y: Value, w: Value) -> Value:
 
 def stored_energy(p: Parameters, y: float, w: float) -> float:
     """Kinetic energy and energy of the gas [J]."""
-    kinetic = p.inertance * _along(NUMBERS, p, y)[0] * _kinetic(NUMBERS, p, w)
+    kinetic = p.inertance * _along(NUMBERS, p, y, w)[0] * _kinetic(NUMBERS, p, w)
     return kinetic + (_gas_energy(p, y) if p.gas_pressure else 0.0)
 
 
@@ -60,12 +67,20 @@ def dissipated_power(f: Functions, p: Parameters, w: Value) -> Value:
     return heat + _pipe(f, p, w) * w if p.channel_area else heat
 
 
-def _along(f: Functions, p: Parameters, y: Value) -> tuple[Value, Value]:
+def _along(f: Functions, p: Parameters, y: Value, w: Value) -> tuple[Value, Value]:
     """X [-] and X' [1/m]."""
-    if not (p.inertance_gradient or p.inertance_curvature):
+    if not (p.inertance_gradient or p.inertance_curvature or _curved(p)):
         return 1.0, 0.0
     factor = 1.0 + (p.inertance_gradient + p.inertance_curvature * y) * y
     slope = p.inertance_gradient + 2.0 * p.inertance_curvature * y
+    if _curved(p):
+        rise = stroke.value(f, p, "inertance", y)
+        steepness = stroke.slope(f, p, "inertance", y)
+        if stroke.there(p, "inertance_back"):
+            back = stroke.value(f, p, "inertance_back", y)
+            rise = f.choose(w < 0.0, back, rise)
+            steepness = f.choose(w < 0.0, stroke.slope(f, p, "inertance_back", y), steepness)
+        factor, slope = factor + rise, slope + steepness
     return f.greatest(FLOOR, factor), f.choose(factor < FLOOR, 0.0, slope)
 
 

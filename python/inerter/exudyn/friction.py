@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from inerter.exudyn import stroke
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -70,6 +71,8 @@ def _behind_play(f: Functions, p: Parameters, v: Value, s: Value, law: Friction)
 
 def level(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """Factor on the friction level: direction times position along the stroke."""
+    if curved(p):
+        return _curved_level(f, p, x, v)
     factor = 1.0
     if p.friction_asymmetry:
         factor = 1.0 + p.friction_asymmetry * f.tanh(v / p.transition_velocity)
@@ -77,6 +80,22 @@ def level(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
         along = 1.0 + (p.friction_gradient + p.friction_curvature * x) * x
         factor = f.greatest(LEAST_LEVEL, along) * factor
     return factor
+
+
+def curved(p: Parameters) -> bool:
+    """Whether the level has a curve or periods (`stroke.py`)."""
+    return stroke.there(p, "friction") or stroke.there(p, "friction_back")
+
+
+def _curved_level(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
+    """The same with curves; that of v < 0 passes into that of v > 0 as sign(v) does."""
+    rise = 1.0 + (p.friction_gradient + p.friction_curvature * x) * x
+    forth = f.greatest(LEAST_LEVEL, rise + stroke.value(f, p, "friction", x))
+    side = f.tanh(v / p.transition_velocity)
+    if not stroke.there(p, "friction_back"):
+        return forth * (1.0 + p.friction_asymmetry * side)
+    back = f.greatest(LEAST_LEVEL, rise + stroke.value(f, p, "friction_back", x))
+    return 0.5 * (forth + back) + 0.5 * (forth - back) * side
 
 
 def stribeck_curve(f: Functions, p: Parameters, v: Value) -> Value:
@@ -130,11 +149,16 @@ def lugre(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction
 
 
 def bouc_wen(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
-    """Z' = alpha v - (beta |v| z + gamma v |z|) |z|^(n-1); F = A k0 x + (1 - A) k0 z."""
+    """Z' = alpha v - (beta |v| z + gamma v |z|) |z|^(n-1); F = A k0 x + (1 - A) k0 z.
+
+    Along the stroke, beta and gamma over level^n.
+    """
     s, z = z, bristle(f, p, z)
     narrowing = p.bw_beta * f.abs(v) * z + p.bw_gamma * v * f.abs(z)
     if p.bw_exponent != 1.0:
         narrowing = narrowing * f.power(f.abs(z), p.bw_exponent - 1.0)
+    if curved(p):
+        narrowing = narrowing / f.power(level(f, p, x, v), p.bw_exponent)
     elastic, yielding = p.bw_ratio * p.bw_stiffness, (1.0 - p.bw_ratio) * p.bw_stiffness
     law = Friction(elastic * x + yielding * z, 0.0, p.bw_alpha * v - narrowing)
     return _behind_play(f, p, v, s, law)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from inerter.core import WORDS, Device, parameters
+from inerter.core import WORDS, Device, lists, parameters
 
 
 class Parameters(SimpleNamespace):
-    """Every parameter of the device by name, those of `WORDS`, `nstate`, `state_names`.
+    """Every parameter and list of the device by name, those of `WORDS`, `nstate`, `state_names`.
 
     `smooth_play` is this element's own, see `series.py`.
     """
@@ -16,7 +16,7 @@ class Parameters(SimpleNamespace):
     @classmethod
     def of(cls, device: Device, smooth_play: bool = False) -> Parameters:
         """The parameters of a device that the core has checked."""
-        numbers = {name: getattr(device, name) for name in parameters()}
+        numbers = {name: getattr(device, name) for name in (*parameters(), *lists())}
         names = (*WORDS, "nstate", "state_names")
         numbers["smooth_play"] = smooth_play
         return cls(**numbers, **{name: getattr(device, name) for name in names})

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from inerter.core import WORDS, parameters
+from inerter.core import names
 from inerter.exudyn.carriers import follow
 from inerter.exudyn.changes import KEPT, change_parameters, models_of, read_geometry, read_start
 from inerter.exudyn.engine import exudyn
@@ -89,7 +89,7 @@ def _telling_of_change(name: str, original: Callable[..., Any]) -> Callable[...,
 
 
 def _is_of_device(name: str) -> bool:
-    return name in parameters() or name in WORDS
+    return name in names()
 
 
 def _careful(original: Callable[..., Any]) -> Callable[..., Any]:

@@ -2,6 +2,7 @@
 
     F = T(x, v, z) + N + lambda(v) |N|
     T = c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_stops         at the terminals
+        + f(x) + c_x(x) v, the curves `force` and `viscous` of `laws/stroke.py`
     without a series element:  N = B(x, v) a + R(x, v) + G(x, v)
     with one:                  N = F_s(s, s', gap),   B(y, w) w' + R(y, w) + G(y, w) = F_s
     G(y, w) = c_w w + pipe(w) + gas(y)                                    at the flywheel
@@ -210,6 +211,8 @@ class ReferenceDevice(DeviceParameters):
         stretch = x - self.rest_length
         position, speed = (stretch - deflection, speed) if self.has_series else (stretch, v)
         energy = parallel.spring_energy(stretch, self.stiffness, self.stiffness_cubic)
+        if "force" in self.along:
+            energy = energy + self.along["force"].integral(stretch)
         place, rate = (position, speed) if self.rubs_flywheel else (stretch, v)
         energy = energy + FRICTION[self.friction].stored_energy(self, place, rate, friction)
         energy = energy + end_stops.stored_energy(self, stretch)
@@ -229,6 +232,8 @@ class ReferenceDevice(DeviceParameters):
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
         heat = parallel.damping_force(v, self.viscous, self.quadratic_damping) * v
+        if "viscous" in self.along:
+            heat = heat + self.along["viscous"](stretch) * v * v
         place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
         heat = heat + FRICTION[self.friction].dissipated_power(self, place, rate, friction)
         heat = heat + end_stops.dissipated_power(self, stretch, v)
@@ -264,6 +269,10 @@ class ReferenceDevice(DeviceParameters):
         stretch = x - self.rest_length
         spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
         damper = parallel.damping_force(v, self.viscous, self.quadratic_damping)
+        if "force" in self.along:
+            spring = spring + self.along["force"](stretch)
+        if "viscous" in self.along:
+            damper = damper + self.along["viscous"](stretch) * v
         return spring + damper + self.force_offset + end_stops.force(self, stretch, v)
 
     def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:

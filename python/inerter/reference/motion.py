@@ -226,6 +226,7 @@ def _integrate(
     edges[-1] = end
 
     level_varies = device.friction_gradient != 0.0 or device.friction_curvature != 0.0
+    level_varies |= "friction" in device.along or "friction_back" in device.along
     needs_displacement = level_varies or device.has_series
     displacement, velocity = motion.displacement, motion.velocity
     absolute = rtol * state_scales(device)

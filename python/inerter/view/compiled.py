@@ -9,7 +9,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from inerter.core import Device, parameters
+from inerter.core import Device, lists, parameters
 from inerter.device_in_model import PLUGIN, DeviceInModel, devices_of
 from inerter.simulate.errors import SimulationError, engine_text
 from inerter.simulate.load import readable_spec
@@ -69,7 +69,7 @@ def with_law(device: Device, law: str) -> Device:
     What only the old law reads is left out. What the new one needs and the device does not state
     is `FORCE` and `STIFFNESS`.
     """
-    table = parameters()
+    table = {**parameters(), **lists()}
     kept = {
         key: value
         for key, value in device.given.items()

@@ -179,6 +179,6 @@ def _friction_state(device: Device, force: float) -> float:
     if "friction_state" not in device.state_names:
         return 0.0
     table = parameters()
-    own = (key for key in device.given if key in table and device.friction in table[key].laws)
-    friction = Device(friction=device.friction, **{key: device.given[key] for key in own})
+    own = [key for key in device.given if key in table and device.friction in table[key].laws]
+    friction = Device(**{key: device.given[key] for key in own}, friction=device.friction)
     return float(np.asarray(friction.state_of_force(0.0, 0.0, 0.0, force)))

@@ -15,13 +15,16 @@ With `friction_backlash` z stands behind its free play (`free_play.py`), the ela
 does not.
 Source: Bouc 1967 and Wen 1976, as in "Modelling and identification of the hysteretic dynamics
 of inerters", eqs. (12)-(13), where the last term's exponent n is lost in print.
-Not modelled: degradation, pinching, rate dependence; the friction level of `level.py`.
+Along the stroke (`friction_curve` and its kin) beta and gamma are divided by level^n: z saturates at
+that share, with the same stiffness and energy.
+Not modelled: degradation, pinching, rate dependence.
 Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be rescaled with z.
 """
 
 from __future__ import annotations
 
 from . import free_play
+from .level import friction_level
 from .parameters import FrictionParameters, Quantity
 
 STATES = 1
@@ -34,6 +37,9 @@ def rate(
     bent = free_play.bristle(parameters, state)
     size = abs(bent)
     power = size ** (parameters.bw_exponent - 1.0)
+    if "friction" in parameters.along or "friction_back" in parameters.along:
+        level = friction_level(parameters, displacement, velocity)
+        power = power / level**parameters.bw_exponent
     hardening = parameters.bw_beta * abs(velocity) * bent * power
     shaping = parameters.bw_gamma * velocity * size * power
     engaged = parameters.bw_alpha * velocity - hardening - shaping

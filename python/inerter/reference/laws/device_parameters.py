@@ -65,6 +65,9 @@ class DeviceParameters(FrictionParameters):
     channel_roughness: float = parameter(0.0, "m", "wall roughness", at_least=0.0)
     minor_loss: float = parameter(0.0, "-", "loss at the channel's ends K", at_least=0.0)
 
+    curve_lower: float = parameter(UNSET, "m", "place of the first value of every curve")
+    curve_upper: float = parameter(UNSET, "m", "place of the last value of every curve")
+
     @property
     def has_series(self) -> bool:
         """Whether something stands in series with the inertance."""
@@ -83,6 +86,7 @@ class DeviceParameters(FrictionParameters):
         self._check_series()
         self._check_stops()
         self._check_gas()
+        self._check_along(self.friction, self.friction_asymmetry, self.viscous)
 
     def _check_side(self) -> None:
         if self.friction_side not in FRICTION_SIDES:

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Quantity = float | NDArray[np.float64]
-"""A number, or an array of numbers that broadcasts against its neighbours."""
+from .stroke import Quantity as Quantity
+from .stroke import StrokeParameters
 
 UNSET = float("nan")
 """Default of a parameter that has no harmless number: not given."""
@@ -48,7 +47,7 @@ def parameter(
 
 
 @dataclass(frozen=True, kw_only=True)
-class FrictionParameters:
+class FrictionParameters(StrokeParameters):
     """Parameters of every friction law; a law reads the ones its docstring names.
 
     Raises
@@ -143,6 +142,7 @@ class FrictionParameters:
                 )
 
         self._check_levels()
+        self._check_lists()
 
     @property
     def breakaway_force(self) -> float:
