@@ -276,9 +276,13 @@ def searched(start: Prepared, progress: Progress = lambda text: None) -> Searche
 
 
 def _tried(table: Table, baseline: Model, model: Model) -> list[Candidate]:
-    """What amplitudes can show, and whatever is stated: that they can contradict."""
+    """What amplitudes can show; of a stated friction law, which they can contradict, all of it."""
     present = [name for name, _ in effects_of(model, baseline)]
-    stated = {each.key for each in stated_candidates(model, table.scales)}
+    stated = {
+        each.key
+        for each in stated_candidates(model, table.scales)
+        if EFFECTS[each.effect].kind == "law"
+    }
     return [
         each
         for each in candidates(model, table.scales)
