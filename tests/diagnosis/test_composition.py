@@ -8,8 +8,12 @@ from typing import cast
 
 import numpy as np
 import pytest
+from inerter import Device
 from inerter.catalogue.coordinates import search_range
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.friction import FRICTION
 from inerter.catalogue.scales import Scales
+from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
@@ -18,6 +22,7 @@ from inerter.diagnose.composition import (
     is_blur,
     is_distinct,
     simpler_laws,
+    stripped,
     with_own_spring,
     without_effect,
 )
@@ -246,3 +251,37 @@ def test_simpler_laws_than_a_stated_hysteresis(
     if distance is not None:
         assert laws["dahl"].values["presliding"] == pytest.approx(distance)
         assert laws["dahl"].values["coulomb_force"] == pytest.approx(2e4 * distance)
+
+
+STATED = {
+    "bouc_wen": {"bw_stiffness": 2e4, "bw_beta": 5e3, "bw_gamma": 2e3},
+    "none": {},
+}
+
+
+@pytest.mark.parametrize("law", FRICTION)
+def test_whatever_is_taken_out_leaves_a_device_that_can_be(law: str) -> None:
+    """Two steps of a search on top of every stated law, then each of their effects taken out."""
+    given = STATED.get(law, {"coulomb_force": 3.0})
+    baseline = baseline_of(Device(inertance=80.0, friction=law, **given), SCALES)
+    levels = [name for name, effect in EFFECTS.items() if effect.kind in ("law", "level")]
+    looked_at = 0
+    for first in candidates(baseline, SCALES):
+        if first.effect not in levels:
+            continue
+        firsts = [first.starts[0], *simpler_laws(first.starts[0])]
+        seconds = [
+            each.starts[0]
+            for model in firsts
+            for each in candidates(model, SCALES)
+            if each.effect in levels
+        ]
+        for model in [*firsts, *seconds]:
+            for effect, _ in effects_of(model, baseline):
+                for less in [
+                    *without_effect(model, effect, baseline),
+                    stripped(model, effect, baseline),
+                ]:
+                    less.device()
+                    looked_at += 1
+    assert looked_at > 20

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hidden import solve
+from hidden import solve, told
 from inerter import rig
 from inerter.core import Device
 from inerter.diagnose import Diagnosis
@@ -57,12 +57,16 @@ def test_parameters_are_near(solved) -> None:
     names = case.names[case.effect]
     hidden = {name: true for name, true in case.parameters.items() if name in names}
     assert hidden.keys() - {"inertance"} <= found.keys(), f"seed {case.seed}"
+    least = told(case)
     for name in hidden.keys() & found.keys():
         size, error = _size(case, name) or abs(hidden[name]), found[name].stderr
         off = abs(found[name].value - hidden[name])
-        # a wide error excuses no more than as much again
         allowed = CLOSE.get(name, USUAL) * size
-        assert off < min(max(allowed, 3 * error), 2 * allowed), f"seed {case.seed}: {name}"
+        # what is claimed holds: nothing is surer than it is true
+        assert off < max(allowed, 3 * error), f"seed {case.seed}: {name}"
+        # where the records tell, a wide error excuses no more than as much again
+        if 3 * least.get(name, 0.0) < allowed:
+            assert off < 2 * allowed, f"seed {case.seed}: {name}"
         assert error < size, f"seed {case.seed}: {name}"
 
 

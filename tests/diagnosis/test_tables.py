@@ -141,3 +141,48 @@ def test_what_is_stated_and_not_there(effect: str, stated: dict[str, float | str
     diagnosis = diagnose_table([points], Device(inertance=50.0, **stated))
     assert [finding.effect for finding in diagnosis.findings] == [effect]
     assert "The data contradict what is stated" in diagnosis.verdict
+
+
+def dahl_table(level: float, bristle: float, noise: float, seed: int = 5) -> BenchTable:
+    """50 kg and Dahl friction by the closed form of its loop, strokes of 0.5 to 6 mm.
+
+    From the left end on f = level - (level + f0) exp(-bristle (x + X) / level), with f0 at both
+    ends; back the same with the other sign.
+    """
+    random = np.random.default_rng(seed)
+    frequency, stroke = np.linspace(0.6, 4, 12), np.tile([0.5e-3, 2e-3, 6e-3, 1e-3], 3)
+    phase = 2 * np.pi * (np.arange(4000) + 0.5) / 4000
+    omega, size = 2 * np.pi * frequency[:, None], stroke[:, None]
+    x, way = size * np.sin(phase), np.sign(np.cos(phase))
+    end = level * np.tanh(bristle * size / level)
+    friction = way * (level - (level + end) * np.exp(-bristle * (way * x + size) / level))
+    wave = np.exp(1j * phase)
+    force = 2 * np.abs(np.mean((friction - 50.0 * omega**2 * x) * wave, axis=1))
+    return BenchTable(
+        name="table",
+        frequency=frequency,
+        force_amplitude=force * (1 + noise * random.standard_normal(force.size)),
+        acceleration_amplitude=(2 * np.pi * frequency) ** 2 * stroke,
+    )
+
+
+def test_a_soft_bristle_swings_steadily_from_the_start() -> None:
+    """By the closed form; from rest this one takes hundreds of periods."""
+    points = dahl_table(12.0, 900.0, 0.0)
+    device = Device(inertance=50.0, friction="dahl", coulomb_force=12.0, bristle_stiffness=900.0)
+    found = [
+        amplitude(device, f, a)
+        for f, a in zip(points.frequency, points.acceleration_amplitude, strict=True)
+    ]
+    assert found == pytest.approx(points.force_amplitude, rel=1e-6)
+
+
+def test_a_stated_law_is_contradicted_as_a_whole() -> None:
+    """The level is right; the bristle, left to its default, is ten times as stiff as there."""
+    points = dahl_table(12.0, 9e3, 0.003)
+    default = Device(inertance=50.0, friction="dahl", coulomb_force=12.0)
+    assert default.bristle_stiffness > 9e4
+    diagnosis = diagnose_table([points], default)
+    assert [(f.effect, f.law) for f in diagnosis.findings] == [("hysteretic_friction", "dahl")]
+    assert diagnosis.parameters["bristle_stiffness"].value == pytest.approx(9e3, rel=0.05)
+    assert diagnosis.parameters["coulomb_force"].value == pytest.approx(12.0, rel=0.05)

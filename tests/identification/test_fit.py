@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter import Device
+from inerter.catalogue.coordinates import search_range
 from inerter.identify.fit import Problem, delayed, parameter_errors, rms
 from inerter.identify.model import Model
-from inerter.identify.runs import BenchRun
+from inerter.identify.runs import BenchRun, scales
 
 H, N = 2e-3, 6000
 TIME = H * np.arange(N)
@@ -136,3 +139,14 @@ def test_bounds_hold() -> None:
         Model("none", {"inertance": 50.0, "viscous": 5.0}, ("inertance", "viscous"))
     )
     assert 0 <= fit.model.values["viscous"] < 1e-3
+
+
+def test_one_large_stroke_to_one_side_leaves_the_stops_where_they_can_be() -> None:
+    """Stops at -5 and 7 mm; the last run goes from -19 to 35 mm, of which 8 mm is the middle."""
+    wave, plain = np.sin(7 * TIME), run(Device(inertance=1.0), 0.0)
+    motions = (5e-3 * wave, 6e-3 * wave, (8e-3 + 27e-3 * wave) * TIME / TIME[-1])
+    sizes = scales([replace(plain, displacement=x) for x in motions])
+    assert sizes.travel[0] < -15e-3
+    assert sizes.travel[1] > 30e-3
+    assert search_range("stop_lower", sizes).upper > -5e-3
+    assert search_range("stop_upper", sizes).lower < 7e-3

@@ -13,8 +13,9 @@ class Scales:
     """Typical sizes of a data set's channels: rms about the mean, SI units; cut-off [Hz].
 
     one_tone: the motion is so nearly one sine that displacement and acceleration are proportional.
-    travel, force_range: least and largest displacement [m] and measured force [N]; elapsed: longest
-    elapsed time [s].
+    travel, force_range: least and largest displacement [m] and measured force [N]; middle: of the
+    displacements between which the device is half of the time [m]; elapsed: longest elapsed time
+    [s].
     """
 
     force: float
@@ -24,6 +25,7 @@ class Scales:
     cutoff: float = np.inf
     one_tone: bool = False
     travel: tuple[float, float] = (-np.inf, np.inf)
+    middle: float = 0.0
     elapsed: float = 1.0
     force_range: tuple[float, float] = (-np.inf, np.inf)
 
@@ -41,12 +43,6 @@ class Scales:
     def speed_resolution(self) -> float:
         """What the velocity changes by within the smoother's memory [m/s]; nothing less is seen."""
         return 0.5 * self.acceleration / (2 * np.pi * self.cutoff)
-
-    @property
-    def middle(self) -> float:
-        """Middle of the travel [m]."""
-        low, high = self.travel
-        return 0.5 * (low + high) if np.isfinite(self.travel).all() else 0.0
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from inerter.catalogue.friction import (
 )
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.composition import has_series, width
+from inerter.diagnose.composition import carries, has_series, width
 from inerter.diagnose.stated import shafts, stated_candidates
 from inerter.identify.model import Model
 
@@ -121,12 +121,10 @@ def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
     names = effect.coordinates
     zero = dict.fromkeys(names, 0.0)
-    # a drift is the record's: every law has it
-    able = FRICTION[model.friction].varies or not set(names) & set(LEVEL_COORDINATES)
     if model.friction == "none":
         zero |= {"coulomb_force": _level_of(model, sizes), **width(model)}
         yield Candidate(effect.name, None, (model.adding("coulomb", **zero),))
-    elif able and not all(name in model.free for name in names):
+    elif carries(model.friction, effect.name) and not all(name in model.free for name in names):
         yield Candidate(effect.name, None, (model.adding(None, **zero),))
 
 

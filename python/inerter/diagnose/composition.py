@@ -168,19 +168,32 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
         names.update(EFFECTS[name].stated_as)
     friction = model.friction
     kept_levels = [name for name in _LEVELS if name in effects and name in present]
-    if (laws and laws[0] in dropped) or (
-        not laws and not kept_levels and baseline.friction == "none"
-    ):
-        # without its law, a level that varies needs Coulomb friction to act on
+    # a level came with the variation that it is known by, where the baseline has none to vary
+    alone = not laws and not kept_levels and not FRICTION[baseline.friction].varies
+    if (laws and laws[0] in dropped) or alone:
         level, _ = _level_and_distance(model)
         names.update(LAW_COORDINATES)
-        if kept_levels and baseline.friction == "none":
-            bare = _restored(model.without(tuple(names), "none"), names, baseline)
+        if not all(carries(baseline.friction, name) for name in kept_levels):
+            # without its law, a level that varies needs Coulomb friction to act on
+            others = names.difference(LAW_COORDINATES)
+            bare = _restored(model.without(tuple(names), "none"), others, baseline)
             return bare.adding("coulomb", coulomb_force=level, **width(bare))
         friction = baseline.friction
-        if friction == "none":
-            names.update((*LEVEL_COORDINATES, "friction_drift"))
+        names.update(n for each in _LEVELS if not carries(friction, each) for n in _of_level(each))
     return _restored(model.without(tuple(names), friction), names, baseline)
+
+
+def carries(law: str, effect: str) -> bool:
+    """Whether a friction law has a level that can vary as an effect says.
+
+    A drift is the record's, and so every law's; what differs along the stroke is not.
+    """
+    known = FRICTION[law]
+    return known.varies or bool(known.level and not set(_of_level(effect)) & set(LEVEL_COORDINATES))
+
+
+def _of_level(effect: str) -> tuple[str, ...]:
+    return EFFECTS[effect].coordinates
 
 
 def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:

@@ -8,7 +8,7 @@ force and a delay leave no trace in amplitudes and cannot be found.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +19,10 @@ from inerter.catalogue.scales import Scales
 from inerter.core import Device, parameters
 from inerter.diagnose import wording
 from inerter.diagnose.baseline import baseline_model
+from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of
-from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.decision import CRITERIA, plainest
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -32,6 +33,7 @@ from inerter.diagnose.result import (
     TablePoints,
     Unexplained,
 )
+from inerter.diagnose.stated import stated_candidates
 from inerter.diagnose.statistics import win_shares
 from inerter.diagnose.values import parameter_values
 from inerter.estimation.least_squares import Tolerances, minimise
@@ -73,8 +75,17 @@ def _steady(device: Device, frequency: float, acceleration: float) -> tuple[int,
 
 
 def _first_state(device: Device, frequency: float, acceleration: float) -> Array:
-    """States in which a shaft that is linear swings steadily already, others at zero."""
+    """States in which a shaft that is linear swings steadily already, or a bristle.
+
+    Of a bristle a period maps the state on another one, linearly but for laws with a varying
+    exponent: three in a row tell the one that comes back. A soft one takes hundreds of periods.
+    """
     state = np.zeros(device.nstate)
+    if device.nstate == 1:
+        motion = _sine(frequency, acceleration, FEWEST_PERIODS)
+        z = device.along(*motion, state)["state"][::SAMPLES_PER_PERIOD]
+        bent = z[2] - 2 * z[1] + z[0]
+        return np.array([z[0] - (z[1] - z[0]) ** 2 / bent if bent else z[1]])
     if device.series_stiffness:
         s = 2j * np.pi * frequency
         shaft = device.series_stiffness + device.series_damping * s
@@ -110,7 +121,7 @@ def _fundamental(force: Array) -> float:
     return float(2 / SAMPLES_PER_PERIOD * np.abs(np.fft.rfft(last)[1]))
 
 
-class _Table:
+class Table:
     """Points of one or several tables."""
 
     def __init__(self, tables: Sequence[BenchTable]) -> None:
@@ -185,6 +196,41 @@ class _Table:
         return float(np.sqrt(np.mean(residual**2)))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """An effect that a table shows: the fit with it, and the figures of the finding."""
+
+    effect: str
+    law: str | None
+    fit: Fit
+    squares: Array
+    confidence: float
+    rivals: list[Rival]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prepared:
+    """Points of tables, the device as stated, and the baseline fitted."""
+
+    tables: Sequence[BenchTable]
+    table: Table
+    device: Device | None
+    before: Fit
+
+
+@dataclass(frozen=True, kw_only=True)
+class Searched:
+    """The effects that a table shows, one on top of the other."""
+
+    prepared: Prepared
+    steps: tuple[Step, ...]
+
+    @property
+    def fit(self) -> Fit:
+        """The extended model."""
+        return self.steps[-1].fit if self.steps else self.prepared.before
+
+
 def diagnose_table(
     tables: Sequence[BenchTable],
     device: Device | None = None,
@@ -197,86 +243,128 @@ def diagnose_table(
     ValueError
         Amplitudes or frequencies that are not above zero.
     """
-    table = _Table(without_copies(tables))
-    fit_mask = ~table.holdout
+    return diagnosis_of(searched(prepared(tables, device), progress))
+
+
+def prepared(tables: Sequence[BenchTable], device: Device | None) -> Prepared:
+    """The points, and the device as stated or the ideal inerter fitted to them.
+
+    Raises
+    ------
+    ValueError
+        Amplitudes or frequencies that are not above zero.
+    """
+    table = Table(without_copies(tables))
     start = float(np.mean(table.force / table.acceleration))
-    transition = parameters()["transition_velocity"].initial
-    baseline = baseline_model(device, start, transition)
-    before = table.fit(baseline, fit_mask)
-    fit, squares = before, table.left_out(before.model)
-    findings: list[Finding] = []
-    while len(findings) < CRITERIA.most_on_tables:
-        progress(f"effect {len(findings) + 1}: trying every candidate")
-        step = _best(table, baseline, fit, squares)
-        if step is None:
+    baseline = baseline_model(device, start, parameters()["transition_velocity"].initial)
+    before = table.fit(baseline, ~table.holdout)
+    return Prepared(tables=tables, table=table, device=device, before=before)
+
+
+def searched(start: Prepared, progress: Progress = lambda text: None) -> Searched:
+    """What predicts the points left out best, as long as it helps at those held out."""
+    table, steps = start.table, list[Step]()
+    fit, squares = start.before, table.left_out(start.before.model)
+    while len(steps) < CRITERIA.most_on_tables:
+        progress(f"effect {len(steps) + 1}: trying every candidate")
+        step = _best(table, start.before.model, fit, squares)
+        if step is None or table.rmse(step.fit.model) >= table.rmse(fit.model):
             break
-        effect, after, after_squares, confidence, rivals = step
-        rmse_before, rmse_after = table.rmse(fit.model), table.rmse(after.model)
-        if rmse_after >= rmse_before:
-            break
-        fit, squares = after, after_squares
-        findings.append(
-            Finding(
-                effect=effect,
-                law=None,
-                confidence=confidence,
-                parameters={},
-                rmse_before=rmse_before,
-                rmse_after=rmse_after,
-                evidence="",
-                rivals=rivals,
-            )
-        )
-    values = parameter_values(fit, device)
-    findings = [
-        replace(f, parameters={n: values[n] for n in EFFECTS[f.effect].parameters if n in values})
-        for f in findings
+        steps.append(step)
+        fit, squares = step.fit, step.squares
+    return Searched(prepared=start, steps=tuple(steps))
+
+
+def _tried(table: Table, baseline: Model, model: Model) -> list[Candidate]:
+    """What amplitudes can show; of a stated friction law, which they can contradict, all of it."""
+    present = [name for name, _ in effects_of(model, baseline)]
+    stated = {
+        each.key
+        for each in stated_candidates(model, table.scales)
+        if EFFECTS[each.effect].kind == "law"
+    }
+    return [
+        each
+        for each in candidates(model, table.scales)
+        if (EFFECTS[each.effect].on_table or each.key in stated) and each.effect not in present
     ]
-    findings = [replace(f, evidence=wording.evidence(f)) for f in findings]
-    findings.sort(key=lambda finding: -finding.gain)
-    return _diagnosis(tables, table, before, fit, findings, values)
 
 
-def _best(
-    table: _Table, baseline: Model, fit: Fit, squares: Array
-) -> tuple[str, Fit, Array, float, list[Rival]] | None:
-    tried = []
-    for candidate in candidates(fit.model, table.scales):
-        present = [name for name, _ in effects_of(fit.model, baseline)]
-        if EFFECTS[candidate.effect].on_table and candidate.effect not in present:
-            fits = []
-            for start in candidate.starts:
-                free = tuple(name for name in start.free if name not in NUISANCES)
+def _best(table: Table, baseline: Model, fit: Fit, squares: Array) -> Step | None:
+    tried: list[Tried] = []
+    for candidate in _tried(table, baseline, fit.model):
+        fits = []
+        for start in candidate.starts:
+            free = tuple(name for name in start.free if name not in NUISANCES)
+            if squares.size >= len(free) + CRITERIA.spare_points:
                 fits.append(table.fit(replace(start, free=free), ~table.holdout))
+        if fits:
             after = min(fits, key=lambda each: each.cost)
-            tried.append((candidate.effect, after, table.left_out(after.model)))
-    good = [
-        one
-        for one in tried
-        if squares.size >= len(one[1].model.free) + CRITERIA.spare_points
-        and squares.size * np.log(squares.sum() / one[2].sum()) > CRITERIA.evidence
-    ]
+            tried.append(Tried(candidate, after, table.left_out(after.model)))
+    good = [one for one in tried if _evidence(squares, one.squares) > CRITERIA.evidence]
     if not good:
         return None
-    effect, after, best = min(good, key=lambda one: one[2].sum())
-    others = [one for one in tried if one[0] != effect]
-    shares = win_shares([best, squares, *(one[2] for one in others)])
+    least = min((one.squares for one in good), key=np.sum)
+    # a whole law has to do better than its level alone as surely as this has to do better than none
+    best = plainest([e for e in good if _evidence(e.squares, least) <= CRITERIA.evidence])
+    others = [one for one in tried if one.candidate.effect != best.candidate.effect]
+    shares = win_shares([best.squares, squares, *(one.squares for one in others)])
     rivals = [
-        Rival(one[0], float(share))
+        Rival(one.candidate.effect, float(share))
         for one, share in zip(others, shares[2:], strict=True)
         if share > CRITERIA.rival_kept
     ]
-    return effect, after, best, float(shares[0]), sorted(rivals, key=lambda r: -r.confidence)
+    return Step(
+        effect=best.candidate.effect,
+        law=best.candidate.law,
+        fit=best.fit,
+        squares=best.squares,
+        confidence=float(shares[0]),
+        rivals=sorted(rivals, key=lambda r: -r.confidence),
+    )
 
 
-def _diagnosis(
-    tables: Sequence[BenchTable],
-    table: _Table,
-    before: Fit,
-    fit: Fit,
-    findings: list[Finding],
-    values: dict[str, ParameterValue],
-) -> Diagnosis:
+@dataclass(frozen=True)
+class Tried:
+    """A fitted candidate and its squared errors at points left out."""
+
+    candidate: Candidate
+    fit: Fit
+    squares: Array
+
+    @property
+    def complexity(self) -> int:
+        """Number of free coordinates that say something."""
+        return self.fit.model.complexity
+
+
+def _evidence(before: Array, after: Array) -> float:
+    """Twice the log-likelihood ratio of errors at points left out."""
+    return float(before.size * np.log(before.sum() / after.sum()))
+
+
+def _findings(found: Searched, values: dict[str, ParameterValue]) -> list[Finding]:
+    """In order of gain; each is measured on top of those before it."""
+    rmse = found.prepared.table.rmse
+    models = [found.prepared.before.model, *(step.fit.model for step in found.steps)]
+    findings = []
+    for step, before in zip(found.steps, models[:-1], strict=True):
+        names = EFFECTS[step.effect].parameters
+        finding = Finding(
+            effect=step.effect, law=step.law, confidence=step.confidence,
+            parameters={name: values[name] for name in names if name in values},
+            rmse_before=rmse(before), rmse_after=rmse(step.fit.model), evidence="",
+            rivals=step.rivals,
+        )  # fmt: skip
+        findings.append(replace(finding, evidence=wording.evidence(finding)))
+    return sorted(findings, key=lambda finding: -finding.gain)
+
+
+def diagnosis_of(found: Searched) -> Diagnosis:
+    """What is said of it: findings, figures, what remains."""
+    tables, table, before = found.prepared.tables, found.prepared.table, found.prepared.before
+    fit = found.fit
+    values = parameter_values(fit, found.prepared.device)
     spread = float(np.sqrt(np.mean(table.force**2)))
 
     def accuracy(model: Model) -> Accuracy:
@@ -326,7 +414,7 @@ def _diagnosis(
             for t in tables
         ],
         baseline=accuracy(before.model),
-        findings=findings,
+        findings=_findings(found, values),
         extended=extended,
         noise_floor=relative * float(np.mean(table.force)),
         unexplained=remains,

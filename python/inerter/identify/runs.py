@@ -308,6 +308,8 @@ def scales(runs: Sequence[BenchRun]) -> Scales:
         cutoff=min(run.cutoff for run in runs),
         one_tone=correlation**2 > ONE_TONE,
         travel=travel,
+        # not of the travel: one large stroke to one side moves that beyond a stop
+        middle=float(np.mean(np.quantile(x, (0.25, 0.75)))),
         elapsed=max(float(run.elapsed[-1]) for run in runs),
         force_range=forces,
     )
