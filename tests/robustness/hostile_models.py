@@ -2,8 +2,9 @@
 
     python hostile_models.py FOLDER [NAME ...]
 
-makes each and tells what `inerter simulate` says of it, and what that costs. Not among them, for the
-engine alone could refuse them: a pipe that a model names (it waits), `<replicate count="2000000000">`.
+makes each and tells what `inerter simulate` says of it, and what that costs. Not among them, for
+the engine alone could refuse them: a pipe that a model names (it waits), and
+`<replicate count="2000000000">`.
 """
 
 from __future__ import annotations

@@ -4,8 +4,8 @@
 
 FOLDER/wheel holds the wheel. Every version gets an environment of its own in FOLDER: engine and
 wheel installed, the other packages linked from the environment that runs this. The oldest and the
-newest version run the plugin's tests, the others load and drive the quarter-car; with 3.17 an entity
-of dm_control's Composer has devices, which no newer MuJoCo runs.
+newest version run the plugin's tests, the others load and drive the quarter-car; with 3.17
+entities of dm_control's Composer have devices: it does not run on a newer MuJoCo.
 """
 
 from __future__ import annotations
