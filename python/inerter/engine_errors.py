@@ -15,6 +15,22 @@ class SimulationError(ValueError):
         super().__init__(" ".join(message.split()))
 
 
+# what the engine's compiler raises; the last where it runs out of memory
+COMPILE_ERRORS = (ValueError, MemoryError, RuntimeError)
+_UNKNOWN = "Caught an unknown exception"
+
+# [s] what a model may state; the engine takes any number
+TIMESTEPS = (1e-9, 1e3)
+
+
+def timestep_fault(timestep: float) -> str:
+    """What is wrong with a model's time step [s], nothing where it can be run."""
+    least, most = TIMESTEPS
+    if least <= timestep <= most:
+        return ""
+    return f"the model's timestep is {timestep:g} s; give one of {least:g} to {most:g} s"
+
+
 # how the engine begins where the file itself, and none that it names, is of no kind that it reads
 _NO_MODEL = "could not find decoder for resource"
 
@@ -26,6 +42,11 @@ def engine_text(error: Exception, endings: str = ".xml") -> str:
     """
     if str(error).startswith(_NO_MODEL):
         return f"by its ending this is no model; give a model, {endings}"
+    if str(error).startswith(_UNKNOWN) or isinstance(error, MemoryError):
+        return (
+            "MuJoCo cannot compile it and does not say why; a model that states more than fits "
+            "into memory ends so: look at counts, <size>, the sizes of textures and height fields"
+        )
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     text = "; ".join(dict.fromkeys(lines)).removeprefix("Error: ").removeprefix("XML Error: ")
     return text + _meant(text)

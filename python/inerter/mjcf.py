@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import mujoco
 
 from inerter.core import Device, DeviceError
-from inerter.engine_errors import engine_text
+from inerter.engine_errors import COMPILE_ERRORS, engine_text
 from inerter.plugin import load_plugin
 
 
@@ -25,7 +25,7 @@ def device_of_model(path: Path) -> Device:
         raise DeviceError(f"{path}: no such file; check the path")
     try:
         text = mujoco.MjSpec.from_file(str(path.absolute())).to_xml()
-    except ValueError as error:
+    except COMPILE_ERRORS as error:
         raise DeviceError(f"{path}: {engine_text(error)}") from None
 
     # a device is configured in its actuator, or in an instance that its actuator names

@@ -8,7 +8,12 @@ import mujoco
 import numpy as np
 
 from inerter.device_in_model import PLUGIN, devices_of
-from inerter.engine_errors import SimulationError, engine_text
+from inerter.engine_errors import (
+    COMPILE_ERRORS,
+    SimulationError,
+    engine_text,
+    timestep_fault,
+)
 from inerter.input_file import refuse_special
 from inerter.plugin import load_plugin
 
@@ -42,7 +47,7 @@ def load_model(
     ------
     SimulationError
         No such file, a model that does not compile (with the compiler's message), an unknown
-        integrator, a time step that is not positive.
+        integrator, a time step that cannot be.
     """
     load_plugin()
     try:
@@ -60,10 +65,12 @@ def load_model(
         raise SimulationError(f"--integrator is {integrator!r}; choose one of {names}")
     try:
         model = _binary(path) if path.suffix.lower() == ".mjb" else readable_spec(path).compile()
-    except (ValueError, mujoco.FatalError) as error:
+    except (*COMPILE_ERRORS, mujoco.FatalError) as error:
         raise SimulationError(f"{path}: {engine_text(error, '.xml or .mjb')}") from None
     if timestep is not None:
         model.opt.timestep = timestep
+    elif fault := timestep_fault(model.opt.timestep):
+        raise SimulationError(f"{path}: {fault} in its <option>, or with --timestep")
     if integrator is not None:
         model.opt.integrator = INTEGRATORS[integrator.lower()]
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET

@@ -23,6 +23,7 @@ Progress = Callable[[float], None]
 DEFAULT_DURATION = 10.0
 DEFAULT_RATE = 1000.0
 MAX_SAMPLES = 2_000_000
+MAX_STEPS = 10**9  # at 1e6 steps a second, and no model is faster, a quarter of an hour
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +122,11 @@ def _plan(
     if not 0 < duration < 1e9:
         raise SimulationError(f"--duration is {duration:g}: give seconds above 0, below 1e9")
     h = float(model.opt.timestep)
+    if duration / h > MAX_STEPS:
+        raise SimulationError(
+            f"{duration:g} s are {duration / h:.3g} time steps of {h:g} s, at most {MAX_STEPS:g} "
+            "are made; give a shorter --duration, or a longer --timestep"
+        )
     steps, every = round(duration / h), _every(h, rate)
     if steps < 1:
         raise SimulationError(f"--duration {duration:g} s is shorter than a time step of {h:g} s")

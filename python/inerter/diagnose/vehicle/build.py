@@ -28,6 +28,7 @@ from inerter.core import Device, DeviceError, parameters
 from inerter.device_in_model import DeviceInModel, devices_of
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.parts import Parts, Suspension, Tyre, VehicleLink, find_parts
+from inerter.engine_errors import COMPILE_ERRORS, engine_text, timestep_fault
 from inerter.plugin import load_plugin
 
 _FAR = 1e12  # a force that no one-sided actuator reaches [N]
@@ -271,8 +272,10 @@ def read_model(path: Path) -> UserModel:
         # the engine looks up attached models wrongly where the path is relative
         spec = mujoco.MjSpec.from_file(str(path.absolute()))
         model = spec.copy().compile()
-    except ValueError as error:
-        raise DeviceError(f"{path}: {' '.join(str(error).split())}") from None
+    except COMPILE_ERRORS as error:
+        raise DeviceError(f"{path}: {engine_text(error)}") from None
+    if fault := timestep_fault(model.opt.timestep):
+        raise DeviceError(f"{path}: {fault} in its <option>")
     devices = devices_of(model)
     if not devices:
         raise DeviceError(
