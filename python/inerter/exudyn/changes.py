@@ -11,7 +11,6 @@ from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.parameters import Parameters
-from inerter.exudyn.readings import Readings
 from inerter.exudyn.terminals import terminals
 
 KEPT = "inerter_models"
@@ -143,7 +142,7 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
 def take(mbs: Any, model: Model, element: Element) -> None:
     """Let the object be this element from now on; it has the same coordinates."""
     model.functions.take(mbs, model.objectNumber, element)
-    model.element, model.readings = element, Readings(element)
+    model.take(element)
 
 
 def _listed(names: Any) -> str:
