@@ -60,22 +60,17 @@ class UserFunctions:
             found["massMatrixUserFunction"] = compiled.mass
         if compiled is not None and not self._symbolic:
             return found | {
-                "stiffnessMatrix": _or_empty(hold),
+                "stiffnessMatrix": hold,
                 "forceUserFunction": compiled.force,
                 "jacobianUserFunction": compiled.jacobian,
             }
         linear, rest = _split(element)
         return found | {
-            "stiffnessMatrix": _or_empty(hold + linear.stiffness),
-            "dampingMatrix": _or_empty(linear.damping),
+            "stiffnessMatrix": hold + linear.stiffness,
+            "dampingMatrix": linear.damping,
             "forceVector": linear.force,
             "forceUserFunction": _symbolic(element, mbs, rest),
         }
-
-
-def _or_empty(matrix: Matrix) -> Matrix:
-    """The matrix, or one of no size if it is 0, which Exudyn then leaves out."""
-    return matrix if matrix.any() else np.zeros((0, 0))
 
 
 class Compiled:
