@@ -81,9 +81,9 @@ def test_exudyns_own(path: Path) -> None:
         pytest.skip(found["none"])
     assert found["velocity"] < 1e-12
     known = {name: found[f"{name}_known"] for name in ("momentum", "energy")}
-    if max(known.values()) > COARSE:
-        pytest.skip(f"its steps do not resolve the force: {known}")
     if not found["moves"]:
         pytest.skip("its body is at rest")
+    if max(known.values()) > COARSE:
+        pytest.skip(f"its steps do not resolve the force: {known}")
     for name, bound in known.items():
         assert found[name] < bound + 1e-9, (name, found)
