@@ -125,6 +125,14 @@ class Inerter:
     def __init__(self, mbs: Any, model: Model) -> None:
         self.mbs, self._model = mbs, model
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in ("mbs", "_model"):
+            raise AttributeError(
+                f"{name}: an Inerter's attributes are not set; parameters change by "
+                f"strut.set({name}={value!r:.40})"
+            )
+        super().__setattr__(name, value)
+
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in Model.__dataclass_fields__:
             raise AttributeError(f"an Inerter has no {name!r}")

@@ -19,6 +19,7 @@ from inerter.exudyn.changes import KEPT, change_parameters, models_of, read_geom
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import Line
+from inerter.exudyn.parameters import ALIASES
 
 GEOMETRY = {
     "SetNodeParameter": ("referenceCoordinates",),
@@ -89,7 +90,7 @@ def _telling_of_change(name: str, original: Callable[..., Any]) -> Callable[...,
 
 
 def _is_of_device(name: str) -> bool:
-    return name in parameters() or name in ("friction", "gas_law")
+    return name in parameters() or name in ALIASES or name in ("friction", "gas_law")
 
 
 def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
