@@ -24,26 +24,26 @@ enum { INERTER_LISTED = 9 };  // the most coordinates whose mass matrix is hande
 
 typedef struct InerterElement_ {
   InerterTape tape;
-  int32_t size;           // coordinates of the object
-  int32_t nrow;           // of them those of the terminals' nodes
-  int32_t ndistinct;      // different entries of B J'J, at most INERTER_LISTED^2 with lists
-  int32_t loaded;         // inputs end with the latest accelerations, asked of `reader`
-  int32_t known;          // the values on the tape are those of `inputs`
-  const int32_t* forces;  // places of the forces, size
+  int32_t size;             // coordinates of the object
+  int32_t nrow;             // of them those of the terminals' nodes
+  int32_t ndistinct;        // different entries of B J'J, at most INERTER_LISTED^2 with lists
+  int32_t loaded;           // inputs end with the latest accelerations, asked of `reader`
+  int32_t known;            // the values on the tape are those of `inputs`
+  const int32_t* forces;    // places of the forces, size
   const int32_t* distinct;  // places of the different entries of B J'J, ndistinct
   const int32_t* entries;   // which of them each entry is, nrow x nrow
-  int32_t length;         // place of what must not fall below `shortest`, or -1
+  int32_t length;           // place of what must not fall below `shortest`, or -1
   double shortest;
   double* mass;        // the mass matrix, size x size; its constant part is in place
   double* jacobian;    // size x size
   Object* mass_array;  // the NumPy arrays of these
   Object* jacobian_array;
-  Object* mass_list;    // the mass matrix as lists, which Exudyn reads faster if it is small,
-                        // or Python's None
-  Object* reader;       // (mbs, itemNumber) -> accelerations
-  Object* none;         // Python's
-  Object* error;        // raised when the terminals meet,
-  const char* message;  // with this text
+  Object* mass_list;      // these as lists, which Exudyn reads faster if they are small,
+  Object* jacobian_list;  // or Python's None
+  Object* reader;         // (mbs, itemNumber) -> accelerations
+  Object* none;           // Python's
+  Object* error;          // raised when the terminals meet,
+  const char* message;    // with this text
 } InerterElement;
 
 static Python python;
@@ -174,6 +174,21 @@ static Object* mass(Object* self, Object* arguments) {
   return matrix;
 }
 
+// put a matrix into a list of lists; 0, or -1 with an error set
+static int list_matrix(const double* matrix, int32_t n, Object* lists) {
+  for (int32_t i = 0; i < n; i++) {
+    Object* row = python.PyList_GetItem(lists, i);
+    for (int32_t k = 0; k < n; k++) {
+      Object* value = python.PyFloat_FromDouble(*matrix++);
+      if (!value) {
+        return -1;
+      }
+      python.PyList_SetItem(row, k, value);
+    }
+  }
+  return 0;
+}
+
 static Object* jacobian(Object* self, Object* arguments) {
   InerterElement* element = element_of(self);
   if (!element || update(element, arguments)) {
@@ -192,8 +207,15 @@ static Object* jacobian(Object* self, Object* arguments) {
     double* row = element->jacobian + (ptrdiff_t)i * n;
     for (int32_t k = 0; k < n; k++) row[k] = -by_place * slope[k] - by_speed * slope[n + k];
   }
-  python.Py_IncRef(element->jacobian_array);
-  return element->jacobian_array;
+  Object* matrix = element->jacobian_array;
+  if (element->jacobian_list != element->none) {
+    matrix = element->jacobian_list;
+    if (list_matrix(element->jacobian, n, matrix)) {
+      return NULL;
+    }
+  }
+  python.Py_IncRef(matrix);
+  return matrix;
 }
 
 static Method methods[] = {

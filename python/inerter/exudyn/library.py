@@ -53,6 +53,7 @@ class CElement(ctypes.Structure):
         ("mass_array", ctypes.py_object),
         ("jacobian_array", ctypes.py_object),
         ("mass_list", ctypes.py_object),
+        ("jacobian_list", ctypes.py_object),
         ("reader", ctypes.py_object),
         ("none", ctypes.py_object),
         ("error", ctypes.py_object),

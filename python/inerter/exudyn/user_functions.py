@@ -119,7 +119,9 @@ class Compiled:
         c.shortest, c.message = SHORTEST, self._message
         c.mass, c.jacobian = mass.ctypes.data, jacobian.ctypes.data
         c.mass_array, c.jacobian_array, c.none = mass, jacobian, None
-        c.mass_list = mass.tolist() if size <= listed() else None
+        small = size <= listed()
+        c.mass_list = mass.tolist() if small else None
+        c.jacobian_list = jacobian.tolist() if small else None
         c.reader, c.error = latest_accelerations, ValueError
         self._kept[:] = [finished, places, entries, mass, jacobian]
 
