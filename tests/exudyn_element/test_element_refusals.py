@@ -24,6 +24,8 @@ from inerter.exudyn import CreateInerter
         ({"inertance": float("nan")}, 'inertance is "nan": out of range; give a finite number'),
         ({"inertance": -1.0}, 'inertance is "-1.0": out of range'),
         ({"inertance": 1.0, "friction": "lugr"}, "friction"),
+        ({}, "inertance is not given, nor is anything else that acts; give inertance="),
+        ({"rest_length": 1.0}, "inertance is not given, nor is anything else that acts"),
         ({"inertance": 1.0, "coulomb_force": 1.0}, "coulomb_force is given, but friction"),
     ],
 )

@@ -117,7 +117,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     items_of = exudyn("itemInterface")
     if not isinstance(mbs, exudyn().MainSystem):
         raise ValueError(
-            f"mbs: a {type(mbs).__name__} is no MainSystem; make one by exudyn.SystemContainer().AddSystem()"
+            f"mbs: a {type(mbs).__name__} is no MainSystem; make one by "
+            "exudyn.SystemContainer().AddSystem()"
         )
     others = {
         "bodyNumbers": bodyNumbers,
@@ -191,6 +192,11 @@ def _items(name: Any, itemNumbers: Any, told: Mapping[str, Any]) -> list[Any]:
 def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters under their own names, none of them None but a rest length."""
     found = own_names(given)
+    if not set(found) - {"rest_length"}:
+        raise DeviceError(
+            "inertance is not given, nor is anything else that acts; give inertance=... [kg], or "
+            "what `inerter parameters` lists"
+        )
     for key, value in found.items():
         if value is None and key != "rest_length":
             raise DeviceError(f"{key} is None: give a number, or leave it out")
