@@ -1,7 +1,8 @@
 """What devices cost in Exudyn, beside Exudyn's own spring-damper: points, bodies, 1D; 1, 10, 100.
 
 Each system is a number of free pairs with a spring-damper between them; the device comes beside the
-spring. With 100 pairs the linear solver is the sparse one, in both.
+spring. With 100 pairs the linear solver is the sparse one, in both. `EMPTY` is what any element of
+this kind costs at least: its user functions return constants.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import sys
 import time
 from typing import Any
 
+import numpy as np
 from inerter.benchmark.rows import Row, spread_of
 from inerter.benchmark.timing import Work, interleaved
 from inerter.exudyn import CreateInerter
@@ -29,6 +31,7 @@ DEVICES: dict[str, dict[str, Any]] = {
     "series element": SHAFT,
     "series element, LuGre": {**SHAFT, **LUGRE},
 }
+EMPTY = "user functions of constants, no device"
 SENSOR = "ideal, a sensor of force at every step"
 KINDS = ("points", "bodies", "1D")
 MANY = 100
@@ -83,7 +86,9 @@ def _system(kind: str, name: str, count: int) -> Any:
             if kind == "bodies":
                 local = {"localPosition0": [0.05, 0.02, 0.01], "localPosition1": [-0.05, 0.03, 0.0]}
             mbs.CreateSpringDamper(itemNumbers=pair, stiffness=100.0, damping=1.0, **local)
-        if name != NATIVE:
+        if name == EMPTY:
+            _add_empty(mbs, pair, kind)
+        elif name != NATIVE:
             device = DEVICES[name.removesuffix(SENSOR) or "ideal"]
             made = CreateInerter(
                 mbs, f"d{number}", pair, inertance=0.5, show=False, **local, **device
@@ -91,6 +96,43 @@ def _system(kind: str, name: str, count: int) -> Any:
             if name == SENSOR:
                 made.AddSensor("total")
     return mbs
+
+
+def _add_empty(mbs: Any, pair: list[Any], kind: str) -> None:
+    """Between points and bodies force and mass matrix in Python, on lines an expression."""
+    nodes = pair if kind == "1D" else [mbs.GetObject(body)["nodeNumber"] for body in pair]
+    size = sum(len(mbs.GetNode(node)["referenceCoordinates"]) for node in nodes)
+    row = np.zeros(size)
+    row[[0, size // 2]] = -1.0, 1.0
+    matrix, force = 0.5 * np.outer(row, row), [0.0] * size
+    functions: dict[str, Any] = {"massMatrix": matrix}
+    if kind == "1D":
+        symbolic = exudyn("symbolic")
+        functions["forceUserFunction"] = _constant_expression(mbs, symbolic, force)
+    else:
+        entries = matrix.tolist()
+        functions["forceUserFunction"] = lambda *arguments: force
+        functions["massMatrixUserFunction"] = lambda *arguments: entries
+        functions["jacobianUserFunction"] = lambda *arguments: np.zeros((size, size))
+    mbs.AddObject(exudyn("itemInterface").ObjectGenericODE2(nodeNumbers=nodes, **functions))
+
+
+def _constant_expression(mbs: Any, symbolic: Any, force: list[float]) -> Any:
+    recording = symbolic.GetRecording()
+    symbolic.SetRecording(True)
+    names = ("q", "q_t")
+    arguments = [symbolic.Real("t", 0.0), symbolic.Real("itemNumber", 0)]
+    arguments += [symbolic.Vector(name, force) for name in names]
+    result = symbolic.Vector(force) + symbolic.Vector(force)
+    symbolic.SetRecording(recording)
+    function = symbolic.UserFunction()
+    contents = {
+        "functionName": "forceUserFunction", "argList": [None, *arguments],
+        "argTypeList": ["MainSystem", "Real", "Index", "StdVector", "StdVector"],
+        "returnValue": result, "returnType": "StdVector",
+    }  # fmt: skip
+    function.SetUserFunctionFromDict(mbs, contents, "forceUserFunction", None, "ObjectGenericODE2")
+    return function
 
 
 def _work(kind: str, name: str, count: int, solver: str, steps: int) -> Work:
@@ -140,7 +182,7 @@ def _rows(kind: str, quick: bool) -> list[Row]:
     for solver in SOLVERS:
         for count in (1, 10) if quick else (1, 10, MANY):
             names = [NATIVE, *(DEVICES if count == 1 else ("ideal", "LuGre"))]
-            names += [SENSOR] if count == 1 else []
+            names += [EMPTY, SENSOR] if count == 1 else []
             steps = max(50, total // count)
             works = {name: _work(kind, name, count, solver, steps) for name in names}
             times = interleaved(works, rounds, clock=time.process_time)

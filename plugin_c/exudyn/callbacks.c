@@ -2,6 +2,9 @@
 //
 //   M = B J'J (+ the constant part),   f = forces,   K = -df/dq f_q - df/dq' f_v
 //
+// Most entries of M are those of others or their negatives, and a number costs Python more than it
+// costs the tape: each that differs is made once.
+//
 // Every function is a built-in function of Python whose self is a tuple; its first item is the
 // address of an InerterElement, the others keep alive what that points to.
 
@@ -17,27 +20,30 @@
 #define INERTER_API __attribute__((visibility("default")))
 #endif
 
+enum { INERTER_LISTED = 9 };  // the most coordinates whose mass matrix is handed over as lists
+
 typedef struct InerterElement_ {
   InerterTape tape;
-  int32_t size;           // coordinates of the object
-  int32_t nrow;           // of them those of the terminals' nodes
-  int32_t loaded;         // inputs end with the latest accelerations, asked of `reader`
-  int32_t known;          // the values on the tape are those of `inputs`
-  const int32_t* forces;  // places of the forces, size
-  const int32_t* row;     // places of J, nrow
-  int32_t inertance;      // place of B
-  int32_t length;         // place of what must not fall below `shortest`, or -1
+  int32_t size;             // coordinates of the object
+  int32_t nrow;             // of them those of the terminals' nodes
+  int32_t ndistinct;        // different entries of B J'J, at most INERTER_LISTED^2 with lists
+  int32_t loaded;           // inputs end with the latest accelerations, asked of `reader`
+  int32_t known;            // the values on the tape are those of `inputs`
+  const int32_t* forces;    // places of the forces, size
+  const int32_t* distinct;  // places of the different entries of B J'J, ndistinct
+  const int32_t* entries;   // which of them each entry is, nrow x nrow
+  int32_t length;           // place of what must not fall below `shortest`, or -1
   double shortest;
   double* mass;        // the mass matrix, size x size; its constant part is in place
   double* jacobian;    // size x size
   Object* mass_array;  // the NumPy arrays of these
   Object* jacobian_array;
-  Object* mass_list;    // the mass matrix as lists, which Exudyn reads faster if it is small,
-                        // or Python's None
-  Object* reader;       // (mbs, itemNumber) -> accelerations
-  Object* none;         // Python's
-  Object* error;        // raised when the terminals meet,
-  const char* message;  // with this text
+  Object* mass_list;      // these as lists, which Exudyn reads faster if they are small,
+  Object* jacobian_list;  // or Python's None
+  Object* reader;         // (mbs, itemNumber) -> accelerations
+  Object* none;           // Python's
+  Object* error;          // raised when the terminals meet,
+  const char* message;    // with this text
 } InerterElement;
 
 static Python python;
@@ -120,32 +126,33 @@ static Object* force(Object* self, Object* arguments) {
 // put B J'J into the list of lists; 0, or -1 with an error set
 static int write_lists(const InerterElement* element) {
   const double* values = element->tape.values;
-  double inertance = values[element->inertance];
+  Object* made[INERTER_LISTED * INERTER_LISTED];
+  for (int32_t i = 0; i < element->ndistinct; i++) {
+    made[i] = python.PyFloat_FromDouble(values[element->distinct[i]]);
+    if (!made[i]) {
+      while (i-- > 0) python.Py_DecRef(made[i]);
+      return -1;
+    }
+  }
+  const int32_t* entry = element->entries;
   for (int32_t i = 0; i < element->nrow; i++) {
-    double part = inertance * values[element->row[i]];
     Object* row = python.PyList_GetItem(element->mass_list, i);
-    for (int32_t k = 0; k <= i; k++) {
-      Object* value = python.PyFloat_FromDouble(part * values[element->row[k]]);
-      if (!value) {
-        return -1;
-      }
-      if (k < i) {
-        python.Py_IncRef(value);
-        python.PyList_SetItem(python.PyList_GetItem(element->mass_list, k), i, value);
-      }
+    for (int32_t k = 0; k < element->nrow; k++) {
+      Object* value = made[*entry++];
+      python.Py_IncRef(value);
       python.PyList_SetItem(row, k, value);
     }
   }
+  for (int32_t i = 0; i < element->ndistinct; i++) python.Py_DecRef(made[i]);
   return 0;
 }
 
 static void write_array(const InerterElement* element) {
   const double* values = element->tape.values;
-  double inertance = values[element->inertance];
+  const int32_t* entry = element->entries;
   for (int32_t i = 0; i < element->nrow; i++) {
-    double part = inertance * values[element->row[i]];
     double* row = element->mass + (ptrdiff_t)i * element->size;
-    for (int32_t k = 0; k < element->nrow; k++) row[k] = part * values[element->row[k]];
+    for (int32_t k = 0; k < element->nrow; k++) row[k] = values[element->distinct[*entry++]];
   }
 }
 
@@ -167,6 +174,21 @@ static Object* mass(Object* self, Object* arguments) {
   return matrix;
 }
 
+// put a matrix into a list of lists; 0, or -1 with an error set
+static int list_matrix(const double* matrix, int32_t n, Object* lists) {
+  for (int32_t i = 0; i < n; i++) {
+    Object* row = python.PyList_GetItem(lists, i);
+    for (int32_t k = 0; k < n; k++) {
+      Object* value = python.PyFloat_FromDouble(*matrix++);
+      if (!value) {
+        return -1;
+      }
+      python.PyList_SetItem(row, k, value);
+    }
+  }
+  return 0;
+}
+
 static Object* jacobian(Object* self, Object* arguments) {
   InerterElement* element = element_of(self);
   if (!element || update(element, arguments)) {
@@ -185,8 +207,15 @@ static Object* jacobian(Object* self, Object* arguments) {
     double* row = element->jacobian + (ptrdiff_t)i * n;
     for (int32_t k = 0; k < n; k++) row[k] = -by_place * slope[k] - by_speed * slope[n + k];
   }
-  python.Py_IncRef(element->jacobian_array);
-  return element->jacobian_array;
+  Object* matrix = element->jacobian_array;
+  if (element->jacobian_list != element->none) {
+    matrix = element->jacobian_list;
+    if (list_matrix(element->jacobian, n, matrix)) {
+      return NULL;
+    }
+  }
+  python.Py_IncRef(matrix);
+  return matrix;
 }
 
 static Method methods[] = {
@@ -215,6 +244,10 @@ INERTER_API const char* inerter_exudyn_operation(int number) {
 #undef X
   };
   return number >= 0 && number < INERTER_NOPERATION ? names[number] : NULL;
+}
+
+INERTER_API int inerter_exudyn_listed(void) {
+  return INERTER_LISTED;
 }
 
 INERTER_API void inerter_exudyn_run(const InerterTape* tape) {

@@ -1,25 +1,29 @@
 #include "exudyn/tape.h"
 
 #include <math.h>
-#include <string.h>
 
 void inerter_tape_run(const InerterTape* tape) {
   double* values = tape->values;
   double* value = values + tape->ninput + tape->nconstant;
-  for (int32_t i = 0; i < tape->nstep; i++) {
-    const InerterTapeStep* step = tape->steps + i;
-    double a = values[step->a], b = values[step->b], c = values[step->c];
-    switch ((InerterOperation)step->operation) {
-#define X(name, expression)      \
-  case INERTER_OPERATION_##name: \
-    value[i] = (expression);     \
+  const InerterTapeStep* step = tape->steps;
+  const InerterTapeStep* end = step + tape->nstep;
+  while (step < end) {
+    const int32_t operation = step->operation;
+    // a row of the same operation in one loop, which a processor foresees
+    switch ((InerterOperation)operation) {
+#define X(name, expression)                                                 \
+  case INERTER_OPERATION_##name:                                            \
+    do {                                                                    \
+      double a = values[step->a], b = values[step->b], c = values[step->c]; \
+      *value++ = (expression);                                              \
+      (void)b, (void)c;                                                     \
+    } while (++step < end && step->operation == operation);                 \
     break;
       INERTER_OPERATIONS(X)
 #undef X
       case INERTER_NOPERATION:
-        break;
+        return;
     }
-    (void)c;
   }
 }
 
@@ -84,32 +88,44 @@ static void partials(InerterOperation operation, double a, double b, double y, d
   }
 }
 
+// slope[k] = p[0] by_a[k] + p[1] by_b[k] over a span; nothing times an infinite slope is nothing
+static void chain(const double p[2], const double* by_a, const double* by_b, InerterTapeSpan span,
+                  double* restrict slope) {
+  const double pa = p[0], pb = p[1];
+  if (!isfinite(pa) || !isfinite(pb)) {
+    for (int32_t k = span.first; k < span.end; k++) {
+      slope[k] = (by_a[k] != 0.0 ? pa * by_a[k] : 0.0) + (by_b[k] != 0.0 ? pb * by_b[k] : 0.0);
+    }
+  } else if (pa == 0.0 && pb == 0.0) {
+    for (int32_t k = span.first; k < span.end; k++) slope[k] = 0.0;
+  } else if (pb == 0.0) {
+    for (int32_t k = span.first; k < span.end; k++) slope[k] = pa * by_a[k];
+  } else if (pa == 0.0) {
+    for (int32_t k = span.first; k < span.end; k++) slope[k] = pb * by_b[k];
+  } else {
+    for (int32_t k = span.first; k < span.end; k++) slope[k] = pa * by_a[k] + pb * by_b[k];
+  }
+}
+
 void inerter_tape_slopes(const InerterTape* tape) {
   const size_t n = (size_t)tape->ninput;
   const double* values = tape->values;
   const int32_t first = tape->ninput + tape->nconstant;
   for (int32_t i = 0; i < tape->nstep; i++) {
     const InerterTapeStep* step = tape->steps + i;
-    const double* by_a = tape->slopes + n * (size_t)step->a;
-    const double* by_b = tape->slopes + n * (size_t)step->b;
-    double* slope = tape->slopes + n * (size_t)(first + i);
-    if (step->operation == INERTER_OPERATION_choose) {
-      int32_t taken = values[step->a] != 0.0 ? step->b : step->c;
-      memcpy(slope, tape->slopes + n * (size_t)taken, n * sizeof *slope);
+    const InerterTapeSpan span = tape->spans[i];
+    if (span.first >= span.end) {
       continue;
     }
-    double p[2];
-    partials((InerterOperation)step->operation, values[step->a], values[step->b], values[first + i],
-             p);
-    // a corner's infinite slope times nothing is nothing
-    if (p[0] == 0.0 && p[1] == 0.0) {
-      memset(slope, 0, n * sizeof *slope);
-    } else if (p[1] == 0.0) {
-      for (size_t k = 0; k < n; k++) slope[k] = by_a[k] != 0.0 ? p[0] * by_a[k] : 0.0;
-    } else if (p[0] == 0.0) {
-      for (size_t k = 0; k < n; k++) slope[k] = by_b[k] != 0.0 ? p[1] * by_b[k] : 0.0;
+    double p[2] = {1.0, 0.0};
+    int32_t a = step->a;
+    if (step->operation == INERTER_OPERATION_choose) {
+      a = values[step->a] != 0.0 ? step->b : step->c;
     } else {
-      for (size_t k = 0; k < n; k++) slope[k] = p[0] * by_a[k] + p[1] * by_b[k];
+      partials((InerterOperation)step->operation, values[step->a], values[step->b],
+               values[first + i], p);
     }
+    chain(p, tape->slopes + n * (size_t)a, tape->slopes + n * (size_t)step->b, span,
+          tape->slopes + n * (size_t)(first + i));
   }
 }

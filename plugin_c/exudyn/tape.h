@@ -45,17 +45,23 @@ typedef struct InerterTapeStep_ {
   int32_t operation, a, b, c;
 } InerterTapeStep;
 
+// the inputs first <= k < end that a step depends on; none where no slope is wanted
+typedef struct InerterTapeSpan_ {
+  int32_t first, end;
+} InerterTapeSpan;
+
 typedef struct InerterTape_ {
   int32_t ninput, nconstant, nstep;
-  const InerterTapeStep* steps;  // nstep
+  const InerterTapeStep* steps;  // nstep; quick where the same operations stand together
+  const InerterTapeSpan* spans;  // nstep
   double* values;                // ninput + nconstant + nstep; constants are in place
-  double* slopes;  // the same number of rows of `ninput` derivatives, inputs' in place
+  double* slopes;  // the same number of rows of `ninput` derivatives, inputs' in place, 0 elsewhere
 } InerterTape;
 
 // evaluate every step at the inputs that are in place
 void inerter_tape_run(const InerterTape* tape);
 
-// the derivatives of every step by the inputs, after inerter_tape_run; corners count as flat
+// the derivatives of the steps by the inputs, after inerter_tape_run; corners count as flat
 void inerter_tape_slopes(const InerterTape* tape);
 
 #endif  // INERTER_EXUDYN_TAPE_H_

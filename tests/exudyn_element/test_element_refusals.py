@@ -24,6 +24,8 @@ from inerter.exudyn import CreateInerter
         ({"inertance": float("nan")}, 'inertance is "nan": out of range; give a finite number'),
         ({"inertance": -1.0}, 'inertance is "-1.0": out of range'),
         ({"inertance": 1.0, "friction": "lugr"}, "friction"),
+        ({}, "inertance is not given, nor is anything else that acts; give inertance="),
+        ({"rest_length": 1.0}, "inertance is not given, nor is anything else that acts"),
         ({"inertance": 1.0, "coulomb_force": 1.0}, "coulomb_force is given, but friction"),
     ],
 )
@@ -249,3 +251,40 @@ def test_exudyn_is_not_installed() -> None:
     last = done.stderr.strip().splitlines()[-1]
     assert last.startswith("ImportError: Exudyn is not installed")
     assert 'pip install "inerter[exudyn]"' in last
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"color": "red"}, "color: 'red' is no color; give red, green, blue and opacity"),
+        ({"color": [1, 0, 0]}, "color: .* is no color"),
+        ({"drawSize": "big"}, "drawSize: 'big' is no finite number"),
+        ({"drawSize": float("nan")}, "drawSize: nan is no finite number"),
+    ],
+)
+def test_drawing(given: dict[str, Any], message: str) -> None:
+    """Before anything is added."""
+    system = bodies("Point")
+    before = str(system.mbs)
+    with pytest.raises(ValueError, match=message):
+        CreateInerter(system.mbs, "d", system.parts, inertance=1.0, **given)
+    assert str(system.mbs) == before
+
+
+def test_no_system() -> None:
+    with pytest.raises(ValueError, match="mbs: a SystemContainer is no MainSystem; make one by"):
+        CreateInerter(exu.SystemContainer(), "d", inertance=1.0)
+
+
+def test_attributes_are_not_set() -> None:
+    """What looks like a change of a parameter is one, or is refused."""
+    system = bodies("Point")
+    made = CreateInerter(system.mbs, "d", markerNumbers=system.parts, inertance=1.0)
+    with pytest.raises(AttributeError, match=r"strut\.set\(inertance=3\)"):
+        made.inertance = 3
+    made.set(damping=2.0)
+    assert made.device.viscous == 2.0
+    system.mbs.SetObjectParameter(made.objectNumber, "damping", 4.0)
+    assert made.device.viscous == 4.0
+    with pytest.raises(DeviceError, match="damping: is viscous, which is given as well"):
+        made.set(damping=1.0, viscous=2.0)

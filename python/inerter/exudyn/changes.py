@@ -10,8 +10,7 @@ from inerter.exudyn.element import FLYWHEEL, TURNED, Element
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import SHORTEST, Span
-from inerter.exudyn.parameters import Parameters
-from inerter.exudyn.readings import Readings
+from inerter.exudyn.parameters import Parameters, own_names
 from inerter.exudyn.terminals import terminals
 
 KEPT = "inerter_models"
@@ -113,6 +112,7 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
     ValueError
         A change that asks for other coordinates than the device was made with.
     """
+    changes = own_names(changes)
     if "rest_length" in changes and changes["rest_length"] is None:
         raise ValueError(
             f'inerter "{model.name}": rest_length=None is for CreateInerter; give a number [m]'
@@ -143,7 +143,7 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
 def take(mbs: Any, model: Model, element: Element) -> None:
     """Let the object be this element from now on; it has the same coordinates."""
     model.functions.take(mbs, model.objectNumber, element)
-    model.element, model.readings = element, Readings(element)
+    model.take(element)
 
 
 def _listed(names: Any) -> str:

@@ -13,25 +13,16 @@ from numpy.typing import ArrayLike
 from inerter.core import Device, DeviceError
 from inerter.exudyn.carriers import Carrier, carry, is_carried
 from inerter.exudyn.changes import KEPT, check_apart, reference_length, start
-from inerter.exudyn.drawing import draw
+from inerter.exudyn.drawing import check_drawing, draw
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Inerter, Model
 from inerter.exudyn.kinematics import Line, Span
-from inerter.exudyn.parameters import Parameters
+from inerter.exudyn.parameters import Parameters, own_names
 from inerter.exudyn.readings import Readings
 from inerter.exudyn.terminals import Terminals, check, terminals
 from inerter.exudyn.user_functions import UserFunctions
 from inerter.exudyn.watch import install
-
-ALIASES = {
-    "damping": "viscous",
-    "referenceLength": "rest_length",
-    "offset": "rest_length",
-    "force": "force_offset",
-    "torque": "force_offset",
-}
-"""Keywords of Exudyn's own connectors, and the parameters that they mean here."""
 
 
 def CreateInerter(  # noqa: N802 - Exudyn's manner
@@ -52,6 +43,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     color: Sequence[float] | None = None,
     bodyNumbers: Sequence[Any] | None = None,
     bodyOrNodeList: Sequence[Any] | None = None,
+    markerNumbers: Sequence[Any] | None = None,
     **parameters: float | str | None,
 ) -> Inerter:
     """Put a device between two terminals: helper function to create an inerter with its friction,
@@ -95,8 +87,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         bears at most ten times what the bristle's spring does.
     show, drawSize, color
         Whether and how a device between points is drawn; `Inerter.Show` switches it.
-    bodyNumbers, bodyOrNodeList
-        Other names of `itemNumbers`, as in CreateSpringDamper.
+    bodyNumbers, bodyOrNodeList, markerNumbers
+        Other names of `itemNumbers`, as in CreateSpringDamper and in Exudyn's connectors.
     **parameters
         Parameters of the device, named as in the MuJoCo plugin, SI units: `inertance=113`,
         `friction="lugre"`, `bristle_stiffness=1e5` ... `rest_length=None`, which is its default
@@ -123,7 +115,18 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     ... )  # doctest: +SKIP
     """
     items_of = exudyn("itemInterface")
-    items = _items(name, itemNumbers, bodyNumbers, bodyOrNodeList)
+    if not isinstance(mbs, exudyn().MainSystem):
+        raise ValueError(
+            f"mbs: a {type(mbs).__name__} is no MainSystem; make one by "
+            "exudyn.SystemContainer().AddSystem()"
+        )
+    others = {
+        "bodyNumbers": bodyNumbers,
+        "bodyOrNodeList": bodyOrNodeList,
+        "markerNumbers": markerNumbers,
+    }
+    items = _items(name, itemNumbers, others)
+    check_drawing(drawSize, color)
     wanted = _parameters(parameters)
     device = Device(**{key: value for key, value in wanted.items() if value is not None})
     # what belongs to the device is named after it
@@ -169,14 +172,13 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     return Inerter(mbs, model)
 
 
-def _items(name: Any, itemNumbers: Any, bodyNumbers: Any, bodyOrNodeList: Any) -> list[Any]:
+def _items(name: Any, itemNumbers: Any, told: Mapping[str, Any]) -> list[Any]:
     """The two items, under whichever name they were given."""
     if not isinstance(name, str):
         raise ValueError(
             f"name: {name!r:.60} is no text; give the name first, then the items: "
             'CreateInerter(mbs, "strut", [body1, body2], ...), or itemNumbers=[body1, body2]'
         )
-    told = {"bodyNumbers": bodyNumbers, "bodyOrNodeList": bodyOrNodeList}
     others = {key: value for key, value in told.items() if value is not None}
     if len(others) > 1 or (others and tuple(itemNumbers) != (None, None)):
         raise ValueError(f"itemNumbers: also given as {', '.join(others)}; give it once")
@@ -188,13 +190,13 @@ def _items(name: Any, itemNumbers: Any, bodyNumbers: Any, bodyOrNodeList: Any) -
 
 
 def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters under their own names."""
-    found: dict[str, Any] = {}
-    for key, value in given.items():
-        own = ALIASES.get(key, key)
-        if own in found or (own != key and own in given):
-            raise DeviceError(f"{key}: is {own}, which is given as well; give one of them")
-        found[own] = value
+    """Parameters under their own names, none of them None but a rest length."""
+    found = own_names(given)
+    if not set(found) - {"rest_length"}:
+        raise DeviceError(
+            "inertance is not given, nor is anything else that acts; give inertance=... [kg], or "
+            "what `inerter parameters` lists"
+        )
     for key, value in found.items():
         if value is None and key != "rest_length":
             raise DeviceError(f"{key} is None: give a number, or leave it out")

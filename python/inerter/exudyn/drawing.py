@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.terminals import Terminals
+
+
+def check_drawing(size: Any, color: Any) -> None:
+    """Raise ValueError for a size or a color that Exudyn could not draw."""
+    if not isinstance(size, Real) or not math.isfinite(size):
+        raise ValueError(f"drawSize: {size!r:.40} is no finite number; -1 is Exudyn's own size")
+    if color is None:
+        return
+    parts = None if isinstance(color, str) else list(color)
+    if not parts or len(parts) != 4 or not all(isinstance(part, Real) for part in parts):
+        raise ValueError(
+            f"color: {color!r:.40} is no color; give red, green, blue and opacity from 0 to 1, as "
+            "exudyn.graphics.color.red"
+        )
 
 
 def draw(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,14 @@ QUANTITIES = (*READINGS, "stored_energy")
 
 
 ORIGIN = [0.0, 0.0, 0.0]
+
+
+@functools.cache
+def _questions() -> tuple[Any, ...]:
+    """What Exudyn is asked for, and where: coordinates, their rates, theirs, the current state."""
+    kinds = exudyn().OutputVariableType
+    now = exudyn().ConfigurationType.Current
+    return kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt, now
 
 
 @dataclass
@@ -50,33 +58,39 @@ class Model:
     carriers: tuple[Carrier, ...]
     given: dict[str, float]
     free_length: bool
+    _needs: dict[tuple[str, ...], tuple[bool, bool, bool]] = field(default_factory=dict)
 
-    def read(self, mbs: Any, configuration: Any, names: Sequence[str]) -> list[float]:
+    def take(self, element: Element) -> None:
+        """Be of this element from now on."""
+        self.element, self.readings, self._needs = element, Readings(element), {}
+
+    def read(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
         """Readings and states by name, and "stored_energy"."""
         if "stored_energy" in names:
             return self._with_energy(mbs, configuration, names)
-        engine = exudyn()
-        where = engine.ConfigurationType.Current if configuration is None else configuration
-        kinds, number = engine.OutputVariableType, self.objectNumber
-        q, q_t, q_tt = (
-            mbs.GetObjectOutputBody(number, kind, ORIGIN, where)
-            for kind in (kinds.Coordinates, kinds.Coordinates_t, kinds.Coordinates_tt)
-        )
-        found = self.readings.at(q, q_t, q_tt, names=names)
+        where = _questions()[-1] if configuration is None else configuration
+        if names not in self._needs:
+            self._needs[names] = self.readings.needs(names)
+        # a question costs more than all the arithmetic: only what is needed is asked
+        parts = [
+            mbs.GetObjectOutputBody(self.objectNumber, kind, ORIGIN, where) if needed else None
+            for kind, needed in zip(_questions(), self._needs[names], strict=False)
+        ]
+        found = self.readings.at(*parts, names=names)
         if not math.isfinite(sum(found)):
-            self._explain(q, q_t, q_tt)
+            self._explain(*parts)
         return found
 
     def _explain(self, *parts: Any) -> None:
         """Raise ValueError for readings that are not finite."""
-        if not all(np.isfinite(part).all() for part in parts):
+        if not all(part is None or np.isfinite(part).all() for part in parts):
             raise ValueError(
                 f'inerter "{self.name}": its coordinates are not finite; the run has diverged. '
                 "Shorten the step, or take GeneralizedAlpha, or DOPRI5 with tolerances"
             )
 
-    def _with_energy(self, mbs: Any, configuration: Any, names: Sequence[str]) -> list[float]:
-        others = [name for name in names if name != "stored_energy"]
+    def _with_energy(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
+        others = tuple(name for name in names if name != "stored_energy")
         wanted = (*others, "displacement", "velocity", *self.device.state_names)
         found = self.read(mbs, configuration, wanted)
         x, v, *states = found[len(others) :]
@@ -110,6 +124,14 @@ class Inerter:
 
     def __init__(self, mbs: Any, model: Model) -> None:
         self.mbs, self._model = mbs, model
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in ("mbs", "_model"):
+            raise AttributeError(
+                f"{name}: an Inerter's attributes are not set; parameters change by "
+                f"strut.set({name}={value!r:.40})"
+            )
+        super().__setattr__(name, value)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in Model.__dataclass_fields__:
@@ -186,7 +208,7 @@ class Inerter:
         name = f"{self.name}_{quantity}"
         if int(self.mbs.GetSensorNumber(name)) >= 0:
             name = f"{name}_{self.mbs.systemData.NumberOfSensors()}"
-        model, names = self._model, together.get(quantity, (quantity,))
+        model, names = self._model, tuple(together.get(quantity, (quantity,)))
 
         def sensorUserFunction(  # noqa: N802
             mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any

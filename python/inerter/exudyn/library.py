@@ -27,6 +27,7 @@ class CTape(ctypes.Structure):
         ("nconstant", ctypes.c_int32),
         ("nstep", ctypes.c_int32),
         ("steps", ctypes.c_void_p),
+        ("spans", ctypes.c_void_p),
         ("values", ctypes.c_void_p),
         ("slopes", ctypes.c_void_p),
     )
@@ -39,11 +40,12 @@ class CElement(ctypes.Structure):
         ("tape", CTape),
         ("size", ctypes.c_int32),
         ("nrow", ctypes.c_int32),
+        ("ndistinct", ctypes.c_int32),
         ("loaded", ctypes.c_int32),
         ("known", ctypes.c_int32),
         ("forces", ctypes.c_void_p),
-        ("row", ctypes.c_void_p),
-        ("inertance", ctypes.c_int32),
+        ("distinct", ctypes.c_void_p),
+        ("entries", ctypes.c_void_p),
         ("length", ctypes.c_int32),
         ("shortest", ctypes.c_double),
         ("mass", ctypes.c_void_p),
@@ -51,6 +53,7 @@ class CElement(ctypes.Structure):
         ("mass_array", ctypes.py_object),
         ("jacobian_array", ctypes.py_object),
         ("mass_list", ctypes.py_object),
+        ("jacobian_list", ctypes.py_object),
         ("reader", ctypes.py_object),
         ("none", ctypes.py_object),
         ("error", ctypes.py_object),
@@ -84,6 +87,12 @@ def operations() -> dict[str, int]:
     while name := _library().inerter_exudyn_operation(len(found)):
         found[name.decode()] = len(found)
     return found
+
+
+@functools.cache
+def listed() -> int:
+    """Up to this size Exudyn reads a matrix faster from lists than from an array."""
+    return int(_library().inerter_exudyn_listed())
 
 
 def run(tape: Any) -> None:

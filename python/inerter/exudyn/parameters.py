@@ -2,9 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import SimpleNamespace
+from typing import Any
 
-from inerter.core import WORDS, Device, lists, parameters
+from inerter.core import WORDS, Device, DeviceError, lists, parameters
+
+ALIASES = {
+    "damping": "viscous",
+    "referenceLength": "rest_length",
+    "offset": "rest_length",
+    "force": "force_offset",
+    "torque": "force_offset",
+}
+"""Keywords of Exudyn's own connectors, and the parameters that they mean here."""
+
+
+def own_names(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters under their own names; raise DeviceError for one that is given twice."""
+    found: dict[str, Any] = {}
+    for key, value in given.items():
+        own = ALIASES.get(key, key)
+        if own in found or (own != key and own in given):
+            raise DeviceError(f"{key}: is {own}, which is given as well; give one of them")
+        found[own] = value
+    return found
 
 
 class Parameters(SimpleNamespace):

@@ -22,16 +22,29 @@ class Readings:
         tape = Tape(3 * n)
         parts = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
         told = _told(element, tape.functions, *parts)
-        keys = {name: tape.key(value) for name, value in told.items()}
+        self._keys = {name: tape.key(value) for name, value in told.items()}
         self._finished = tape.finish()
-        self._size, self._starts = n, (0, n, 2 * n)
-        self._places = {name: self._finished.place(key) for name, key in keys.items()}
+        self._slices = tuple(slice(i * n, (i + 1) * n) for i in range(3))
+        self._places = {name: self._finished.place(key) for name, key in self._keys.items()}
+
+    def needs(self, names: Sequence[str]) -> tuple[bool, bool, bool]:
+        """Whether those named depend on coordinates, velocities, accelerations."""
+        beneath = self._finished.beneath([self._keys[name] for name in names])
+        inputs = {number for kind, number in beneath if kind == "input"}
+        first, second, third = (
+            not inputs.isdisjoint(range(each.start, each.stop)) for each in self._slices
+        )
+        return first, second, third
 
     def at(self, *parts: Any, names: Sequence[str] = ()) -> list[float]:
-        """Those named, at coordinates, velocities and accelerations, each of shape (size,)."""
+        """Those named, at coordinates, velocities and accelerations, each of shape (size,).
+
+        What they do not need may be None.
+        """
         values = self._finished.values
-        for start, part in zip(self._starts, parts, strict=True):
-            values[start : start + self._size] = part
+        for where, part in zip(self._slices, parts, strict=True):
+            if part is not None:
+                values[where] = part
         found = self._finished.rerun()
         return [found.item(self._places[name]) for name in names]
 

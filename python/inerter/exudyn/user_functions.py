@@ -19,14 +19,10 @@ from inerter.exudyn.element import HEAT, Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.functions import Functions, Value, expressions
 from inerter.exudyn.kinematics import SHORTEST, Line, Span
-from inerter.exudyn.library import CElement, built_in
+from inerter.exudyn.library import CElement, built_in, listed
 from inerter.exudyn.tape import Number, Tape
 
 Matrix = NDArray[np.float64]
-
-
-LISTED = 9
-"""Up to this size Exudyn reads a matrix faster from lists than from an array."""
 
 
 class UserFunctions:
@@ -97,26 +93,36 @@ class Compiled:
     def take(self, element: Element) -> None:
         """Evaluate this element from now on; it has the same coordinates."""
         tape, recorded = _taped(element)
-        keys = [tape.key(each) for each in recorded.forces]
-        row = [tape.key(each) for each in recorded.motion.row]
-        inertance = tape.key(recorded.inertance)
+        forces = [tape.key(each) for each in recorded.forces]
+        row = recorded.motion.row
+        scaled = [recorded.inertance * each for each in row]
+        # the triangle, so that what is symmetric is one expression
+        products = [
+            [tape.key(scaled[max(i, k)] * row[min(i, k)]) for k in range(len(row))]
+            for i in range(len(row))
+        ]
+        every = dict.fromkeys(key for each in products for key in each)
+        numbers = {key: i for i, key in enumerate(every)}
         length = tape.key(recorded.motion.length)
-        finished = tape.finish()
+        finished = tape.finish(sloped=forces)
         size = element.size
         mass, jacobian = element.mass_matrix(), np.zeros((size, size))
-        places = np.array([finished.place(key) for key in (*keys, *row)], dtype=np.int32)
+        places = np.array([finished.place(key) for key in (*forces, *numbers)], dtype=np.int32)
+        entries = np.array([[numbers[key] for key in each] for each in products], dtype=np.int32)
         c, address = self._c, places.ctypes.data
         c.tape, c.size, c.nrow = finished.c, size, len(row)
         c.loaded, c.known = element.loaded, 0
-        c.forces, c.row = address, address + len(keys) * places.itemsize
-        c.inertance = finished.place(inertance)
+        c.forces, c.distinct = address, address + len(forces) * places.itemsize
+        c.ndistinct, c.entries = len(numbers), entries.ctypes.data
         c.length = finished.place(length) if isinstance(element.kinematics, Span) else -1
         c.shortest, c.message = SHORTEST, self._message
         c.mass, c.jacobian = mass.ctypes.data, jacobian.ctypes.data
         c.mass_array, c.jacobian_array, c.none = mass, jacobian, None
-        c.mass_list = mass.tolist() if size <= LISTED else None
+        small = size <= listed()
+        c.mass_list = mass.tolist() if small else None
+        c.jacobian_list = jacobian.tolist() if small else None
         c.reader, c.error = latest_accelerations, ValueError
-        self._kept[:] = [finished, places, mass, jacobian]
+        self._kept[:] = [finished, places, entries, mass, jacobian]
 
 
 def latest_accelerations(mbs: Any, t: float, itemNumber: int, *others: Any) -> list[float]:

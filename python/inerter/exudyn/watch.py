@@ -19,6 +19,7 @@ from inerter.exudyn.changes import KEPT, change_parameters, models_of, read_geom
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import Line
+from inerter.exudyn.parameters import ALIASES
 
 GEOMETRY = {
     "SetNodeParameter": ("referenceCoordinates",),
@@ -89,7 +90,7 @@ def _telling_of_change(name: str, original: Callable[..., Any]) -> Callable[...,
 
 
 def _is_of_device(name: str) -> bool:
-    return name in names()
+    return name in names() or name in ALIASES
 
 
 def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
@@ -108,7 +109,7 @@ def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
         if name not in IMPLICIT:
             for model in models:
                 _refuse_points(model, name)
-                _warn_of_constraints(mbs, model, name)
+            _warn_of_constraints(mbs, models, name)
             return original(mbs, settings, *args, **kwargs)
         with _fresh_jacobians(settings, models):
             return original(mbs, settings, *args, **kwargs)
@@ -141,29 +142,41 @@ def _refuse_points(model: Model, solver: str) -> None:
         )
 
 
-def _warn_of_constraints(mbs: Any, model: Model, solver: str) -> None:
+def _warn_of_constraints(mbs: Any, models: list[Model], solver: str) -> None:
     """Explicit solvers put a constrained coordinate back after a step, which is not exact there."""
+    coupling = [model for model in models if _couples(model)]
+    held = _constrained(mbs) if coupling else {}
+    for model in coupling:
+        name = next((held[int(node)] for node in model.nodeNumbers if int(node) in held), None)
+        if name is not None:
+            warnings.warn(
+                f'inerter "{model.name}": {solver} puts the coordinate of constraint "{name}" back '
+                "after each step, which is not exact where an inerter couples it to others (errors "
+                "of 1e-3 were seen); take GeneralizedAlpha, or lock the coordinate by a large mass",
+                stacklevel=3,
+            )
+
+
+def _couples(model: Model) -> bool:
+    """Whether the mass matrix joins coordinates of nodes."""
     element = model.element
     alone = isinstance(element.kinematics, Line) and len(element.kinematics.places) == 1
-    if alone or "flywheel_velocity" in element.own or not element.device.inertance:
-        return
-    nodes = {int(node) for node in model.nodeNumbers}
+    return not alone and "flywheel_velocity" not in element.own and bool(element.device.inertance)
+
+
+def _constrained(mbs: Any) -> dict[int, str]:
+    """The nodes that a CoordinateConstraint holds a coordinate of, and its name."""
+    held: dict[int, str] = {}
+    # every object is asked once: telling of itself is what an object is slowest at
     for number in range(mbs.systemData.NumberOfObjects()):
         try:
             item = mbs.GetObject(number)
         except TypeError:
             # Exudyn 1.9 cannot tell of an object with a symbolic function; it is no constraint
             continue
-        if item["objectType"] != "ConnectorCoordinate":
-            continue
-        for marker in item["markerNumbers"]:
-            node = mbs.GetMarker(marker).get("nodeNumber")
-            if node is not None and int(node) in nodes:
-                warnings.warn(
-                    f'inerter "{model.name}": {solver} puts the coordinate of constraint '
-                    f'"{item["name"]}" back after each step, which is not exact where an inerter '
-                    "couples it to others (errors of 1e-3 were seen); take GeneralizedAlpha, or "
-                    "lock the coordinate by a large mass",
-                    stacklevel=3,
-                )
-                return
+        if item["objectType"] == "ConnectorCoordinate":
+            for marker in item["markerNumbers"]:
+                node = mbs.GetMarker(marker).get("nodeNumber")
+                if node is not None:
+                    held.setdefault(int(node), item["name"])
+    return held
