@@ -12,9 +12,17 @@ from threadpoolctl import threadpool_limits
 from inerter.catalogue.effects import EFFECTS
 from inerter.core import Device
 from inerter.diagnose import wording
+from inerter.diagnose.budget.remains import with_ceiling
+from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.engines import simulate_engines
+from inerter.diagnose.other_runs import (
+    badly_missed,
+    missed_in_words,
+    other_split,
+    split_in_words,
+)
 from inerter.diagnose.parallel import helped
 from inerter.diagnose.result import (
     Accuracy,
@@ -93,6 +101,12 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         data.runs, data.split, data.band.residual(final), floor, extended.rmse, data.whole,
         data.raw.errors(final),
     )  # fmt: skip
+    given.progress("measuring what repeats, and what more could be predicted")
+    errors = data.raw.errors(final)
+    remains = with_ceiling(data, errors, floor, remains)
+    again = repeats(data.whole, errors)
+    missed = badly_missed(data, errors, floor)
+    other = other_split(stands.searched.search, data, final, bool(missed))
     values = parameter_values(
         stands.fit, given.device, stands.searched.prepared.baseline.values.get("delay", 0.0)
     )
@@ -109,9 +123,15 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         engines=simulate_engines(final, data.whole, data.raw.masks),
         verdict="",
         parameters=values,
-        method=_method(stands),
+        method=_method(stands) | {"missed_runs": missed, "other_split": other},
+        notes=[
+            note
+            for note in (missed_in_words(missed, extended.rmse), split_in_words(data, other))
+            if note
+        ],
         curves=_curves(stands),
         gain_interval=gain_interval(*squares),
+        repeatability=again.rmse if again else None,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))
 

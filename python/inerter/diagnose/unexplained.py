@@ -95,6 +95,7 @@ def unexplained(
     power = remainder.data.power
     shares = {name: float(max(p.share, 0.0)) for name, p in chosen}
     tests = _rows(first, power)
+    predicted = structure
 
     # what oscillates without a phase, above the band too
     if len(whole):
@@ -145,6 +146,7 @@ def unexplained(
         tests=tests,
         false_alarm_rate=FALSE_ALARM,
         proposal=proposal,
+        predicted=predicted,
     )
 
 

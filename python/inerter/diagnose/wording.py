@@ -133,7 +133,9 @@ def is_right(diagnosis: Diagnosis) -> bool:
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
     tone = _ONE_TONE if diagnosis.method.get("one_tone") else ""
-    return doubts_of_records(diagnosis.records) + _verdict(diagnosis) + tone
+    notes = "".join(f" {note}" for note in diagnosis.notes)
+    budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""
+    return doubts_of_records(diagnosis.records) + _verdict(diagnosis) + budget + notes + tone
 
 
 # warnings that turn a verdict into nonsense: what they say comes first
