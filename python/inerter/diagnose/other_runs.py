@@ -88,6 +88,6 @@ def split_in_words(data: Data, other: tuple[str, str] | None) -> str:
     name, effect = other
     held = " and ".join(data.held)
     return (
-        f"Held out is {held}: with {name} held out instead, {EFFECTS[effect].plain} would be added. "
-        f"Try --holdout {name}."
+        f"Held out is {held}: with {name} held out instead, {EFFECTS[effect].plain} would be "
+        f"added. Try --holdout {name}."
     )

@@ -51,7 +51,8 @@ class Finding:
     rmse_before, rmse_after: rms force error on held-out data [N] before and after adding it (on
     blocks left out of the fit where the held-out data do not reach the effect: seen_in_blocks);
     confidence: share of resamples of the data in which it does better than without it and better
-    than every rival; gain_interval: 95 % interval of the gain, None where there are too few data.
+    than every rival; gain_interval: 95 % interval of the gain, None where there are too few data;
+    members: effects that these data cannot tell apart, this one among them; none where they can.
     """
 
     effect: str
@@ -64,6 +65,7 @@ class Finding:
     rivals: list[Rival]
     seen_in_blocks: bool = False
     gain_interval: tuple[float, float] | None = None
+    members: tuple[str, ...] = ()
 
     @property
     def gain(self) -> float:
@@ -72,7 +74,8 @@ class Finding:
 
     def json(self) -> dict[str, Any]:
         """As in the contract."""
-        return {
+        members = {"members": list(self.members)} if self.members else {}
+        return members | {
             "effect": self.effect,
             "law": self.law,
             "confidence": round(self.confidence, 4),

@@ -35,7 +35,7 @@ from inerter.report.subject import subject
 # share of what remains below which a quantity it goes with is not shown
 LEAST_SHOWN = 0.05
 # entries of `method` that have a place of their own on the page
-_PLACED = ("cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split")
+_PLACED = ("cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants")
 _METHOD_WORDS = {
     "cutoff": "smoothing cut-off [Hz]",
     "channels": "motion taken from",

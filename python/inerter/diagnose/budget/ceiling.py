@@ -58,7 +58,12 @@ class Ceiling:
 
 
 def ceiling(
-    runs: Sequence[BenchRun], split: Split, errors: Sequence[Array], cutoff: float, noise: float
+    runs: Sequence[BenchRun],
+    split: Split,
+    errors: Sequence[Array],
+    cutoff: float,
+    noise: float,
+    motion: float = 0.0,
 ) -> Ceiling:
     """How well a flexible predictor does on top of a model.
 
@@ -72,6 +77,8 @@ def ceiling(
         Of the smoothed motion [Hz].
     noise
         Of force and motion, rms [N].
+    motion
+        Of the motion alone [N]: the motion tells something of it, which is no lack of the model.
     """
     held = [m & run.inner for m, run in zip(split.holdout, runs, strict=True)]
     total = max(sum(int(mask.sum()) for mask in held), 1)
@@ -86,7 +93,7 @@ def ceiling(
     takes = float(np.sqrt(max(before.sum() - after.sum(), 0.0) / total))
     force = np.concatenate([run.force[mask] for run, mask in zip(runs, held, strict=True)])
     least = max(NOISE_PART * noise, FORCE_PART * float(np.sqrt(np.mean(force**2))))
-    if takes < least or advantage(before, after) < SURE:
+    if takes < float(np.hypot(least, motion)) or advantage(before, after) < SURE:
         return Ceiling(own)
     return Ceiling(float(np.sqrt(after.sum() / total)), takes, looks_at)
 

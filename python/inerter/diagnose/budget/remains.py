@@ -23,7 +23,7 @@ _LOOKS_AT = {
 
 
 def with_ceiling(
-    data: Data, errors: Sequence[Array], noise: float, found: Unexplained
+    data: Data, errors: Sequence[Array], noise: float, found: Unexplained, motion: float = 0.0
 ) -> Unexplained:
     """What remains, with the error that the best predictor leaves.
 
@@ -37,8 +37,10 @@ def with_ceiling(
         Of force and motion, rms [N].
     found
         What the tests say of the remainder; what they predict counts as a predictor, too.
+    motion
+        Part of the noise that the motion brings [N].
     """
-    best = ceiling(data.whole, data.full, errors, data.preparation.cutoff, noise)
+    best = ceiling(data.whole, data.full, errors, data.preparation.cutoff, noise, motion)
     own = rms(errors, data.raw.masks)
     by_tests = float(np.sqrt(max(own**2 - found.predicted**2, 0.0)))
     told = replace(found, ceiling={"rmse": min(best.rmse, by_tests)})
