@@ -129,7 +129,8 @@ def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 
 def _shaft(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    if not has_series(model):
+    # along one sine a shaft is an inertance of another size
+    if not has_series(model) and not (sizes.one_tone and "inertance" in model.free):
         starts = tuple(model.adding(None, **shaft) for shaft in shafts(sizes))
         yield Candidate(effect.name, None, starts)
 

@@ -28,15 +28,16 @@ def has_series(model: Model) -> bool:
     return any(name in model.values for name in names)
 
 
-def is_distinct(effect: str, fit: Fit, baseline: Model) -> bool:
-    """Whether a fitted effect differs from none by some standard errors of its coordinates.
+def is_distinct(
+    effect: str, fit: Fit, baseline: Model, required: float = CRITERIA.distinction
+) -> bool:
+    """Whether a fitted effect differs from none by `required` standard errors of its coordinates.
 
     What the baseline states and a fit sets free is distinct as it is: it may be that there is none.
     """
-    required = CRITERIA.distinction
     if _contradicts(effect, fit.model, baseline):
         return True
-    if EFFECTS[effect].kind == "law" and _loses_nothing(fit.model):
+    if EFFECTS[effect].kind == "law" and (_loses_nothing(fit.model) or not bristle_is_known(fit)):
         return False
     if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
@@ -45,6 +46,15 @@ def is_distinct(effect: str, fit: Fit, baseline: Model) -> bool:
     errors = _errors(fit)
     known = [name for name in EFFECTS[effect].amplitudes if name in errors]
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def bristle_is_known(fit: Fit) -> bool:
+    """Whether a bristle's stiffness, if there is one, is told from one without end.
+
+    Without a bristle that gives way a law with memory is one without.
+    """
+    stiffness, error = parameter_errors(fit).get("bristle_stiffness", (1.0, 0.0))
+    return error < CRITERIA.known * stiffness
 
 
 def _loses_nothing(model: Model) -> bool:

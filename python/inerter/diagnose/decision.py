@@ -47,6 +47,11 @@ class Criteria:
         ERRORS,
         "by which its own parameter differs from none, correlation allowed for",
     )
+    known: float = _bound(
+        0.5,
+        "standard error per value",
+        "of a bristle's stiffness: beyond, it may have no end, and friction no memory",
+    )
     local_gain: float = _bound(
         0.5,
         SHARE,

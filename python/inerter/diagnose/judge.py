@@ -107,9 +107,13 @@ class Judge:
         least = float(np.sqrt(np.mean(noise))) if noise else np.inf
         return self._noise(min(self.preparation.noise_floor, least), model)
 
-    def _noise(self, force: float, model: Model) -> float:
+    def motion_noise(self, model: Model) -> float:
+        """The inertance times the noise of the acceleration, rms [N]; 0 where it is not known."""
         if self.preparation.channels:
             # the noise of a fused acceleration is not known
-            return force
+            return 0.0
         variances = [motion.acceleration_noise**2 for motion in self.preparation.motions]
-        return float(np.hypot(force, model.values["inertance"] * np.sqrt(np.mean(variances))))
+        return float(model.values["inertance"] * np.sqrt(np.mean(variances)))
+
+    def _noise(self, force: float, model: Model) -> float:
+        return float(np.hypot(force, self.motion_noise(model)))

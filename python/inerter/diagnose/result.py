@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.diagnose.budget.words import Budget, budget_of
+
 Array = NDArray[np.float64]
 SCHEMA = "inerter.diagnosis/1"
 
@@ -49,7 +51,8 @@ class Finding:
     rmse_before, rmse_after: rms force error on held-out data [N] before and after adding it (on
     blocks left out of the fit where the held-out data do not reach the effect: seen_in_blocks);
     confidence: share of resamples of the data in which it does better than without it and better
-    than every rival; gain_interval: 95 % interval of the gain, None where there are too few data.
+    than every rival; gain_interval: 95 % interval of the gain, None where there are too few data;
+    members: effects that these data cannot tell apart, this one among them; none where they can.
     """
 
     effect: str
@@ -62,6 +65,7 @@ class Finding:
     rivals: list[Rival]
     seen_in_blocks: bool = False
     gain_interval: tuple[float, float] | None = None
+    members: tuple[str, ...] = ()
 
     @property
     def gain(self) -> float:
@@ -70,7 +74,8 @@ class Finding:
 
     def json(self) -> dict[str, Any]:
         """As in the contract."""
-        return {
+        members = {"members": list(self.members)} if self.members else {}
+        return members | {
             "effect": self.effect,
             "law": self.law,
             "confidence": round(self.confidence, 4),
@@ -152,6 +157,12 @@ class Unexplained:
         Share of diagnoses in which noise alone passes for more, all tests together.
     proposal : dict, optional
         A formula: {"text", "terms": [{"term", "coefficient", "stderr", "unit"}], "share", "note"}.
+    ceiling : dict, optional
+        Held-out error of the best flexible predictor, {"rmse"} [N]; None where there is none.
+    carried : dict, optional
+        What is taken into the extended device without a name; None where nothing is.
+    predicted : float
+        Rms of what the tests predict of the residual on held-out data [N].
     """
 
     significant: bool
@@ -162,6 +173,13 @@ class Unexplained:
     tests: list[dict[str, Any]] = field(default_factory=list)
     false_alarm_rate: float = 0.0
     proposal: dict[str, Any] | None = None
+    ceiling: dict[str, float] | None = None
+    carried: dict[str, Any] | None = None
+    predicted: float = 0.0
+
+    def json(self) -> dict[str, Any]:
+        """As in the contract."""
+        return {name: value for name, value in vars(self).items() if name != "predicted"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,6 +237,18 @@ class Diagnosis:
     """As stated [m]; the displacement of records counts from it, so that no law reads it here."""
     gain_interval: tuple[float, float] | None = None
     """95 % interval of `gain`, None where there are too few data."""
+    notes: list[str] = field(default_factory=list)
+    """Sentences of the verdict about runs that are missed, splits, and what cannot be told."""
+    repeatability: float | None = None
+    """What differs between strokes that repeat, rms [N]; None where too few do."""
+
+    @property
+    def budget(self) -> Budget | None:
+        """The parts of the held-out error; None where no ceiling was looked for."""
+        if self.unexplained.ceiling is None:
+            return None
+        errors = self.baseline.rmse, self.extended.rmse, self.unexplained.ceiling["rmse"]
+        return budget_of(*errors, self.repeatability)
 
     @property
     def gain(self) -> float:
@@ -237,8 +267,8 @@ class Diagnosis:
                 "extended": self.extended.json(),
                 "parameters": {name: vars(value) for name, value in self.parameters.items()},
                 "gain": {"value": self.gain, "interval": self.gain_interval},
-                "noise": {"rmse_floor": self.noise_floor},
-                "unexplained": vars(self.unexplained),
+                "noise": {"rmse_floor": self.noise_floor, "repeatability": self.repeatability},
+                "unexplained": self.unexplained.json(),
                 "engines": {name: {"rmse": rmse} for name, rmse in self.engines.items()},
                 "method": self.method,
                 "verdict": self.verdict,

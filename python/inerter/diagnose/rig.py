@@ -12,9 +12,18 @@ from threadpoolctl import threadpool_limits
 from inerter.catalogue.effects import EFFECTS
 from inerter.core import Device
 from inerter.diagnose import wording
+from inerter.diagnose.budget.remains import with_ceiling
+from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.engines import simulate_engines
+from inerter.diagnose.exchangeable import exchanges, with_exchange
+from inerter.diagnose.other_runs import (
+    badly_missed,
+    missed_in_words,
+    other_split,
+    split_in_words,
+)
 from inerter.diagnose.parallel import helped
 from inerter.diagnose.result import (
     Accuracy,
@@ -24,6 +33,7 @@ from inerter.diagnose.result import (
     RecordSummary,
     RunCurves,
 )
+from inerter.diagnose.run_constants import constants_in_words
 from inerter.diagnose.stages import (
     Confirmed,
     Given,
@@ -91,12 +101,23 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
     floor = judge.noise_left(final)
     remains = unexplained(
         data.runs, data.split, data.band.residual(final), floor, extended.rmse, data.whole,
-        data.raw.errors(final),
+        data.raw.errors(final), judge.motion_noise(final),
     )  # fmt: skip
+    given.progress("measuring what repeats, and what more could be predicted")
+    errors = data.raw.errors(final)
+    remains = with_ceiling(data, errors, floor, remains, judge.motion_noise(final))
+    again = repeats(data.whole, errors)
+    missed = badly_missed(data, errors, floor)
+    other = other_split(stands.searched.search, data, final, bool(missed))
     values = parameter_values(
         stands.fit, given.device, stands.searched.prepared.baseline.values.get("delay", 0.0)
     )
-    findings = [doubted(finding, remains.structure) for finding in _findings(stands, values)]
+    same = exchanges(stands.searched.search, stands.fit, [link.effect for link in stands.chain])
+    findings = [
+        doubted(with_exchange(finding, same.get(finding.effect)), remains.structure)
+        for finding in _findings(stands, values)
+    ]
+    values = values | {name: v for each in findings for name, v in each.parameters.items()}
     given.progress("simulating the extended device in MuJoCo")
     squares = [judge.error_squares(fit.model) for fit in (stands.before, stands.fit)]
     diagnosis = Diagnosis(
@@ -109,9 +130,21 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         engines=simulate_engines(final, data.whole, data.raw.masks),
         verdict="",
         parameters=values,
-        method=_method(stands),
+        method=_method(stands)
+        | {"run_constants": dict(stands.searched.prepared.constants)}
+        | {"missed_runs": missed, "other_split": other},
+        notes=[
+            note
+            for note in (
+                constants_in_words(stands.searched.prepared.constants),
+                missed_in_words(missed, extended.rmse),
+                split_in_words(data, other),
+            )
+            if note
+        ],
         curves=_curves(stands),
         gain_interval=gain_interval(*squares),
+        repeatability=again.rmse if again else None,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))
 
@@ -155,10 +188,16 @@ def _summaries(stands: Confirmed) -> list[RecordSummary]:
             record.samples,
             record.sample_rate,
             "unused" if repeats_another(record) else data.split.role(names.index(record.name)),
-            [vars(w) for w in record.warnings],
+            [vars(w) for w in record.warnings] + _contradiction(stands, record.name),
         )
         for record in stands.searched.prepared.given.records
     ]
+
+
+def _contradiction(stands: Confirmed, name: str) -> list[dict[str, str]]:
+    """The warning that a run contradicts the others."""
+    said = stands.searched.prepared.contradicting.get(name)
+    return [{"code": "contradicts_others", "text": said}] if said else []
 
 
 def _method(stands: Confirmed) -> dict:

@@ -183,6 +183,14 @@ class Search:
             current = self._exchange(chosen)
         return self._prune(current)
 
+    def next_effect(self, model: Model) -> str | None:
+        """The effect that would be added to a model in one more step, fitted to all fit data."""
+        self._weigh_for(model)
+        if any(is_local(effect) for effect, _ in effects_of(model, self.baseline)):
+            self._folds = self._spread
+        chosen = self._best_step(self.score("", None, self.problem.fit(model)))
+        return chosen.effect if chosen else None
+
     def baseline_fit(self) -> Fit:
         """The baseline fitted by least squares, also where a play lets what is far off count less.
 

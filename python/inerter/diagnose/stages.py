@@ -11,7 +11,7 @@ confirm    each effect on data that no fit has seen
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from inerter.catalogue.effects import EFFECTS
@@ -19,12 +19,21 @@ from inerter.core import Device
 from inerter.diagnose.band import best_band, narrower_band, wider_band
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
-from inerter.diagnose.composition import effects_of, has_series, simpler_laws, submodel
+from inerter.diagnose.composition import (
+    bristle_is_known,
+    effects_of,
+    has_series,
+    is_distinct,
+    simpler_laws,
+    stripped,
+    submodel,
+)
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
 from inerter.diagnose.rivals import Standing, standing
+from inerter.diagnose.run_constants import constants, contradicting, without_constants
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.fit import Fit, Problem
@@ -79,6 +88,10 @@ class Prepared:
         noise.
     baseline
         The ideal inerter, or what the user states.
+    constants
+        Of each run, taken off its force [N]; empty where the runs have none of their own.
+    contradicting
+        Runs that contradict the others, with what they say.
     """
 
     given: Given
@@ -86,6 +99,8 @@ class Prepared:
     plain: Preparation
     weighed: Preparation
     baseline: Model
+    constants: Mapping[str, float] = field(default_factory=dict)
+    contradicting: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,7 +155,13 @@ def prepared(given: Given) -> Prepared:
     records = without_copies(given.records, given.holdout)
     refuse_unusable(records)
     given.progress("smoothing: choosing the cut-off")
-    data = divided(records, prepare(records), given.holdout)
+    smoothed = prepare(records)
+    runs = [thin(motion) for motion in smoothed.motions]
+    apart = constants(runs)
+    if apart:
+        records = without_constants(records, apart)
+        smoothed = prepare(records)
+    data = divided(records, smoothed, given.holdout)
     # what is held out has no say in the smoothing of what is fitted: its own motion may be faster,
     # and is smoothed as the force that it makes tells
     plain = prepare(records, data.full.fit)
@@ -150,6 +171,7 @@ def prepared(given: Given) -> Prepared:
     return Prepared(
         given=given, data=data, plain=plain, baseline=baseline,
         weighed=weighed(records, plain, data.full.fit),
+        constants=apart, contradicting=contradicting(runs),
     )  # fmt: skip
 
 
@@ -257,10 +279,32 @@ def _in_narrower_band(found: Searched) -> Searched:
 
 def settled(found: Searched) -> Settled:
     """Every effect compared with its rivals; where they are equal, the usual one is named."""
-    final = _plainest_law(found)
-    before = found.search.baseline_fit()
-    final, standings = compared(found.search, found.prepared.baseline, final)
+    search, baseline = found.search, found.prepared.baseline
+    before = search.baseline_fit()
+    final = identified(search, baseline, _plainest_law(found))
+    final, standings = compared(search, baseline, final)
+    # a rival that took an effect's place may leave another one without a value
+    known = identified(search, baseline, final)
+    if known is not final:
+        final, standings = compared(search, baseline, known)
     return Settled(searched=found, final=final, before=before, standings=standings)
+
+
+def identified(search: Search, baseline: Model, final: Scored) -> Scored:
+    """A model without the effects whose own parameters may be none: these are not named.
+
+    An effect may have been sure when it was found, and lose its value to one found later. What
+    varies along the stroke leaves the level that it varies about.
+    """
+    for effect, _ in effects_of(final.model, baseline):
+        if is_distinct(effect, final.fit, baseline, CRITERIA.keeping_advantage):
+            continue
+        if EFFECTS[effect].local or EFFECTS[effect].kind in ("law", "play"):
+            # their values have no normal error, or are known otherwise (`_plainest_law`)
+            continue
+        without = search.problem.fit(stripped(final.model, effect, baseline))
+        return identified(search, baseline, search.score("", None, without))
+    return final
 
 
 def compared(
@@ -286,7 +330,10 @@ def _plainest_law(found: Searched) -> Scored:
         apart = judge.difference(fit.model, final.model)
         if not judge.visible(apart, 0.0, final.model):
             return found.search.score("", None, fit)
-    return final
+    if bristle_is_known(final.fit):
+        return final
+    stiff = [model for model in simpler_laws(final.model) if "presliding" not in model.free]
+    return found.search.score("", None, found.search.problem.fit(stiff[-1])) if stiff else final
 
 
 # --- Settled -> Confirmed ------------------------------------------------------------------------

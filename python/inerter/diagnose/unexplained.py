@@ -60,6 +60,7 @@ def unexplained(
     raw: float,
     whole: Sequence[BenchRun] = (),
     whole_residual: Sequence[Array] = (),
+    motion: float = 0.0,
 ) -> Unexplained:
     """Describe the residual of a model.
 
@@ -76,12 +77,15 @@ def unexplained(
     whole, whole_residual
         The runs at the records' own rate and what remains there [N], for what lies above the
         fits' band; left out, nothing is looked for there.
+    motion : float
+        Part of the floor that the noise of the motion makes [N]. The motion itself tells something
+        of it (along a sine the displacement tells the acceleration), which is no lack of the model.
     """
     fraction = max(0.0, 1 - (floor / raw) ** 2) if raw > 0 else 0.0
     remainder = _remainder(runs, split, residual)
     force = remainder.sizes.force
     least = max(NOISE_PART * floor, FORCE_PART * force)
-    chosen, details, first, outcome = _depends(remainder, least)
+    chosen, details, first, outcome = _depends(remainder, float(np.hypot(least, motion)))
     found = np.zeros(remainder.data.residual.size)
     held_out = remainder.data.fold == 0
     for _, prediction in chosen:
@@ -95,6 +99,7 @@ def unexplained(
     power = remainder.data.power
     shares = {name: float(max(p.share, 0.0)) for name, p in chosen}
     tests = _rows(first, power)
+    predicted = structure
 
     # what oscillates without a phase, above the band too
     if len(whole):
@@ -111,7 +116,8 @@ def unexplained(
         details["harmonics"] = details.pop("frequency")
 
     left = float(np.sqrt(power))
-    large = left > max(EXCESS * floor, EXCESS_PART * force)
+    # over all data, and on those that the figures are about
+    large = min(left, raw) > max(EXCESS * floor, EXCESS_PART * force)
     excess = large and not depends
     no_noise = float(np.sqrt(power - floor**2)) if large else 0.0
     if excess:
@@ -145,6 +151,7 @@ def unexplained(
         tests=tests,
         false_alarm_rate=FALSE_ALARM,
         proposal=proposal,
+        predicted=predicted,
     )
 
 

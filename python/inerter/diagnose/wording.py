@@ -64,6 +64,8 @@ def effect_in_words(finding: Finding) -> str:
     """Such as "friction with memory (Dahl)", "viscous friction other than stated"."""
     law = _law(finding.law)
     other = finding.effect != "inertance_error" and _is_stated(finding)
+    if finding.members:
+        return " or ".join(EFFECTS[member].plain for member in finding.members)
     return EFFECTS[finding.effect].plain + law + (" other than stated" if other else "")
 
 
@@ -133,11 +135,13 @@ def is_right(diagnosis: Diagnosis) -> bool:
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
     tone = _ONE_TONE if diagnosis.method.get("one_tone") else ""
-    return doubts_of_records(diagnosis.records) + _verdict(diagnosis) + tone
+    notes = "".join(f" {note}" for note in diagnosis.notes)
+    budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""
+    return doubts_of_records(diagnosis.records) + tone + _verdict(diagnosis) + budget + notes
 
 
 # warnings that turn a verdict into nonsense: what they say comes first
-_GRAVE = ("sign_flip", "unit_suspect")
+_GRAVE = ("sign_flip", "unit_suspect", "contradicts_others")
 
 
 def doubts_of_records(records: Sequence[RecordSummary]) -> str:
@@ -153,8 +157,9 @@ def doubts_of_records(records: Sequence[RecordSummary]) -> str:
 
 
 _ONE_TONE = (
-    " The motion is nearly one sine, along which a parallel stiffness is an inertance of the other "
-    "sign: repeat at a second frequency to tell them apart."
+    "The motion is nearly one sine. Along it a parallel stiffness and a series elasticity are an "
+    "inertance of another size, and a delay is viscous friction: what is said of one of them "
+    "holds for all together, and a record at a second frequency tells them apart. "
 )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.identify.information import least_missed
 from inerter.identify.runs import BenchRun
 
 Mask = NDArray[np.bool_]
@@ -43,7 +44,8 @@ def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
         Every run.
     holdout : sequence of str
         Names of runs to hold out; by default the run whose motion is nearest to the others', so
-        that it is judged on what can be learnt from them.
+        that it is judged on what can be learnt from them, and another where that one alone tells
+        something (`information`).
 
     Raises
     ------
@@ -99,14 +101,15 @@ def may_be_held(sizes: Sequence[int]) -> NDArray[np.intp]:
 
 
 def _most_typical(runs: Sequence[BenchRun]) -> int:
-    """The run whose amplitudes (displacement, velocity, acceleration) are nearest to the median."""
+    """The run whose amplitudes are nearest to the median, where others tell what it tells."""
     able = may_be_held([int(run.inner.sum()) for run in runs])
     channels = ("displacement", "velocity", "acceleration")
     sizes = np.log(
         [[np.std(getattr(run, channel)) + 1e-300 for channel in channels] for run in runs]
     )
     distance = np.sum((sizes - np.median(sizes, axis=0)) ** 2, axis=1)
-    return int(able[np.argmin(distance[able])])
+    usual = int(able[np.argmin(distance[able])])
+    return least_missed(runs, able.tolist(), usual)
 
 
 def _folds(runs: Sequence[BenchRun], fit: list[Mask]) -> list[list[Mask]]:

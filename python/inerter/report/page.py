@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
@@ -34,7 +35,7 @@ from inerter.report.subject import subject
 # share of what remains below which a quantity it goes with is not shown
 LEAST_SHOWN = 0.05
 # entries of `method` that have a place of their own on the page
-_PLACED = ("cutoffs_tried", "force_error_at_cutoffs")
+_PLACED = ("cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants")
 _METHOD_WORDS = {
     "cutoff": "smoothing cut-off [Hz]",
     "channels": "motion taken from",
@@ -68,6 +69,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         subject=about,
         split_figure=lambda value, digits=3: about.figure(value, digits).rsplit(" ", 1),
         headline=headline(diagnosis),
+        budget=_budget(diagnosis),
         findings=[_finding(finding, diagnosis) for finding in diagnosis.findings],
         runs=[_run_label(run) for run in runs],
         unpictured=len(diagnosis.curves) - len(runs),
@@ -166,6 +168,22 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         "doubt": reason(finding, diagnosis.unexplained.structure),
         "evidence": finding.evidence,
     }
+
+
+def _budget(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """The parts of the held-out error; none where that is not known or nothing."""
+    budget = diagnosis.budget
+    if budget is None or not budget.baseline > 0 or not math.isfinite(budget.baseline):
+        return []
+    return [
+        {
+            "key": key,
+            "words": words,
+            "size": size,
+            "width": round(100 * max(size, 0.0) / budget.baseline, 2),
+        }
+        for key, words, size in budget.parts()
+    ]
 
 
 def _notes(finding: Finding) -> dict[str, str]:

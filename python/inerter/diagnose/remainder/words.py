@@ -23,6 +23,9 @@ WORDS = {
     "bursts": "certain moments, in bursts",
 }
 
+# times the noise from which on it is said that more remains
+MORE = 1.2
+
 
 def summary(
     depends: Sequence[str],
@@ -60,9 +63,10 @@ def summary(
             "velocity, acceleration, force, time, frequency, amplitude, history, reversals."
         )
     if not depends:
+        more = "is more than this noise, but " if raw > MORE * floor else ""
         return (
-            f"{start} shows no dependence on position, velocity, acceleration, time, frequency or "
-            "what went before that is of any size."
+            f"{start} {more}shows no dependence on position, velocity, acceleration, time, "
+            "frequency or what went before that is of any size."
         )
     parts = []
     for name in depends:

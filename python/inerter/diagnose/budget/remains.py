@@ -1,0 +1,69 @@
+"""What remains, with what could be predicted of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.diagnose.budget.ceiling import Ceiling, ceiling
+from inerter.diagnose.data import Data
+from inerter.diagnose.result import Unexplained
+from inerter.identify.fit import rms
+
+Array = NDArray[np.float64]
+
+_LOOKS_AT = {
+    "motion": "the motion",
+    "place": "the place along the stroke",
+    "memory": "what went before",
+}
+
+
+def with_ceiling(
+    data: Data, errors: Sequence[Array], noise: float, found: Unexplained, motion: float = 0.0
+) -> Unexplained:
+    """What remains, with the error that the best predictor leaves.
+
+    Parameters
+    ----------
+    data
+        The runs, and how they are divided.
+    errors
+        Measured minus predicted force of every run at the measured rate (n_i,) [N].
+    noise
+        Of force and motion, rms [N].
+    found
+        What the tests say of the remainder; what they predict counts as a predictor, too.
+    motion
+        Part of the noise that the motion brings [N].
+    """
+    best = ceiling(data.whole, data.full, errors, data.preparation.cutoff, noise, motion)
+    own = rms(errors, data.raw.masks)
+    by_tests = float(np.sqrt(max(own**2 - found.predicted**2, 0.0)))
+    told = replace(found, ceiling={"rmse": min(best.rmse, by_tests)})
+    if not best.takes or found.depends_on:
+        return told
+    return replace(
+        told,
+        significant=True,
+        structure=max(found.structure, best.takes),
+        summary=f"{_start(found.summary)} is not noise: {_predicted(best)}",
+    )
+
+
+def _start(summary: str) -> str:
+    """Such as "What remains (2 N rms; noise of force and motion 1 N)"."""
+    return summary[: summary.index(")") + 1]
+
+
+def _predicted(best: Ceiling) -> str:
+    looked = [_LOOKS_AT[name] for name in best.looks_at if name in _LOOKS_AT]
+    together = " and ".join(filter(None, [", ".join(looked[:-1]), looked[-1]]))
+    return (
+        f"{best.takes:.3g} N rms can be predicted from the other data by {together}, taken "
+        "together, though by none of the quantities that were tested alone. No effect that is "
+        "known here explains it."
+    )

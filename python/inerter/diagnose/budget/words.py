@@ -1,0 +1,73 @@
+"""The budget of the held-out error in figures and in a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+# share of the error below which a part is not worth a word
+LEAST = 0.005
+
+
+@dataclass(frozen=True, kw_only=True)
+class Budget:
+    """The held-out error of the baseline [N] and its three parts, whose sum it is.
+
+    Attributes
+    ----------
+    baseline : float
+        Rms error before.
+    named : float
+        What the findings take away.
+    predictable : float
+        What a flexible predictor takes away besides: predictable, and without a name.
+    rest : float
+        What it leaves: not predicted by anything that was tried.
+    repeatability : float, optional
+        What differs between strokes that repeat, over all runs; None where too few repeat.
+    """
+
+    baseline: float
+    named: float
+    predictable: float
+    rest: float
+    repeatability: float | None = None
+
+    def parts(self) -> list[tuple[str, str, float]]:
+        """Key, words and size [N] of each part."""
+        return [
+            ("named", "named", self.named),
+            ("predictable", "predictable, without a name", self.predictable),
+            ("rest", "not predictable by anything tried", self.rest),
+        ]
+
+    @property
+    def sentence(self) -> str:
+        """The budget in a sentence."""
+        whole = self.baseline or 1.0
+        named = f"{self.named:.3g} N is named" if self.named > LEAST * whole else "nothing is named"
+        more = (
+            f"{self.predictable:.3g} N more could be predicted from the motion but has no name"
+            if self.predictable > 0
+            else "nothing more was predictable"
+        )
+        text = (
+            f"Of {self.baseline:.3g} N rms, {named}, {more}, and {self.rest:.3g} N was not "
+            "predicted by anything tried."
+        )
+        if self.repeatability is not None:
+            text += f" Strokes that repeat differ by {self.repeatability:.3g} N."
+        return text
+
+
+def budget_of(
+    baseline: float, extended: float, ceiling: float, repeatability: float | None
+) -> Budget:
+    """The budget of a held-out error [N] of the baseline, the extended model and the predictor."""
+    least = min(ceiling, extended)
+    return Budget(
+        baseline=baseline,
+        named=baseline - extended,
+        predictable=extended - least,
+        rest=least,
+        repeatability=repeatability,
+    )

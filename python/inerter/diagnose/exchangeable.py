@@ -1,0 +1,128 @@
+"""Causes that these data cannot tell apart: told as one finding, with the error that this leaves.
+
+A delay of the force adds b tau times the jerk, which along one sine is a damper, and nearly so in a
+narrow band. Each finding with such a counterpart is fitted once more with the counterpart beside
+it. Where its own parameter may then be none, the two are one finding with two members; where the
+parameter only moves, its error is at least as large as that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.parallel import parallel
+from inerter.diagnose.result import Finding, ParameterValue, Rival
+from inerter.diagnose.search import Search
+from inerter.identify.fit import Fit, parameter_errors
+from inerter.identify.model import Model
+
+# the effects that make up for each other, each by one coordinate
+COUNTERPARTS = {"viscous_friction": "sensor_delay", "sensor_delay": "viscous_friction"}
+_COORDINATE = {"viscous_friction": "viscous", "sensor_delay": "delay"}
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """What becomes of an effect's parameter with its counterpart beside it.
+
+    Attributes
+    ----------
+    counterpart : str
+        The other effect.
+    value, error : float
+        The parameter and its standard error then, in SI units.
+    other : float
+        The counterpart's parameter then.
+    same : bool
+        Whether the two are the same force along the motion.
+    """
+
+    counterpart: str
+    value: float
+    error: float
+    other: float
+    same: bool = False
+
+    @property
+    def is_told_apart(self) -> bool:
+        """Whether the effect is needed beside its counterpart."""
+        return not self.same and abs(self.value) > CRITERIA.distinction * self.error
+
+
+def exchanges(search: Search, fit: Fit, effects: Sequence[str]) -> dict[str, Exchange]:
+    """The effects of a fitted model that have a counterpart which the model has not."""
+    asked = [
+        effect
+        for effect in effects
+        if COUNTERPARTS.get(effect) and _COORDINATE[COUNTERPARTS[effect]] not in fit.model.values
+    ]
+    spacing = max(run.spacing for run in search.runs)
+    models = [_beside(fit.model, COUNTERPARTS[effect], spacing) for effect in asked]
+    fits = parallel(search.problem.fit, models) if models else []
+    # friction jumps where the motion turns, and tells a delay along one sine, too; without it what
+    # tells them apart there is noise of the motion
+    same = search.problem.scales.one_tone and fit.model.friction == "none"
+    found = {}
+    for effect, both in zip(asked, fits, strict=True):
+        known, other = parameter_errors(both), COUNTERPARTS[effect]
+        if _COORDINATE[effect] in known and _COORDINATE[other] in known:
+            value, error = known[_COORDINATE[effect]]
+            found[effect] = Exchange(other, value, error, known[_COORDINATE[other]][0], same)
+    return found
+
+
+def _beside(model: Model, effect: str, spacing: float) -> Model:
+    if effect == "sensor_delay":
+        return model.adding(None, delay=0.1 * spacing)
+    return model.adding(None, viscous=0.0)
+
+
+def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
+    """A finding with what its counterpart leaves of it."""
+    if exchange is None:
+        return finding
+    name = _COORDINATE[finding.effect]
+    found = finding.parameters.get(name)
+    if found is None:
+        return finding
+    moved = abs(exchange.value - found.value)
+    error = float(max(found.stderr, np.hypot(exchange.error, moved)))
+    if exchange.is_told_apart:
+        if moved < CRITERIA.distinction * found.stderr:
+            return finding
+        beside = f"with {_amount(exchange)} beside it {name} would be {exchange.value:.3g}"
+        return replace(
+            finding,
+            parameters=_with_error(finding.parameters, name, error),
+            evidence=f"{finding.evidence} {beside[0].upper()}{beside[1:]} {found.unit}.",
+        )
+    # it may be none
+    error = max(error, abs(found.value) / CRITERIA.distinction)
+    share = finding.confidence / 2
+    names = [EFFECTS[effect].plain for effect in (finding.effect, exchange.counterpart)]
+    rivals = [rival for rival in finding.rivals if rival.effect != exchange.counterpart]
+    return replace(
+        finding,
+        confidence=share,
+        members=(finding.effect, exchange.counterpart),
+        parameters=_with_error(finding.parameters, name, error),
+        rivals=[Rival(exchange.counterpart, share), *rivals],
+        evidence=f"{finding.evidence} This motion cannot tell {names[0]} from {names[1]}.",
+    )
+
+
+def _amount(exchange: Exchange) -> str:
+    if exchange.counterpart == "sensor_delay":
+        return f"a delay of {1e3 * exchange.other:.3g} ms"
+    return f"viscous friction of {exchange.other:.3g} N s/m"
+
+
+def _with_error(
+    parameters: Mapping[str, ParameterValue], name: str, error: float
+) -> dict[str, ParameterValue]:
+    return {**parameters, name: replace(parameters[name], stderr=error)}

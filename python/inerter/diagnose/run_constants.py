@@ -1,0 +1,151 @@
+"""What differs from run to run: constants, which are no cause, and runs that contradict the others.
+
+A load cell zeroed anew, or gravity compensated anew, gives each run a constant of its own. It is
+read off a regression of the force on the motion with one constant per run, and what differs from
+their mean is taken off the run; the mean stays, it may be a cause. A run contradicts the others
+where these predict each other, and not it, though it has nothing of its own in its motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identify.information import TOO_MUCH, leverage
+from inerter.identify.runs import BenchRun, on_clocks
+from inerter.records import Record
+
+Array = NDArray[np.float64]
+
+# a constant counts from so many standard errors, this share of the force and of what the regression
+# leaves, rms
+SURE = 5.0
+FORCE_PART = 0.01
+LEFT_PART = 0.5
+# stretches of a run that count as independent
+STRETCHES = 12
+# speed below which friction may be anything, per rms; width of sign(v)
+SLOW, WIDTH = 0.1, 0.02
+# what a run that contradicts the others is missed by more than by itself, per its force, and how
+# many times less the others are
+CONTRADICTION = 0.15
+TIMES = 4.0
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Moving samples of one run: columns (n, m) in its motion's units, force (n,) [N]."""
+
+    columns: Array
+    force: Array
+
+
+def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
+    """Constants of runs [N] about their mean, by name; empty where none is to be seen."""
+    if len(runs) < 2:
+        return {}
+    rows = [_rows(run, rich=True) for run in on_clocks(runs)]
+    count = len(rows)
+    if min(row.force.size for row in rows) < 10 * STRETCHES:
+        return {}
+    dummies = [np.eye(count)[np.full(row.force.size, i)] for i, row in enumerate(rows)]
+    matrix = np.concatenate(
+        [np.column_stack([d, row.columns]) for d, row in zip(dummies, rows, strict=True)]
+    )
+    force = np.concatenate([row.force for row in rows])
+    scale = np.sqrt(np.mean(matrix**2, axis=0))
+    matrix = matrix / np.where(scale > 0, scale, 1.0)
+    solved = np.linalg.lstsq(matrix, force, rcond=1e-9)[0]
+    left = force - matrix @ solved
+    # neighbouring samples go together: the sandwich over stretches
+    bread = np.linalg.pinv(matrix.T @ matrix, rcond=1e-12)
+    bounds = np.cumsum([row.force.size for row in rows])[:-1]
+    meat = np.zeros_like(bread)
+    for part in np.split(np.arange(force.size), bounds):
+        for stretch in np.array_split(part, STRETCHES):
+            score = matrix[stretch].T @ left[stretch]
+            meat += np.outer(score, score)
+    about = np.zeros((count, matrix.shape[1]))
+    about[:, :count] = (np.eye(count) - 1 / count) / scale[:count]
+    off, covariance = about @ solved, about @ bread @ meat @ bread @ about.T
+    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    least = max(FORCE_PART * _rms(force), LEFT_PART * _rms(left))
+    if not np.any((np.abs(off) > SURE * errors) & (np.abs(off) > least)):
+        return {}
+    return {run.name: float(value) for run, value in zip(runs, off, strict=True)}
+
+
+def without_constants(records: Sequence[Record], found: Mapping[str, float]) -> list[Record]:
+    """Records with the constants of their runs taken off the force."""
+    return [replace(r, force=r.force - found.get(r.name, 0.0)) for r in records]
+
+
+def constants_in_words(found: Mapping[str, float]) -> str:
+    """A sentence about the constants of runs; empty where there are none."""
+    if not found:
+        return ""
+    each = ", ".join(f"{name} {value:+.3g} N" for name, value in found.items())
+    return (
+        f"The runs differ by constants, as of a load cell zeroed anew, which are no cause and were "
+        f"taken off: {each} about their mean."
+    )
+
+
+def contradicting(runs: Sequence[BenchRun]) -> dict[str, str]:
+    """Runs that contradict the others, by name with what they say; at most one."""
+    if len(runs) < 3:
+        return {}
+    rows = [_rows(run, rich=False) for run in runs]
+    if min(row.force.size for row in rows) < 100:
+        return {}
+    everything = range(len(rows))
+    missed = [_missed(rows, i, [j for j in everything if j != i]) for i in everything]
+    worst = int(np.argmax(missed))
+    others = [j for j in everything if j != worst]
+    rest = [_missed(rows, j, [k for k in others if k != j]) for j in others]
+    alone = leverage(runs)[worst] > TOO_MUCH
+    if alone or missed[worst] < CONTRADICTION or missed[worst] < TIMES * max(rest):
+        return {}
+    own, theirs = (_solved([rows[k] for k in chosen])[0] for chosen in ([worst], others))
+    text = (
+        f"contradicts the other runs, which agree with each other: by itself its inertance would "
+        f"be {own:.4g} kg, in the others it is {theirs:.4g} kg; is it a run of the same device?"
+    )
+    return {runs[worst].name: text}
+
+
+def _missed(rows: Sequence[_Rows], i: int, others: Sequence[int]) -> float:
+    """What others miss of a run more than it misses itself, per its force."""
+    row = rows[i]
+    errors = [
+        row.force - row.columns @ _solved(parts) for parts in ([rows[j] for j in others], [row])
+    ]
+    theirs, own = (float(np.var(error)) for error in errors)
+    return float(np.sqrt(max(theirs - own, 0.0)) / (_rms(row.force) or 1.0))
+
+
+def _solved(rows: Sequence[_Rows]) -> Array:
+    """Coefficients of the columns, each run with a constant of its own."""
+    matrix = np.concatenate([row.columns - row.columns.mean(axis=0) for row in rows])
+    force = np.concatenate([row.force - row.force.mean() for row in rows])
+    scale = np.sqrt(np.mean(matrix**2, axis=0))
+    scale = np.where(scale > 0, scale, 1.0)
+    return np.linalg.lstsq(matrix / scale, force, rcond=1e-6)[0] / scale
+
+
+def _rows(run: BenchRun, *, rich: bool) -> _Rows:
+    x, v, a = run.displacement, run.velocity, run.acceleration
+    size = _rms(v[run.inner]) or 1.0
+    moving = run.inner & (np.abs(v) > SLOW * size)
+    way = np.tanh(v / (WIDTH * size))
+    columns = [a, v, way, x]
+    if rich:
+        columns += [v * np.abs(v), np.abs(a) * way, x * x, x**3, x * way, run.elapsed]
+    return _Rows(np.column_stack(columns)[moving], run.force[moving])
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2))) if values.size else 0.0

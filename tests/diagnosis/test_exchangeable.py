@@ -1,0 +1,160 @@
+"""What the data cannot tell apart is one finding, and no text contradicts a figure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inerter.diagnose import wording
+from inerter.diagnose.baseline import baseline_of
+from inerter.diagnose.candidates import candidates
+from inerter.diagnose.composition import bristle_is_known
+from inerter.diagnose.data import Data, divided
+from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange
+from inerter.diagnose.other_runs import badly_missed, missed_in_words
+from inerter.diagnose.remainder.words import summary
+from inerter.diagnose.result import Finding, ParameterValue
+from inerter.diagnose.search import Search
+from inerter.diagnose.unexplained import unexplained
+from inerter.identify.fit import Fit, Problem, rms
+from inerter.identify.model import Model
+from inerter.records import Record
+from inerter.records.preparation import prepare
+
+TIME = np.arange(0, 8, 1 / 500)
+IDEAL = Model("none", {"inertance": 60.0}, ("inertance",))
+
+
+def record(
+    frequencies: tuple[float, ...],
+    viscous: float = 100.0,
+    late: float = 0.0,
+    noise: float = 2e-6,
+    name: str = "run",
+) -> Record:
+    """60 kg and a damper along sines of 10 mm at the first frequency, the force late."""
+    random = np.random.default_rng(1)
+    speed = 2 * np.pi * np.array(frequencies)
+    size = 0.01 * (speed[0] / speed) ** 1.5
+    then = TIME - late
+    v = (size * speed) @ np.cos(np.outer(speed, then))
+    a = -(size * speed**2) @ np.sin(np.outer(speed, then))
+    x = size @ np.sin(np.outer(speed, TIME)) + random.normal(0, noise, TIME.size)
+    force = 60 * a + viscous * v + random.normal(0, 0.5, TIME.size)
+    return Record(name=name, time=TIME, displacement=x, force=force)
+
+
+def searched(made: Record, model: Model) -> tuple[Search, Fit]:
+    """A search over one record, and a model fitted to it."""
+    data = divided([made], prepare([made]), ())
+    search = Search(data.runs, data.split, IDEAL)
+    return search, search.problem.fit(model)
+
+
+def finding(value: float, error: float, confidence: float = 0.98) -> Finding:
+    """Viscous friction."""
+    return Finding(
+        effect="viscous_friction", law=None, confidence=confidence,
+        parameters={"viscous": ParameterValue(value, error, "N s/m")},
+        rmse_before=9.0, rmse_after=0.5, evidence="It is there.", rivals=[],
+    )  # fmt: skip
+
+
+def test_one_sine_tells_no_delay_from_damping() -> None:
+    search, fit = searched(record((2.0,), late=2e-3), IDEAL.adding(None, viscous=0.0))
+    found = exchanges(search, fit, ["viscous_friction"])["viscous_friction"]
+    assert not found.is_told_apart
+    told = with_exchange(finding(fit.model.values["viscous"], 0.1), found)
+    assert told.members == ("viscous_friction", "sensor_delay")
+    assert told.json()["members"] == ["viscous_friction", "sensor_delay"]
+    assert told.confidence == pytest.approx(0.49)
+    assert told.rivals[0].effect == "sensor_delay"
+    # the true 100 is within the error
+    value = told.parameters["viscous"]
+    assert abs(value.value - 100) < 2 * value.stderr
+    assert wording.effect_in_words(told).startswith("viscous friction or ")
+
+
+def test_several_sines_tell_them_apart() -> None:
+    search, fit = searched(record((0.5, 2.0, 5.0)), IDEAL.adding(None, viscous=0.0))
+    found = exchanges(search, fit, ["viscous_friction"])["viscous_friction"]
+    assert found.is_told_apart
+    before = finding(fit.model.values["viscous"], 0.5)
+    assert with_exchange(before, found).members == ()
+
+
+def test_a_value_that_moves_has_an_error_as_large() -> None:
+    told = with_exchange(finding(128.0, 0.3), Exchange("sensor_delay", 100.0, 1.0, 2.9e-3))
+    assert told.members == ()
+    assert told.parameters["viscous"].stderr == pytest.approx(28.0, abs=0.1)
+    assert "a delay of 2.9 ms" in told.evidence
+    same = finding(100.0, 0.3)
+    assert with_exchange(same, Exchange("sensor_delay", 100.2, 1.0, 1e-6)) is same
+    assert with_exchange(same, None) is same
+
+
+def test_along_one_sine_no_shaft_is_tried() -> None:
+    search, _ = searched(record((2.0,)), IDEAL)
+    sizes = search.problem.scales
+    start = baseline_of(None, sizes)
+    tried, broad = (
+        {each.effect for each in candidates(start, replace(sizes, one_tone=one))}
+        for one in (sizes.one_tone, False)
+    )
+    assert not {"series_elasticity", "parallel_stiffness"} & tried
+    assert {"series_elasticity", "parallel_stiffness"} <= broad
+
+
+@pytest.mark.parametrize(("error", "known"), [(1e-6, True), (2e-4, False)])
+def test_a_bristle_without_a_known_stiffness_is_none(error: float, known: bool) -> None:
+    values = {"inertance": 50.0, "coulomb_force": 12.0, "presliding": 1e-5}
+    model = Model("dahl", values, tuple(values))
+    assert bristle_is_known(Fit(model, [], np.diag([1e-4, 1e-4, error**2]), 1)) is known
+
+
+# --- texts ---------------------------------------------------------------------------------------
+
+
+def data_of(made: Record) -> tuple[Data, Model, list[np.ndarray]]:
+    """Records divided, the ideal inerter fitted, and what it leaves [N]."""
+    data = divided([made], prepare([made]), ())
+    model = Problem(data.runs, data.split.fit, data.band.scales).fit(IDEAL).model
+    return data, model, data.raw.errors(model)
+
+
+def test_the_noise_of_the_motion_is_no_lack_of_the_model() -> None:
+    """Along a sine the displacement tells the acceleration without its noise."""
+    data, model, errors = data_of(record((2.0,), viscous=0.0, noise=2e-5))
+    (motion,) = data.preparation.motions
+    noise = 60 * motion.acceleration_noise
+    raw = rms(errors, data.raw.masks)
+    floor = float(np.hypot(0.5, noise))
+    told = [
+        unexplained(
+            data.runs, data.split, data.band.residual(model), floor, raw, data.whole, errors, each
+        )
+        for each in (0.0, noise)
+    ]
+    assert not told[1].significant, told[1].summary
+    assert told[1].proposal is None
+
+
+def test_more_than_noise_is_not_said_of_less() -> None:
+    less = summary([], {}, {}, 0.518, 0.579, 0.0, False, None)
+    assert "more than" not in less
+    more = summary([], {}, {}, 0.608, 0.246, 0.0, False, None)
+    assert "is more than this noise, but shows no dependence" in more
+
+
+def test_a_fitted_run_that_is_missed_is_said() -> None:
+    made = [record((0.7, 2.0, 4.0), name=name) for name in ("a", "b", "c")]
+    made[2] = replace(made[2], force=1.5 * made[2].force)
+    data = divided(made, prepare(made), ["a"])
+    model = IDEAL.adding(None, viscous=100.0)
+    errors = data.raw.errors(model)
+    held = rms(errors, data.raw.masks)
+    found = badly_missed(data, errors, 0.5)
+    assert list(found) == ["c"]
+    assert f"misses c by {found['c']:.3g} N rms" in missed_in_words(found, held)
+    assert missed_in_words({}, held) == ""

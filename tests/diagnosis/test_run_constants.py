@@ -1,0 +1,104 @@
+"""Constants of runs are no cause; a run that contradicts the others is named. Records by hand."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from inerter.diagnose.run_constants import (
+    constants,
+    constants_in_words,
+    contradicting,
+    without_constants,
+)
+from inerter.diagnose.stages import Given, prepared
+from inerter.identify.runs import BenchRun, thin
+from inerter.records import Record
+from inerter.records.preparation import prepare
+
+TIME = np.arange(0, 12, 1 / 200)
+
+
+def record(
+    number: int,
+    inertance: float = 50.0,
+    offset: float = 0.0,
+    drift: float = 0.0,
+    centre: float = 0.0,
+    start: float = 0.0,
+) -> Record:
+    """An inerter with Coulomb and viscous friction and a hardening spring along three sines."""
+    random = np.random.default_rng(number)
+    speed = 2 * np.pi * np.array([0.4, 0.9, 1.7]) * (1 + 0.1 * number)
+    size = np.array([0.02, 0.01, 0.005])
+    phase = speed[:, None] * TIME + random.uniform(0, 6, 3)[:, None]
+    x = centre + size @ np.sin(phase)
+    v, a = (size * speed) @ np.cos(phase), -(size * speed**2) @ np.sin(phase)
+    force = inertance * a + 30 * v + 8 * np.sign(v) + 2e5 * x**3 + offset + drift * TIME
+    return Record(
+        name=f"run {number}", time=start + TIME,
+        displacement=x + random.normal(0, 2e-6, x.size),
+        force=force + random.normal(0, 0.3, x.size),
+    )  # fmt: skip
+
+
+def thinned(records: Sequence[Record]) -> list[BenchRun]:
+    """In the band."""
+    return [thin(motion) for motion in prepare(records).motions]
+
+
+def test_constants_are_found_and_taken_off() -> None:
+    offsets = [-4.0, 6.0, -2.0]
+    records = [record(i, offset=offset) for i, offset in enumerate(offsets)]
+    found = constants(thinned(records))
+    assert list(found.values()) == pytest.approx(offsets, abs=0.4)
+    assert constants(thinned(without_constants(records, found))) == {}
+    assert "run 1 +6" in constants_in_words(found).replace("+5.9", "+6").replace("+6.0", "+6")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        [{}, {}, {}],
+        [{"offset": 5.0}] * 3,
+        # an offset that grows: a cause, whether the runs share a clock or not
+        [{"drift": 0.2}] * 3,
+        [{"drift": 0.2, "offset": 0.2 * s, "start": s} for s in (0.0, 20.0, 40.0)],
+        # strokes about other places
+        [{"centre": c} for c in (-0.01, 0.0, 0.012)],
+    ],
+    ids=["none", "common", "drift", "drift through all", "places"],
+)
+def test_what_is_a_cause_is_left_alone(changes: list[dict[str, float]]) -> None:
+    assert constants(thinned([record(i, **change) for i, change in enumerate(changes)])) == {}
+
+
+def test_a_search_does_not_see_the_constants() -> None:
+    records = [record(i, offset=offset) for i, offset in enumerate([-4.0, 6.0, -2.0])]
+    start = prepared(Given(records=records))
+    assert set(start.constants) == {"run 0", "run 1", "run 2"}
+    moving = [np.abs(run.velocity) > 0.01 for run in start.data.whole]
+    left = [
+        np.mean((run.force - 50 * run.acceleration - 30 * run.velocity - 8 * np.sign(run.velocity)
+                 - 2e5 * run.displacement**3)[mask & run.inner])
+        for run, mask in zip(start.data.whole, moving, strict=True)
+    ]  # fmt: skip
+    assert left == pytest.approx([0.0] * 3, abs=0.4)
+
+
+def test_a_run_of_another_device_is_named() -> None:
+    records = [record(i, inertance=80.0 if i == 2 else 50.0) for i in range(4)]
+    found = contradicting(thinned(records))
+    assert list(found) == ["run 2"]
+    mine, theirs = (float(part) for part in re.findall(r"([0-9.]+) kg", found["run 2"]))
+    assert mine == pytest.approx(80, rel=0.03)
+    assert theirs == pytest.approx(50, rel=0.03)
+
+
+def test_runs_that_agree_contradict_nobody() -> None:
+    assert contradicting(thinned([record(i) for i in range(4)])) == {}
+    assert contradicting(thinned([record(i, offset=5.0 * i) for i in range(4)])) == {}
+    # of two runs nobody knows which one is wrong
+    assert contradicting(thinned([record(0), record(1, inertance=80.0)])) == {}
