@@ -23,7 +23,7 @@ from .quality import check_records
 from .raw_table import RawTable, explain_cell
 from .record import AnyRecord, Array, BenchTable, Record, RecordError, VehicleRecord
 from .runs import Part, split_runs
-from .stated import Stated, current, stated_of
+from .stated import Stated, announce, current, stated_of
 from .table import read_table
 from .together import joined
 from .units import QUANTITIES, si_factor
@@ -87,7 +87,9 @@ def read_records(
         records.extend(_read_file(path, kind, others, stated[path]))
         current().read.append(path)
     records = name_apart(records)
-    return check_records(records) if check else records
+    records = check_records(records) if check else records
+    announce(records)
+    return records
 
 
 def name_apart(records: list[AnyRecord]) -> list[AnyRecord]:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import fnmatch
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
@@ -149,6 +149,25 @@ def reading(
         yield made
     finally:
         _CURRENT.reset(token)
+
+
+_HEARD: ContextVar[Callable[[Sequence[Any]], None] | None] = ContextVar("heard", default=None)
+
+
+@contextmanager
+def heard(by: Callable[[Sequence[Any]], None]) -> Iterator[None]:
+    """Have what is read told to somebody as soon as it is, before it is worked on."""
+    token = _HEARD.set(by)
+    try:
+        yield
+    finally:
+        _HEARD.reset(token)
+
+
+def announce(records: Sequence[Any]) -> None:
+    """Tell who listens that records were read."""
+    if (by := _HEARD.get()) is not None:
+        by(records)
 
 
 def _sign(given: str | None, known: Mapping[str, str], where: str) -> str | None:
