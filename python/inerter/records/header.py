@@ -23,7 +23,7 @@ _WORDS = {
     "spostamento corsa deslocamento verplaatsing przemieszczenie lvdt deflection actuator "
     "langenanderung laengenaenderung forskydning перемещение 位移 変位",
     "force": "f force kraft standardkraft prufkraft pruefkraft last load loadcell fuerza forza "
-    "forca kracht sila kraftaufnehmer effort kraftsensor сила усилие 力 荷重",
+    "forca kracht sila siła kraftaufnehmer effort kraftsensor сила усилие 力 荷重",
     "velocity": "v velocity speed geschwindigkeit vitesse velocidad velocita snelheid predkosc "
     "скорость 速度",
     "acceleration": "a acceleration acc accel beschleunigung aceleracion accelerazione aceleracao "
@@ -34,7 +34,8 @@ _UNITS = {
     "time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2",
 }  # fmt: skip
 _PHRASES = {
-    "load cell": "force", "date time": "time", "elapsed time": "time", "time stamp": "time",
+    "load cell": "force", "date time": "time", "datum zeit": "time", "datum uhrzeit": "time",
+    "fecha hora": "time", "date heure": "time", "elapsed time": "time", "time stamp": "time",
     "running time": "time", "total time": "time", "x value": "time",
 }  # fmt: skip
 

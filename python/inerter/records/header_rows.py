@@ -43,7 +43,8 @@ class Heading:
     """What stands above the data.
 
     names: one for each column, units in brackets; line: of the lowest line that names, 0 where
-    there is none; units_line; interval, start: of the clock [s] where only they are stated.
+    there is none, top: of the highest one; units_line; interval, start: of the clock [s] where only
+    they are stated.
     """
 
     names: tuple[str, ...] = ()
@@ -51,6 +52,7 @@ class Heading:
     units_line: int | None = None
     interval: float | None = None
     start: float | None = None
+    top: int = 0
 
 
 def is_clock(cell: str) -> bool:
@@ -69,14 +71,14 @@ def heading(
         return Heading(interval=interval, start=start)
     for found in (_labelled(rows, width, body), _named(rows, width)):
         if found is not None:
-            names, line, units_line = found
+            names, line, units_line, top = found
             has_time = any(_is_time(name) for name in names)
             return Heading(
                 names, line, units_line,
-                None if has_time else interval, None if has_time else start,
+                None if has_time else interval, None if has_time else start, top,
             )  # fmt: skip
     number, row = rows[-1]
-    return Heading(tuple(row), number, None, None, None)
+    return Heading(tuple(row), number, None, None, None, number)
 
 
 def _is_time(name: str) -> bool:
@@ -97,7 +99,7 @@ def _fits(row: Sequence[str], width: int) -> list[str] | None:
 
 def _named(
     rows: Sequence[tuple[int, list[str]]], width: int
-) -> tuple[tuple[str, ...], int, int | None] | None:
+) -> tuple[tuple[str, ...], int, int | None, int] | None:
     """Names and units of the row or rows of text right above the data."""
     fitting = [(n, c) for n, row in rows if (c := _fits(row, width)) is not None]
     fitting = [(n, c) for n, c in fitting if any(re.search(r"[^\W\d]", cell) for cell in c)][-6:]
@@ -107,23 +109,25 @@ def _named(
     units_at = next((i for i in range(len(fitting))[::-1] if _are_units(fitting[i][1])), None)
     named = [i for i in range(len(fitting)) if i != units_at]
     if not named:
-        return tuple(fitting[-1][1]), last, None
+        return tuple(fitting[-1][1]), last, None, last
 
     # of several rows the one with the names that are known, else the one next to the data
     def rank(i: int) -> tuple[int, int]:
-        return sum(quantity_of(cell) is not None for cell in fitting[i][1]), i
+        known = [quantity_of(cell) is not None for cell in fitting[i][1]]
+        units = [bench_unit(cell) is not None for cell in fitting[i][1]]
+        return sum(known) - sum(u and not k for u, k in zip(units, known, strict=True)), i
 
     best = max(named, key=rank)
     names = fitting[best][1]
     if units_at is None and best + 1 < len(fitting) and best == len(fitting) - 2:
         mixed = _mixed(names, fitting[-1][1])
         if mixed is not None:
-            return mixed, last, last
+            return mixed, last, last, fitting[best][0]
     if units_at is None:
-        return tuple(names), last if best == len(fitting) - 1 else fitting[best][0], None
+        return tuple(names), fitting[best][0], None, fitting[best][0]
     units = fitting[units_at][1]
     joined = tuple(_with_unit(n, u) for n, u in zip(names, units, strict=True))
-    return joined, last, fitting[units_at][0]
+    return joined, last, fitting[units_at][0], min(fitting[best][0], fitting[units_at][0])
 
 
 def _mixed(upper: Sequence[str], lower: Sequence[str]) -> tuple[str, ...] | None:
@@ -159,12 +163,12 @@ def _with_unit(name: str, unit: str) -> str:
 
 def _labelled(
     rows: Sequence[tuple[int, list[str]]], width: int, body: Sequence[Sequence[str]]
-) -> tuple[tuple[str, ...], int, int | None] | None:
+) -> tuple[tuple[str, ...], int, int | None, int] | None:
     """Names of columns in rows that begin with what they hold."""
     found: dict[str, tuple[int, list[str]]] = {}
     for number, row in rows:
         kind = _LABEL_OF.get(_plain(row[0]))
-        if kind in ("name", "unit"):
+        if kind == "unit" or (kind == "name" and len(row) > 1 and not _is_number(row[1])):
             found[kind] = (number, row)
     line = rows[-1][0]
     if "name" not in found:
@@ -180,17 +184,17 @@ def _labelled(
             else _with_unit(cells[i], units[i])
             for i in range(width)
         ]  # fmt: skip
-        return tuple(names), line, units_line
+        return tuple(names), line, units_line, line
     # the label stands over the first column, which has no name of its own: a time
     del number
     joined = [_with_unit(c, u) for c, u in zip(cells[1:width], units[1:width], strict=True)]
     first = "time [s]" if len(body) and len(body[0]) == width else ""
-    return (first, *joined), line, units_line
+    return (first, *joined), line, units_line, line
 
 
 def _lvm(
     rows: Sequence[tuple[int, list[str]]], width: int, units: tuple[int, list[str]] | None
-) -> tuple[tuple[str, ...], int, int | None] | None:
+) -> tuple[tuple[str, ...], int, int | None, int] | None:
     """A LabVIEW measurement file: X_Value, names, Comment; the units stand further above."""
     number, row = rows[-1]
     if _plain(row[0]) != "x_value":
@@ -205,7 +209,11 @@ def _lvm(
         else:
             joined.append(_with_unit(name, next(columns, "")))
     joined += [""] * (width - len(joined))
-    return tuple(joined), number, units[0] if units else None
+    return tuple(joined), number, units[0] if units else None, number
+
+
+def _is_number(cell: str) -> bool:
+    return re.fullmatch(r"\s*\d+([.,]\d+)?\s*", cell) is not None
 
 
 def _plain(cell: str) -> str:

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import polars as pl
 
+from .interpolate import on_times
 from .raw_table import RawTable
 
 
@@ -32,7 +33,7 @@ def on_one_clock(table: RawTable) -> RawTable:
         known = np.isfinite(own) & np.isfinite(values)
         if len(bad) or known.sum() < 2 or not np.all(np.diff(own[known]) > 0):
             continue
-        made = np.interp(time, own[known], values[known], left=np.nan, right=np.nan)
+        made = on_times(values[known], own[known], time)
         columns[index + 1] = pl.Series(header[index + 1], made)
         moved.append(header[index + 1])
     told = f"{', '.join(moved)} brought to the clock of the first channel" if moved else ""

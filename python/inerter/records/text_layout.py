@@ -38,7 +38,8 @@ class Layout:
     header: names with their units in brackets; header_line: number of the line that names, first:
     number of the first data line, both from 1; stop: byte of the file behind the last data line;
     comments: lines above the header; interval, start [s]: of a clock that only the preamble states;
-    footer: lines below the data that are left out.
+    footer: lines below the data that are left out; preamble: lines above the names, blanks and
+    comments not counted.
     """
 
     encoding: str = "utf-8"
@@ -55,6 +56,7 @@ class Layout:
     start: float | None = None
     stop: int | None = None
     footer: int = 0
+    preamble: int = 0
 
     def told(self) -> str:
         """How the text was read, in words; empty where nothing of it is out of the ordinary."""
@@ -66,9 +68,8 @@ class Layout:
             parts.append(SEPARATORS[self.separator])
         if self.decimal != ".":
             parts.append("decimal comma")
-        preamble = self.header_line - 1 if self.header_line else 0
-        if preamble and len(self.comments) >= preamble:
-            parts.append(f"{preamble} preamble line" + "s" * (preamble > 1))
+        if self.preamble:
+            parts.append(f"{self.preamble} preamble line" + "s" * (self.preamble > 1))
         if self.units_line:
             parts.append(f"units from line {self.units_line}")
         if self.interval is not None:
@@ -167,6 +168,12 @@ class _Rows:
     width: int
     count: int
 
+    @property
+    def named(self) -> bool:
+        """Whether the line above the data has a name for each column."""
+        above = [cells for cells in self.cells[: self.first] if cells]
+        return bool(above) and len(above[-1]) == self.width
+
 
 def _best(path: Path, lines: Sequence[str], asked: Asked) -> Layout | None:
     tried = [asked.separator] if asked.separator else list(SEPARATORS)
@@ -174,7 +181,7 @@ def _best(path: Path, lines: Sequence[str], asked: Asked) -> Layout | None:
     if not found:
         return None
     # the separator with which most lines are data; of equals the one that is tried first
-    rows = max(found, key=lambda each: each.count)
+    rows = max(found, key=lambda each: (each.count, each.named))
     body = [
         cells for cells in rows.cells[rows.first :] if cells and _is_data(cells)
         and len(cells) == rows.width
@@ -196,6 +203,7 @@ def _best(path: Path, lines: Sequence[str], asked: Asked) -> Layout | None:
         comments=comments,
         interval=head.interval,
         start=head.start,
+        preamble=sum(cells is not None for cells in rows.cells[: max(head.top - 1, 0)]),
     )
 
 

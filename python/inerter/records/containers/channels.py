@@ -12,6 +12,7 @@ import numpy as np
 
 from inerter.records.bounds import LONGEST_TEXT, refuse_packing, refuse_table
 from inerter.records.header import guess
+from inerter.records.interpolate import on_times
 from inerter.records.record import RecordError
 
 _MOST_NAMED = 8
@@ -167,10 +168,7 @@ class _Clock:
 
     def brought(self, values: Any, base: _Clock) -> Any:
         """Values on the times of another clock, NaN outside."""
-        length = min(len(self.time), len(values))
-        return np.interp(
-            base.time, self.time[:length], values[:length], left=np.nan, right=np.nan
-        )
+        return on_times(values, self.time, base.time)
 
 
 def _loaded(channel: Channel) -> Any:
