@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,8 +14,11 @@ from inerter.blind_test.command import blind_test_command
 from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing, status
 from inerter.design.commands import app as design_app
 from inerter.folder import json_text
+from inerter.inspection.command import inspect_command
 from inerter.identify.command import identify_command
 from inerter.plugin import plugin_path, supported_text
+from inerter.records.convert import convert_command
+from inerter.records.options import told_reading, with_reading
 from inerter.records.prepare.command import prepare_command
 from inerter.studies.commands import app as study_app
 from inerter.suspension.commands import app as suspension_app
@@ -22,6 +26,9 @@ from inerter.view.command import view_command
 
 if TYPE_CHECKING:
     from inerter.diagnose import Diagnosis
+    from inerter.records import AnyRecord
+
+SHOWN = 6  # records of which a diagnosis says first what they hold
 
 # what a command needs is imported in it: a design is not to wait for what a diagnosis loads
 app = typer.Typer(
@@ -56,6 +63,7 @@ def common(
 
 
 @app.command("diagnose")
+@with_reading
 def diagnose_command(
     record: Annotated[
         list[str],
@@ -85,17 +93,27 @@ def diagnose_command(
     ] = None,
     out_dir: Folder = Path("out/diagnosis"),
     as_json: AsJson = False,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Print the summary in the terminal and write nothing.")
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Print the summary in the terminal and write nothing."),
     ] = False,
+    quick: Annotated[bool, typer.Option("--quick", hidden=True)] = False,
+    stated: Any = None,
 ) -> None:
     """What does the simulation of a device get wrong, what is the cause, how much does it cost?
 
     Writes diagnosis.json, report.html, device.toml and model.xml.
+
+    \b
+    Examples:
+      inerter diagnose runs/*.csv --device device.toml
+      inerter diagnose card.csv --with servo.csv --column force='-200 N/V * u'
+      inerter diagnose drive.csv --model car.xml
     """
     mapping = (inputs or [], sensors or [])
-    folder = None if quick else out_dir
-    _diagnose(record, device, model, holdout or [], folder, as_json, mapping)
+    # --quick: the name of --dry-run before
+    folder = None if dry_run or quick else out_dir
+    _diagnose(record, device, model, holdout or [], folder, as_json, mapping, stated)
 
 
 def _diagnose(
@@ -106,6 +124,7 @@ def _diagnose(
     folder: Path | None,
     as_json: bool,
     mapping: tuple[list[str], list[str]] = ([], []),
+    stated: dict[str, Any] | None = None,
 ) -> Diagnosis:
     """Without a folder nothing is written."""
     from warnings import catch_warnings, simplefilter
@@ -113,6 +132,7 @@ def _diagnose(
     import numpy as np
 
     from inerter.diagnose import diagnose
+    from inerter.records.stated import heard
     from inerter.report.output import write_outputs
     from inerter.report.terminal import print_summary
 
@@ -120,8 +140,10 @@ def _diagnose(
     names = ("diagnosis.json", "report.html", "device.toml", "model.xml")
     with refusing(folder, *names), np.errstate(all="ignore"), catch_warnings():
         simplefilter("ignore", RuntimeWarning)
-        with status(as_json) as progress:
-            result = diagnose(record, device, model, holdout, progress, *mapping)
+        with status(as_json) as progress, told_reading(**(stated or {})) as tell:
+            with heard(lambda records: _first_look(records, as_json, tell)):
+                result = diagnose(record, device, model, holdout, progress, *mapping)
+            tell()
         if folder:
             write_outputs(result, folder)
     if as_json:
@@ -131,6 +153,20 @@ def _diagnose(
         if folder:
             out.print(f"Written to {folder}: report.html, diagnosis.json, device.toml, model.xml")
     return result
+
+
+def _first_look(records: Sequence[AnyRecord], quiet: bool, tell: Callable[[], None]) -> None:
+    """How records were read, and in a few lines what they hold."""
+    from inerter.inspection.facts import facts_of, short
+
+    tell()
+    if quiet:
+        return
+    for record in records[:SHOWN]:
+        for line in short(facts_of(record)):
+            out.print(line, highlight=False, soft_wrap=True)
+    if len(records) > SHOWN:
+        out.print(f"and {len(records) - SHOWN} more; `inerter inspect` shows them")
 
 
 @app.command("simulate")
@@ -290,6 +326,8 @@ def parameters_command() -> None:
 
 
 # in the order in which the help lists them: after those above, groups last
+app.command("inspect")(inspect_command)
+app.command("convert")(convert_command)
 app.command("identify")(identify_command)
 app.command("prepare")(prepare_command)
 app.command("blind-test")(blind_test_command)

@@ -72,24 +72,7 @@ CASES = {
     ),
     "misspelt column": (
         "\n".join(["time,displacment[mm],force", *rows()]),
-        ["no column 'displacement'", "rename 'displacment[mm]' to 'displacement[mm]'"],
-    ),
-    "synonym": (
-        "\n".join(["t,displacement,force", *rows()]),
-        ["no column 'time'", "rename 't' to 'time'"],
-    ),
-    "semicolons": (
-        "\n".join(line.replace(",", ";") for line in [HEADER, *rows()]),
-        ["line 1", "semicolons", "write them with commas"],
-    ),
-    "semicolons and decimal commas": (
-        "\n".join(line.replace(",", ";").replace(".", ",") for line in [HEADER, *rows()]),
-        ["line 1", "semicolons", "with a point, not a comma"],
-    ),
-    "tabs": ("\n".join(line.replace(",", "\t") for line in [HEADER, *rows()]), ["line 1", "tabs"]),
-    "blanks": (
-        "\n".join(line.replace(",", " ") for line in [HEADER, *rows()]),
-        ["line 1", "separated by blanks"],
+        ["no column 'displacement'", "--column displacement='displacment[mm]'"],
     ),
     "decimal commas": (
         "\n".join([HEADER, *(line.replace(".", ",") for line in rows())]),
@@ -102,10 +85,6 @@ CASES = {
     "no number": (
         "\n".join(["# bench 3", HEADER, "", *replaced(9, "0.009,0.1,high")]),
         ["line 13", "column 'force'", "'high' is not a number"],
-    ),
-    "units row": (
-        "\n".join([HEADER, "s,mm,N", *rows()]),
-        ["line 2", "'s' is not a number", "units go into the header", "time[s]"],
     ),
     "header again": (
         "\n".join([HEADER, *rows(), HEADER, *rows()]),
@@ -234,18 +213,9 @@ def test_csv_error(name: str, tmp_path: Path) -> None:
 
 
 BYTES = {
-    "utf-16": ((HEADER + "\n" + "\n".join(rows())).encode("utf-16"), ["UTF-16", "UTF-8"]),
-    "utf-16 without a mark": (
-        (HEADER + "\n" + "\n".join(rows())).encode("utf-16-le"),
-        ["UTF-16"],
-    ),
-    "latin-1": (
-        ("# 5 µm\n".encode("latin-1") + (HEADER + "\n" + "\n".join(rows())).encode()),
-        ["line 1", "0xb5", "not UTF-8"],
-    ),
     "binary": (bytes(range(256)) * 10, ["binary file"]),
-    "parquet": (b"PAR1" + bytes(100), ["Parquet file named .csv"]),
-    "excel": (b"PK\x03\x04" + bytes(100), ["Excel", "export it as CSV"]),
+    "parquet": (b"PAR1" + bytes(100), ["not a readable Parquet file"]),
+    "excel": (b"PK\x03\x04" + bytes(100), ["not a readable workbook", "export CSV"]),
 }
 
 
@@ -320,7 +290,7 @@ def test_folder_without_records(tmp_path: Path) -> None:
 
 
 def test_glob_without_match(tmp_path: Path) -> None:
-    assert "no .csv, .parquet, .mat file matches" in message(tmp_path / "run*.csv")
+    assert "no record (.csv, .xlsx," in message(tmp_path / "run*.csv")
 
 
 def test_no_paths() -> None:
@@ -329,9 +299,9 @@ def test_no_paths() -> None:
 
 
 def test_unknown_extension(tmp_path: Path) -> None:
-    path = tmp_path / "r.xlsx"
-    path.write_bytes(b"PK\x03\x04")
-    assert "unknown extension '.xlsx'" in message(path)
+    path = tmp_path / "r.docx"
+    path.write_bytes(b"1,2,3")
+    assert "unknown extension '.docx'" in message(path)
 
 
 def test_missing_file_is_reported_before_its_extension(tmp_path: Path) -> None:
@@ -357,8 +327,7 @@ def test_mat_73(head: bytes, tmp_path: Path) -> None:
     path = tmp_path / "r.mat"
     path.write_bytes(head + bytes(600))
     error = message(path)
-    assert "v7.3" in error
-    assert "-v7'" in error
+    assert "not a readable HDF5 file" in error
 
 
 def test_mat_without_vectors(tmp_path: Path) -> None:

@@ -122,12 +122,23 @@ def test_a_file_from_a_spreadsheet(tmp_path: Path) -> None:
         np.testing.assert_array_equal(getattr(record, name), values)
 
 
-def test_decimal_commas_are_refused_with_what_to_do(tmp_path: Path) -> None:
-    """Not guessed: 1,5 may be one number or two."""
+def test_decimal_commas_between_semicolons_are_read(tmp_path: Path) -> None:
     text = pl.DataFrame(columns()).write_csv()
     path = tmp_path / "sheet.csv"
     path.write_text(text.replace(",", ";").replace(".", ","))
-    with pytest.raises(RecordError, match=r"semicolons.*with a point, not a comma, in the numbers"):
+    (record,) = read_records(path, "bench")
+    for name, values in columns().items():
+        np.testing.assert_array_equal(getattr(record, name), values)
+    assert record.reading == "semicolon, decimal comma"
+
+
+def test_decimal_commas_between_commas_are_asked_for(tmp_path: Path) -> None:
+    """Not guessed: 1,5 may be one number or two."""
+    lines = [f"0,{k:03d},1,5,-2,{k}" for k in range(60)]
+    path = tmp_path / "sheet.csv"
+    path.write_text("time,displacement,force\n" + "\n".join(lines))
+    said = r"6 cells where the header has 3.*6 whole numbers, or 3 with decimal commas \(0.000, 1.5"
+    with pytest.raises(RecordError, match=said):
         read_records(path)
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from inerter.console import AsJson, Folder, out, progress_bar, refusing
 from inerter.core import WORDS
+from inerter.records.options import told_reading, with_reading
 
 
+@with_reading
 def identify_command(
     record: Annotated[
         list[str],
@@ -50,6 +52,7 @@ def identify_command(
     ] = False,
     out_dir: Folder = Path("out/identification"),
     as_json: AsJson = False,
+    stated: Any = None,
 ) -> None:
     """Parameters of a device with errors and intervals, laws compared on held-out data.
 
@@ -65,7 +68,9 @@ def identify_command(
     from inerter.records import read_records
 
     with refusing(out_dir, "identification.json", "identification.png", "device.toml"):
-        records = read_records(record, "bench", others=False)
+        with told_reading(**stated) as tell:
+            records = read_records(record, "bench", others=False)
+            tell()
         with progress_bar("identifying", as_json) as progress:
             result = identify(
                 records, _names(law), fixed=_fixed(fix or []), holdout=holdout or (), loss=loss,

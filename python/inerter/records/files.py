@@ -6,7 +6,9 @@ import glob
 from pathlib import Path
 
 from .record import RecordError
-from .table import EXTENSIONS
+from .table import EXTENSIONS, OF_FOLDERS
+
+_SOME = ".csv, .xlsx, .tdms, .mf4, .mat, .h5, .parquet, ..."
 
 
 def record_files(entry: str | Path) -> list[Path]:
@@ -22,19 +24,21 @@ def record_files(entry: str | Path) -> list[Path]:
 
 
 def _files(path: Path) -> list[Path]:
-    wanted = ", ".join(EXTENSIONS)
     if path.is_dir():
         found = sorted(p for p in path.iterdir() if _is_record_file(p))
         if not found:
-            raise RecordError(f"{path}: no records in this folder; put {wanted} files into it")
+            raise RecordError(f"{path}: no records in this folder; put {_SOME} files into it")
         return found
     if path.exists() or not glob.has_magic(str(path)):
         return [path]
-    found = sorted(p for p in map(Path, glob.glob(str(path), recursive=True)) if _is_record_file(p))
+    matching = map(Path, glob.glob(str(path), recursive=True))
+    found = sorted(p for p in matching if p.is_file() and p.suffix.lower() in EXTENSIONS)
     if not found:
-        raise RecordError(f"{path}: no {wanted} file matches; check the pattern and the folder")
+        raise RecordError(
+            f"{path}: no record ({_SOME}) matches; check the pattern and the folder"
+        )
     return found
 
 
 def _is_record_file(path: Path) -> bool:
-    return path.is_file() and path.suffix.lower() in EXTENSIONS and not path.name.startswith(".")
+    return path.is_file() and path.suffix.lower() in OF_FOLDERS and not path.name.startswith(".")

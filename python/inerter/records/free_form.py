@@ -14,13 +14,10 @@ from inerter.unit_text import parse_unit, unit_registry
 from .files import record_files
 from .quality import check_records
 from .raw_table import RawTable, listed
-from .read import (
-    _name_apart,
-    _numbers,
-    _Part,
-    _split_runs,
-)
+from .read import name_apart, numbers_of
 from .record import AnyRecord, Array, RecordError, TimeRecord
+from .runs import Part, split_runs
+from .stated import stated_of
 from .table import read_table
 from .units import _GRAVITY, QUANTITIES, si_factor, split_header
 
@@ -47,7 +44,7 @@ def column_names(paths: Sequence[str | Path]) -> list[str]:
         It cannot be read.
     """
     file = next(file for entry in paths for file in record_files(entry))
-    table = read_table(file, lambda header: _name(header) == "time")
+    table = read_table(file, lambda header: _name(header) == "time", stated_of(file))
     return [name for name in _names(table) if name not in ("time", "run")]
 
 
@@ -68,7 +65,9 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
     """
     records: list[Any] = []
     for path in [file for entry in paths for file in record_files(entry)]:
-        table = read_table(path, lambda header: _name(header) in {"time", "run", *columns})
+        table = read_table(
+            path, lambda header: _name(header) in {"time", "run", *columns}, stated_of(path)
+        )
         at = _names(table)
         for name in ("time", *columns):
             if name not in at:
@@ -76,11 +75,11 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
                     f"{path}: no column {name!r} (found: {listed(list(at))}); every run needs it"
                 )
         values = {
-            name: _numbers(table, at[name]) * _factor(table, at[name], name)
+            name: numbers_of(table, at[name]) * _factor(table, at[name], name)
             for name in ("time", *columns)
         }
-        for run, rows in _split_runs(table, at.get("run")):
-            part = _Part(table, run, rows)
+        for run, rows in split_runs(table, at.get("run")):
+            part = Part(table, run, rows)
             cls: type[AnyRecord] = FreeRecord  # type: ignore[assignment]
             filled, rows, notes = part.complete({n: v[rows] for n, v in values.items()}, cls)
             part.with_rows(rows).check(filled, cls)
@@ -97,7 +96,7 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
                 record = record.warn("missing_samples", note)
             records.append(record)
     # the type of the list is that of what stands in it
-    named: list[Any] = list(_name_apart(records))
+    named: list[Any] = list(name_apart(records))
     return check_records(named)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
@@ -31,7 +32,7 @@ class RawTable:
     """Columns as they stand in one file.
 
     header: column names as written; columns: by index, a series for each that was wanted; comments:
-    the ``#`` lines above the header. Of a text file: odd: by column, what is no number in it;
+    the lines above the header; told: how the file was read. Of a text file: odd: by column, what is no number in it;
     lines: number and text of the header and of every data line, read anew.
     """
 
@@ -39,8 +40,15 @@ class RawTable:
     header: tuple[str, ...]
     columns: Mapping[int, pl.Series]
     comments: tuple[str, ...] = ()
+    told: str = ""
+    separator: str = ","
     odd: Mapping[int, OddCell] = field(default_factory=dict)
     lines: Callable[[], Iterator[tuple[int, str]]] | None = None
+
+    def telling(self, text: str) -> RawTable:
+        """The same table, of which something more is told first."""
+        told = "; ".join(part for part in (text, self.told) if part)
+        return dataclasses.replace(self, told=told) if text else self
 
     @property
     def rows(self) -> int:
@@ -119,7 +127,9 @@ def explain_cell(table: RawTable, column: int, row: int) -> str:
     """One clause on a cell that should have been a number, and what to do about it."""
     cells = table.row_texts(column, row)
     cell = cells[column]
-    if re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", cell):
+    if re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", cell) and table.separator != ",":
+        advice = "other numbers have a decimal point: write this one so, too"
+    elif re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", cell):
         advice = "write numbers with a decimal point, not a comma"
     elif list(cells) == [name.strip() for name in table.header]:
         advice = "the header stands here again; give runs a 'run' column or a file each"

@@ -3,55 +3,30 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
+import os
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, cast, overload
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.interpolate import Akima1DInterpolator
 
 from inerter.printable import text_of
 
 from .bounds import Wanted, everything
+from .calibration import Statement, applied, is_there
+from .channels import corrected
+from .columns import Columns, Kind, choose_kind, is_known, recognise, refuse_missing
 from .files import record_files
+from .integrate import with_displacement
 from .quality import check_records
-from .raw_table import RawTable, explain_cell, listed
-from .record import AnyRecord, Array, BenchTable, Record, RecordError, TimeRecord, VehicleRecord
+from .raw_table import RawTable, explain_cell
+from .record import AnyRecord, Array, BenchTable, Record, RecordError, VehicleRecord
+from .runs import Part, split_runs
+from .stated import Stated, announce, current, stated_of
 from .table import read_table
-from .units import QUANTITIES, si_factor, split_header
-
-MIN_SAMPLES = 50  # of a record over time
-MIN_TABLE_ROWS = 3  # of a bench table
-MAX_MISSING_SHARE = 0.01  # of the rows of a run; three rows are always allowed
-MAX_SIZE = 1e12  # of any value, in SI units: beyond it no unit can be right
-MAX_MISSING_STRETCH = 25  # rows in a row that are still interpolated
-# samples that a run may have on an even clock, per row: pauses may take nine tenths of its time
-MAX_FILLED = 10
-
-Kind = Literal["bench", "vehicle", "table"]
-Rows = NDArray[np.intp]
-
-_CLASSES: dict[str, type[Record] | type[VehicleRecord] | type[BenchTable]] = {
-    "bench": Record,
-    "table": BenchTable,
-    "vehicle": VehicleRecord,
-}
-
-# names other people give to our columns, for the advice in an error
-_SYNONYMS = {
-    "time": ("t", "time_s", "timestamp", "seconds", "zeit"),
-    "displacement": ("x", "s", "disp", "position", "pos", "stroke", "travel", "displacement_mm"),
-    "force": ("f", "load", "kraft", "force_n", "force_kn", "load_cell"),
-    "frequency": ("f", "freq", "hz"),
-    "force_amplitude": ("force", "amplitude"),
-    "acceleration_amplitude": ("acceleration", "amplitude"),
-    "road": ("z", "profile", "ground"),
-}
-
+from .together import joined
+from .units import QUANTITIES, si_factor
 
 @overload
 def read_records(
@@ -94,7 +69,7 @@ def read_records(
 ) -> Sequence[AnyRecord]:
     """Read every run of the given files, folders and globs, in that order, in SI units.
 
-    paths: one path or several; a folder stands for its .csv, .parquet and .mat files, sorted.
+    paths: one path or several; a folder stands for its files of known formats, sorted.
     kind: which records are wanted; None takes each file for what its columns say.
     check: add `check_records`' warnings. others: read further columns too, into `extra`. Raises
     RecordError (a ValueError), one line, for anything that cannot be used.
@@ -102,14 +77,22 @@ def read_records(
     listed = [paths] if isinstance(paths, str | Path) else list(paths)
     if not listed:
         raise RecordError("no records given; name a file, a folder or a glob such as 'data/*.csv'")
+    files = [file for entry in listed for file in record_files(entry)]
+    stated = {path: stated_of(path) for path in files}
+    # the partner of a file is no record of its own
+    partners = {os.path.realpath(each.partner) for each in stated.values() if each.partner}
+    files = [path for path in files if os.path.realpath(path) not in partners] or files
     records: list[AnyRecord] = []
-    for path in [file for entry in listed for file in record_files(entry)]:
-        records.extend(_read_file(path, kind, everything if others else _is_known))
-    records = _name_apart(records)
-    return check_records(records) if check else records
+    for path in files:
+        records.extend(_read_file(path, kind, others, stated[path]))
+        current().read.append(path)
+    records = name_apart(records)
+    records = check_records(records) if check else records
+    announce(records)
+    return records
 
 
-def _name_apart(records: list[AnyRecord]) -> list[AnyRecord]:
+def name_apart(records: list[AnyRecord]) -> list[AnyRecord]:
     """Give records of one name different ones: file name, then folder and file, then a count."""
     runs = [record.name.removeprefix(text_of(_source(record).stem)) for record in records]
     for folder in (False, True):
@@ -134,37 +117,118 @@ def _source(record: AnyRecord) -> Path:
 # --- one file ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Columns:
-    """Which column of a raw table holds what: index by name, unit by name, and the rest."""
+def _read_file(path: Path, kind: Kind | None, others: bool, stated: Stated) -> list[AnyRecord]:
+    wanted: Wanted = everything if others else lambda name: is_known(name, stated.columns)
+    table = read_table(path, wanted, stated)
+    here, there = stated.columns, {}
+    if stated.partner is not None:
+        here, there = _by_file(table.header, stated.columns)
+    found = recognise(table, kind, here)
+    values, notes = si_values(table, found)
+    both = slice(None)
+    if stated.partner is not None:
+        partner = _partner(stated.partner, there)
+        others_values, both, note = joined(path, values, *partner, stated.lag)
+        for name in others_values:
+            found.own.setdefault(name, -1)
+        values, notes = values | others_values, [*notes, note]
+    cls = choose_kind(table, found, kind)
+    refuse_missing(table, found, cls)
+    names = [name for name in (*cls.required, *cls.optional) if name in values]
+    names += [n for n in ("acceleration_1", "acceleration_2") if cls is Record and n in values]
+    extra = _further(table, found, {n: v for n, v in values.items() if n not in names})
+    records: list[AnyRecord] = []
+    for run, rows in split_runs(table, found.own.get("run")):
+        whole = run is None and both == slice(None)
+        rows = rows[both] if run is None else rows
+        part = Part(table, run, rows)
+        name = text_of(path.stem) + ("" if run is None else f":{run}")
+        # long records are many: no copies of a file that is one run
+        own = {n: values[n] if whole else values[n][rows] for n in names}
+        columns, rows, losses = part.complete(own, cls)
+        part = part.with_rows(rows)
+        part.check(columns, cls)
+        said = list(notes)
+        if cls is Record:
+            columns, rows, more = corrected(columns, rows, found.stated, part)
+            columns, motion = with_displacement(columns, part)
+            said += more + motion
+        rest = {n: v[rows] for n, v in extra.items()}
+        text = "; ".join(each for each in (table.told, *said) if each)
+        fields: dict[str, Any] = {"extra": rest, "comments": table.comments, **columns}
+        record = cls(name=name, source=path, reading=text, **fields)
+        for note in losses:
+            record = record.warn("missing_samples", note)
+        records.append(record)
+        if text:
+            current().tell(path, f"read as: {text}")
+    return records
 
-    own: dict[str, int]
-    units: dict[str, str | None]
-    extra: dict[str, int]
 
-
-def _is_known(header: str) -> bool:
-    """Whether a column has a name that records know."""
-    name = split_header(header)[0]
-    return name in QUANTITIES or name == "run"
-
-
-def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]:
-    table = read_table(path, wanted)
-    found = _recognise(table)
-    cls = _choose_kind(table, found, kind)
-    _refuse_missing_columns(table, found, cls)
-    names = [name for name in (*cls.required, *cls.optional) if name in found.own]
-
-    # units first: a wrong unit is one error, a wrong cell one among many
-    factors = {
-        name: si_factor(name, found.units[name], f"{path}: column {table.header[i].strip()!r}")
-        for name, i in found.own.items()
-        if name in names
+def _by_file(
+    header: tuple[str, ...], stated: Mapping[str, Statement]
+) -> tuple[dict[str, Statement], dict[str, Statement]]:
+    """Statements about columns of this file, and those about columns of its partner."""
+    here = {
+        name: each for name, each in stated.items() if not each.column or is_there(each, header)
     }
-    values = {name: _numbers(table, found.own[name]) for name in names}
+    return here, {name: each for name, each in stated.items() if name not in here}
+
+
+def _partner(path: Path, there: Mapping[str, Statement]) -> tuple[Path, dict[str, Array]]:
+    """The channels of a file of the same test that has a clock of its own."""
+    stated = stated_of(path)
+    table = read_table(path, everything, stated)
+    found = recognise(table, "bench", {**stated.columns, **there})
+    current().read.append(path)
+    values = si_values(table, found)[0]
+    return path, values | _further(table, found, {})
+
+
+def si_values(table: RawTable, found: Columns) -> tuple[dict[str, Array], list[str]]:
+    """The values of our quantities in SI units, and what is to be told of them."""
+    # units first: a wrong unit is one error, a wrong cell one among many
+    factors = {}
+    for name, index in found.own.items():
+        if name in QUANTITIES and name not in found.stated:
+            where = f"{table.path}: column {table.header[index].strip()!r}"
+            factors[name] = si_factor(name, found.units[name], where)
+    values: dict[str, Array] = {}
+    notes: list[str] = []
     with np.errstate(over="ignore"):  # what overflows is refused with its row
-        values = {n: v if factors[n] == 1.0 else v * factors[n] for n, v in values.items()}
+        for name, index in found.own.items():
+            if name not in QUANTITIES:
+                continue
+            column, header = numbers_of(table, index), table.header[index].strip()
+            if name in factors:
+                values[name] = column if factors[name] == 1.0 else column * factors[name]
+            else:
+                where = f"{table.path}: column {header!r}"
+                values[name] = applied(found.stated[name], name, column, header, where)
+            notes.append(_of_column(name, header, found))
+    counted = found.stated.get("time")
+    if counted is not None and counted.interval is not None:
+        values["time"] = counted.interval * np.arange(table.rows)
+        notes.append(f"a sample every {counted.interval:g} s, as stated")
+    text = ", ".join(note for note in notes if note)
+    return values, [text] if text else []
+
+
+def _of_column(name: str, header: str, found: Columns) -> str:
+    """What is told of a column that has not our name for it, or is calibrated."""
+    statement = found.stated.get(name)
+    if statement is not None and statement.text and statement.text != header:
+        return f"{name} = {statement.text}"
+    unit = found.units[name]
+    if name == header.split("[")[0].split("(")[0].strip().casefold():
+        return ""
+    if unit is None and name != "time":
+        return f"{name} = {header!r} (no unit: taken as {QUANTITIES[name].unit})"
+    return f"{name} = {header!r}"
+
+
+def _further(table: RawTable, found: Columns, left: dict[str, Array]) -> dict[str, Array]:
+    """Further columns under the header that they had, where they hold numbers."""
     extra = {
         name: numbers
         for name, index in found.extra.items()
@@ -172,92 +236,10 @@ def _read_file(path: Path, kind: Kind | None, wanted: Wanted) -> list[AnyRecord]
         for numbers, bad in (table.numbers(index),)
         if not len(bad) and np.isfinite(numbers).any()
     }
-    records: list[AnyRecord] = []
-    for run, rows in _split_runs(table, found.own.get("run")):
-        part = _Part(table, run, rows)
-        name = text_of(path.stem) + ("" if run is None else f":{run}")
-        # long records are many: no copies of a file that is one run
-        own = values if run is None else {n: v[rows] for n, v in values.items()}
-        columns, rows, notes = part.complete(own, cls)
-        part.with_rows(rows).check(columns, cls)
-        rest = {n: v[rows] for n, v in extra.items()}
-        fields: dict[str, Any] = {"extra": rest, "comments": table.comments, **columns}
-        record = cls(name=name, source=path, **fields)
-        for note in notes:
-            record = record.warn("missing_samples", note)
-        records.append(record)
-    return records
+    return extra | {name: v for name, v in left.items() if name not in extra}
 
 
-def _recognise(table: RawTable) -> _Columns:
-    """Names and units of the columns; RecordError when two columns hold the same thing."""
-    own: dict[str, int] = {}
-    units: dict[str, str | None] = {}
-    extra: dict[str, int] = {}
-    for index, header in enumerate(table.header):
-        name, unit = split_header(header)
-        known = name in QUANTITIES or name == "run"
-        key = name if known else header.strip()
-        # a column without a name is the row number of some export
-        if not key:
-            continue
-        target = own if known else extra
-        if key in target:
-            first = table.header[target[key]].strip()
-            raise RecordError(
-                f"{table.path}: columns {first!r} and {header.strip()!r} both hold {key!r}; "
-                "keep one of them"
-            )
-        target[key] = index
-        units[key] = unit
-    return _Columns(own, units, extra)
-
-
-def _choose_kind(table: RawTable, found: _Columns, kind: Kind | None) -> type[AnyRecord]:
-    """The wanted class, else the first whose columns are complete, else the most likely one."""
-    complete = [k for k, c in _CLASSES.items() if all(name in found.own for name in c.required)]
-    if kind is not None:
-        if complete and kind not in complete:
-            raise RecordError(
-                f"{table.path}: this is a {complete[0]} record, a {kind} record is needed "
-                f"(columns {', '.join(_CLASSES[kind].required)}); give another file"
-            )
-        return _CLASSES[kind]
-    if complete:
-        return _CLASSES[complete[0]]
-    share = {
-        k: sum(n in found.own for n in c.required) / len(c.required) for k, c in _CLASSES.items()
-    }
-    if "road" not in found.own:
-        share["vehicle"] = 0.0
-    return _CLASSES[max(share, key=lambda k: share[k])]
-
-
-def _refuse_missing_columns(table: RawTable, found: _Columns, cls: type[AnyRecord]) -> None:
-    """RecordError for the first required column that is not there, with the likeliest stand-in."""
-    for name in cls.required:
-        if name in found.own:
-            continue
-        spare = {split_header(header)[0]: header.strip() for header in table.header}
-        spare = {n: h for n, h in spare.items() if n and n not in cls.required and n != "run"}
-        match = [n for n in spare if n in _SYNONYMS.get(name, ())]
-        match = match or difflib.get_close_matches(name, list(spare), n=1, cutoff=0.6)
-        advice = (
-            f"rename {spare[match[0]]!r} to {_with_unit(name, spare[match[0]])!r}" if match
-            else f"a {cls.kind} record needs the columns {', '.join(cls.required)}"
-        )  # fmt: skip
-        raise RecordError(
-            f"{table.path}: no column {name!r} (found: {listed(table.header)}); {advice}"
-        )
-
-
-def _with_unit(name: str, header: str) -> str:
-    """`name` with the unit that `header` states."""
-    unit = split_header(header)[1]
-    return name if unit is None else f"{name}[{unit}]"
-
-
-def _numbers(table: RawTable, index: int) -> Array:
+def numbers_of(table: RawTable, index: int) -> Array:
     """Values of a column as written; RecordError for the first cell that is no number."""
     values, bad = table.numbers(index)
     if len(bad):
@@ -267,184 +249,3 @@ def _numbers(table: RawTable, index: int) -> Array:
             f"{explain_cell(table, index, row)}"
         )
     return values
-
-
-def _split_runs(table: RawTable, column: int | None) -> list[tuple[str | None, Rows]]:
-    """Rows of each run, in order of first appearance; the rows of a run may be interleaved."""
-    if column is None:
-        return [(None, np.arange(table.rows))]
-    cells = np.array(table.text(column))
-    labels, first, member = np.unique(cells, return_index=True, return_inverse=True)
-    if "" in labels:
-        row = int(np.flatnonzero(cells == "")[0])
-        raise RecordError(
-            f"{table.path}: {table.place(row)}, column {table.header[column].strip()!r}: "
-            "no run is named; fill the cell"
-        )
-    order = np.argsort(member, kind="stable")  # in place of a search per run
-    parts = np.split(order, np.cumsum(np.bincount(member))[:-1])
-    return [(str(labels[k]), parts[k]) for k in np.argsort(first)]
-
-
-# --- one run -----------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Part:
-    """Rows of a table that form one run, for errors that can say where they are."""
-
-    table: RawTable
-    run: str | None
-    rows: Rows
-
-    def refuse(self, text: str, row: int | None = None) -> RecordError:
-        """The error for this run; row: index within the run."""
-        where = str(self.table.path)
-        if row is not None:
-            where += f": {self.table.place(int(self.rows[row]))}"
-        if self.run is not None:
-            where += f"{', ' if row is not None else ': '}run {self.run!r}"
-        return RecordError(f"{where}: {text}")
-
-    def complete(
-        self, columns: dict[str, Array], cls: type[AnyRecord]
-    ) -> tuple[dict[str, Array], Rows, list[str]]:
-        """Columns without gaps, the rows that are left, and what was done about gaps.
-
-        Rows at the ends and rows without a time are dropped, short stretches are interpolated
-        (Akima). RecordError when more than `MAX_MISSING_SHARE` of the rows, or more than
-        `MAX_MISSING_STRETCH` rows in a row, lack a value.
-        """
-        notes: list[str] = []
-        columns = dict(columns)
-        for name in list(columns):
-            if np.isfinite(columns[name]).any():
-                continue
-            if name in cls.required:
-                raise self.refuse(
-                    f"column {name!r} holds no number; record it, or leave this run out"
-                )
-            del columns[name]
-            notes.append(f"column {name!r} holds no number and was left out")
-        lost = {name: ~np.isfinite(values) for name, values in columns.items()}
-        anywhere = np.logical_or.reduce(list(lost.values()))
-        if not anywhere.any():
-            return columns, self.rows, notes
-
-        # too much is refused, with the place of the first loss
-        count, total = int(anywhere.sum()), len(anywhere)
-        first = int(np.argmax(anywhere))
-        name = next(n for n, mask in lost.items() if mask[first])
-        stretch = _longest_stretch(anywhere)
-        over_time = issubclass(cls, TimeRecord)
-        allowed = max(3, int(MAX_MISSING_SHARE * total)) if over_time else 0
-        if count > allowed or stretch > MAX_MISSING_STRETCH:
-            text = f"column {name!r} has no value here"
-            if not over_time:
-                raise self.refuse(f"{text}; write it, or remove the row", first)
-            raise self.refuse(
-                f"{text}; {count} of {total} rows lack one (longest stretch {stretch}), "
-                f"at most {allowed} may, and {MAX_MISSING_STRETCH} together; "
-                "cut the gap out by splitting the run",
-                first,
-            )
-
-        # drop what cannot be interpolated: no time, or nothing on one side
-        whole = np.flatnonzero(~anywhere)
-        keep = ~lost["time"]
-        keep[: whole[0]] = False
-        keep[whole[-1] + 1 :] = False
-        kept = {n: values[keep] for n, values in columns.items()}
-        self.with_rows(self.rows[keep]).check_clock(kept["time"])
-        for n, values in kept.items():
-            gap = lost[n][keep]
-            if gap.any():
-                spline = Akima1DInterpolator(kept["time"][~gap], values[~gap], method="makima")
-                values[gap] = spline(kept["time"][gap])
-        filled, dropped = int((anywhere & keep).sum()), int((~keep).sum())
-        done = [f"{filled} interpolated"] if filled else []
-        done += [f"{dropped} dropped"] if dropped else []
-        notes.append(
-            f"{count} of {total} rows lack a value (first at "
-            f"{self.table.place(int(self.rows[first]))}, column {name!r}): {', '.join(done)}"
-        )
-        return kept, self.rows[keep], notes
-
-    def check(self, columns: dict[str, Array], cls: type[AnyRecord]) -> None:
-        """RecordError for too few rows, a clock that does not advance, impossible amplitudes."""
-        rows = len(self.rows)
-        for name, values in columns.items():
-            if rows and np.max(np.abs(values)) > MAX_SIZE:
-                row = int(np.argmax(np.abs(values)))
-                raise self.refuse(
-                    f"column {name!r} is {values[row]:g}, which nothing measures; correct it", row
-                )
-        if cls is BenchTable:
-            if rows < MIN_TABLE_ROWS:
-                raise self.refuse(
-                    f"only {rows} rows, a table needs {MIN_TABLE_ROWS}; measure more frequencies"
-                )
-            for name, values in columns.items():
-                bad = values <= 0.0 if name == "frequency" else values < 0.0
-                if bad.any():
-                    row = int(np.argmax(bad))
-                    kind = "positive" if name == "frequency" else "zero or positive"
-                    raise self.refuse(
-                        f"column {name!r} is {values[row]:g}, it has to be {kind}; correct it", row
-                    )
-            return
-        if rows < MIN_SAMPLES:
-            raise self.refuse(
-                f"only {rows} samples, at least {MIN_SAMPLES} are needed; record longer or faster"
-            )
-        self.check_clock(columns["time"])
-
-    def check_clock(self, time: Array) -> None:
-        """RecordError for a time that stands still, repeats, goes back or leaps; times in s."""
-        step = np.diff(time)
-        if not len(step):
-            return
-        if (step > 0.0).all():
-            self._check_pauses(time, step)
-            return
-        if not step.any():
-            raise self.refuse(f"column 'time' is {time[0]:g} s in every row; record the time", 0)
-        row = int(np.argmax(step <= 0.0)) + 1
-        now, before = f"{time[row]:.9g}", f"{time[row - 1]:.9g}"
-        if step[row - 1] == 0.0:
-            raise self.refuse(
-                f"time {now} s repeats the row before; remove the duplicate row, "
-                "or write time with more digits",
-                row,
-            )
-        if (step < 0.0).all():
-            advice = "time runs backwards; sort the rows by time"
-        elif time[row] <= time[0] and (step > 0.0).sum() >= 0.9 * len(step):
-            advice = "runs behind each other? give them a 'run' column or a file each"
-        else:
-            advice = "sort the rows by time"
-        raise self.refuse(f"time goes back from {before} s to {now} s; {advice}", row)
-
-    def _check_pauses(self, time: Array, step: Array) -> None:
-        """RecordError for pauses so long that an even clock would be mostly empty."""
-        usual = float(np.median(step))
-        filled = (time[-1] - time[0]) / usual
-        if filled <= MAX_FILLED * len(time):
-            return
-        row = int(np.argmax(step)) + 1
-        leap, before, now = step[row - 1], time[row - 1], time[row]
-        raise self.refuse(
-            f"time leaps by {leap:.4g} s, from {before:.9g} s to {now:.9g} s; "
-            f"evenly sampled at the usual {usual:.3g} s the run would have {filled:.2g} samples, "
-            f"not {len(time)}; correct the time, or split the run there with a 'run' column",
-            row,
-        )
-
-    def with_rows(self, rows: Rows) -> _Part:
-        return dataclasses.replace(self, rows=rows)
-
-
-def _longest_stretch(mask: NDArray[np.bool_]) -> int:
-    """Length of the longest run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(np.int8), [0]))))
-    return int((edges[1::2] - edges[::2]).max(initial=0))

@@ -60,7 +60,8 @@ class Columns:
 
     name: file stem, or ``stem:run``. source: the file, None for data made in memory.
     extra: further numeric columns under the header they had, values as written (no conversion).
-    comments: the ``#`` lines that stood above the header, without the ``#``.
+    comments: the lines that stood above the header, without a ``#``.
+    reading: how the file was read, where anything of it is out of the ordinary.
     Raises ValueError when columns are not one-dimensional and equally long.
     """
 
@@ -68,6 +69,7 @@ class Columns:
     source: Path | None = None
     extra: Mapping[str, Array] = field(default_factory=dict)
     comments: tuple[str, ...] = ()
+    reading: str = ""
     warnings: tuple[RecordWarning, ...] = ()
 
     kind: ClassVar[str] = ""

@@ -1,4 +1,4 @@
-"""Files to raw tables: CSV, Parquet and MATLAB, with errors that say what to do."""
+"""Files to raw tables, whatever their format, with errors that say what to do."""
 
 from __future__ import annotations
 
@@ -8,36 +8,99 @@ from pathlib import Path
 from inerter.input_file import refuse_special
 
 from .bounds import BYTES, Wanted, everything, refuse_more
-from .csv_table import read_csv
+from .isolated import read_isolated
 from .mat_table import read_mat
+from .one_clock import on_one_clock
 from .parquet_table import read_parquet
 from .raw_table import RawTable, listed
 from .record import RecordError
+from .stated import Stated
+from .text_table import read_text
+
+
+def _isolated(kind: str) -> Callable[[Path, Wanted, Stated], RawTable]:
+    return lambda path, wanted, stated: read_isolated(kind, path, wanted, stated.sheet)
+
+
+def _text(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
+    return on_one_clock(read_text(path, wanted, stated.asked))
+
+
+def _parquet(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
+    del stated
+    return read_parquet(path, wanted)
+
+
+def _mat(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
+    with path.open("rb") as file:
+        start = file.read(10)
+    if start[:4] == b"\x89HDF" or start == b"MATLAB 7.3":
+        return read_isolated("hdf5", path, wanted, stated.sheet)
+    return read_mat(path, wanted)
+
 
 # what reads a format: the columns that are wanted, the bounds of `bounds` kept before unpacking
-READERS: Mapping[str, Callable[[Path, Wanted], RawTable]] = {
-    ".csv": read_csv,
-    ".parquet": read_parquet,
-    ".mat": read_mat,
+READERS: Mapping[str, Callable[[Path, Wanted, Stated], RawTable]] = {
+    "text": _text,
+    "parquet": _parquet,
+    "MATLAB": _mat,
+    "Arrow": _isolated("arrow"),
+    "Excel": _isolated("excel"),
+    "TDMS": _isolated("tdms"),
+    "MDF4": _isolated("mdf"),
+    "HDF5": _isolated("hdf5"),
 }
-EXTENSIONS = tuple(READERS)
+_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn")
+_KINDS: Mapping[str, str] = {
+    **dict.fromkeys(_TEXT, "text"),
+    ".parquet": "parquet",
+    ".mat": "MATLAB",
+    ".feather": "Arrow", ".arrow": "Arrow", ".ipc": "Arrow",
+    ".xlsx": "Excel", ".xlsm": "Excel", ".xls": "Excel", ".ods": "Excel",
+    ".tdms": "TDMS",
+    ".mf4": "MDF4", ".mdf": "MDF4",
+    ".h5": "HDF5", ".hdf5": "HDF5", ".hdf": "HDF5",
+}  # fmt: skip
+EXTENSIONS = tuple(_KINDS)
+# in a folder that is named as a whole, texts of other kinds stand beside records
+OF_FOLDERS = tuple(suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn"))
+
+# how a file begins whose format shows itself
+_BEGINNINGS: Mapping[bytes, str] = {
+    b"PAR1": "parquet",
+    b"MATLAB": "MATLAB",
+    b"\x89HDF\r\n\x1a\n": "HDF5",
+    b"TDSm": "TDMS",
+    b"MDF     ": "MDF4",
+    b"ARROW1": "Arrow",
+    b"PK\x03\x04": "Excel",
+    b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "Excel",
+}
 
 
-def read_table(path: Path, wanted: Wanted = everything) -> RawTable:
-    """The raw table of a .csv, .parquet or .mat file; RecordError when it cannot be read.
+def read_table(
+    path: Path, wanted: Wanted = everything, stated: Stated | None = None
+) -> RawTable:
+    """The raw table of a file; RecordError when it cannot be read.
 
-    Columns that are not wanted are in its header, and nowhere else.
+    Columns that are not wanted are in its header, and nowhere else. What a file holds counts, not
+    what it is called.
     """
-    reader = READERS.get(path.suffix.lower())
+    kind = _KINDS.get(path.suffix.lower())
+    told = ""
     try:
         size = refuse_special(path)
-        if reader is None:
+        refuse_more(path, BYTES, size)
+        found = _begins(path)
+        if found is not None and found != kind and not (kind == "MATLAB" and found == "HDF5"):
+            told = f"{found} file named {path.suffix or 'without an extension'}"
+            kind = found
+        if kind is None:
             raise RecordError(
                 f"{path}: unknown extension {path.suffix!r}; "
                 f"records are {', '.join(EXTENSIONS)} files"
             )
-        refuse_more(path, BYTES, size)
-        table = None if size == 0 else reader(path, wanted)
+        table = None if size == 0 else READERS[kind](path, wanted, stated or Stated())
     except FileNotFoundError:
         raise RecordError(f"{path}: no such file; check the path") from None
     except OSError as error:
@@ -54,4 +117,15 @@ def read_table(path: Path, wanted: Wanted = everything) -> RawTable:
             f"{path}: there is a header ({listed(table.header)}) but no data below it; "
             "add rows or leave the file out"
         )
-    return table
+    return table.telling(told)
+
+
+def _begins(path: Path) -> str | None:
+    """The format that the first bytes of a file show."""
+    with path.open("rb") as file:
+        start = file.read(16)
+    for beginning, kind in _BEGINNINGS.items():
+        if start.startswith(beginning):
+            # a zip is no workbook where it is named otherwise on purpose
+            return kind
+    return None

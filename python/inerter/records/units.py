@@ -8,7 +8,10 @@ from dataclasses import dataclass
 
 from inerter.unit_text import parse_unit, unit_registry
 
+from .header import split_header
 from .record import RecordError
+
+__all__ = ["QUANTITIES", "Quantity", "si_factor", "split_header"]
 
 _LENGTH = "m, mm, um, cm, in, ft"
 _FORCE = "N, kN, lbf, kgf"
@@ -36,6 +39,9 @@ QUANTITIES: dict[str, Quantity] = {
     "force": FORCE,
     "velocity": SPEED,
     "acceleration": ACCELERATION,
+    # of terminal 1 and 2, whose difference is that of the device
+    "acceleration_1": ACCELERATION,
+    "acceleration_2": ACCELERATION,
     "frequency": Quantity("a frequency", "Hz", "Hz, kHz, rad/s, rpm"),
     "force_amplitude": FORCE,
     "acceleration_amplitude": ACCELERATION,
@@ -48,20 +54,6 @@ QUANTITIES: dict[str, Quantity] = {
 
 # what test benches call accelerations; pint reads g as a gram
 _GRAVITY = {"g": 1.0, "G": 1.0, "gn": 1.0, "g0": 1.0, "g_n": 1.0, "mg": 1e-3, "ug": 1e-6}
-
-
-def split_header(header: str) -> tuple[str, str | None]:
-    """Column name and unit of a header cell: ``" Force (kN) "`` -> ``("force", "kN")``.
-
-    The name is lower case with blanks and hyphens turned into ``_``; the unit stands in square or
-    round brackets at the end and is None where there is none.
-    """
-    text = header.strip().strip("\ufeff\"'").strip()
-    match = re.fullmatch(r"([^\[(]*?)\s*(?:\[([^\[\]]*)\]|\((.*)\))", text)
-    unit = None
-    if match is not None and match[1]:
-        text, unit = match[1], (match[2] if match[2] is not None else match[3]).strip() or None
-    return re.sub(r"[\s\-]+", "_", text.casefold()), unit
 
 
 def si_factor(name: str, unit: str | None, where: str) -> float:
@@ -80,6 +72,11 @@ def si_factor(name: str, unit: str | None, where: str) -> float:
         raise RecordError(
             f"{where}: unknown unit {unit!r}{_closest(unit, quantity)}; "
             f"{name} is {quantity.meaning}, write for example one of: {quantity.allowed}"
+        )
+    if parsed.dimensionality == parse_unit("V").dimensionality:
+        raise RecordError(
+            f"{where}: {name} is in {unit}; state its calibration, such as --column "
+            f"{name}='200 {quantity.unit}/{unit} * NAME'"
         )
     if parsed.dimensionality != parse_unit(quantity.unit).dimensionality:
         raise RecordError(

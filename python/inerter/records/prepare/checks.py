@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from inerter.records.read import MAX_MISSING_STRETCH
+from inerter.records.runs import MAX_MISSING_STRETCH
 from inerter.records.record import AnyRecord, Record, RecordError, TimeRecord
 
 

@@ -10,8 +10,10 @@ import typer
 from rich.table import Table
 
 from inerter.console import AsJson, Folder, number, out, refuse, refusing, status
+from inerter.records.options import told_reading, with_reading
 
 
+@with_reading
 def prepare_command(
     record: Annotated[
         list[str], typer.Argument(help="Records: files, folders or globs; CSV, Parquet, .mat.")
@@ -46,6 +48,7 @@ def prepare_command(
     form: Annotated[str, typer.Option("--format", help="csv or parquet.")] = "csv",
     out_dir: Folder = Path("out/prepared"),
     as_json: AsJson = False,
+    stated: Any = None,
 ) -> None:
     """Clock, channel delay, denoising, derivatives, resampling of records; a picture of each.
 
@@ -68,7 +71,9 @@ def prepare_command(
         )  # fmt: skip
         with status(as_json) as progress:
             progress("reading")
-            records = read_records(record)
+            with told_reading(**stated) as tell:
+                records = read_records(record)
+                tell()
             progress("preparing")
             prepared = prepare_records(records, options)
             progress("writing")

@@ -1,15 +1,16 @@
-"""CSV to a raw table, a block of lines at a time, with errors that say which line and what to do.
+"""Text to a raw table, a block of lines at a time, with errors that say which line and what to do.
 
 A file may be larger than the memory would bear as text: what is kept of a block are its numbers.
 """
 
 from __future__ import annotations
 
+import codecs
 import csv
 import itertools
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from io import BytesIO
 from pathlib import Path
@@ -18,8 +19,10 @@ import numpy as np
 import polars as pl
 
 from .bounds import Wanted, refuse_header, refuse_table
+from .clocks import clock_seconds, counted, without_day_breaks
 from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers
 from .record import Array, RecordError
+from .text_layout import Asked, Layout, encoding_of, find_layout
 from .units import split_header
 
 BLOCK = 1 << 24  # bytes that are read at a time
@@ -36,12 +39,27 @@ class _Block:
     last: bool
 
 
-def read_csv(path: Path, wanted: Wanted) -> RawTable:
-    """The raw table of a CSV file; RecordError when it cannot be read or has too much."""
+def read_text(path: Path, wanted: Wanted, asked: Asked | None = None) -> RawTable:
+    """The raw table of a text file; RecordError when it cannot be read or has too much."""
+    layout = find_layout(path, asked)
+    if layout is not None:
+        _refuse_no_header(path, layout)
+        table = _Growing(path, layout, wanted)
+        for block in _blocks(path, layout):
+            table.add(_from_line(block, layout.first))
+        return table.done()
+    return _read_plain(path, wanted)
+
+
+def _read_plain(path: Path, wanted: Wanted) -> RawTable:
+    """A text at whose beginning no table was found, taken as CSV: most often for its error."""
     comments: list[str] = []
     table: _Growing | None = None
     above = 0
-    for block in _blocks(path):
+    with path.open("rb") as file:
+        encoding, mark = encoding_of(file.read(4096)) or ("utf-8", 0)
+    plain = Layout(encoding=encoding, mark=mark)
+    for block in _blocks(path, plain):
         start = 0
         if table is None:
             line, start = _find_header(path, block, comments)
@@ -54,44 +72,59 @@ def read_csv(path: Path, wanted: Wanted) -> RawTable:
             if line is None:
                 continue
             number = block.number + block.text.count(b"\n", 0, start) - 1
-            body = block.text[start : start + 4096]
-            header = _split_header_line(path, line, number, comments, body)
-            table = _Growing(path, header, wanted)
+            header = _split_header_line(path, line, number, comments)
+            plain = replace(plain, header=header, header_line=number, comments=tuple(comments))
+            table = _Growing(path, plain, wanted)
         number = block.number + block.text.count(b"\n", 0, start)
         table.add(_Block(number, block.text[start:], block.last))
     if table is None:
         raise RecordError(
             f"{path}: the file is empty (blanks and comments only); add header and data"
         )
-    return table.done(comments)
+    return table.done()
+
+
+def _from_line(block: _Block, first: int) -> _Block:
+    """The lines of a block from a number on."""
+    start = 0
+    for _ in range(first - block.number):
+        start = block.text.find(b"\n", start) + 1
+        if not start:
+            return _Block(first, b"", block.last)
+    return _Block(max(first, block.number), block.text[start:], block.last)
 
 
 class _Growing:
     """The wanted columns of a table whose rows come block by block."""
 
-    def __init__(self, path: Path, header: tuple[str, ...], wanted: Wanted) -> None:
+    def __init__(self, path: Path, layout: Layout, wanted: Wanted) -> None:
+        header = layout.header
         refuse_header(path, header)
-        self.path, self.header, self.rows = path, header, 0
+        self.path, self.header, self.rows, self.layout = path, header, 0, layout
         self.wanted = [index for index, name in enumerate(header) if wanted(name)]
         # names of runs stay what they are
         self.as_text = {index for index in self.wanted if split_header(header[index])[0] == "run"}
         self.numbers: dict[int, list[Array]] = {index: [] for index in self.wanted}
         self.texts: dict[int, list[pl.Series]] = {index: [] for index in self.as_text}
         self.odd: dict[int, OddCell] = {}
+        self.clocks: set[int] = set()
 
     def add(self, block: _Block) -> None:
         """Take in the data lines of a block."""
-        columns, rows = _columns(self.path, block, len(self.header), self.wanted)
+        columns, rows = _columns(self.path, block, self.layout, self.wanted)
         if rows:
             self._refuse_long(block, rows)
         for index, column in columns.items():
             if index in self.as_text:
                 self.texts[index].append(column)
                 continue
-            values, bad = to_numbers(column)
+            values, bad = to_numbers(pointed(column, self.layout))
+            if len(bad) and (seconds := clock_seconds(column)) is not None:
+                values, bad = seconds, bad[:0]
+                self.clocks.add(index)
             self.numbers[index].append(values)
             if len(bad) and index not in self.odd:
-                cells = _cells_of_row(self.path, block, int(bad[0]))
+                cells = _cells_of_row(self.path, block, int(bad[0]), self.layout.separator)
                 self.odd[index] = OddCell(self.rows + int(bad[0]), cells)
         self.rows += rows
 
@@ -102,7 +135,7 @@ class _Growing:
             whole = rows * self.path.stat().st_size / len(block.text)
             refuse_table(self.path, whole, len(self.wanted), slack=1.5)
 
-    def done(self, comments: list[str]) -> RawTable:
+    def done(self) -> RawTable:
         """The table of all blocks; gives its own rows away."""
         columns = {}
         for index in self.wanted:
@@ -110,34 +143,78 @@ class _Growing:
             name = self.header[index]
             if index in self.as_text or not numbers:
                 columns[index] = pl.concat([pl.Series(name, [], dtype=pl.String), *texts])
-            else:
-                columns[index] = pl.Series(name, np.concatenate(numbers))
-        lines = partial(_data_lines_of, self.path)
+                continue
+            values = np.concatenate(numbers)
+            columns[index] = pl.Series(
+                name, without_day_breaks(values) if index in self.clocks else values
+            )
+        header = self.header
+        if self.layout.interval is not None and self.rows:
+            header, columns = counted(header, columns, self.rows, self.layout)
         return RawTable(
             path=self.path,
-            header=self.header,
+            header=header,
             columns=columns,
-            comments=tuple(comments),
+            comments=self.layout.comments,
+            told=self.layout.told(),
+            separator=self.layout.separator,
             odd=self.odd,
-            lines=lines,
+            lines=partial(_data_lines_of, self.path, self.layout),
         )
+
+
+def pointed(column: pl.Series, layout: Layout) -> pl.Series:
+    """Texts with a decimal point, without groups of digits."""
+    if column.dtype != pl.String:
+        return column
+    if layout.grouped:
+        column = column.str.replace_all("." if layout.decimal == "," else ",", "", literal=True)
+    if layout.decimal == ",":
+        column = column.str.replace_all(",", ".", literal=True)
+    return column
+
+
+def _refuse_no_header(path: Path, layout: Layout) -> None:
+    """RecordError for numbers in place of names."""
+    if layout.header and not all(is_number(c.replace(",", ".")) for c in layout.header):
+        return
+    comments = layout.comments
+    hint = ""
+    if comments and len(comments[-1].split(layout.separator)) > 1:
+        hint = f" (the comment above, {quoted(comments[-1])}, may be it: remove its '#')"
+    line = next((t for n, t in _data_lines_of(path, layout) if n >= layout.first), "")
+    raise RecordError(
+        f"{path}: line {layout.first}: no header, the first line holds numbers ({quoted(line)}); "
+        f"add a line such as time,displacement,force{hint}"
+    )
 
 
 # --- text --------------------------------------------------------------------------------------
 
 
-def _blocks(path: Path) -> Iterator[_Block]:
-    """The text in whole lines that end in a line feed, without a byte order mark.
+def _blocks(path: Path, layout: Layout) -> Iterator[_Block]:
+    """The text as UTF-8 in whole lines that end in a line feed, without a byte order mark.
 
-    RecordError for anything but UTF-8 text.
+    RecordError for anything but text.
     """
     number, rest = 1, b""
+    left = (layout.stop if layout.stop is not None else path.stat().st_size) - layout.mark
+    decoder = None
+    if layout.encoding != "utf-8":
+        decoder = codecs.getincrementaldecoder(layout.encoding)("replace")
     with path.open("rb") as file:
-        chunk = file.read(BLOCK)
-        _refuse_other_formats(path, chunk)
-        chunk = chunk.removeprefix(b"\xef\xbb\xbf")
+
+        def read() -> bytes:
+            nonlocal left
+            data = file.read(max(0, min(BLOCK, left)))
+            left -= len(data)
+            return data if decoder is None else decoder.decode(data, left <= 0).encode()
+
+        start = file.read(layout.mark)
+        chunk = read()
+        _refuse_binary(path, start + chunk)
         while chunk or rest:
-            ahead = file.read(BLOCK)
+            ahead = read()
             text = rest + chunk
             # line ends of any system; one that is cut in two waits for its other half
             cut = text.endswith(b"\r") and bool(ahead)
@@ -157,15 +234,7 @@ def _blocks(path: Path) -> Iterator[_Block]:
                 return
 
 
-def _refuse_other_formats(path: Path, data: bytes) -> None:
-    kinds = {b"PAR1": "a Parquet", b"PK\x03\x04": "an Excel or zip", b"MATLAB": "a MATLAB"}
-    for magic, kind in kinds.items():
-        if data.startswith(magic):
-            raise RecordError(
-                f"{path}: this is {kind} file named .csv; rename it or export it as CSV"
-            )
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")) or _looks_utf16(data[:200]):
-        raise RecordError(f"{path}: the text is UTF-16; save it as UTF-8 (CSV UTF-8)")
+def _refuse_binary(path: Path, data: bytes) -> None:
     if re.search(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]", data[:65536]):
         raise RecordError(_binary(path))
 
@@ -186,12 +255,6 @@ def _refuse_no_text(path: Path, text: bytes, number: int) -> None:
 
 def _binary(path: Path) -> str:
     return f"{path}: this is a binary file, not CSV; export the record as CSV text"
-
-
-def _looks_utf16(start: bytes) -> bool:
-    """Every second byte zero and no other: UTF-16 without a BOM."""
-    zeros = sorted((start[::2].count(0), start[1::2].count(0)))
-    return len(start) >= 8 and zeros[0] == 0 and zeros[1] >= 0.45 * len(start)
 
 
 # --- header ------------------------------------------------------------------------------------
@@ -218,23 +281,10 @@ def _find_header(path: Path, block: _Block, comments: list[str]) -> tuple[str | 
 
 
 def _split_header_line(
-    path: Path, line: str, number: int, comments: list[str], body: bytes
+    path: Path, line: str, number: int, comments: list[str]
 ) -> tuple[str, ...]:
-    """Header cells; RecordError for another delimiter or for numbers in place of names."""
-    names = {";": "semicolons", "\t": "tabs", "|": "bars"}
-    other = max(names, key=line.count)
-    if line.count(other) > line.count(","):
-        comma = re.search(rb"\d,\d", body) is not None
-        also = " and with a point, not a comma, in the numbers" if comma else ""
-        raise RecordError(
-            f"{path}: line {number}: columns are separated by {names[other]}; "
-            f"write them with commas{also}"
-        )
-    cells = tuple(_cells(path, number, line))
-    if len(cells) == 1 and len(line.split()) > 1 and not re.search(r"[\[(]", line):
-        raise RecordError(
-            f"{path}: line {number}: columns are separated by blanks; write them with commas"
-        )
+    """Header cells; RecordError for numbers in place of names."""
+    cells = tuple(_cells(path, number, line, ","))
     if all(is_number(cell) for cell in cells):
         hint = ""
         if comments and len(comments[-1].split(",")) == len(cells):
@@ -250,9 +300,10 @@ def _split_header_line(
 
 
 def _columns(
-    path: Path, block: _Block, width: int, wanted: Sequence[int]
+    path: Path, block: _Block, layout: Layout, wanted: Sequence[int]
 ) -> tuple[dict[int, pl.Series], int]:
     """The wanted columns of a block as text by index, and the number of data lines."""
+    width, separator = len(layout.header), layout.separator
     # what polars gets: no comments, no blank lines
     body = block.text.rstrip(b" \t\n")
     if b"#" in body:
@@ -263,20 +314,23 @@ def _columns(
     if not body:
         return {}, 0
     rows = body.count(b"\n") + 1
+    # some programs end the lines with a separator, others pad their columns
+    if separator == " ":
+        body = re.sub(rb"(?m)^ +| +$", b"", re.sub(rb"[ \t]+", b" ", body))
 
     # quoted cells are rare and take the slow reader, which knows blanks around quotes
     if b'"' in body:
         texts: dict[int, list[str]] = {index: [] for index in wanted}
         count = 0
-        for cells in _rows(path, block, width):
+        for cells in _rows(path, block, width, separator):
             count += 1
             for index in wanted:
                 texts[index].append(cells[index])
         return {i: pl.Series(f"c{i}", t, dtype=pl.String) for i, t in texts.items()}, count
 
-    # count the commas, which is fast; look at single lines only when the count is off
-    if body.count(b",") != rows * (width - 1):
-        _refuse_ragged(path, block, width)
+    # count the separators, which is fast; look at single lines only when the count is off
+    if body.count(separator.encode()) != rows * (width - 1):
+        body = _evened(path, block, width, separator)
     if not wanted:
         return {}, rows
     names = [f"c{index}" for index in range(width)]
@@ -284,14 +338,15 @@ def _columns(
         frame = pl.read_csv(
             BytesIO(body),
             has_header=False,
+            separator=separator,
             schema=dict.fromkeys(names, pl.String),
             columns=list(wanted),
         )
     except pl.exceptions.PolarsError as error:
         # a long row can hide behind a short one in the count
-        _refuse_ragged(path, block, width)
+        _evened(path, block, width, separator)
         reason = str(error).splitlines()[0]
-        raise RecordError(f"{path}: not readable as CSV ({reason}); write it again") from None
+        raise RecordError(f"{path}: not readable as text ({reason}); write it again") from None
     return dict(zip(wanted, frame.get_columns(), strict=True)), rows
 
 
@@ -303,34 +358,52 @@ def _data_lines(block: _Block) -> Iterator[tuple[int, str]]:
             yield number, text.decode("utf-8")
 
 
-def _data_lines_of(path: Path) -> Iterator[tuple[int, str]]:
+def _data_lines_of(path: Path, layout: Layout) -> Iterator[tuple[int, str]]:
     """The same of a whole file, the header first."""
-    for block in _blocks(path):
-        yield from _data_lines(block)
+    above = layout.header_line or layout.first - 1
+    for block in _blocks(path, layout):
+        for number, line in _data_lines(block):
+            if number >= above and not above < number < layout.first:
+                yield number, line
 
 
-def _cells(path: Path, number: int, line: str) -> list[str]:
+def _cells(path: Path, number: int, line: str, separator: str) -> list[str]:
     """Cells of one line."""
+    if separator == " ":
+        return line.split()
     try:
-        return next(csv.reader([line], skipinitialspace=True))
+        return next(csv.reader([line], delimiter=separator, skipinitialspace=True))
     except csv.Error as error:
         raise RecordError(f"{path}: line {number}: not CSV ({error}); correct the line") from None
 
 
-def _rows(path: Path, block: _Block, width: int) -> Iterator[list[str]]:
-    """Cells of every data row; RecordError for the first that has not `width` of them."""
+def _rows(path: Path, block: _Block, width: int, separator: str) -> Iterator[list[str]]:
+    """Cells of every data row; RecordError for the first that has not `width` of them.
+
+    Empty cells at the end may be too many, or too few: where all before them are there.
+    """
     behind = _data_lines(block)
     ahead = next(behind, None)
     while ahead is not None:
         (number, line), ahead = ahead, next(behind, None)
-        cells = _cells(path, number, line)
+        cells = _cells(path, number, line, separator)
+        while len(cells) > width and not cells[-1].strip():
+            cells.pop()
         if len(cells) == width:
             yield cells
             continue
         advice = "correct or remove the line"
-        if len(cells) > width and all(re.fullmatch(r"\s*[+-]?\d*([eE][+-]?\d+)?\s*", c)
-                                      for c in cells):  # fmt: skip
+        if separator == "," and len(cells) > width and all(
+            re.fullmatch(r"\s*[+-]?\d*([eE][+-]?\d+)?\s*", c) for c in cells
+        ):
             advice = "numbers with decimal commas? write them with a point, such as 0.5"
+            if len(cells) == 2 * width:
+                halves = [".".join(pair) for pair in zip(cells[::2], cells[1::2], strict=True)]
+                advice = (
+                    f"{len(cells)} whole numbers, or {width} with decimal commas "
+                    f"({', '.join(halves)[:60]})? write the numbers with a point, or export with "
+                    "semicolons"
+                )
         elif block.last and ahead is None and len(cells) < width:
             advice = "it is the last line, the file may be cut off: remove the line"
         raise RecordError(
@@ -339,13 +412,14 @@ def _rows(path: Path, block: _Block, width: int) -> Iterator[list[str]]:
         )
 
 
-def _refuse_ragged(path: Path, block: _Block, width: int) -> None:
-    """RecordError for the first data row that has not `width` cells."""
-    for _ in _rows(path, block, width):
-        pass
+def _evened(path: Path, block: _Block, width: int, separator: str) -> bytes:
+    """The rows of a block with `width` cells each; RecordError for one that has others."""
+    sign = separator
+    lines = (sign.join(cells) for cells in _rows(path, block, width, separator))
+    return "\n".join(lines).encode()
 
 
-def _cells_of_row(path: Path, block: _Block, row: int) -> tuple[str, ...]:
+def _cells_of_row(path: Path, block: _Block, row: int, separator: str) -> tuple[str, ...]:
     """The stripped cells of a data row of a block, from 0."""
     number, line = next(itertools.islice(_data_lines(block), row, None))
-    return tuple(cell.strip() for cell in _cells(path, number, line))
+    return tuple(cell.strip() for cell in _cells(path, number, line, separator))

@@ -1,0 +1,158 @@
+"""The facts of records, and their short form."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from inerter.inspection.channel import ChannelFacts, channel_facts
+from inerter.inspection.motion import MotionFacts, motion_facts
+from inerter.inspection.tells import Tell, tells, words
+from inerter.records import AnyRecord, Record, TimeRecord
+from inerter.records.motion import Motion, smooth, uniform_channels
+from inerter.records.units import QUANTITIES
+
+SCHEMA = "inerter.inspection/1"
+MOST = 1_000_000  # samples that are looked at of a record
+# cut-off of the motion, times the band in which the displacement stands above its noise
+WITHIN = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Facts:
+    """What one record holds, SI units.
+
+    jitter: share of an interval by which the clock strays (98 % of it); motion and tells are None
+    and empty where it is no bench record, or one whose motion cannot be told from its noise.
+    """
+
+    record: AnyRecord
+    rate: float | None
+    duration: float | None
+    jitter: float | None
+    channels: tuple[ChannelFacts, ...]
+    smoothed: Motion | None
+    motion: MotionFacts | None
+    tells: tuple[Tell, ...]
+    looked_at: int
+
+    def json(self) -> dict[str, Any]:
+        """The same, for JSON."""
+        record = self.record
+        return {
+            "name": record.name,
+            "source": str(record.source) if record.source else None,
+            "kind": record.kind,
+            "reading": record.reading,
+            "samples": record.samples,
+            "looked_at": self.looked_at,
+            "sample_rate": self.rate,
+            "duration": self.duration,
+            "jitter": self.jitter,
+            "channels": [dataclasses.asdict(channel) for channel in self.channels],
+            "motion": dataclasses.asdict(self.motion) if self.motion else None,
+            "tells": [dataclasses.asdict(tell) for tell in self.tells],
+            "warnings": [{"code": w.code, "text": w.text} for w in record.warnings],
+        }
+
+
+def facts_of(record: AnyRecord) -> Facts:
+    """The facts of a record; of a very long one of its beginning."""
+    part = _beginning(record)
+    unit = {name: q.unit for name, q in QUANTITIES.items()}
+    if not isinstance(part, TimeRecord):
+        plain = tuple(
+            ChannelFacts(
+                name=n, unit=unit.get(n, ""), low=float(v.min()), high=float(v.max()), noise=0.0,
+                step=None, band=0.0, hum=(), corner=None,
+            )
+            for n, v in part.channels().items()
+        )  # fmt: skip
+        return Facts(
+            record=record, rate=None, duration=None, jitter=None, channels=plain, smoothed=None,
+            motion=None, tells=(), looked_at=part.samples,
+        )  # fmt: skip
+    spacing, even = uniform_channels(part.time, part.channels())
+    channels = tuple(channel_facts(n, unit.get(n, ""), v, spacing) for n, v in even.items())
+    steps = np.diff(part.time)
+    low, high = np.quantile(steps, (0.01, 0.99))
+    smoothed = _smoothed(part, channels) if isinstance(part, Record) else None
+    motion = motion_facts(smoothed) if smoothed is not None else None
+    return Facts(
+        record=record,
+        rate=part.sample_rate,
+        duration=float(record.time[-1] - record.time[0]) if isinstance(record, TimeRecord) else None,
+        jitter=float((high - low) / np.median(steps) / 2),
+        channels=channels,
+        smoothed=smoothed,
+        motion=motion,
+        tells=tuple(tells(smoothed, motion)) if smoothed is not None and motion is not None else (),
+        looked_at=part.samples,
+    )
+
+
+def _beginning(record: AnyRecord) -> AnyRecord:
+    if record.samples <= MOST or not isinstance(record, TimeRecord):
+        return record
+    columns = {n: v[:MOST] for n, v in {"time": record.time, **record.channels()}.items()}
+    return dataclasses.replace(record, extra={}, **columns)
+
+
+def _smoothed(record: Record, channels: Sequence[ChannelFacts]) -> Motion | None:
+    band = next(c.band for c in channels if c.name == "displacement")
+    cutoff = min(max(WITHIN * band, 5.0 / record.duration), 0.2 * record.sample_rate)
+    motion = smooth(record, cutoff, ())
+    if motion.inner.sum() < 50 or not np.any(motion.velocity[motion.inner]):
+        return None
+    return motion
+
+
+# --- in words ----------------------------------------------------------------------------------
+
+
+def size(value: float, unit: str) -> str:
+    """A value with a unit of its size."""
+    if unit == "m":
+        for factor, name in ((1.0, "m"), (1e3, "mm"), (1e6, "um")):
+            if abs(value) * factor >= 1 or name == "um":
+                return f"{value * factor:.3g} {name}"
+    return f"{value:.3g} {unit}"
+
+
+def short(facts: Facts) -> list[str]:
+    """The facts of a record in a few lines, for the beginning of a diagnosis."""
+    record = facts.record
+    if facts.rate is None or facts.duration is None:
+        return [f"{record.name}: {record.samples} rows"]
+    parts = [
+        f"{c.name} {size(c.low, c.unit)} to {size(c.high, c.unit)} (noise {size(c.noise, c.unit)})"
+        for c in facts.channels[:2]
+    ]
+    lines = [
+        f"{record.name}: {record.samples} samples, {facts.rate:.5g} per second, "
+        f"{facts.duration:.4g} s; {', '.join(parts)}"
+    ]
+    if facts.motion is not None:
+        lines.append(f"  {motion_words(facts.motion)}")
+    if facts.tells:
+        lines.append("  a first look: " + "; ".join(words(tell) for tell in facts.tells))
+    return lines
+
+
+def motion_words(motion: MotionFacts) -> str:
+    """Strokes and speeds in words."""
+    text = f"{motion.strokes} strokes" if motion.strokes != 1 else "1 stroke"
+    if motion.stroke is not None:
+        text += f" of {size(motion.stroke, 'm')}"
+    if motion.period is not None:
+        text += f", a period of {motion.period:.3g} s"
+    text += f", up to {motion.speed:.3g} m/s and {motion.acceleration:.3g} m/s^2"
+    if motion.rest > 0.02:
+        text += f", at rest {100 * motion.rest:.0f} % of the time"
+    if motion.repeats is not None:
+        text += f"; the force repeats to {size(motion.repeats, 'N')} rms"
+    return text

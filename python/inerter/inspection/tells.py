@@ -1,0 +1,143 @@
+"""What a record could tell of a device, by a linear model of it, and the motion that would.
+
+The force is fitted by inertance, viscous and dry friction, stiffness and a constant. Of each, the
+standard error says what would be seen, and the part of its column that the others do not explain
+says what it cannot be told from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.inspection.motion import MotionFacts
+from inerter.records.motion import Motion, lowpass
+
+Array = NDArray[np.float64]
+
+OWN = 0.1  # least share of a column that the others do not explain
+SURE = 0.1  # of a standard error in its value
+TIMES = 3.0  # standard errors that are seen
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tell:
+    """What can be known of one quantity.
+
+    value, stderr: in the unit; verdict: "told", "bounded" (known to be small), "not told"; reason:
+    why it is not; motion: that would tell it.
+    """
+
+    name: str
+    value: float
+    stderr: float
+    unit: str
+    verdict: str
+    reason: str = ""
+    motion: str = ""
+
+
+def tells(motion: Motion, facts: MotionFacts) -> list[Tell]:
+    """What a record tells of inertance, friction and stiffness."""
+    inner = motion.inner
+    v = motion.velocity[inner]
+    columns = {
+        "inertance": (motion.acceleration[inner], "kg"),
+        "viscous friction": (v, "N s/m"),
+        "dry friction": (np.tanh(v / max(0.02 * float(np.max(np.abs(v))), 1e-12)), "N"),
+        "stiffness": (motion.displacement[inner], "N/m"),
+    }
+    names = list(columns)
+    # one filter on both sides
+    passed = np.column_stack(
+        [lowpass(_whole(motion, inner, columns[n][0]), motion.spacing, motion.cutoff)[inner]
+         if n == "dry friction" else columns[n][0] for n in names]
+    )  # fmt: skip
+    force = lowpass(motion.force, motion.spacing, motion.cutoff)[inner]
+    matrix = np.column_stack([passed - passed.mean(axis=0), np.ones(len(force))])
+    scale = np.maximum(np.std(matrix, axis=0), 1e-300)
+    scale[-1] = 1.0
+    scaled = matrix / scale
+    weights, *_ = np.linalg.lstsq(scaled, force, rcond=1e-10)
+    rest = force - scaled @ weights
+    variance = float(np.var(rest)) * _correlated(rest, motion)
+    inverse = np.linalg.pinv(scaled.T @ scaled)
+    stderrs = np.sqrt(np.maximum(np.diag(inverse) * variance, 0))
+    return [
+        _tell(name, columns[name][1], weights[k] / scale[k], stderrs[k] / scale[k],
+              _own_share(scaled[:, :-1], k), facts, _closest(scaled[:, :-1], k, names))
+        for k, name in enumerate(names)
+    ]  # fmt: skip
+
+
+def _whole(motion: Motion, inner: NDArray[np.bool_], values: Array) -> Array:
+    made = np.zeros(motion.force.size)
+    made[inner] = values
+    return made
+
+
+def _correlated(rest: Array, motion: Motion) -> float:
+    """Samples that count as one: what is left is low-passed, and slow besides."""
+    size = 1 << int(np.ceil(np.log2(2 * len(rest))))
+    auto = np.fft.irfft(np.abs(np.fft.rfft(rest - rest.mean(), size)) ** 2, size)[: len(rest)]
+    if auto[0] <= 0:
+        return 1.0
+    below = np.flatnonzero(auto < 0.1 * auto[0])
+    end = int(below[0]) if len(below) else len(auto)
+    return float(1 + 2 * np.sum(auto[1:end] / auto[0]))
+
+
+def _own_share(columns: Array, index: int) -> float:
+    """Share of a column, in rms, that the others do not explain."""
+    others = np.delete(columns, index, axis=1)
+    weights, *_ = np.linalg.lstsq(others, columns[:, index], rcond=1e-10)
+    return float(np.std(columns[:, index] - others @ weights))
+
+
+def _closest(columns: Array, index: int, names: list[str]) -> str:
+    alike = np.abs(np.corrcoef(columns.T)[index])
+    alike[index] = -1
+    return names[int(np.argmax(alike))]
+
+
+def _tell(
+    name: str, unit: str, value: float, stderr: float, own: float, facts: MotionFacts, other: str
+) -> Tell:
+    base = {"name": name, "value": float(value), "stderr": float(stderr), "unit": unit}
+    if facts.strokes < 3 and name != "inertance":
+        return Tell(
+            **base, verdict="not told", reason="one stroke" if facts.strokes == 1 else f"{facts.strokes} strokes",
+            motion="several strokes there and back",
+        )  # fmt: skip
+    if own < OWN:
+        return Tell(
+            **base,
+            verdict="not told",
+            reason=f"it goes with the {other}",
+            motion={
+                "inertance": "a second frequency, two to five times higher",
+                "stiffness": "a second, lower frequency, or slow strokes",
+                "viscous friction": "strokes at several speeds",
+                "dry friction": "strokes at several speeds, a slow one among them",
+            }[name],
+        )
+    if stderr < SURE * abs(value):
+        return Tell(**base, verdict="told")
+    if name == "inertance":
+        return Tell(
+            **base, verdict="not told", reason="its force is below what is left",
+            motion="faster reversals: a higher frequency or shorter ramps",
+        )  # fmt: skip
+    return Tell(**base, verdict="bounded")
+
+
+def words(tell: Tell) -> str:
+    """One clause."""
+    if tell.verdict == "told":
+        return f"{tell.name} {tell.value:.4g} ± {tell.stderr:.1g} {tell.unit}"
+    if tell.verdict == "bounded":
+        most = abs(tell.value) + TIMES * tell.stderr
+        return f"{tell.name} below {most:.2g} {tell.unit}"
+    return f"{tell.name} not: {tell.reason}; {tell.motion} would tell"

@@ -1,0 +1,88 @@
+"""A displacement from what was measured in its place: velocity, acceleration, two accelerometers.
+
+What is integrated drifts: an offset of the sensor grows into a ramp, its slow noise into a walk.
+Taken out of the integral is whatever is slower than a quarter of the slowest motion: a polynomial
+and the cosines below that frequency, fitted by least squares. Slow changes of place that were real
+go with it; the highest of what was taken out is told.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+from scipy.signal import welch
+
+from .motion import uniform_channels
+from .record import Array
+from .runs import Part
+
+SLOWEST = 0.01  # share of a channel's power below its slowest motion
+SHARE = 0.25  # of the slowest frequency: below it is drift
+MOST_COSINES = 200
+
+
+def with_displacement(
+    columns: dict[str, Array], part: Part
+) -> tuple[dict[str, Array], list[str]]:
+    """Columns with a displacement and without what it was made of; what was done.
+
+    Two accelerometers make one acceleration where there is a displacement.
+    """
+    columns = dict(columns)
+    both = [columns.pop(name, None) for name in ("acceleration_1", "acceleration_2")]
+    notes: list[str] = []
+    if both[0] is not None and both[1] is not None and "acceleration" not in columns:
+        columns["acceleration"] = both[1] - both[0]
+        notes.append("acceleration = acceleration_2 - acceleration_1")
+    if "displacement" in columns:
+        return columns, notes
+    source = "velocity" if "velocity" in columns else "acceleration"
+    values = columns.pop(source)
+    if not np.ptp(values) > 0:
+        raise part.refuse(f"column {source!r} never changes; there is no motion in it")
+    columns.pop("acceleration", None)
+    order = 1 if source == "velocity" else 2
+    made, drift, slowest = integrated(columns["time"], values, order)
+    columns["displacement"] = made
+    times = "once" if order == 1 else "twice"
+    notes.append(
+        f"displacement = {source}, integrated {times}; a drift of up to "
+        f"{1e3 * np.max(np.abs(drift)):.3g} mm was taken out, and with it whatever moves slower "
+        f"than {SHARE * slowest:.2g} Hz (the motion spans {1e3 * np.ptp(made):.3g} mm)"
+    )
+    ordered = {"time": columns["time"], "displacement": made}
+    return ordered | columns, notes
+
+
+def integrated(time: Array, values: Array, order: int) -> tuple[Array, Array, float]:
+    """Integral of values (n,) at times (n,), once or twice, the drift taken out of it [SI].
+
+    Also the drift (n,) and the frequency [Hz] of the slowest motion.
+    """
+    slowest = slowest_motion(time, values)
+    start = time - time[0]
+    raw = np.asarray(make_interp_spline(start, values - values.mean(), k=3).antiderivative(order)(start))
+    span = start[-1]
+    count = min(MOST_COSINES, int(2 * span * SHARE * slowest))
+    u = start / span
+    basis = [u**k for k in range(order + 1)] + [np.cos(np.pi * k * u) for k in range(1, count + 1)]
+    matrix = np.column_stack(basis)
+    weights, *_ = np.linalg.lstsq(matrix, raw, rcond=1e-10)
+    drift = matrix @ weights
+    made = raw - drift
+    # from the start on, as displacements are often told
+    return made, drift - drift[0], slowest
+
+
+def slowest_motion(time: Array, values: Array) -> float:
+    """The frequency [Hz] below which hardly anything of a channel's power lies.
+
+    Never below one period in the record.
+    """
+    spacing, even = uniform_channels(time, {"v": values})
+    v = even["v"]
+    length = min(v.size, 1 << 16)
+    frequency, power = welch(v - v.mean(), 1 / spacing, nperseg=length)
+    share = np.cumsum(power) / max(float(power.sum()), 1e-300)
+    found = float(frequency[int(np.argmax(share >= SLOWEST))])
+    return max(found, 1.0 / float(time[-1] - time[0]))

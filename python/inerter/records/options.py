@@ -1,0 +1,124 @@
+"""The options with which commands read records, and the lines that say how they were read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from inerter.console import notes
+
+Column = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column",
+        metavar="NAME=COLUMN",
+        help="Which column holds what, with its unit or calibration: force='Kraft [kN]', "
+        "force='-200 N/V * (u + 0.115 V)', time='every 0.5 ms'. May be given again; remembered "
+        "in records.toml beside the data.",
+    ),
+]
+With = Annotated[
+    Path | None,
+    typer.Option(
+        "--with",
+        metavar="FILE",
+        help="A second file of the same test on a clock of its own; joined by the motion of both.",
+    ),
+]
+Lag = Annotated[
+    float | None,
+    typer.Option("--lag", metavar="SECONDS", help="What to add to the clock of --with."),
+]
+Decimal = Annotated[
+    str | None, typer.Option("--decimal", metavar="MARK", help="Decimal mark: point or comma.")
+]
+Separator = Annotated[
+    str | None,
+    typer.Option(
+        "--separator", metavar="SIGN", help="Between columns: comma, semicolon, tab, bar, blanks."
+    ),
+]
+Sheet = Annotated[
+    str | None,
+    typer.Option("--sheet", metavar="NAME", help="Sheet of a workbook, or group of a file."),
+]
+Statements = Annotated[
+    Path | None,
+    typer.Option(
+        "--statements",
+        metavar="FILE",
+        help="A .toml file in place of records.toml beside the data.",
+    ),
+]
+
+
+@contextmanager
+def told_reading(
+    column: list[str] | None = None,
+    partner: Path | None = None,
+    lag: float | None = None,
+    decimal: str | None = None,
+    separator: str | None = None,
+    sheet: str | None = None,
+    statements: Path | None = None,
+) -> Iterator[Callable[[], None]]:
+    """Read with what the command line states; call it when the files are read.
+
+    Then it is told on stderr how they were, and what was stated is remembered.
+    """
+    from inerter.records.stated import reading
+
+    with reading(
+        column or (), separator=separator, decimal=decimal, sheet=sheet, partner=partner,
+        lag=lag, file=statements,
+    ) as now:  # fmt: skip
+
+        def tell() -> None:
+            for line in now.told:
+                notes.print(line, highlight=False, soft_wrap=True)
+            now.told.clear()
+            try:
+                place = now.remember()
+            except OSError as error:
+                notes.print(f"not remembered: {error.filename} ({error.strerror})", soft_wrap=True)
+                return
+            if place is not None:
+                notes.print(f"remembered in {place}", highlight=False, soft_wrap=True)
+
+        yield tell
+
+
+def with_reading(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command that takes `stated` the options above, joined into it.
+
+    stated: keyword arguments of `told_reading`.
+    """
+    import inspect
+
+    options: dict[str, Any] = {
+        "column": Column, "partner": With, "lag": Lag, "decimal": Decimal,
+        "separator": Separator, "sheet": Sheet, "statements": Statements,
+    }  # fmt: skip
+    own = [
+        p for name, p in inspect.signature(command, eval_str=True).parameters.items()
+        if name != "stated"
+    ]  # fmt: skip
+    made = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind)
+        for name, kind in options.items()
+    ]
+    keyword = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in own]
+
+    def run(**arguments: Any) -> Any:
+        stated = {name: arguments.pop(name) for name in options}
+        return command(**arguments, stated=stated)
+
+    run.__doc__ = command.__doc__
+    run.__name__ = command.__name__
+    run.__annotations__ = {p.name: p.annotation for p in (*keyword, *made)}
+    run.__signature__ = inspect.Signature((*keyword, *made))  # type: ignore[attr-defined]
+    return run

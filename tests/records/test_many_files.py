@@ -1,0 +1,164 @@
+"""Files of benches, spreadsheets and loggers are read as they are, and it is said how."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bench_files import BINARIES, DISPLACEMENT, FORCE, ROWS, TEXTS, TIME
+from inerter.records import RecordError, read_records
+from inerter.records.stated import FILE, reading
+
+CASES = TEXTS | BINARIES
+# what is said of some, word for word
+SAID = {
+    "plain.csv": "",
+    "german.csv": "semicolon, decimal comma; time = 'Zeit [s]', displacement = 'Weg [mm]', "
+    "force = 'Kraft [kN]'",
+    "mts.dat": "tab, 3 preamble lines, units from line 7; displacement = "
+    "'Axial Displacement [mm]', force = 'Axial Force [kN]'",
+    "named.csv": "Excel file named .csv; time = 'Zeit [s]', displacement = 'Weg [mm]', "
+    "force = 'Kraft [N]'",
+    "footer.csv": "2 footer lines left out; displacement = 'Extension [mm]', force = 'Load [N]'",
+}
+
+
+def test_there_are_forty_files() -> None:
+    assert len(CASES) >= 40
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_file_is_read_with_its_values(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    CASES[name](path)
+    (record,) = read_records(path, "bench")
+    rows = ROWS - 1 if name == "two_rates.tdms" else ROWS
+    assert record.samples == rows
+    np.testing.assert_allclose(record.time - record.time[0], TIME[:rows], atol=2e-8)
+    # a slow channel is interpolated
+    within = 1e-7 if name == "two_rates.tdms" else 2e-12
+    np.testing.assert_allclose(record.displacement, DISPLACEMENT[:rows], atol=within)
+    np.testing.assert_allclose(record.force, FORCE[:rows], rtol=1e-8, atol=1e-8)
+    if name in SAID:
+        assert record.reading == SAID[name]
+    elif name != "new.mat":
+        assert record.reading
+
+
+def refusal(path: Path, *columns: str) -> str:
+    with pytest.raises(RecordError) as caught, reading(columns):
+        read_records(path, "bench")
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def written(path: Path, head: str, rows: list[str]) -> Path:
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return path
+
+
+ROW = [f"{0.001 * k:.3f};{k % 7}.5;{k % 5}.25" for k in range(60)]
+
+
+def test_every_missing_column_is_told_at_once(tmp_path: Path) -> None:
+    said = refusal(written(tmp_path / "a.csv", "t;u1 [V];u2 [V]", ROW))
+    for part in ("no column 'displacement', no column 'force'", "found: t, u1 [V], u2 [V]",
+                 "--column displacement=", "--column force="):  # fmt: skip
+        assert part in said
+
+
+def test_no_advice_drops_a_unit(tmp_path: Path) -> None:
+    said = refusal(written(tmp_path / "a.csv", "t;x [mm];F [V]", ROW))
+    assert "--column force='200 N/V * F'" in said
+    assert "'F [V]' is in V" in said
+
+
+def test_two_columns_that_may_be_meant_are_both_shown(tmp_path: Path) -> None:
+    rows = [f"{row};1.5" for row in ROW]
+    path = written(tmp_path / "a.csv", "t;Position [mm];Extension [mm];F [N]", rows)
+    assert "--column displacement='Position [mm]' or" in refusal(path)
+    with reading(["displacement=Extension [mm]"]):
+        (record,) = read_records(path, "bench")
+    assert record.displacement[1] == pytest.approx(1.25e-3)
+
+
+def test_groups_of_thousands_or_decimals_are_asked_for(tmp_path: Path) -> None:
+    rows = [f"{k + 1},{k % 900 + 100:03d};{k + 2},123;{k + 3},456" for k in range(60)]
+    path = written(tmp_path / "a.csv", "t;x [mm];F [N]", rows)
+    said = refusal(path)
+    assert "1.100 (decimal comma) or 1100 (groups of thousands)" in said
+    with reading(decimal="comma"):
+        assert read_records(path, "bench")[0].force[0] == 3.456
+
+
+def test_a_calibration_is_stated_and_remembered(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", "t;pot [V];u [V]", ROW)
+    stated = ["force=-200 N/V * (u + 0.115 V)", "displacement=(pot - start) / 55.4 V/m"]
+    with reading(stated) as now:
+        (record,) = read_records(path, "bench")
+        assert now.remember() == tmp_path / FILE
+        assert now.remember() is None
+    u, pot = (np.array([float(row.split(";")[i]) for row in ROW]) for i in (2, 1))
+    np.testing.assert_allclose(record.force, -200 * (u + 0.115), rtol=1e-12)
+    np.testing.assert_allclose(record.displacement, (pot - pot[0]) / 55.4, atol=1e-15)
+    # without a word on the command line, from the file beside the data
+    (again,) = read_records(path, "bench")
+    np.testing.assert_array_equal(again.force, record.force)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("u", 2.0), ("'u [kN]'", 2000.0), ("-1 * u", -2.0), ("-u", -2.0), ("u / 4", 0.5),
+        ("3 N/V * u", 6.0), ("3 kN/V * (u - 1 V)", 3000.0), ("2 lbf/V * u", 2 * 2 * 4.4482216152605),
+    ],
+)  # fmt: skip
+def test_formulas(text: str, value: float, tmp_path: Path) -> None:
+    rows = [f"{0.001 * k:.3f};{k % 7}.5;2.0" for k in range(60)]
+    path = written(tmp_path / "a.csv", "t;x;u", rows)
+    with reading([f"force={text}"]):
+        assert read_records(path, "bench")[0].force[0] == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("toml", "said"),
+    [
+        ("[[files]]\nwhat = 1", "an entry has a key 'what'"),
+        ("[[files]]\n[files.columns]\nforce = 3", "force is 3; give a text"),
+        ("[[files]]\n[files.columns]\nforce = {scale = 'x'}", "'x' is no quantity"),
+        ("[[files]]\n[files.columns]\nforce = {polarity = 2}", "polarity of force is 2"),
+        ("[[files]]\n[files.columns]\ncolour = 'x'", "'colour' is no quantity of a record"),
+        ("[[files]]\n[files.columns]\nforce = 'nobody'", "column 'nobody', which is not there"),
+        ("[[files]]\n[files.columns]\nforce = '2 m * F'", "m times N is not a force"),
+        ("[[files]]\ndecimal = 'x'", "decimal is 'x'; take one of point, comma"),
+        ("files = 3", "'files' is no list of entries"),
+        ("[[files]]\nwith = 3", "are not all texts"),
+    ],
+)
+def test_a_statement_that_cannot_be_is_refused(toml: str, said: str, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", "t;x [mm];F [N]", ROW)
+    (tmp_path / FILE).write_text(toml)
+    assert said in refusal(path)
+
+
+def test_a_delay_and_a_filter_are_dealt_with(tmp_path: Path) -> None:
+    from scipy.signal import butter, sosfilt, sosfilt_zi
+
+    time = 1e-3 * np.arange(3000)
+    x, force = 0.01 * np.sin(9 * time), 5 * np.cos(9 * time)
+    late = 5 * np.cos(9 * (time - 0.004))
+    sections = butter(2, 30.0, fs=1000, output="sos")
+    slow = sosfilt(sections, force, zi=sosfilt_zi(sections) * force[0])[0]
+    path = tmp_path / "a.csv"
+    for column, keys in ((late, 'delay = "4 ms"'), (slow, 'filter = "30 Hz"')):
+        np.savetxt(path, np.column_stack([time, x, column]), delimiter=",", comments="",
+                   header="t,x,load", fmt="%.12g")  # fmt: skip
+        (tmp_path / FILE).write_text(
+            f'[[files]]\n[files.columns]\nforce = {{column = "load", {keys}}}\n'
+        )
+        (record,) = read_records(path, "bench")
+        # force and displacement are as far apart as they were before the sensor
+        middle = slice(500, -500)
+        phase = np.corrcoef(record.force[middle], np.gradient(record.displacement)[middle])[0, 1]
+        assert phase > 0.999999
