@@ -4,7 +4,7 @@
 
 makes each and tells what `inerter simulate` says of it, and what that costs. Not among them, for
 the engine alone could refuse them: a pipe that a model names (it waits), and
-`<replicate count="2000000000">`.
+counts of thousands of millions in `<replicate>` and `<flexcomp>`.
 """
 
 from __future__ import annotations
@@ -104,9 +104,6 @@ MODELS: dict[str, Callable[[Path], str]] = {
     ),
     "texture_picture": _picture,
     "field_stated": _asset('<hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/>'),
-    "flexible": _inside(
-        '<flexcomp name="f" type="grid" count="3000 3000 3000" spacing=".1 .1 .1" dim="3"/>'
-    ),
     "nested": _inside("<body>" * 20_000 + "</body>" * 20_000),
     "entities": lambda _: (
         '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]>' + _model("&b;")
