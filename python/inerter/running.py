@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inerter.plugin import load_plugin, plugin_path
 
@@ -81,6 +82,15 @@ def _addresses(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[int, int]:
     return model._address, data._address
 
 
+def _devices(
+    places: tuple[int, int], actuators: int, told: Callable[..., int], result: Any
+) -> Iterator[int]:
+    """Actuators that are devices; `told` has filled the result with what it knows of each."""
+    for actuator in range(actuators):
+        if told(*places, actuator, result) == 0:
+            yield actuator
+
+
 def energy(model: mujoco.MjModel, data: mujoco.MjData) -> Energy:
     """Energy of a model with its devices, wherever their inertance lives.
 
@@ -108,9 +118,8 @@ def energy(model: mujoco.MjModel, data: mujoco.MjData) -> Energy:
     data.energy[:] = kept
     stored = (ctypes.c_double * 2)()
     devices = 0.0
-    for actuator in range(model.nactuator):
-        if _library().inerter_energy(*places, actuator, stored) == 0:
-            devices += stored[0] - stored[1]
+    for _ in _devices(places, model.nactuator, _library().inerter_energy, stored):
+        devices += stored[0] - stored[1]
     return Energy(kinetic=kinetic, potential=potential, devices=devices)
 
 
@@ -132,8 +141,7 @@ def solve_counts(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, SolveC
     places = _addresses(model, data)
     counts = (ctypes.c_int64 * 3)()
     found = {}
-    for actuator in range(model.nactuator):
-        if _library().inerter_solve_counts(*places, actuator, counts) == 0:
-            name = model.actuator(actuator).name or f"actuator {actuator}"
-            found[name] = SolveCounts(solves=counts[0], stops=counts[1], misfits=counts[2])
+    for actuator in _devices(places, model.nactuator, _library().inerter_solve_counts, counts):
+        name = model.actuator(actuator).name or f"actuator {actuator}"
+        found[name] = SolveCounts(solves=counts[0], stops=counts[1], misfits=counts[2])
     return found

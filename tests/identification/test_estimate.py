@@ -16,23 +16,10 @@ from inerter.identify.model import Model
 from inerter.identify.multistart import search
 from inerter.identify.prediction import first_state
 from inerter.identify.profile import profile_interval
-from inerter.identify.runs import BenchRun
 from inerter.identify.split import BLOCKS, HELD_OUT_BLOCKS
 from inerter.records import Record, check_records
 from random_devices import LAWS, drawn, found
-
-H, N = 2e-3, 6000
-TIME = H * np.arange(N)
-
-
-def motion(scale: float = 1.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Displacement, velocity, acceleration of three sines."""
-    omega = 2 * np.pi * np.array([[0.4], [1.7], [4.3]])
-    size = scale * np.array([[0.02], [0.006], [0.002]])
-    s, c = np.sin(omega * TIME), np.cos(omega * TIME)
-    parts = (size * s, size * omega * c, -size * omega**2 * s)
-    x, v, a = (part.sum(axis=0) for part in parts)
-    return x, v, a
+from three_sines import H, N, motion, run_of
 
 
 def problem(device: Device, noise: float, scale: float = 1.0, seed: int = 0) -> Problem:
@@ -41,20 +28,7 @@ def problem(device: Device, noise: float, scale: float = 1.0, seed: int = 0) -> 
     random = np.random.default_rng(seed)
     start = device.state_of_force(x[0], v[0], a[0], 0.0) if device.nstate else 0.0
     force = device.along(H, x, v, a, start)["total"] + noise * random.standard_normal(N)
-    everything = np.ones(N, bool)
-    run = BenchRun(
-        name="r",
-        start=0.0,
-        spacing=H,
-        displacement=x,
-        velocity=v,
-        acceleration=a,
-        force=force,
-        inner=everything,
-        first_force=float(force[0]),
-        cutoff=np.inf,
-    )
-    return Problem([run], [everything])
+    return Problem([run_of(force, (x, v, a))], [np.ones(N, bool)])
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -186,25 +160,8 @@ def test_where_in_its_play_a_run_begins_is_found_with_the_play(place: float) -> 
     x, v, a = motion()
     noise = np.random.default_rng(2).standard_normal(N)
     force = device.along(H, x, v, a, place * half)["total"] + 0.3 * noise
-    everything = np.ones(N, bool)
     first = float(50 * a[0] + 100 * v[0])
-    data = Problem(
-        [
-            BenchRun(
-                name="r",
-                start=0.0,
-                spacing=H,
-                displacement=x,
-                velocity=v,
-                acceleration=a,
-                force=force,
-                inner=everything,
-                first_force=first,
-                cutoff=np.inf,
-            )
-        ],
-        [everything],
-    )
+    data = Problem([run_of(force, (x, v, a), first)], [np.ones(N, bool)])
     fit = search(data, law_named("dahl+play"), {}).best
     assert fit.rmse(data.masks) < 1.02 * 0.3
     assert fit.model.values["friction_place"] == pytest.approx(place, abs=0.02)
@@ -223,22 +180,11 @@ def test_a_first_force_beyond_doubt_tells_the_side_of_the_play() -> None:
     device = Device(
         friction="dahl", coulomb_force=40, bristle_stiffness=4e4, friction_backlash=3e-3
     )
-    none, few = np.zeros(3), np.ones(3, bool)
+    none = np.zeros(3)
     for force, place, state in (
         (20.0, -1.0, 3.5e-3), (-20.0, 1.0, -3.5e-3), (0.0, 0.4, 1.2e-3), (0.0, -1.0, -3e-3),
     ):  # fmt: skip
-        run = BenchRun(
-            name="r",
-            start=0.0,
-            spacing=H,
-            displacement=none,
-            velocity=none,
-            acceleration=none,
-            force=none,
-            inner=few,
-            first_force=force,
-            cutoff=np.inf,
-        )
+        run = run_of(none, (none, none, none), force)
         assert first_state(device, run, place) == pytest.approx(state, abs=1e-12)
 
 

@@ -11,37 +11,14 @@ from inerter.catalogue.coordinates import search_range
 from inerter.identify.fit import Problem, delayed, parameter_errors, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
-
-H, N = 2e-3, 6000
-TIME = H * np.arange(N)
+from three_sines import TIME, H, N, motion, run_of
 
 
 def run(device: Device, noise: float, seed: int = 0, delay: float = 0.0) -> BenchRun:
     """A run of a device along three sines, force noise only."""
     random = np.random.default_rng(seed)
-    omega = 2 * np.pi * np.array([[0.4], [1.7], [4.3]])
-    size = np.array([[0.02], [0.006], [0.002]])
-
-    def motion(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        s, c = np.sin(omega * t), np.cos(omega * t)
-        x, v, a = (part.sum(axis=0) for part in (size * s, size * omega * c, -size * omega**2 * s))
-        return x, v, a
-
-    x, v, a = motion(TIME)
-    force = device.along(H, *motion(TIME - delay))["total"] + random.normal(0, noise, N)
-    everything = np.ones(N, bool)
-    return BenchRun(
-        name="r",
-        start=0.0,
-        spacing=H,
-        displacement=x,
-        velocity=v,
-        acceleration=a,
-        force=force,
-        inner=everything,
-        first_force=float(force[0]),
-        cutoff=np.inf,
-    )
+    force = device.along(H, *motion(late=delay))["total"] + random.normal(0, noise, N)
+    return run_of(force, motion())
 
 
 def problem(one: BenchRun) -> Problem:
