@@ -91,7 +91,7 @@ def simulate_along(
         "device",
         [None, table],
         initialStates=dict(zip(device.state_names, states.tolist(), strict=True)),
-        **given,
+        **({"inertance": 0.0} | given),
     )
     forces = inerter.AddSensor("forces")
     own = inerter.AddSensor("states") if device.nstate else None
