@@ -6,6 +6,7 @@ The page builder runs this; `python docs/figures.py` does it by hand.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -118,7 +119,7 @@ def friction_backlash() -> None:
 def memory() -> None:
     """Small strokes within a large one: one bristle drifts, Maxwell-slip closes its loops."""
     turns = np.array([0, 8, -8, 4, 0, 4, 0, 4, 3, 4, 3, 4, 8]) * 1e-3
-    x = np.concatenate([np.linspace(a, b, 400) for a, b in zip(turns, turns[1:], strict=False)])
+    x = np.concatenate([np.linspace(a, b, 400) for a, b in pairwise(turns)])
     v = np.gradient(x) * RATE
     figure = Figure(figsize=(8, 3.2), layout="constrained")
     for axes, law in zip(figure.subplots(1, 2, sharey=True), ("dahl", "maxwell_slip"), strict=True):
@@ -184,7 +185,7 @@ def series() -> None:
 
 def friction_side() -> None:
     """Friction before and behind the elastic drive."""
-    soft = {"inertance": 100, "series_stiffness": 2e4, "series_damping": 400}
+    soft = {"inertance": 100, "series_stiffness": 1e5, "series_damping": 1500}
     rubbing = {**soft, "friction": "coulomb", "coulomb_force": 20, "transition_velocity": 1e-3}
     devices = {
         "at the terminals": Device(**rubbing),

@@ -142,6 +142,18 @@ def test_a_gap_position_beyond_the_edge() -> None:
             assert beyond - edge == pytest.approx(-side * 1e-4 * 1e4 / 20.0)
 
 
+def test_more_coordinates_than_exudyn_evaluates_by_itself() -> None:
+    values = {f"slip_stiffness_{i}": 1e4 for i in range(1, 7)}
+    values |= {f"slip_force_{i}": 1.0 for i in range(1, 7)}
+    system = line([2.0, 3.0], [0.0, 0.0])
+    with pytest.raises(ValueError, match=r"at most 7 coordinates \(here 8\)"):
+        CreateInerter(
+            system.mbs, "d", system.parts, friction="maxwell_slip", symbolic=True, **values
+        )
+    strut = CreateInerter(system.mbs, "d", system.parts, friction="maxwell_slip", **values)
+    assert not strut.symbolic
+
+
 @pytest.mark.parametrize("heat", [False, True])
 @pytest.mark.parametrize("friction", LAWS + SEVERAL)
 def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
@@ -153,12 +165,13 @@ def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
         if rigid(device):
             # that one Exudyn cannot evaluate by itself
             given["load_friction"] = 0.0
+        several = friction in SEVERAL
         made = [
             CreateInerter(
                 system.mbs, f"d{symbolic}", system.parts, symbolic=symbolic, dissipatedEnergy=heat,
                 **given,
             )
-            for symbolic in (True, False)
+            for symbolic in (None if several else True, False)
         ]  # fmt: skip
         system.mbs.Assemble()
         element, items = made[0].element, [each.functions.parameters for each in made]

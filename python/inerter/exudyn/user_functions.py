@@ -25,6 +25,8 @@ from inerter.exudyn.tape import Number, Tape
 Matrix = NDArray[np.float64]
 
 
+MOST_SYMBOLIC = 7
+"""Up to this size Exudyn's symbolic vectors hold; of eight elements they end the process (1.13)."""
 LISTED = 9
 """Up to this size Exudyn reads a matrix faster from lists than from an array."""
 

@@ -134,7 +134,8 @@ def response(
     initial_state
         States at `times[0]`, shape (nstate,); a number stands for each of them.
     method
-        "LSODA" (fast; RK23 in its place for maxwell_slip) or any stiff method of `scipy.integrate.solve_ivp`, for instance "Radau".
+        "LSODA" (fast; RK23 in its place for maxwell_slip) or any stiff method of
+        `scipy.integrate.solve_ivp`, for instance "Radau".
     rtol
         Relative tolerance; the absolute one is `rtol` times the state's own scale.
     scan_step
