@@ -152,6 +152,19 @@ def load_friction() -> None:
     loops("load_friction", devices, 1.0, AMPLITUDE)
 
 
+def load_by_power() -> None:
+    """A screw of 8 degrees lead and 2 degrees friction angle, and one mean mu."""
+    lead, rubbing = np.radians(8), np.radians(2)
+    forward = float(np.tan(lead + rubbing) / np.tan(lead) - 1)
+    backward = float(1 - np.tan(lead - rubbing) / np.tan(lead))
+    mean = 0.5 * (forward + backward)
+    devices = {
+        "by power": Device(inertance=100, mu_forward=forward, mu_backward=backward),
+        f"mu = {mean:.2f}": Device(inertance=100, load_friction=mean),
+    }
+    loops("load_by_power", devices, 1.0, AMPLITUDE)
+
+
 def damping_and_stiffness() -> None:
     """Dampers and springs beside the inertance."""
     devices = {
@@ -218,8 +231,8 @@ def fluid() -> None:
 
 
 GALLERY: Sequence[Callable[[], None]] = (
-    friction, friction_backlash, memory, friction_level, load_friction, damping_and_stiffness,
-    inertance, series, friction_side, end_stops, gas, fluid,
+    friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
+    damping_and_stiffness, inertance, series, friction_side, end_stops, gas, fluid,
 )  # fmt: skip
 
 

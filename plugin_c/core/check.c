@@ -112,6 +112,23 @@ static int check_friction(const InerterDevice* device, char* message) {
   return 0;
 }
 
+// one load friction, or one for each direction of power
+static int check_load(InerterDevice* device, char* message) {
+  double* both[] = {&device->mu_forward, &device->mu_backward};
+  for (int i = 0; i < 2; i++) {
+    const char* name = i ? "mu_backward" : "mu_forward";
+    if (isnan(*both[i])) {
+      *both[i] = device->load_friction;
+    } else if (device->load_friction > 0 && *both[i] != device->load_friction) {
+      return refuse(message,
+                    "%s is %g, but load_friction is %g; state mu_forward and mu_backward, or "
+                    "load_friction for both",
+                    name, *both[i], device->load_friction);
+    }
+  }
+  return 0;
+}
+
 static int check_stops(const InerterDevice* device, char* message) {
   int lower = !isnan(device->stop_lower), upper = !isnan(device->stop_upper);
   if (!lower && !upper) {
@@ -227,11 +244,12 @@ static int check_channel(InerterDevice* device, char* message) {
 }
 
 static int check_series(const InerterDevice* device, char* message) {
-  if (device->friction_side == INERTER_SIDE_flywheel && device->load_friction >= 1) {
+  if (device->friction_side == INERTER_SIDE_flywheel && device->mu_backward >= 1) {
+    const char* name = device->load_friction >= 1 ? "load_friction" : "mu_backward";
     return refuse(message,
-                  "load_friction is %g and friction_side is \"flywheel\": the flywheel would lock; "
-                  "give load_friction < 1",
-                  device->load_friction);
+                  "%s is %g and friction_side is \"flywheel\": the flywheel would lock; "
+                  "give %s < 1",
+                  name, device->mu_backward, name);
   }
   const int needy[] = {INERTER_INDEX_series_hardening, INERTER_INDEX_backlash};
   const double values[] = {device->series_hardening, device->backlash};
@@ -262,7 +280,7 @@ static uint32_t parts_of(const InerterDevice* p) {
   int varying =
       p->inertance_gradient != 0 || p->inertance_curvature != 0 || p->inertance_speed_gradient != 0;
   int stops = !isnan(p->stop_lower) || !isnan(p->stop_upper);
-  int rubbing = p->friction != INERTER_FRICTION_none || p->load_friction > 0;
+  int rubbing = p->friction != INERTER_FRICTION_none || inerter_has_load_friction(p);
   int wheel = series && rubbing && p->friction_side == INERTER_SIDE_flywheel;
   return (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) | (gas ? PART_GAS : 0) |
          (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) | (series ? PART_SERIES : 0) |
@@ -284,7 +302,7 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
     device->static_force = device->coulomb_force;
   }
   if (check_law(device, message) || check_ranges(device, message) ||
-      check_friction(device, message) || check_stops(device, message) ||
+      check_friction(device, message) || check_load(device, message) || check_stops(device, message) ||
       check_gas(device, message) || check_channel(device, message) ||
       check_series(device, message)) {
     return -1;

@@ -45,8 +45,8 @@ static double wheel_drag(const InerterDevice* device, double stretch, double v, 
 }
 
 // load friction per force at the terminals
-static double load_at_terminals(const InerterDevice* device, double v) {
-  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v);
+static double load_at_terminals(const InerterDevice* device, double v, double carried) {
+  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v, carried);
 }
 
 //------------------------------ states ------------------------------------------------------------
@@ -137,7 +137,7 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
   double rest = force - inerter_force_motion(device, x, v, z);
 
   // rest = F_s + load |F_s|
-  double load = load_at_terminals(device, v);
+  double load = load_at_terminals(device, v, rest);
   double carried = rest / (1 + load * sign(rest));
   if (isfinite(carried)) {
     series_of_force(device, v, carried, series);
@@ -153,10 +153,6 @@ double inerter_bristle(const InerterDevice* device, double* damping) {
 
 double inerter_friction_force(const InerterDevice* device, double x, double v, const double* z) {
   return law_force(device, stretch_of(device, x), v, z);
-}
-
-double inerter_load_factor(const InerterDevice* device, double v) {
-  return device->load_friction ? device->load_friction * friction_direction(device, v) : 0;
 }
 
 double inerter_inertance(const InerterDevice* device, double x, double v, double* rest) {
@@ -191,7 +187,7 @@ double inerter_force_motion(const InerterDevice* device, double x, double v, con
   force += inerter_friction_force(device, x, v, z);
   if (has(device, PART_SERIES)) {
     double carried = branch_force(device, x, v, 0, z);
-    force += carried + inerter_load_factor(device, v) * fabs(carried);
+    force += carried + inerter_load_factor(device, v, carried) * fabs(carried);
   }
   return force;
 }
@@ -217,7 +213,7 @@ InerterForce inerter_force(const InerterDevice* device, double x, double v, doub
     return force;
   }
   double bristle = inerter_friction_force(device, x, v, z);
-  force.friction = bristle + inerter_load_factor(device, v) * fabs(force.inertance);
+  force.friction = bristle + inerter_load_factor(device, v, force.inertance) * fabs(force.inertance);
   force.total = force.inertance + parallel_force(device, stretch_of(device, x), v) + force.friction;
   return force;
 }
@@ -248,7 +244,8 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                 const double* z) {
   double stretch = stretch_of(device, x), w = v;
   double damper = (device->viscous + device->quadratic_damping * fabs(v)) * v;
-  double load = load_at_terminals(device, v) * fabs(branch_force(device, x, v, a, z));
+  double carried = branch_force(device, x, v, a, z);
+  double load = load_at_terminals(device, v, carried) * fabs(carried);
   Place rubbing = place_of_friction(device, stretch, v, z);
   double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, stretch, v, z)
                                                      : inerter_friction_force(device, x, v, z);

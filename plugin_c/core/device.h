@@ -91,6 +91,12 @@ typedef struct InerterDevice_ {
 static inline int inerter_is_given(const InerterDevice* device, int i) {
   return (int)(device->given[i / 64] >> i % 64 & 1);
 }
+// Whether a finished device has load friction.
+static inline int inerter_has_load_friction(const InerterDevice* device) {
+  return device->mu_forward > 0 || device->mu_backward > 0;
+}
+
+// Whether anything was set.
 static inline int inerter_states_something(const InerterDevice* device) {
   uint64_t any = 0;
   for (int i = 0; i < INERTER_NGIVEN; i++) {
@@ -206,9 +212,9 @@ INERTER_API double inerter_friction_force(const InerterDevice* device, double x,
 // a = 0 [N]. With a series element both are 0.
 INERTER_API double inerter_inertance(const InerterDevice* device, double x, double v, double* rest);
 
-// Load friction per force through the inertance at velocity v: mu sign(v), so that it adds
-// inerter_load_factor * |N|.
-INERTER_API double inerter_load_factor(const InerterDevice* device, double v);
+// Load friction per force N through the inertance at velocity v: mu sign(v), so that it adds
+// inerter_load_factor * |N|. Of N only the sign counts.
+INERTER_API double inerter_load_factor(const InerterDevice* device, double v, double carried);
 
 // All forces.
 INERTER_API InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
@@ -233,7 +239,7 @@ typedef struct InerterStep_ {
   double start, rise;  // a line: start + rise a
   double stretch, level, width,
       lean;             // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
-  double motion, load;  // load friction of this instant
+  double motion, load, load_negative;  // load friction of this instant, for N > 0 and N < 0
 } InerterStep;
 
 INERTER_API void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x,

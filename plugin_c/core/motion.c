@@ -29,7 +29,7 @@ static void step_between(const InerterDevice* device, const double* x, const dou
 enum { BLOCK = 256 };
 
 static int is_plain(const InerterDevice* device) {
-  return !device->parts && device->load_friction == 0 && device->friction_backlash == 0;
+  return !device->parts && !inerter_has_load_friction(device) && device->friction_backlash == 0;
 }
 
 // b a + T with the friction forces given, for n samples

@@ -124,7 +124,7 @@ static double friction_with_load(const InerterDevice* device, double friction, d
                                  double v1, double carried) {
   return has(device, PART_WHEEL_FRICTION)
              ? drag
-             : friction + inerter_load_factor(device, v1) * fabs(carried);
+             : friction + inerter_load_factor(device, v1, carried) * fabs(carried);
 }
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
@@ -170,7 +170,7 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
                         const double* z, double h, double mobility) {
   *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
   step->kind = STEP_GENERAL;
-  if (device->load_friction != 0 || device->quadratic_damping != 0 || has(device, PART_SERIES) ||
+  if (inerter_has_load_friction(device) || device->quadratic_damping != 0 || has(device, PART_SERIES) ||
       has(device, PART_STOPS)) {
     return;
   }
@@ -194,10 +194,11 @@ void inerter_step_instant(InerterStep* step, const InerterDevice* device, double
                           double motion) {
   *step = (InerterStep){.device = device, .x = x, .v = v};
   step->rise = inerter_inertance(device, x, v, &step->start);
-  if (device->load_friction != 0) {
+  if (inerter_has_load_friction(device)) {
     step->kind = STEP_LOAD;
     step->motion = motion;
-    step->load = inerter_load_factor(device, v);
+    step->load = inerter_load_factor(device, v, 1);
+    step->load_negative = inerter_load_factor(device, v, -1);
   } else {
     step->kind = STEP_LINE;
     step->start += motion;
@@ -242,9 +243,11 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
       return line + friction;
     }
 
-    case STEP_LOAD:
-      *slope = step->rise * (1 + step->load * sign(line));
-      return line + step->load * fabs(line) + step->motion;
+    case STEP_LOAD: {
+      double load = line < 0 ? step->load_negative : step->load;
+      *slope = step->rise * (1 + load * sign(line));
+      return line + load * fabs(line) + step->motion;
+    }
 
     default:
       break;

@@ -116,7 +116,12 @@
   X(slip_force_7, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 7 slips") \
   X(slip_stiffness_8, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 8; 0: no such element")                                                  \
-  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips")
+  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips") \
+  /* load friction by the direction of power */                                                    \
+  X(mu_forward, "1", NAN, 0, INFINITY, CLOSED, "",                                                 \
+    "load friction while the motion drives the flywheel; unset: load_friction")                    \
+  X(mu_backward, "1", NAN, 0, 1, CLOSED, "",                                                       \
+    "load friction while the flywheel drives the motion; unset: load_friction")
 
 // the friction laws: X(identifier, largest number of states, meaning)
 #define INERTER_FRICTION_LAWS(X)                                       \

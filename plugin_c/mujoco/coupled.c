@@ -30,9 +30,9 @@ int coupled_needed(const mjModel* m, const Instance* self) {
   const InerterDevice* share = present(self);
   int series = instance_has_series(share), inertance = share->inertance > 0 || self->replaced > 0;
   if (m->opt.integrator == mjINT_RK4) {
-    return !series && (inertance || share->load_friction > 0);
+    return !series && (inertance || inerter_has_load_friction(share));
   }
-  return !self->native || series || inertance || share->load_friction > 0 ||
+  return !self->native || series || inertance || inerter_has_load_friction(share) ||
          instance_has_stop(share) || instance_has_sharp_friction(share) || self->stiff_bristle;
 }
 

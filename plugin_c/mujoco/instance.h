@@ -131,7 +131,7 @@ static inline int instance_rubs_flywheel(const InerterDevice* device) {
 // Whether a device needs the acceleration although the engine integrates b: load friction, or an
 // inertance that varies.
 static inline int instance_varies(const InerterDevice* device) {
-  return device->load_friction != 0 || device->inertance_gradient != 0 ||
+  return inerter_has_load_friction(device) || device->inertance_gradient != 0 ||
          device->inertance_curvature != 0 || device->inertance_speed_gradient != 0;
 }
 

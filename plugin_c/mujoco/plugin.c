@@ -104,7 +104,7 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     snprintf(message, INERTER_MESSAGE_SIZE,
              "%s is given, but inertance is 0 kg, which is all that it acts on; state inertance or "
              "remove it",
-             self->device.load_friction != 0 ? "load_friction" : "a variation of the inertance");
+             inerter_has_load_friction(&self->device) ? "load_friction" : "a variation of the inertance");
     return -1;
   }
   self->sensed = instance_sensed(m, instance);

@@ -51,6 +51,10 @@ def devices(friction: str) -> list[tuple[Device, Array, Array]]:
                 rng.normal(0.0, 10.0, POINTS),
             ]
         )
+        if len(found) % 3 == 1:
+            # by the direction of power
+            backward = chosen.pop("load_friction")
+            chosen |= {"mu_forward": float(rng.uniform(0.0, 2.0)), "mu_backward": backward}
         states = draw_states(rng, POINTS, chosen)
         if friction in MEMORY and len(found) % 2:
             # in the gap, at its edges, engaged
@@ -164,7 +168,8 @@ def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
         given: dict[str, Any] = device.given
         if rigid(device):
             # that one Exudyn cannot evaluate by itself
-            given["load_friction"] = 0.0
+            for name in ("load_friction", "mu_forward", "mu_backward"):
+                given.pop(name, None)
         several = friction in SEVERAL
         made = [
             CreateInerter(

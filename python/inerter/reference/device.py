@@ -137,21 +137,11 @@ class ReferenceDevice(DeviceParameters):
 
     def load_friction_force(self, v: Quantity, carried: Quantity) -> Quantity:
         """Load-dependent friction mu |N| tanh(v / v_t) [N], N the force carried."""
-        return load.force(
-            carried,
-            v,
-            load_friction=self.load_friction,
-            transition_velocity=self.transition_velocity,
-        )
+        return load.force(self, carried, v)
 
-    def load_share(self, v: Quantity) -> Quantity:
-        """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals."""
-        return 0.0 * v if self.rubs_flywheel else self._load_factor(v)
-
-    def _load_factor(self, v: Quantity) -> Quantity:
-        return load.share(
-            v, load_friction=self.load_friction, transition_velocity=self.transition_velocity
-        )
+    def load_share(self, v: Quantity, carried: Quantity) -> Quantity:
+        """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals, by the sign of N."""
+        return 0.0 * v if self.rubs_flywheel else load.share(self, carried, v)
 
     def acceleration(
         self, x: Quantity, v: Quantity, force: Quantity, z: Quantity = 0.0
@@ -172,7 +162,7 @@ class ReferenceDevice(DeviceParameters):
                 "terminals' acceleration; ask state_rate for the flywheel's"
             )
         remainder = force - self.rest_force(x, v, z)
-        carried = remainder / (1.0 + self.load_share(v) * np.sign(remainder))
+        carried = remainder / (1.0 + self.load_share(v, remainder) * np.sign(remainder))
         mass, rest = self.branch(x, v, z)
         return (carried - rest) / mass
 
@@ -269,7 +259,8 @@ class ReferenceDevice(DeviceParameters):
     def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         """N [N] where friction takes its part of F_s behind the series element."""
         left = self._series_force(x, v, z, contact) - self.friction_force(x, v, z)
-        return left / (1.0 + self._load_factor(self._states(z)[2]) * np.sign(left))
+        share = load.share(self, left, self._states(z)[2])
+        return left / (1.0 + share * np.sign(left))
 
     def _series_force(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         _, deflection, speed, gap = self._states(z)

@@ -38,6 +38,12 @@ class DeviceParameters(FrictionParameters):
         0.0, "-", "friction share mu of the inertance force", at_least=0.0, at_most=1.0
     )
 
+    mu_forward: float = parameter(
+        UNSET, "-", "the same while the motion drives the flywheel", at_least=0.0
+    )
+    mu_backward: float = parameter(
+        UNSET, "-", "the same while the flywheel drives", at_least=0.0, at_most=1.0
+    )
     friction_side: str = "terminals"
 
     series_stiffness: float = parameter(0.0, "N/m", "spring in series k_s", at_least=0.0)
@@ -71,6 +77,13 @@ class DeviceParameters(FrictionParameters):
         return self.series_stiffness > 0.0 or self.series_damping > 0.0
 
     @property
+    def load_shares(self) -> tuple[float, float]:
+        """Mu forward and backward [-]."""
+        given = (self.mu_forward, self.mu_backward)
+        forward, backward = (self.load_friction if np.isnan(mu) else mu for mu in given)
+        return forward, backward
+
+    @property
     def rubs_flywheel(self) -> bool:
         """Whether friction acts behind a series element."""
         return self.has_series and self.friction_side == "flywheel"
@@ -89,9 +102,16 @@ class DeviceParameters(FrictionParameters):
             raise ValueError(
                 f"friction_side: '{self.friction_side}' is not one of {', '.join(FRICTION_SIDES)}"
             )
-        if self.friction_side == "flywheel" and self.load_friction >= 1.0:
+        for name in ("mu_forward", "mu_backward"):
+            mu = getattr(self, name)
+            if self.load_friction > 0.0 and not np.isnan(mu) and mu != self.load_friction:
+                raise ValueError(
+                    f"{name}: {mu}, but load_friction {self.load_friction} is for both directions; "
+                    "give one or the other"
+                )
+        if self.friction_side == "flywheel" and self.load_shares[1] >= 1.0:
             raise ValueError(
-                f"load_friction: {self.load_friction} locks the flywheel that it acts on; give "
+                f"load_friction: {self.load_shares[1]} locks the flywheel that it acts on; give "
                 "less than 1"
             )
 
