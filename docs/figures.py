@@ -153,14 +153,10 @@ def load_friction() -> None:
 
 
 def load_by_power() -> None:
-    """A screw of 8 degrees lead and 2 degrees friction angle, and one mean mu."""
-    lead, rubbing = np.radians(8), np.radians(2)
-    forward = float(np.tan(lead + rubbing) / np.tan(lead) - 1)
-    backward = float(1 - np.tan(lead - rubbing) / np.tan(lead))
-    mean = 0.5 * (forward + backward)
+    """A drive that loses more forward than backward, and one mean mu."""
     devices = {
-        "by power": Device(inertance=100, mu_forward=forward, mu_backward=backward),
-        f"mu = {mean:.2f}": Device(inertance=100, load_friction=mean),
+        "forward 0.6, backward 0.2": Device(inertance=100, mu_forward=0.6, mu_backward=0.2),
+        "mu = 0.4": Device(inertance=100, load_friction=0.4),
     }
     loops("load_by_power", devices, 1.0, AMPLITUDE)
 
