@@ -172,6 +172,23 @@ def damping_and_stiffness() -> None:
     loops("damping_and_stiffness", devices, 1.0, AMPLITUDE)
 
 
+def branches() -> None:
+    """Two viscoelastic branches beside a spring, at three frequencies: force over displacement."""
+    rubber = Device(
+        stiffness=500, branch_stiffness_1=2000, branch_damping_1=300, branch_stiffness_2=1000,
+        branch_damping_2=20,
+    )  # fmt: skip
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    axes: Axes = figure.subplots()
+    for frequency in (0.2, 1.0, 5.0):
+        motion = sine(frequency, 6)
+        force = settled(along(rubber, motion), frequency)
+        axes.plot(1e3 * settled(motion[1], frequency), force, label=f"{frequency:g} Hz")
+    axes.set(xlabel="displacement [mm]", ylabel="force [N]")
+    axes.legend(loc="best", fontsize="small")
+    _save(figure, "branches")
+
+
 def inertance() -> None:
     """Inertance that varies, at 1 Hz."""
     devices = {
@@ -228,7 +245,7 @@ def fluid() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
-    damping_and_stiffness, inertance, series, friction_side, end_stops, gas, fluid,
+    damping_and_stiffness, branches, inertance, series, friction_side, end_stops, gas, fluid,
 )  # fmt: skip
 
 

@@ -63,10 +63,9 @@ static int check_slip(const InerterDevice* device, char* message) {
     if ((stiffness > 0) != (force > 0)) {
       const char *there = stiffness > 0 ? "stiffness" : "force",
                  *missing = stiffness > 0 ? "force" : "stiffness";
-      return refuse(message,
-                    "slip_%s_%d is %g %s, but slip_%s_%d is 0; give both > 0, or neither", there,
-                    i + 1, stiffness > 0 ? stiffness : force, stiffness > 0 ? "N/m" : "N", missing,
-                    i + 1);
+      return refuse(message, "slip_%s_%d is %g %s, but slip_%s_%d is 0; give both > 0, or neither",
+                    there, i + 1, stiffness > 0 ? stiffness : force, stiffness > 0 ? "N/m" : "N",
+                    missing, i + 1);
     }
     if (stiffness > 0 && i >= count) {
       return refuse(message,
@@ -124,6 +123,26 @@ static int check_load(InerterDevice* device, char* message) {
                     "%s is %g, but load_friction is %g; state mu_forward and mu_backward, or "
                     "load_friction for both",
                     name, *both[i], device->load_friction);
+    }
+  }
+  return 0;
+}
+
+static int check_branches(const InerterDevice* device, char* message) {
+  int count = branch_count(device);
+  for (int i = 0; i < INERTER_MAXBRANCH; i++) {
+    double stiffness = branch_element(device, i)[0], damping = branch_element(device, i)[1];
+    if ((stiffness > 0) != (damping > 0)) {
+      return refuse(message,
+                    "branch_stiffness_%d is %g N/m and branch_damping_%d %g N*s/m: half a branch; "
+                    "give both > 0, or neither",
+                    i + 1, stiffness, i + 1, damping);
+    }
+    if (stiffness > 0 && i >= count) {
+      return refuse(message,
+                    "branch_stiffness_%d is %g N/m, but branch_stiffness_%d is 0 N/m; number the "
+                    "branches from 1 without a gap",
+                    i + 1, stiffness, count + 1);
     }
   }
   return 0;
@@ -285,7 +304,7 @@ static uint32_t parts_of(const InerterDevice* p) {
   return (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) | (gas ? PART_GAS : 0) |
          (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) | (series ? PART_SERIES : 0) |
          (p->backlash > 0 ? PART_BACKLASH : 0) | (stops ? PART_STOPS : 0) |
-         (wheel ? PART_WHEEL_FRICTION : 0);
+         (branch_count(p) ? PART_BRANCHES : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
 int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
@@ -302,7 +321,8 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
     device->static_force = device->coulomb_force;
   }
   if (check_law(device, message) || check_ranges(device, message) ||
-      check_friction(device, message) || check_load(device, message) || check_stops(device, message) ||
+      check_friction(device, message) || check_load(device, message) ||
+      check_branches(device, message) || check_stops(device, message) ||
       check_gas(device, message) || check_channel(device, message) ||
       check_series(device, message)) {
     return -1;
@@ -311,7 +331,8 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
   device->nfriction = device->friction == INERTER_FRICTION_maxwell_slip
                           ? slip_count(device)
                           : inerter_friction_nstate(device->friction);
+  device->nbranch = branch_count(device);
   device->nstate = device->nfriction + (has(device, PART_SERIES) ? 2 : 0) +
-                   (has(device, PART_BACKLASH) ? 1 : 0);
+                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch;
   return 0;
 }

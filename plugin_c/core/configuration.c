@@ -78,9 +78,8 @@ static int set_law(const char* key, const char* text, const char* (*name)(int), 
       return 0;
     }
   }
-  int length = snprintf(message, INERTER_MESSAGE_SIZE,
-                        "%s is \"%.60s\": no such %s; choose one of", key, text,
-                        strcmp(key, "friction_side") ? "law" : "side");
+  int length = snprintf(message, INERTER_MESSAGE_SIZE, "%s is \"%.60s\": no such %s; choose one of",
+                        key, text, strcmp(key, "friction_side") ? "law" : "side");
   for (int i = 0; name(i) && length < INERTER_MESSAGE_SIZE; i++) {
     length += snprintf(message + length, INERTER_MESSAGE_SIZE - length, " %s", name(i));
   }

@@ -49,6 +49,13 @@ static double load_at_terminals(const InerterDevice* device, double v, double ca
   return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v, carried);
 }
 
+// T without friction
+static double beside_force(const InerterDevice* device, double stretch, double v, const double* z) {
+  double force = parallel_force(device, stretch, v);
+  return has(device, PART_BRANCHES) ? force + branches_force(device, z + branch_index(device))
+                                    : force;
+}
+
 //------------------------------ states ------------------------------------------------------------
 
 int inerter_nstate(const InerterDevice* device) {
@@ -67,6 +74,9 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
     double drag = wheel_drag(device, stretch, v, z);
     series_rate(device, stretch, v, z + first, drag, rate + first);
   }
+  if (has(device, PART_BRANCHES)) {
+    branches_rate(device, v, z + branch_index(device), rate + branch_index(device));
+  }
 }
 
 void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
@@ -77,13 +87,16 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double*
   if (has(device, PART_SERIES)) {
     series_step(device, stretch, v, 0, 0, z, z + series_index(device), h);
   }
+  if (has(device, PART_BRANCHES)) {
+    branches_step(device, v, z + branch_index(device), h);
+  }
 }
 
 // the bristle's state for a total force; every law is linear in its state
 static double bristle_of_force(const InerterDevice* device, double x, double v, double a,
                                double force) {
-  double at_zero = inerter_force(device, x, v, a, (double[]){0}).total;
-  double at_one = inerter_force(device, x, v, a, (double[]){1}).total;
+  double at_zero = inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){0}).total;
+  double at_one = inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){1}).total;
   double z = (force - at_zero) / (at_one - at_zero);
   if (at_one == at_zero || isnan(z)) {
     return 0;
@@ -107,7 +120,7 @@ static double play_of_force(const InerterDevice* device, double x, double v, dou
   InerterDevice rigid = *device;
   rigid.friction_backlash = 0;
   double z = bristle_of_force(&rigid, x, v, a, force);
-  double wanted = force - inerter_force(device, x, v, a, (double[]){0}).total;
+  double wanted = force - inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){0}).total;
   if (device->friction == INERTER_FRICTION_lugre && z * wanted <= 0) {
     // its damper bears all of it where the contact begins
     return copysign(device->friction_backlash, wanted) * (wanted != 0);
@@ -121,10 +134,10 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
     for (int i = 0; i < device->nstate; i++) {
       z[i] = 0;
     }
-    if (law_of(device)->several && device->nstate) {
+    if (law_of(device)->several && device->nfriction) {
       double wanted = force - inerter_force(device, x, v, a, z).total;
       law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted, z);
-    } else if (device->nstate) {
+    } else if (device->nfriction) {
       z[0] = play_of_force(device, x, v, a, force);
     }
     return;
@@ -180,7 +193,7 @@ static double branch_force(const InerterDevice* device, double x, double v, doub
 }
 
 double inerter_force_motion(const InerterDevice* device, double x, double v, const double* z) {
-  double force = parallel_force(device, stretch_of(device, x), v);
+  double force = beside_force(device, stretch_of(device, x), v, z);
   if (has(device, PART_WHEEL_FRICTION)) {
     return force + branch_force(device, x, v, 0, z);
   }
@@ -199,7 +212,7 @@ double inerter_force_motion_of_rate(const InerterDevice* device, double x, doubl
     return inerter_force_motion(device, x, v, z);
   }
   double friction = law_of(device)->force_of_rate(device, z[0], rate[0]);
-  return parallel_force(device, stretch_of(device, x), v) + friction;
+  return beside_force(device, stretch_of(device, x), v, z) + friction;
 }
 
 InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
@@ -208,13 +221,15 @@ InerterForce inerter_force(const InerterDevice* device, double x, double v, doub
   force.inertance = branch_force(device, x, v, a, z);
   if (has(device, PART_WHEEL_FRICTION)) {
     force.friction = wheel_drag(device, stretch_of(device, x), v, z);
-    force.total = force.inertance + parallel_force(device, stretch_of(device, x), v);
+    force.total = force.inertance + beside_force(device, stretch_of(device, x), v, z);
     force.inertance -= force.friction;
     return force;
   }
   double bristle = inerter_friction_force(device, x, v, z);
-  force.friction = bristle + inerter_load_factor(device, v, force.inertance) * fabs(force.inertance);
-  force.total = force.inertance + parallel_force(device, stretch_of(device, x), v) + force.friction;
+  force.friction =
+      bristle + inerter_load_factor(device, v, force.inertance) * fabs(force.inertance);
+  force.total =
+      force.inertance + beside_force(device, stretch_of(device, x), v, z) + force.friction;
   return force;
 }
 
@@ -236,6 +251,9 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   energy += inertance_energy(device, y, w);
   if (has(device, PART_GAS)) {
     energy += gas_energy(device, y);
+  }
+  if (has(device, PART_BRANCHES)) {
+    energy += branches_energy(device, z + branch_index(device));
   }
   return has(device, PART_STOPS) ? energy + stop_energy(device, stretch) : energy;
 }
@@ -259,8 +277,8 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
     power -= law->several->stored_power(device, z, rate);
   } else if (has_bristle(device)) {
     double bristle = bristle_deflection(device, z[0]);
-    power -= 2 * law->energy(device, 0, 1) * bristle *
-             law->rate(device, rubbing.x, rubbing.v, bristle);
+    power -=
+        2 * law->energy(device, 0, 1) * bristle * law->rate(device, rubbing.x, rubbing.v, bristle);
     power -= 2 * law->energy(device, 1, 0) * rubbing.x * rubbing.v;
   }
   if (has(device, PART_SERIES)) {
@@ -270,6 +288,9 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   }
   if (has(device, PART_FLYWHEEL)) {
     power += flywheel_damper(device, w).value * w;
+  }
+  if (has(device, PART_BRANCHES)) {
+    power += branches_heat(device, z + branch_index(device));
   }
   return has(device, PART_STOPS) ? power + stop_heat(device, stretch, v) : power;
 }

@@ -1,7 +1,7 @@
 // A device: forces at the terminals, and an inertance, perhaps behind a series element.
 //
 //   F = T(x, v, z) + N + mu sign(v) |N|
-//   T = c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction + F_stops
+//   T = c v + c2 v|v| + k x + k3 x^3 + F_0 + F_friction + F_stops + F_branches
 //   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
 //   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
 //   F = T + F_s,  F_s = N + F_friction(y, w) + mu sign(w) |N|      friction_side = flywheel
@@ -14,7 +14,8 @@
 // that lengthens the device, tension positive. For a rotational device read rad, N m and kg m^2.
 //
 // States z, each only where it is needed, in this order: the friction law's, s, w, the position of
-// the free play. All 0: unloaded, the flywheel at rest, in the middle of the play.
+// the free play, the springs of the viscoelastic branches (branches.c). All 0: unloaded, the
+// flywheel at rest, in the middle of the play.
 //
 // This file and its neighbours are plain C17: no allocation, no globals, no simulator.
 
@@ -68,9 +69,10 @@ enum {
   INERTER_INDEX_gas_law,  // not numbers, but they can be given
   INERTER_INDEX_friction_side,
   INERTER_NGIVEN = (INERTER_INDEX_friction_side + 64) / 64,
-  INERTER_MAXSLIP = 8,                   // elements of maxwell_slip
+  INERTER_MAXSLIP = 8,                    // elements of maxwell_slip
   INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
-  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3,
+  INERTER_MAXBRANCH = 3,
+  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH,
   INERTER_MESSAGE_SIZE = 512
 };
 
@@ -78,12 +80,12 @@ typedef struct InerterDevice_ {
 #define X(name, ...) double name;
   INERTER_PARAMETERS(X)
 #undef X
-  int friction;       // InerterFriction
-  int gas_law;        // InerterGas
-  int friction_side;  // InerterSide
+  int friction;                    // InerterFriction
+  int gas_law;                     // InerterGas
+  int friction_side;               // InerterSide
   uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
   uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
-  int nstate, nfriction;           // states, those of the friction law; set by inerter_finish
+  int nstate, nfriction, nbranch;  // states, of the friction law, of branches; by inerter_finish
 } InerterDevice;
 
 // Whether parameter i (or a name, such as INERTER_INDEX_gas_law) was set; the inertance also when
@@ -168,8 +170,8 @@ INERTER_API int inerter_nstate(const InerterDevice* device);
 // The compiler that made the library, with its version.
 INERTER_API const char* inerter_compiler(void);
 
-// Name of state i: "friction_state" (of maxwell_slip "friction_state_1", ...), "series_deflection", "flywheel_velocity", "gap_position"; NULL
-// past the end.
+// Name of state i: "friction_state" (of maxwell_slip "friction_state_1", ...), "series_deflection",
+// "flywheel_velocity", "gap_position", "branch_deflection_1", ...; NULL past the end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 
 // Rates of the states z at displacement x, velocity v.
@@ -238,7 +240,7 @@ typedef struct InerterStep_ {
   int kind;            // which of the parts below there are (over_step.c)
   double start, rise;  // a line: start + rise a
   double stretch, level, width,
-      lean;             // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
+      lean;  // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
   double motion, load, load_negative;  // load friction of this instant, for N > 0 and N < 0
 } InerterStep;
 

@@ -26,8 +26,8 @@ typedef struct FrictionPath_ {
 // level, width: the force of a law with a sharp sign is level(p, x, v) tanh(v / width(p)); the
 // level is even in v but for the asymmetry, which it leaves out. NULL where the law is smooth. Laws
 // without states leave all but force, along, level and width NULL, those with one the latter.
-// several: the same of a law with several states, whose functions take all of them; then rate, step,
-// straight, force and energy are NULL.
+// several: the same of a law with several states, whose functions take all of them; then rate,
+// step, straight, force and energy are NULL.
 typedef struct FrictionStates_ {
   void (*rate)(const InerterDevice* p, double x, double v, const double* z, double* rate);
   void (*step)(const InerterDevice* p, double x, double v, double* z, double h);

@@ -15,6 +15,7 @@ enum {
   PART_SERIES = 1 << 4,
   PART_BACKLASH = 1 << 5,
   PART_STOPS = 1 << 6,
+  PART_BRANCHES = 1 << 8,
   PART_WHEEL_FRICTION = 1 << 7  // friction at the flywheel behind a series element
 };
 
@@ -149,10 +150,10 @@ static inline double flywheel_force(const InerterDevice* p, double y, double w) 
 // force, at velocity w of the flywheel
 double wheel_carried(const InerterDevice* p, double w, double force, double friction);
 
-// over_step.c: force of the friction law over a step h at displacement x to velocity v1. v: velocity
-// at which the level of friction without memory is taken; z: states of the law, those of the end
-// when it returns; share: implicit part of a bristle's spring. friction_grip: how the force rises
-// with the velocity at v [N s/m].
+// over_step.c: force of the friction law over a step h at displacement x to velocity v1. v:
+// velocity at which the level of friction without memory is taken; z: states of the law, those of
+// the end when it returns; share: implicit part of a bristle's spring. friction_grip: how the force
+// rises with the velocity at v [N s/m].
 double friction_over_step(const InerterDevice* p, double x, double v, double v1, double h,
                           double share, double* z);
 double friction_grip(const InerterDevice* p, double x, double v);
@@ -166,6 +167,22 @@ double series_energy(const InerterDevice* p, const double* z);
 double series_heat(const InerterDevice* p, double v, const double* z);
 int series_valid(const InerterDevice* p, const double* z, char* message);
 void series_of_force(const InerterDevice* p, double v, double force, double* z);
+
+// branches.c, e: deflections of their springs, the last states; over a step of h seconds to
+// velocity v1 with the springs' implicit share
+int branch_count(const InerterDevice* p);
+void branches_rate(const InerterDevice* p, double v, const double* e, double* rate);
+void branches_step(const InerterDevice* p, double v, double* e, double h);
+double branches_force(const InerterDevice* p, const double* e);
+double branches_over_step(const InerterDevice* p, double v1, double* e, double h, double mobility);
+double branches_energy(const InerterDevice* p, const double* e);
+double branches_heat(const InerterDevice* p, const double* e);
+static inline const double* branch_element(const InerterDevice* p, int i) {
+  return &p->branch_stiffness_1 + 2 * i;
+}
+static inline int branch_index(const InerterDevice* p) {
+  return p->nstate - p->nbranch;
+}
 
 // oscillator.c: a flywheel on a linear spring, and its states after a time
 typedef struct Oscillator_ {
@@ -185,8 +202,8 @@ int series_frozen(const InerterDevice* p, double x, double v, double a, double j
 
 // series_step.c: states after a time h from x, v, acceleration a and its rate; force over a step
 // and states at its end, where the velocity is v, for a mobility of the terminals. bristle: state
-// of a friction law at the flywheel; drag: what friction at the flywheel takes of the force; carried:
-// what is left for the inertance
+// of a friction law at the flywheel; drag: what friction at the flywheel takes of the force;
+// carried: what is left for the inertance
 void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
                  double* z, double h);
 double series_over_step(const InerterDevice* p, double x, double v, double* bristle, double* z,

@@ -155,6 +155,9 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
     double damper = (device->viscous + device->quadratic_damping * fabs(v1)) * v1;
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
+    if (has(device, PART_BRANCHES)) {
+      stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
+    }
     force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }
@@ -170,8 +173,8 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
                         const double* z, double h, double mobility) {
   *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
   step->kind = STEP_GENERAL;
-  if (inerter_has_load_friction(device) || device->quadratic_damping != 0 || has(device, PART_SERIES) ||
-      has(device, PART_STOPS)) {
+  if (inerter_has_load_friction(device) || device->quadratic_damping != 0 ||
+      has(device, PART_SERIES) || has(device, PART_STOPS) || has(device, PART_BRANCHES)) {
     return;
   }
 

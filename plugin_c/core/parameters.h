@@ -75,9 +75,9 @@
     "coulomb stribeck dahl lugre brown_mcphee maxwell_slip",                                       \
     "relative rise of the level for v > 0, fall for v < 0")                                        \
   X(friction_gradient, "1/m", 0, -INFINITY, INFINITY, CLOSED,                                      \
-    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x")                \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x")   \
   X(friction_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED,                                   \
-    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x^2")              \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x^2") \
   /* bristles: Dahl and LuGre; free play also Bouc-Wen */                                          \
   X(bristle_stiffness, "N/m", 1e5, 0, INFINITY, OPEN, "dahl lugre",                                \
     "pre-sliding stiffness, sigma0")                                                               \
@@ -95,33 +95,43 @@
   /* Maxwell-slip: elements from the first to the last, each a spring that slips */                \
   X(slip_stiffness_1, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 1; 0: no such element")                                                  \
-  X(slip_force_1, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 1 slips") \
+  X(slip_force_1, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 1 slips")   \
   X(slip_stiffness_2, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 2; 0: no such element")                                                  \
-  X(slip_force_2, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 2 slips") \
+  X(slip_force_2, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 2 slips")   \
   X(slip_stiffness_3, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 3; 0: no such element")                                                  \
-  X(slip_force_3, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 3 slips") \
+  X(slip_force_3, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 3 slips")   \
   X(slip_stiffness_4, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 4; 0: no such element")                                                  \
-  X(slip_force_4, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 4 slips") \
+  X(slip_force_4, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 4 slips")   \
   X(slip_stiffness_5, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 5; 0: no such element")                                                  \
-  X(slip_force_5, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 5 slips") \
+  X(slip_force_5, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 5 slips")   \
   X(slip_stiffness_6, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 6; 0: no such element")                                                  \
-  X(slip_force_6, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 6 slips") \
+  X(slip_force_6, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 6 slips")   \
   X(slip_stiffness_7, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 7; 0: no such element")                                                  \
-  X(slip_force_7, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 7 slips") \
+  X(slip_force_7, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 7 slips")   \
   X(slip_stiffness_8, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 8; 0: no such element")                                                  \
-  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips") \
+  X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips")   \
   /* load friction by the direction of power */                                                    \
   X(mu_forward, "1", NAN, 0, INFINITY, CLOSED, "",                                                 \
     "load friction while the motion drives the flywheel; unset: load_friction")                    \
   X(mu_backward, "1", NAN, 0, 1, CLOSED, "",                                                       \
-    "load friction while the flywheel drives the motion; unset: load_friction")
+    "load friction while the flywheel drives the motion; unset: load_friction")                    \
+  /* viscoelastic branches: each a spring and a dashpot in series */                               \
+  X(branch_stiffness_1, "N/m", 0, 0, INFINITY, CLOSED, "", "spring of viscoelastic branch 1, K")   \
+  X(branch_damping_1, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "dashpot of viscoelastic branch 1, in series with its spring, C")                              \
+  X(branch_stiffness_2, "N/m", 0, 0, INFINITY, CLOSED, "", "spring of viscoelastic branch 2, K")   \
+  X(branch_damping_2, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "dashpot of viscoelastic branch 2, in series with its spring, C")                              \
+  X(branch_stiffness_3, "N/m", 0, 0, INFINITY, CLOSED, "", "spring of viscoelastic branch 3, K")   \
+  X(branch_damping_3, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "dashpot of viscoelastic branch 3, in series with its spring, C")
 
 // the friction laws: X(identifier, largest number of states, meaning)
 #define INERTER_FRICTION_LAWS(X)                                       \
@@ -140,7 +150,7 @@
   X(expanded, "second order of that, as a paper prints it")
 
 // where the friction law and the load friction act: X(identifier, meaning)
-#define INERTER_FRICTION_SIDES(X)                          \
+#define INERTER_FRICTION_SIDES(X)                                  \
   X(terminals, "between the terminals, before the series element") \
   X(flywheel, "beside the inertance, behind the series element")
 

@@ -132,11 +132,11 @@ static void finish_step(const InerterDevice* p, Element element, Flywheel flywhe
 
 // a step of the friction at the flywheel
 typedef struct Rubbing_ {
-  double y;                 // displacement of the flywheel
-  double near;              // velocity at which the level is taken
-  double w, share, h;       // the force is that of w + share (w1 - w), over a time h
-  double implicit;          // share of a bristle's spring
-  const double* start;      // states of the friction law at the start, NULL without
+  double y;             // displacement of the flywheel
+  double near;          // velocity at which the level is taken
+  double w, share, h;   // the force is that of w + share (w1 - w), over a time h
+  double implicit;      // share of a bristle's spring
+  const double* start;  // states of the friction law at the start, NULL without
   double end[INERTER_MAXFRICTION];
 } Rubbing;
 
@@ -198,8 +198,7 @@ static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel
     double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
     part = 0.5;
     if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
-      part = fa / (fb - fa) * fc / (fb - fc) +
-             (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
+      part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
     }
     part = clamp(part, least, 1 - least);
   }

@@ -3,16 +3,15 @@
 //   F_s = N + F_f(y, w, z) + mu sign(w) |N|,   N = B w' + R + G
 //   N = (F_s - F_f) / (1 + mu sign(w) sgn(F_s - F_f))
 //
-// F_s [N] force of the series element (series.c), F_f [N] friction law at the flywheel's displacement
-// y = x - s [m], velocity w [m/s] and its own state z; N [N] force through the inertance; mu
-// load_friction, sign(w) = tanh(w / v_t). Without a series element y = x, w = v, F_s is the force
-// between the terminals, and there is nothing to tell the sides apart: the same calculation then.
-// Steps: series_step.c solves for the friction together with the flywheel's velocity.
-// Why: friction of the nut's bearing and of the flywheel sits behind the elastic shaft; the terminals
-// feel it through the spring, so that a device held still at its ends still rings on its flywheel.
-// Source: Wang & Su 2008, eq. (9): k_s x_s + c_s x_s' = b (z_b - z_w)'' + f sign((z_b - z_w)').
-// Range: mu < 1, else the flywheel locks.
-// Not modelled: friction on both sides at once.
+// F_s [N] force of the series element (series.c), F_f [N] friction law at the flywheel's
+// displacement y = x - s [m], velocity w [m/s] and its own state z; N [N] force through the
+// inertance; mu load_friction, sign(w) = tanh(w / v_t). Without a series element y = x, w = v, F_s
+// is the force between the terminals, and there is nothing to tell the sides apart: the same
+// calculation then. Steps: series_step.c solves for the friction together with the flywheel's
+// velocity. Why: friction of the nut's bearing and of the flywheel sits behind the elastic shaft;
+// the terminals feel it through the spring, so that a device held still at its ends still rings on
+// its flywheel. Source: Wang & Su 2008, eq. (9): k_s x_s + c_s x_s' = b (z_b - z_w)'' + f sign((z_b
+// - z_w)'). Range: mu < 1, else the flywheel locks. Not modelled: friction on both sides at once.
 
 #include "laws.h"
 

@@ -33,13 +33,15 @@ int coupled_needed(const mjModel* m, const Instance* self) {
     return !series && (inertance || inerter_has_load_friction(share));
   }
   return !self->native || series || inertance || inerter_has_load_friction(share) ||
-         instance_has_stop(share) || instance_has_sharp_friction(share) || self->stiff_bristle;
+         instance_has_stop(share) || instance_has_branches(share) ||
+         instance_has_sharp_friction(share) || self->stiff_bristle;
 }
 
 // whether the force over a step depends on how easily the terminals give way
 static int asks_mobility(const Coupled* c) {
   const InerterDevice* device = present(c->self);
-  return instance_has_series(device) || instance_has_bristle(device);
+  return instance_has_series(device) || instance_has_bristle(device) ||
+         instance_has_branches(device);
 }
 
 // the law of a device, its mobility known

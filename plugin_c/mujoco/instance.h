@@ -123,6 +123,11 @@ static inline int instance_has_sharp_friction(const InerterDevice* device) {
   return device->friction != INERTER_FRICTION_none && !instance_has_bristle(device);
 }
 
+// Whether a device has viscoelastic branches.
+static inline int instance_has_branches(const InerterDevice* device) {
+  return device->nbranch > 0;
+}
+
 // Whether friction acts at the flywheel, behind a series element.
 static inline int instance_rubs_flywheel(const InerterDevice* device) {
   return instance_has_series(device) && device->friction_side == INERTER_SIDE_flywheel;

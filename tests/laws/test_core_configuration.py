@@ -272,7 +272,7 @@ def test_the_channel_gives_the_inertance_once() -> None:
     index = list(parameters()).index("inertance")
     assert device._c.given[index // 64] >> index % 64 & 1  # type: ignore[attr-defined]
     assert "inertance" not in device.given
-    assert not Device(viscous=1.0)._c.given >> index & 1  # type: ignore[attr-defined]
+    assert not Device(viscous=1.0)._c.given[index // 64] >> index % 64 & 1  # type: ignore[attr-defined]
     # so it can be stated anew: a longer channel, more inertance
     assert device.replace(channel_length=4.0).inertance == 2.0 * device.inertance
 

@@ -87,3 +87,19 @@ def test_maxwell_slip_in_the_engine() -> None:
     )
     assert coarse < 2e-4
     assert fine == pytest.approx(coarse / 4.0, rel=0.2)
+
+
+def test_viscoelastic_branches_in_the_engine() -> None:
+    values: dict[str, Any] = {"inertance": 5, "branch_stiffness_1": 4e3, "branch_damping_1": 200}
+    values |= {"branch_stiffness_2": 1e3, "branch_damping_2": 500}
+    true = run_with(values, 2, "RK4", 5e-5)
+    coarse, fine = (
+        np.max(abs(run_with(values, 2, "implicitfast", h) - true)) for h in (4e-4, 1e-4)
+    )
+    assert coarse < 2e-4
+    assert fine == pytest.approx(coarse / 4.0, rel=0.2)
+    # stiffer than a step resolves: the dashpot alone, and no oscillation that grows
+    stiff = {"inertance": 5, "branch_stiffness_1": 1e9, "branch_damping_1": 200}
+    damper = {"inertance": 5, "viscous": 200}
+    apart = run_with(stiff, 1, "implicitfast", 4e-3) - run_with(damper, 0, "RK4", 1e-4)
+    assert np.max(abs(apart)) < 2e-3

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.exudyn import beside, flywheel, friction, series
+from inerter.exudyn import beside, branches, flywheel, friction, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -66,6 +66,9 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     rubbing = _rubbing(f, p, x, v, state)
     at_terminals = beside.force(f, p, x, v)
     found: list[Term] = []
+    for spring, dashpot, e, at in branches.deflections(p, z):
+        found.append(Term(e, spring, ((at, -spring / dashpot),)))
+        found.append(Term(v, 0.0, ((at, 1.0),)))
     wheel = rubs_flywheel(p)
     if not wheel:
         at_terminals = at_terminals + rubbing.bound
@@ -143,7 +146,7 @@ def forces(
     if rubs_by_load(p):
         speed = state.speed if rubs_flywheel(p) else v
         rub = rub + _load_share(f, p, speed, through) * f.abs(through)
-    total = beside.force(f, p, x, v) + rub + through
+    total = beside.force(f, p, x, v) + branches.force(p, z) + rub + through
     return {"total": total, "inertance": through, "friction": rub}
 
 
@@ -151,7 +154,8 @@ def stored_energy(p: Parameters, x: float, v: float, z: Sequence[float]) -> floa
     """Kinetic, elastic, bristle, gas and stop energy [J]."""
     state = states_of(p, z)
     place = x - state.deflection if rubs_flywheel(p) else x
-    energy = beside.stored_energy(p, x) + friction.stored_energy(p, place, state.friction)
+    energy = beside.stored_energy(p, x) + branches.stored_energy(p, z)
+    energy += friction.stored_energy(p, place, state.friction)
     if not series.is_there(p):
         return energy + flywheel.stored_energy(p, x, v)
     shaft = series.stored_energy(p, state.deflection, state.gap)
@@ -165,7 +169,8 @@ def dissipated_power(
     state = states_of(p, z)
     rubbing = _rubbing(f, p, x, v, state)
     place, speed = (x - state.deflection, state.speed) if rubs_flywheel(p) else (x, v)
-    heat = beside.dissipated_power(f, p, x, v) + rubbing.bound * speed
+    heat = beside.dissipated_power(f, p, x, v) + branches.dissipated_power(p, z)
+    heat = heat + rubbing.bound * speed
     if rubbing.rate is not None:
         stored = friction.stored_power(f, p, place, speed, state.friction, rubbing.rate)
         if rubbing.damping:

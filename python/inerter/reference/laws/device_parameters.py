@@ -52,6 +52,13 @@ class DeviceParameters(FrictionParameters):
     backlash: float = parameter(0.0, "m", "half of the free play", at_least=0.0)
     flywheel_viscous: float = parameter(0.0, "N s/m", "damping of the flywheel", at_least=0.0)
 
+    branch_stiffness_1: float = parameter(0.0, "N/m", "spring of branch 1", at_least=0.0)
+    branch_damping_1: float = parameter(0.0, "N s/m", "dashpot of branch 1", at_least=0.0)
+    branch_stiffness_2: float = parameter(0.0, "N/m", "spring of branch 2", at_least=0.0)
+    branch_damping_2: float = parameter(0.0, "N s/m", "dashpot of branch 2", at_least=0.0)
+    branch_stiffness_3: float = parameter(0.0, "N/m", "spring of branch 3", at_least=0.0)
+    branch_damping_3: float = parameter(0.0, "N s/m", "dashpot of branch 3", at_least=0.0)
+
     stop_lower: float = parameter(UNSET, "m", "shortest displacement before the stop")
     stop_upper: float = parameter(UNSET, "m", "longest displacement before the stop")
     stop_stiffness: float = parameter(0.0, "N/m", "stiffness of the stops", at_least=0.0)
@@ -92,10 +99,28 @@ class DeviceParameters(FrictionParameters):
         """Check what was given, see Raises."""
         super().__post_init__()
         self._check_side()
+        self._check_branches()
         self._check_channel()
         self._check_series()
         self._check_stops()
         self._check_gas()
+
+    def _check_branches(self) -> None:
+        last = True
+        for i in (1, 2, 3):
+            pair = [getattr(self, f"branch_{name}_{i}") for name in ("stiffness", "damping")]
+            there = pair[0] > 0.0
+            if there != (pair[1] > 0.0):
+                raise ValueError(
+                    f"branch_stiffness_{i}: {pair[0]} N/m with branch_damping_{i} {pair[1]} N s/m "
+                    "is half a branch; give both above 0, or neither"
+                )
+            if there and not last:
+                raise ValueError(
+                    f"branch_stiffness_{i}: {pair[0]} N/m comes after branch {i - 1}, which is not "
+                    "there; number the branches from 1 without a gap"
+                )
+            last = there
 
     def _check_side(self) -> None:
         if self.friction_side not in FRICTION_SIDES:
