@@ -152,6 +152,15 @@ def load_friction() -> None:
     loops("load_friction", devices, 1.0, AMPLITUDE)
 
 
+def load_by_power() -> None:
+    """A drive that loses more forward than backward, and one mean mu."""
+    devices = {
+        "forward 0.6, backward 0.2": Device(inertance=100, mu_forward=0.6, mu_backward=0.2),
+        "mu = 0.4": Device(inertance=100, load_friction=0.4),
+    }
+    loops("load_by_power", devices, 1.0, AMPLITUDE)
+
+
 def damping_and_stiffness() -> None:
     """Dampers and springs beside the inertance."""
     devices = {
@@ -161,6 +170,23 @@ def damping_and_stiffness() -> None:
         "hardening": Device(stiffness_cubic=1.5e7),
     }
     loops("damping_and_stiffness", devices, 1.0, AMPLITUDE)
+
+
+def branches() -> None:
+    """Two viscoelastic branches beside a spring, at three frequencies: force over displacement."""
+    rubber = Device(
+        stiffness=500, branch_stiffness_1=2000, branch_damping_1=300, branch_stiffness_2=1000,
+        branch_damping_2=20,
+    )  # fmt: skip
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    axes: Axes = figure.subplots()
+    for frequency in (0.2, 1.0, 5.0):
+        motion = sine(frequency, 6)
+        force = settled(along(rubber, motion), frequency)
+        axes.plot(1e3 * settled(motion[1], frequency), force, label=f"{frequency:g} Hz")
+    axes.set(xlabel="displacement [mm]", ylabel="force [N]")
+    axes.legend(loc="best", fontsize="small")
+    _save(figure, "branches")
 
 
 def inertance() -> None:
@@ -185,7 +211,7 @@ def series() -> None:
 
 def friction_side() -> None:
     """Friction before and behind the elastic drive."""
-    soft = {"inertance": 100, "series_stiffness": 2e4, "series_damping": 400}
+    soft = {"inertance": 100, "series_stiffness": 1e5, "series_damping": 1500}
     rubbing = {**soft, "friction": "coulomb", "coulomb_force": 20, "transition_velocity": 1e-3}
     devices = {
         "at the terminals": Device(**rubbing),
@@ -218,8 +244,8 @@ def fluid() -> None:
 
 
 GALLERY: Sequence[Callable[[], None]] = (
-    friction, friction_backlash, memory, friction_level, load_friction, damping_and_stiffness,
-    inertance, series, friction_side, end_stops, gas, fluid,
+    friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
+    damping_and_stiffness, branches, inertance, series, friction_side, end_stops, gas, fluid,
 )  # fmt: skip
 
 

@@ -111,6 +111,43 @@ static int check_friction(const InerterDevice* device, char* message) {
   return 0;
 }
 
+// one load friction, or one for each direction of power
+static int check_load(InerterDevice* device, char* message) {
+  double* both[] = {&device->mu_forward, &device->mu_backward};
+  for (int i = 0; i < 2; i++) {
+    const char* name = i ? "mu_backward" : "mu_forward";
+    if (isnan(*both[i])) {
+      *both[i] = device->load_friction;
+    } else if (device->load_friction > 0 && *both[i] != device->load_friction) {
+      return refuse(message,
+                    "%s is %g, but load_friction is %g; state mu_forward and mu_backward, or "
+                    "load_friction for both",
+                    name, *both[i], device->load_friction);
+    }
+  }
+  return 0;
+}
+
+static int check_branches(const InerterDevice* device, char* message) {
+  int count = branch_count(device);
+  for (int i = 0; i < INERTER_MAXBRANCH; i++) {
+    double stiffness = branch_element(device, i)[0], damping = branch_element(device, i)[1];
+    if ((stiffness > 0) != (damping > 0)) {
+      return refuse(message,
+                    "branch_stiffness_%d is %g N/m and branch_damping_%d %g N*s/m: half a branch; "
+                    "give both > 0, or neither",
+                    i + 1, stiffness, i + 1, damping);
+    }
+    if (stiffness > 0 && i >= count) {
+      return refuse(message,
+                    "branch_stiffness_%d is %g N/m, but branch_stiffness_%d is 0 N/m; number the "
+                    "branches from 1 without a gap",
+                    i + 1, stiffness, count + 1);
+    }
+  }
+  return 0;
+}
+
 static int check_stops(const InerterDevice* device, char* message) {
   int lower = !isnan(device->stop_lower), upper = !isnan(device->stop_upper);
   if (!lower && !upper) {
@@ -226,11 +263,12 @@ static int check_channel(InerterDevice* device, char* message) {
 }
 
 static int check_series(const InerterDevice* device, char* message) {
-  if (device->friction_side == INERTER_SIDE_flywheel && device->load_friction >= 1) {
+  if (device->friction_side == INERTER_SIDE_flywheel && device->mu_backward >= 1) {
+    const char* name = device->load_friction >= 1 ? "load_friction" : "mu_backward";
     return refuse(message,
-                  "load_friction is %g and friction_side is \"flywheel\": the flywheel would lock; "
-                  "give load_friction < 1",
-                  device->load_friction);
+                  "%s is %g and friction_side is \"flywheel\": the flywheel would lock; "
+                  "give %s < 1",
+                  name, device->mu_backward, name);
   }
   const int needy[] = {INERTER_INDEX_series_hardening, INERTER_INDEX_backlash};
   const double values[] = {device->series_hardening, device->backlash};
@@ -261,12 +299,13 @@ static uint32_t parts_of(const InerterDevice* p) {
   int varying =
       p->inertance_gradient != 0 || p->inertance_curvature != 0 || p->inertance_speed_gradient != 0;
   int stops = !isnan(p->stop_lower) || !isnan(p->stop_upper);
-  int rubbing = p->friction != INERTER_FRICTION_none || p->load_friction > 0;
+  int rubbing = p->friction != INERTER_FRICTION_none || inerter_has_load_friction(p);
   int wheel = series && rubbing && p->friction_side == INERTER_SIDE_flywheel;
   return curve_parts(p) | (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) |
          (gas ? PART_GAS : 0) | (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) |
          (series ? PART_SERIES : 0) | (p->backlash > 0 ? PART_BACKLASH : 0) |
-         (stops ? PART_STOPS : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
+         (stops ? PART_STOPS : 0) | (branch_count(p) ? PART_BRANCHES : 0) |
+         (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
 int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
@@ -283,7 +322,8 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
     device->static_force = device->coulomb_force;
   }
   if (check_law(device, message) || check_ranges(device, message) ||
-      check_friction(device, message) || check_stops(device, message) ||
+      check_friction(device, message) || check_load(device, message) ||
+      check_branches(device, message) || check_stops(device, message) ||
       check_gas(device, message) || check_channel(device, message) ||
       check_series(device, message) || curve_check(device, message)) {
     return -1;
@@ -297,6 +337,7 @@ void inerter_find_parts(InerterDevice* device) {
   device->nfriction = device->friction == INERTER_FRICTION_maxwell_slip
                           ? slip_count(device)
                           : inerter_friction_nstate(device->friction);
-  device->nstate =
-      device->nfriction + (has(device, PART_SERIES) ? 2 : 0) + (has(device, PART_BACKLASH) ? 1 : 0);
+  device->nbranch = branch_count(device);
+  device->nstate = device->nfriction + (has(device, PART_SERIES) ? 2 : 0) +
+                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch;
 }

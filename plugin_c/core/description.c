@@ -114,6 +114,11 @@ const char* inerter_state_name(const InerterDevice* device, int i) {
   static const char* const kSlip[] = {"friction_state_1", "friction_state_2", "friction_state_3",
                                       "friction_state_4", "friction_state_5", "friction_state_6",
                                       "friction_state_7", "friction_state_8"};
+  static const char* const kBranch[] = {"branch_deflection_1", "branch_deflection_2",
+                                        "branch_deflection_3"};
+  if (i >= device->nstate - device->nbranch) {
+    return kBranch[i - device->nstate + device->nbranch];
+  }
   if (i >= device->nfriction) {
     return kSeries[i - device->nfriction];
   }

@@ -45,8 +45,15 @@ static double wheel_drag(const InerterDevice* device, double stretch, double v, 
 }
 
 // load friction per force at the terminals
-static double load_at_terminals(const InerterDevice* device, double v) {
-  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v);
+static double load_at_terminals(const InerterDevice* device, double v, double carried) {
+  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v, carried);
+}
+
+// T without friction
+static double beside_force(const InerterDevice* device, double stretch, double v, const double* z) {
+  double force = parallel_force(device, stretch, v);
+  return has(device, PART_BRANCHES) ? force + branches_force(device, z + branch_index(device))
+                                    : force;
 }
 
 //------------------------------ states ------------------------------------------------------------
@@ -67,6 +74,9 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
     double drag = wheel_drag(device, stretch, v, z);
     series_rate(device, stretch, v, z + first, drag, rate + first);
   }
+  if (has(device, PART_BRANCHES)) {
+    branches_rate(device, v, z + branch_index(device), rate + branch_index(device));
+  }
 }
 
 void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
@@ -77,13 +87,16 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double*
   if (has(device, PART_SERIES)) {
     series_step(device, stretch, v, 0, 0, z, z + series_index(device), h);
   }
+  if (has(device, PART_BRANCHES)) {
+    branches_step(device, v, z + branch_index(device), h);
+  }
 }
 
 // the bristle's state for a total force; every law is linear in its state
 static double bristle_of_force(const InerterDevice* device, double x, double v, double a,
                                double force) {
-  double at_zero = inerter_force(device, x, v, a, (double[]){0}).total;
-  double at_one = inerter_force(device, x, v, a, (double[]){1}).total;
+  double at_zero = inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){0}).total;
+  double at_one = inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){1}).total;
   double z = (force - at_zero) / (at_one - at_zero);
   if (at_one == at_zero || isnan(z)) {
     return 0;
@@ -108,7 +121,7 @@ static double play_of_force(const InerterDevice* device, double x, double v, dou
   InerterDevice rigid = *device;
   rigid.friction_backlash = 0;
   double z = bristle_of_force(&rigid, x, v, a, force);
-  double wanted = force - inerter_force(device, x, v, a, (double[]){0}).total;
+  double wanted = force - inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){0}).total;
   if (device->friction == INERTER_FRICTION_lugre && z * wanted <= 0) {
     // its damper bears all of it where the contact begins
     return copysign(device->friction_backlash, wanted) * (wanted != 0);
@@ -122,10 +135,10 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
     for (int i = 0; i < device->nstate; i++) {
       z[i] = 0;
     }
-    if (law_of(device)->several && device->nstate) {
+    if (law_of(device)->several && device->nfriction) {
       double wanted = force - inerter_force(device, x, v, a, z).total;
       law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted, z);
-    } else if (device->nstate) {
+    } else if (device->nfriction) {
       z[0] = play_of_force(device, x, v, a, force);
     }
     return;
@@ -138,7 +151,7 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
   double rest = force - inerter_force_motion(device, x, v, z);
 
   // rest = F_s + load |F_s|
-  double load = load_at_terminals(device, v);
+  double load = load_at_terminals(device, v, rest);
   double carried = rest / (1 + load * sign(rest));
   if (isfinite(carried)) {
     series_of_force(device, v, carried, series);
@@ -158,10 +171,6 @@ double inerter_viscous(const InerterDevice* device, double x) {
 
 double inerter_friction_force(const InerterDevice* device, double x, double v, const double* z) {
   return law_force(device, stretch_of(device, x), v, z);
-}
-
-double inerter_load_factor(const InerterDevice* device, double v) {
-  return device->load_friction ? device->load_friction * friction_direction(device, v) : 0;
 }
 
 double inerter_inertance(const InerterDevice* device, double x, double v, double* rest) {
@@ -189,14 +198,14 @@ static double branch_force(const InerterDevice* device, double x, double v, doub
 }
 
 double inerter_force_motion(const InerterDevice* device, double x, double v, const double* z) {
-  double force = parallel_force(device, stretch_of(device, x), v);
+  double force = beside_force(device, stretch_of(device, x), v, z);
   if (has(device, PART_WHEEL_FRICTION)) {
     return force + branch_force(device, x, v, 0, z);
   }
   force += inerter_friction_force(device, x, v, z);
   if (has(device, PART_SERIES)) {
     double carried = branch_force(device, x, v, 0, z);
-    force += carried + inerter_load_factor(device, v) * fabs(carried);
+    force += carried + inerter_load_factor(device, v, carried) * fabs(carried);
   }
   return force;
 }
@@ -208,7 +217,7 @@ double inerter_force_motion_of_rate(const InerterDevice* device, double x, doubl
     return inerter_force_motion(device, x, v, z);
   }
   double friction = law_of(device)->force_of_rate(device, z[0], rate[0]);
-  return parallel_force(device, stretch_of(device, x), v) + friction;
+  return beside_force(device, stretch_of(device, x), v, z) + friction;
 }
 
 InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
@@ -217,13 +226,15 @@ InerterForce inerter_force(const InerterDevice* device, double x, double v, doub
   force.inertance = branch_force(device, x, v, a, z);
   if (has(device, PART_WHEEL_FRICTION)) {
     force.friction = wheel_drag(device, stretch_of(device, x), v, z);
-    force.total = force.inertance + parallel_force(device, stretch_of(device, x), v);
+    force.total = force.inertance + beside_force(device, stretch_of(device, x), v, z);
     force.inertance -= force.friction;
     return force;
   }
   double bristle = inerter_friction_force(device, x, v, z);
-  force.friction = bristle + inerter_load_factor(device, v) * fabs(force.inertance);
-  force.total = force.inertance + parallel_force(device, stretch_of(device, x), v) + force.friction;
+  force.friction =
+      bristle + inerter_load_factor(device, v, force.inertance) * fabs(force.inertance);
+  force.total =
+      force.inertance + beside_force(device, stretch_of(device, x), v, z) + force.friction;
   return force;
 }
 
@@ -249,6 +260,9 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   if (has(device, PART_GAS)) {
     energy += gas_energy(device, y);
   }
+  if (has(device, PART_BRANCHES)) {
+    energy += branches_energy(device, z + branch_index(device));
+  }
   return has(device, PART_STOPS) ? energy + stop_energy(device, stretch) : energy;
 }
 
@@ -256,7 +270,8 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                 const double* z) {
   double stretch = stretch_of(device, x), w = v;
   double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v)) * v;
-  double load = load_at_terminals(device, v) * fabs(branch_force(device, x, v, a, z));
+  double carried = branch_force(device, x, v, a, z);
+  double load = load_at_terminals(device, v, carried) * fabs(carried);
   Place rubbing = place_of_friction(device, stretch, v, z);
   double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, stretch, v, z)
                                                      : inerter_friction_force(device, x, v, z);
@@ -281,6 +296,9 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   }
   if (has(device, PART_FLYWHEEL)) {
     power += flywheel_damper(device, w).value * w;
+  }
+  if (has(device, PART_BRANCHES)) {
+    power += branches_heat(device, z + branch_index(device));
   }
   return has(device, PART_STOPS) ? power + stop_heat(device, stretch, v) : power;
 }

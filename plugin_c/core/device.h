@@ -1,7 +1,7 @@
 // A device: forces at the terminals, and an inertance, perhaps behind a series element.
 //
 //   F = T(x, v, z) + N + mu sign(v) |N|
-//   T = c(x) v + c2 v|v| + k x + k3 x^3 + f(x) + F_0 + F_friction + F_stops
+//   T = c(x) v + c2 v|v| + k x + k3 x^3 + f(x) + F_0 + F_friction + F_stops + F_branches
 //   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
 //   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
 //   F = T + F_s,  F_s = N + F_friction(y, w) + mu sign(w) |N|      friction_side = flywheel
@@ -15,7 +15,8 @@
 // positive. For a rotational device read rad, N m and kg m^2.
 //
 // States z, each only where it is needed, in this order: the friction law's, s, w, the position of
-// the free play. All 0: unloaded, the flywheel at rest, in the middle of the play.
+// the free play, the springs of the viscoelastic branches (branches.c). All 0: unloaded, the
+// flywheel at rest, in the middle of the play.
 //
 // This file and its neighbours are plain C17: no allocation, no globals, no simulator.
 
@@ -71,7 +72,8 @@ enum {
   INERTER_NGIVEN = (INERTER_INDEX_friction_side + 64) / 64,
   INERTER_MAXSLIP = 8,                    // elements of maxwell_slip
   INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
-  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3,
+  INERTER_MAXBRANCH = 3,
+  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH,
   INERTER_MAXCURVE = 64,  // most values of a curve
   INERTER_MAXPERIOD = 8,  // most periods of a sum
   INERTER_MESSAGE_SIZE = 512
@@ -104,7 +106,7 @@ typedef struct InerterDevice_ {
   int friction_side;               // InerterSide
   uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
   uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
-  int nstate, nfriction;           // states, those of the friction law; set by inerter_finish
+  int nstate, nfriction, nbranch;  // states, of the friction law, of branches; by inerter_finish
   InerterCurve curve[INERTER_NSTROKE];
 } InerterDevice;
 
@@ -113,6 +115,12 @@ typedef struct InerterDevice_ {
 static inline int inerter_is_given(const InerterDevice* device, int i) {
   return (int)(device->given[i / 64] >> i % 64 & 1);
 }
+// Whether a finished device has load friction.
+static inline int inerter_has_load_friction(const InerterDevice* device) {
+  return device->mu_forward > 0 || device->mu_backward > 0;
+}
+
+// Whether anything was set.
 static inline int inerter_states_something(const InerterDevice* device) {
   uint64_t any = 0;
   for (int i = 0; i < INERTER_NGIVEN; i++) {
@@ -209,7 +217,7 @@ INERTER_API int inerter_nstate(const InerterDevice* device);
 INERTER_API const char* inerter_compiler(void);
 
 // Name of state i: "friction_state" (of maxwell_slip "friction_state_1", ...), "series_deflection",
-// "flywheel_velocity", "gap_position"; NULL past the end.
+// "flywheel_velocity", "gap_position", "branch_deflection_1", ...; NULL past the end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 
 // Rates of the states z at displacement x, velocity v.
@@ -252,9 +260,9 @@ INERTER_API double inerter_friction_force(const InerterDevice* device, double x,
 // a = 0 [N]. With a series element both are 0.
 INERTER_API double inerter_inertance(const InerterDevice* device, double x, double v, double* rest);
 
-// Load friction per force through the inertance at velocity v: mu sign(v), so that it adds
-// inerter_load_factor * |N|.
-INERTER_API double inerter_load_factor(const InerterDevice* device, double v);
+// Load friction per force N through the inertance at velocity v: mu sign(v), so that it adds
+// inerter_load_factor * |N|. Of N only the sign counts.
+INERTER_API double inerter_load_factor(const InerterDevice* device, double v, double carried);
 
 // All forces.
 INERTER_API InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
@@ -278,8 +286,8 @@ typedef struct InerterStep_ {
   int kind;            // which of the parts below there are (over_step.c)
   double start, rise;  // a line: start + rise a
   double stretch, level, width,
-      lean;             // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
-  double motion, load;  // load friction of this instant
+      lean;  // friction without memory: level (1 + lean sign(v1)) tanh(v1 / width)
+  double motion, load, load_negative;  // load friction of this instant, for N > 0 and N < 0
 } InerterStep;
 
 INERTER_API void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x,

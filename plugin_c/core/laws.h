@@ -16,6 +16,7 @@ enum {
   PART_BACKLASH = 1 << 5,
   PART_STOPS = 1 << 6,
   PART_WHEEL_FRICTION = 1 << 7,  // friction at the flywheel behind a series element
+  PART_BRANCHES = 1 << 8,
 
   // along the stroke (curve.c); that of friction is in friction.h
   PART_FRICTION_BACK = 1 << 17,
@@ -196,6 +197,22 @@ double series_energy(const InerterDevice* p, const double* z);
 double series_heat(const InerterDevice* p, double v, const double* z);
 int series_valid(const InerterDevice* p, const double* z, char* message);
 void series_of_force(const InerterDevice* p, double v, double force, double* z);
+
+// branches.c, e: deflections of their springs, the last states; over a step of h seconds to
+// velocity v1 with the springs' implicit share
+int branch_count(const InerterDevice* p);
+void branches_rate(const InerterDevice* p, double v, const double* e, double* rate);
+void branches_step(const InerterDevice* p, double v, double* e, double h);
+double branches_force(const InerterDevice* p, const double* e);
+double branches_over_step(const InerterDevice* p, double v1, double* e, double h, double mobility);
+double branches_energy(const InerterDevice* p, const double* e);
+double branches_heat(const InerterDevice* p, const double* e);
+static inline const double* branch_element(const InerterDevice* p, int i) {
+  return &p->branch_stiffness_1 + 2 * i;
+}
+static inline int branch_index(const InerterDevice* p) {
+  return p->nstate - p->nbranch;
+}
 
 // oscillator.c: a flywheel on a linear spring, and its states after a time
 typedef struct Oscillator_ {

@@ -16,6 +16,9 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
     friction_step(device, middle, mean, z, h);
   }
+  if (has(device, PART_BRANCHES)) {
+    branches_step(device, mean, z + branch_index(device), h);
+  }
   if (has(device, PART_SERIES)) {
     double a = (6 * mean - 4 * v[0] - 2 * v[1]) / h;
     double jerk = 6 * (v[0] + v[1] - 2 * mean) / (h * h);
@@ -29,7 +32,7 @@ static void step_between(const InerterDevice* device, const double* x, const dou
 enum { BLOCK = 256 };
 
 static int is_plain(const InerterDevice* device) {
-  return !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) && device->load_friction == 0 &&
+  return !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) && !inerter_has_load_friction(device) &&
          device->friction_backlash == 0;
 }
 

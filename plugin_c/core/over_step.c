@@ -125,7 +125,7 @@ static double friction_with_load(const InerterDevice* device, double friction, d
                                  double v1, double carried) {
   return has(device, PART_WHEEL_FRICTION)
              ? drag
-             : friction + inerter_load_factor(device, v1) * fabs(carried);
+             : friction + inerter_load_factor(device, v1, carried) * fabs(carried);
 }
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
@@ -156,6 +156,9 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     double spring = spring_force(device, stretch);
     double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v1)) * v1;
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
+    if (has(device, PART_BRANCHES)) {
+      stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
+    }
     force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }
@@ -171,8 +174,8 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
                         const double* z, double h, double mobility) {
   *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
   step->kind = STEP_GENERAL;
-  if (device->load_friction != 0 || device->quadratic_damping != 0 || has(device, PART_SERIES) ||
-      has(device, PART_STOPS)) {
+  if (inerter_has_load_friction(device) || device->quadratic_damping != 0 ||
+      has(device, PART_SERIES) || has(device, PART_STOPS) || has(device, PART_BRANCHES)) {
     return;
   }
 
@@ -195,10 +198,11 @@ void inerter_step_instant(InerterStep* step, const InerterDevice* device, double
                           double motion) {
   *step = (InerterStep){.device = device, .x = x, .v = v};
   step->rise = inerter_inertance(device, x, v, &step->start);
-  if (device->load_friction != 0) {
+  if (inerter_has_load_friction(device)) {
     step->kind = STEP_LOAD;
     step->motion = motion;
-    step->load = inerter_load_factor(device, v);
+    step->load = inerter_load_factor(device, v, 1);
+    step->load_negative = inerter_load_factor(device, v, -1);
   } else {
     step->kind = STEP_LINE;
     step->start += motion;
@@ -251,9 +255,11 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
       return line + friction;
     }
 
-    case STEP_LOAD:
-      *slope = step->rise * (1 + step->load * sign(line));
-      return line + step->load * fabs(line) + step->motion;
+    case STEP_LOAD: {
+      double load = line < 0 ? step->load_negative : step->load;
+      *slope = step->rise * (1 + load * sign(line));
+      return line + load * fabs(line) + step->motion;
+    }
 
     default:
       break;

@@ -117,6 +117,21 @@
   X(slip_stiffness_8, "N/m", 0, 0, INFINITY, CLOSED, "maxwell_slip",                               \
     "stiffness of element 8; 0: no such element")                                                  \
   X(slip_force_8, "N", 0, 0, INFINITY, CLOSED, "maxwell_slip", "force at which element 8 slips")   \
+  /* load friction by the direction of power */                                                    \
+  X(mu_forward, "1", NAN, 0, INFINITY, CLOSED, "",                                                 \
+    "load friction while the motion drives the flywheel; unset: load_friction")                    \
+  X(mu_backward, "1", NAN, 0, 1, CLOSED, "",                                                       \
+    "load friction while the flywheel drives the motion; unset: load_friction")                    \
+  /* viscoelastic branches: each a spring and a dashpot in series */                               \
+  X(branch_stiffness_1, "N/m", 0, 0, INFINITY, CLOSED, "", "spring of viscoelastic branch 1, K")   \
+  X(branch_damping_1, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "dashpot of viscoelastic branch 1, in series with its spring, C")                              \
+  X(branch_stiffness_2, "N/m", 0, 0, INFINITY, CLOSED, "", "spring of viscoelastic branch 2, K")   \
+  X(branch_damping_2, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "dashpot of viscoelastic branch 2, in series with its spring, C")                              \
+  X(branch_stiffness_3, "N/m", 0, 0, INFINITY, CLOSED, "", "spring of viscoelastic branch 3, K")   \
+  X(branch_damping_3, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                         \
+    "dashpot of viscoelastic branch 3, in series with its spring, C")                              \
   /* along the stroke */                                                                           \
   X(curve_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the first value of every curve") \
   X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")

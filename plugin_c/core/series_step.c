@@ -158,7 +158,7 @@ static double misfit(const InerterDevice* p, Element element, Flywheel flywheel,
   }
   double friction = friction_over_step(p, rubbing->y, rubbing->near, w, rubbing->h,
                                        rubbing->implicit, rubbing->end);
-  return friction + inerter_load_factor(p, w) * fabs(force - drag) - drag;
+  return friction + inerter_load_factor(p, w, force - drag) * fabs(force - drag) - drag;
 }
 
 enum { MOST_TURNS = 100 };

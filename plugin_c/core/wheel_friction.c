@@ -17,5 +17,5 @@
 
 double wheel_carried(const InerterDevice* p, double w, double force, double friction) {
   double rest = force - friction;
-  return rest / (1 + inerter_load_factor(p, w) * sign(rest));
+  return rest / (1 + inerter_load_factor(p, w, rest) * sign(rest));
 }

@@ -30,17 +30,19 @@ int coupled_needed(const mjModel* m, const Instance* self) {
   const InerterDevice* share = present(self);
   int series = instance_has_series(share), inertance = share->inertance > 0 || self->replaced > 0;
   if (m->opt.integrator == mjINT_RK4) {
-    return !series && (inertance || share->load_friction > 0);
+    return !series && (inertance || inerter_has_load_friction(share));
   }
-  return !self->native || series || inertance || share->load_friction > 0 ||
-         instance_has_stop(share) || instance_has_sharp_friction(share) || self->stiff_bristle ||
+  return !self->native || series || inertance || inerter_has_load_friction(share) ||
+         instance_has_stop(share) || instance_has_branches(share) ||
+         instance_has_sharp_friction(share) || self->stiff_bristle ||
          inerter_has_curve(share, INERTER_STROKE_viscous);
 }
 
 // whether the force over a step depends on how easily the terminals give way
 static int asks_mobility(const Coupled* c) {
   const InerterDevice* device = present(c->self);
-  return instance_has_series(device) || instance_has_bristle(device);
+  return instance_has_series(device) || instance_has_bristle(device) ||
+         instance_has_branches(device);
 }
 
 // the law of a device, its mobility known

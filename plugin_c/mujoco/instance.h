@@ -127,6 +127,11 @@ static inline int instance_has_sharp_friction(const InerterDevice* device) {
   return device->friction != INERTER_FRICTION_none && !instance_has_bristle(device);
 }
 
+// Whether a device has viscoelastic branches.
+static inline int instance_has_branches(const InerterDevice* device) {
+  return device->nbranch > 0;
+}
+
 // Whether friction acts at the flywheel, behind a series element.
 static inline int instance_rubs_flywheel(const InerterDevice* device) {
   return instance_has_series(device) && device->friction_side == INERTER_SIDE_flywheel;
@@ -135,7 +140,7 @@ static inline int instance_rubs_flywheel(const InerterDevice* device) {
 // Whether a device needs the acceleration although the engine integrates b: load friction, or an
 // inertance that varies.
 static inline int instance_varies(const InerterDevice* device) {
-  return device->load_friction != 0 || device->inertance_gradient != 0 ||
+  return inerter_has_load_friction(device) || device->inertance_gradient != 0 ||
          device->inertance_curvature != 0 || device->inertance_speed_gradient != 0 ||
          inerter_has_curve(device, INERTER_STROKE_inertance) ||
          inerter_has_curve(device, INERTER_STROKE_inertance_back);

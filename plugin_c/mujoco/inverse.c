@@ -56,7 +56,7 @@ static mjtNum share_of_force(const mjModel* m, const Now* now) {
     return force.total - self->replaced * a;
   }
   mjtNum branch = inerter_inertance(share, self->x, self->v, &rest) * a + rest;
-  mjtNum load = inerter_load_factor(share, self->v) * fabs(branch);
+  mjtNum load = inerter_load_factor(share, self->v, branch) * fabs(branch);
   return branch + load + inerter_force_motion(share, self->x, self->v, self->state) -
          self->replaced * a;
 }

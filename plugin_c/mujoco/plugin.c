@@ -104,7 +104,8 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     snprintf(message, INERTER_MESSAGE_SIZE,
              "%s is given, but inertance is 0 kg, which is all that it acts on; state inertance or "
              "remove it",
-             self->device.load_friction != 0 ? "load_friction" : "a variation of the inertance");
+             inerter_has_load_friction(&self->device) ? "load_friction"
+                                                      : "a variation of the inertance");
     return -1;
   }
   self->sensed = instance_sensed(m, instance);
@@ -338,7 +339,8 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
 // the stages of RK4 overshoot the ends of the free play by their order: back to them
 static void keep_gap(const InerterDevice* device, int nstate, mjtNum* state) {
   if (device->backlash > 0) {
-    state[nstate - 1] = mju_clip(state[nstate - 1], -device->backlash, device->backlash);
+    mjtNum* gap = state + nstate - device->nbranch - 1;
+    *gap = mju_clip(*gap, -device->backlash, device->backlash);
   }
 }
 

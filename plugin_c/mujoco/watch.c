@@ -195,6 +195,13 @@ void watch_stiffness(const mjModel* m, Instance* self) {
                  ? "the change of sign of friction within stribeck_velocity"
                  : "the change of sign of friction within transition_velocity",
              implicit);
+    double branches = p->branch_stiffness_1 + p->branch_stiffness_2 + p->branch_stiffness_3;
+    consider(&fastest, sqrt(branches * light), swing, "branch_stiffness", implicit);
+    for (int i = 0; i < p->nbranch; i++) {
+      const double* branch = &p->branch_stiffness_1 + 2 * i;
+      consider(&fastest, branch[0] / branch[1], decay, "the relaxation of a viscoelastic branch",
+               implicit);
+    }
     if (series) {
       consider(&fastest, sqrt(p->series_stiffness * both), swing, "series_stiffness", implicit);
       consider(&fastest, p->series_damping * both, decay, "series_damping", implicit);

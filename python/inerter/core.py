@@ -115,6 +115,11 @@ class Device:
         return list(friction_sides())[self._c.friction_side]  # type: ignore[attr-defined]
 
     @property
+    def has_load_friction(self) -> bool:
+        """Whether friction grows with the force through the inertance."""
+        return self.mu_forward > 0.0 or self.mu_backward > 0.0
+
+    @property
     def nstate(self) -> int:
         """Number of states."""
         return self._c.nstate  # type: ignore[attr-defined]

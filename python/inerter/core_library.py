@@ -179,9 +179,10 @@ def device_type() -> type[ctypes.Structure]:
     fields: list[tuple[str, Any]] = [(name, ctypes.c_double) for name in parameters()]
     fields += [(name, ctypes.c_int) for name in WORDS]
     # a bit for each parameter and each word
-    words = (len(parameters()) + len(WORDS) + 62) // 64
+    words = (len(parameters()) + 66) // 64
     fields += [("given", ctypes.c_uint64 * words)]
     fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int), ("nfriction", ctypes.c_int)]
+    fields += [("nbranch", ctypes.c_int)]
     known = type("_CKnown", (ctypes.Structure,), {"_fields_": fields})
     # what follows is read by functions of the core
     numbers = (library().inerter_device_size() - ctypes.sizeof(known)) // 8

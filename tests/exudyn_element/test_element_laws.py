@@ -51,6 +51,10 @@ def devices(friction: str) -> list[tuple[Device, Array, Array]]:
                 rng.normal(0.0, 10.0, POINTS),
             ]
         )
+        if len(found) % 3 == 1:
+            # by the direction of power
+            backward = chosen.pop("load_friction")
+            chosen |= {"mu_forward": float(rng.uniform(0.0, 2.0)), "mu_backward": backward}
         states = draw_states(rng, POINTS, chosen)
         if friction in MEMORY and len(found) % 2:
             # in the gap, at its edges, engaged
@@ -64,6 +68,13 @@ def devices(friction: str) -> list[tuple[Device, Array, Array]]:
             states[:, -1] = np.clip(states[:, -1], -device.backlash, device.backlash)
             if not device.series_damping:
                 states[:, -1] = np.clip(states[:, -3], -device.backlash, device.backlash)
+        if len(found) % 5 == 2:
+            # viscoelastic branches, whose states are the last
+            device = device.replace(
+                branch_stiffness_1=2e4, branch_damping_1=500.0, branch_stiffness_2=3e3,
+                branch_damping_2=900.0,
+            )  # fmt: skip
+            states = np.column_stack([states, rng.normal(0.0, 0.01, (POINTS, 2))])
         found.append((device, motion, states))
     return found
 
@@ -142,6 +153,18 @@ def test_a_gap_position_beyond_the_edge() -> None:
             assert beyond - edge == pytest.approx(-side * 1e-4 * 1e4 / 20.0)
 
 
+def test_more_coordinates_than_exudyn_evaluates_by_itself() -> None:
+    values = {f"slip_stiffness_{i}": 1e4 for i in range(1, 7)}
+    values |= {f"slip_force_{i}": 1.0 for i in range(1, 7)}
+    system = line([2.0, 3.0], [0.0, 0.0])
+    with pytest.raises(ValueError, match=r"at most 7 coordinates \(here 8\)"):
+        CreateInerter(
+            system.mbs, "d", system.parts, friction="maxwell_slip", symbolic=True, **values
+        )
+    strut = CreateInerter(system.mbs, "d", system.parts, friction="maxwell_slip", **values)
+    assert not strut.symbolic
+
+
 @pytest.mark.parametrize("heat", [False, True])
 @pytest.mark.parametrize("friction", LAWS + SEVERAL)
 def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
@@ -152,13 +175,16 @@ def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
         given: dict[str, Any] = device.given
         if rigid(device):
             # that one Exudyn cannot evaluate by itself
-            given["load_friction"] = 0.0
+            for name in ("load_friction", "mu_forward", "mu_backward"):
+                given.pop(name, None)
+        # more coordinates than Exudyn evaluates by itself
+        several = 2 + device.nstate + heat > 7
         made = [
             CreateInerter(
                 system.mbs, f"d{symbolic}", system.parts, symbolic=symbolic, dissipatedEnergy=heat,
                 **given,
             )
-            for symbolic in (True, False)
+            for symbolic in (None if several else True, False)
         ]  # fmt: skip
         system.mbs.Assemble()
         element, items = made[0].element, [each.functions.parameters for each in made]

@@ -159,7 +159,8 @@ def draw_complete(rng: np.random.Generator) -> Parameters:
     drawn |= draw_branches(rng) | draw_flywheel(rng, channel, gas)
     drawn |= draw_stops(rng) if stops else {}
     drawn |= draw_series(rng, backlash) if series else {}
-    if rng.random() < 0.4:
+    # by a source of its own, so that what follows is drawn as it was
+    if np.random.default_rng(int(1e6 * drawn["viscous"])).random() < 0.4:
         drawn["friction_side"] = "flywheel"
     if channel:
         del drawn["inertance"]

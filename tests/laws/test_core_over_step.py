@@ -65,7 +65,9 @@ def test_a_short_step_is_the_force_itself(law: str) -> None:
         now = device.evaluate(x, v, a, z)
         size = sum(abs(now[name][0]) for name in FORCES) + 1.0
         errors = []
-        for h in (1e-7, 1e-8, 0.0):
+        # friction at a flywheel of little inertance (down to 0.05 kg here) stops it within 1e-7 s
+        short = 1e-9 if p.get("friction_side") == "flywheel" else 1e-7
+        for h in (short, 0.1 * short, 0.0):
             force, end = device.over_step(x, v, a, z, h, 0.1)
             errors.append(max(abs(force[name] - now[name][0]) for name in FORCES))
         np.testing.assert_array_equal(end, z)

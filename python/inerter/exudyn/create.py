@@ -21,7 +21,7 @@ from inerter.exudyn.kinematics import Line, Span
 from inerter.exudyn.parameters import Parameters, own_names
 from inerter.exudyn.readings import Readings
 from inerter.exudyn.terminals import Terminals, check, terminals
-from inerter.exudyn.user_functions import UserFunctions
+from inerter.exudyn.user_functions import MOST_SYMBOLIC, UserFunctions
 from inerter.exudyn.watch import install
 
 
@@ -73,7 +73,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         the first body.
     symbolic
         Whether Exudyn evaluates the forces itself, from matrices and expressions: None, where it
-        can (on 1D coordinates, unless load friction acts on a rigid device). Else the package's
+        can (on 1D coordinates, unless load friction acts on a rigid device, or there are more than
+        seven coordinates: terminals and states). Else the package's
         library evaluates them, as it does between points.
     initialStates
         States at the start by name, as in `Inerter.stateNames`; where none is given the shaft is
@@ -138,11 +139,12 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     if free and isinstance(kinematics, Span):
         device = device.replace(rest_length=reference_length(kinematics))
     element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
-    straight = isinstance(kinematics, Line) and not element.loaded
+    straight = isinstance(kinematics, Line) and not element.loaded and element.size <= MOST_SYMBOLIC
     if symbolic and not straight:
         raise ValueError(
             "symbolic: True, but Exudyn can evaluate by itself only devices on 1D coordinates, "
-            "without load friction on a rigid inertance; leave it None or set it False"
+            f"without load friction on a rigid inertance, of at most {MOST_SYMBOLIC} coordinates "
+            f"(here {element.size}); leave it None or set it False"
         )
     names = (*device.state_names, *(("dissipated_energy",) if dissipatedEnergy else ()))
     given = _initial_states(names, initialStates or {})

@@ -1,6 +1,6 @@
 """The device as Exudyn needs it: forces at the terminals, rates of the states, energy.
 
-    F = T + F_friction + N + mu tanh(v / v_t) |N|
+    F = T + F_friction + N + mu tanh(v / v_t) |N|      mu by the sign of N v
 
 T: `beside.py`; friction: `friction.py`; N, through the inertance: `flywheel.py`, behind the series
 element of `series.py` if there is one. States z: friction_state, series_deflection s,
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.exudyn import beside, flywheel, friction, series
+from inerter.exudyn import beside, branches, flywheel, friction, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -66,6 +66,9 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     rubbing = _rubbing(f, p, x, v, state)
     at_terminals = beside.force(f, p, x, v)
     found: list[Term] = []
+    for spring, dashpot, e, at in branches.deflections(p, z):
+        found.append(Term(e, spring, ((at, -spring / dashpot),)))
+        found.append(Term(v, 0.0, ((at, 1.0),)))
     wheel = rubs_flywheel(p)
     if not wheel:
         at_terminals = at_terminals + rubbing.bound
@@ -87,8 +90,8 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     if wheel:
         # all that friction takes of the shaft's force
         rest = rest + shaft.force - carried(f, p, x, v, 0.0, z)
-    elif p.load_friction:
-        at_terminals = at_terminals + _load_share(f, p, v) * f.abs(shaft.force)
+    elif rubs_by_load(p):
+        at_terminals = at_terminals + _load_share(f, p, v, shaft.force) * f.abs(shaft.force)
     spinning = place["flywheel_velocity"]
     if flywheel.varies(p):
         found.append(Term(shaft.force, 1.0))
@@ -107,13 +110,15 @@ def mass(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value = 0.0
     if series.is_there(p):
         return 0.0
     inertance = flywheel.inertance(f, p, x, v)[0]
-    return inertance * (1.0 + load_sign * _load_share(f, p, v)) if p.load_friction else inertance
+    if not rubs_by_load(p):
+        return inertance
+    return inertance * (1.0 + load_sign * _load_share(f, p, v, load_sign))
 
 
 def load_rest(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value) -> Value:
     """Load friction of that part of N that does not depend on acceleration [N]."""
     rest = flywheel.inertance(f, p, x, v)[1] + flywheel.force(f, p, x, v)
-    return load_sign * _load_share(f, p, v) * rest
+    return load_sign * _load_share(f, p, v, load_sign) * rest
 
 
 def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value]) -> Value:
@@ -125,9 +130,9 @@ def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequen
         if not rubs_flywheel(p):
             return force
         left = force - _law_force(_rubbing(f, p, x, v, state))
-        if not p.load_friction:
+        if not rubs_by_load(p):
             return left
-        return left / (1.0 + _load_share(f, p, state.speed) * f.sign(left))
+        return left / (1.0 + _load_share(f, p, state.speed, left) * f.sign(left))
     inertance, rest = flywheel.inertance(f, p, x, v)
     return inertance * a + rest + flywheel.force(f, p, x, v)
 
@@ -138,10 +143,10 @@ def forces(
     """Total force, force through the inertance, friction with load friction [N]."""
     through, state = carried(f, p, x, v, a, z), states_of(p, z)
     rub = _law_force(_rubbing(f, p, x, v, state))
-    if p.load_friction:
+    if rubs_by_load(p):
         speed = state.speed if rubs_flywheel(p) else v
-        rub = rub + _load_share(f, p, speed) * f.abs(through)
-    total = beside.force(f, p, x, v) + rub + through
+        rub = rub + _load_share(f, p, speed, through) * f.abs(through)
+    total = beside.force(f, p, x, v) + branches.force(p, z) + rub + through
     return {"total": total, "inertance": through, "friction": rub}
 
 
@@ -149,7 +154,8 @@ def stored_energy(p: Parameters, x: float, v: float, z: Sequence[float]) -> floa
     """Kinetic, elastic, bristle, gas and stop energy [J]."""
     state = states_of(p, z)
     place = x - state.deflection if rubs_flywheel(p) else x
-    energy = beside.stored_energy(p, x) + friction.stored_energy(p, place, state.friction)
+    energy = beside.stored_energy(p, x) + branches.stored_energy(p, z)
+    energy += friction.stored_energy(p, place, state.friction)
     if not series.is_there(p):
         return energy + flywheel.stored_energy(p, x, v)
     shaft = series.stored_energy(p, state.deflection, state.gap)
@@ -163,14 +169,15 @@ def dissipated_power(
     state = states_of(p, z)
     rubbing = _rubbing(f, p, x, v, state)
     place, speed = (x - state.deflection, state.speed) if rubs_flywheel(p) else (x, v)
-    heat = beside.dissipated_power(f, p, x, v) + rubbing.bound * speed
+    heat = beside.dissipated_power(f, p, x, v) + branches.dissipated_power(p, z)
+    heat = heat + rubbing.bound * speed
     if rubbing.rate is not None:
         stored = friction.stored_power(f, p, place, speed, state.friction, rubbing.rate)
         if rubbing.damping:
             heat = heat + rubbing.damping * rubbing.rate * speed
         heat = heat - stored
-    if p.load_friction:
-        heat = heat + _load_share(f, p, speed) * f.abs(through) * speed
+    if rubs_by_load(p):
+        heat = heat + _load_share(f, p, speed, through) * f.abs(through) * speed
     if not series.is_there(p):
         return heat + flywheel.dissipated_power(f, p, v)
     shaft = series.dissipated_power(f, p, state.deflection, v - state.speed, state.gap)
@@ -195,6 +202,16 @@ def _law_force(rubbing: friction.Friction) -> Value:
     return rubbing.bound + rubbing.damping * rubbing.rate
 
 
-def _load_share(f: Functions, p: Parameters, v: Value) -> Value:
-    """Mu tanh(v / v_t) [-]."""
-    return p.load_friction * f.tanh(v / p.transition_velocity) if p.load_friction else 0.0
+def rubs_by_load(p: Parameters) -> bool:
+    """Whether friction grows with the force through the inertance."""
+    return bool(p.mu_forward or p.mu_backward)
+
+
+def _load_share(f: Functions, p: Parameters, v: Value, through: Value) -> Value:
+    """Mu tanh(v / v_t) [-]: mu forward where N v >= 0, else backward; of N the sign counts."""
+    if not rubs_by_load(p):
+        return 0.0
+    mu = p.mu_forward
+    if p.mu_backward != mu:
+        mu = f.choose(through * v < 0.0, p.mu_backward, mu)
+    return mu * f.tanh(v / p.transition_velocity)

@@ -75,7 +75,7 @@ class Element:
     @property
     def loaded(self) -> bool:
         """Whether load friction acts on a rigidly driven inertance, and needs accelerations."""
-        return bool(self.device.load_friction) and not series.is_there(self.device)
+        return law.rubs_by_load(self.device) and not series.is_there(self.device)
 
     @property
     def constant_mass(self) -> bool:
@@ -158,7 +158,7 @@ class Element:
         if TURNED in self.own:
             forces[self.first + self.own.index(TURNED)] = v
         if self.heat:
-            through = law.carried(f, p, x, v, a, z) if p.load_friction else 0.0
+            through = law.carried(f, p, x, v, a, z) if law.rubs_by_load(p) else 0.0
             forces[-1] = law.dissipated_power(f, p, x, v, z, through)
         return Recorded(forces, motion, inertance)
 

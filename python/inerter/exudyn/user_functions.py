@@ -25,6 +25,10 @@ from inerter.exudyn.tape import Number, Tape
 Matrix = NDArray[np.float64]
 
 
+MOST_SYMBOLIC = 7
+"""Up to this size Exudyn's symbolic vectors hold; of eight elements they end the process (1.13)."""
+
+
 class UserFunctions:
     """Matrices and user functions of an element; `name` is for its errors.
 
@@ -164,7 +168,7 @@ def _parts(element: Element, f: Functions, q: Any, q_t: Any) -> list[tuple[Any, 
         found.append((term.value, weights))
     if element.heat:
         # with load friction only behind a series element: it asks for no acceleration there
-        through = law.carried(f, p, x, v, 0.0, z) if p.load_friction else 0.0
+        through = law.carried(f, p, x, v, 0.0, z) if law.rubs_by_load(p) else 0.0
         weights = np.zeros(element.size)
         weights[element.first + element.own.index(HEAT)] = 1.0
         found.append((law.dissipated_power(f, p, x, v, z, through), weights))

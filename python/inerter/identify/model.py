@@ -50,7 +50,7 @@ class Model:
     def stated(self) -> dict[str, float | str]:
         """What a file of the device has to state: no width of sign(v) where nothing reads it."""
         given = dict(self._device.given)
-        if self.friction == "none" and not self._device.load_friction:
+        if self.friction == "none" and not self._device.has_load_friction:
             given.pop("transition_velocity", None)
         return given
 

@@ -68,7 +68,7 @@ def force_along(model: Model, run: BenchRun) -> Array:
     device = model.device()
     run, values = with_late_motion(model, run)
     state = first_state(device, run, values.get("friction_place", 0.0))
-    rough = model.has_jumps or device.friction != "none" or device.load_friction
+    rough = model.has_jumps or device.friction != "none" or device.has_load_friction
     drift = values.get("friction_drift", 0.0)
     if np.isinf(run.cutoff) or not rough:
 
@@ -86,7 +86,7 @@ def force_along(model: Model, run: BenchRun) -> Array:
         # hysteresis that hardens without end: nothing that could be low-passed
         return np.full(run.force.size, np.inf)
     law = found["friction"]
-    if drift and device.load_friction:
+    if drift and device.has_load_friction:
         law = run.at_measured_rate(_without_load(device), state)["friction"]
     if not model.has_jumps:
         total = smooth + run.in_band(found["friction"])
@@ -148,12 +148,13 @@ def with_friction_drift(
     found = along(device)
     if not drift:
         return found["total"]
-    law = along(_without_load(device)) if device.load_friction else found
+    law = along(_without_load(device)) if device.has_load_friction else found
     return found["total"] + drift * elapsed * law["friction"]
 
 
 def _without_load(device: Device) -> Device:
-    given = {name: value for name, value in device.given.items() if name != "load_friction"}
+    load = ("load_friction", "mu_forward", "mu_backward")
+    given = {name: value for name, value in device.given.items() if name not in load}
     return Device(**given)
 
 

@@ -30,6 +30,7 @@ from .laws import (
     FRICTION,
     DeviceParameters,
     Quantity,
+    branches,
     channel,
     end_stops,
     gas,
@@ -65,7 +66,9 @@ class ReferenceDevice(DeviceParameters):
         if self.friction == "maxwell_slip":
             friction = tuple(f"friction_state_{i + 1}" for i in range(self.friction_states))
         flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
-        return friction + flywheel + (("gap_position",) if self.backlash > 0.0 else ())
+        gap = ("gap_position",) if self.backlash > 0.0 else ()
+        beside = tuple(f"branch_deflection_{i + 1}" for i in range(branches.count(self)))
+        return friction + flywheel + gap + beside
 
     @property
     def friction_states(self) -> int:
@@ -91,7 +94,7 @@ class ReferenceDevice(DeviceParameters):
     ) -> Quantity:
         """Total force F [N], tension positive."""
         if self.rubs_flywheel:
-            return self._series_force(x, v, z, contact) + self._beside(x, v)
+            return self._series_force(x, v, z, contact) + self._beside(x, v, z)
         carried = self.inertance_force(x, v, a, z, contact=contact)
         return carried + self.load_friction_force(v, carried) + self.rest_force(x, v, z)
 
@@ -120,8 +123,8 @@ class ReferenceDevice(DeviceParameters):
     def rest_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """The part T of F [N] that stands beside the inertance branch."""
         if self.rubs_flywheel:
-            return self._beside(x, v)
-        return self._beside(x, v) + self.friction_force(x, v, z)
+            return self._beside(x, v, z)
+        return self._beside(x, v, z) + self.friction_force(x, v, z)
 
     def total_friction(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
         """Friction law and load friction [N], on the side where they act."""
@@ -138,21 +141,11 @@ class ReferenceDevice(DeviceParameters):
 
     def load_friction_force(self, v: Quantity, carried: Quantity) -> Quantity:
         """Load-dependent friction mu |N| tanh(v / v_t) [N], N the force carried."""
-        return load.force(
-            carried,
-            v,
-            load_friction=self.load_friction,
-            transition_velocity=self.transition_velocity,
-        )
+        return load.force(self, carried, v)
 
-    def load_share(self, v: Quantity) -> Quantity:
-        """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals."""
-        return 0.0 * v if self.rubs_flywheel else self._load_factor(v)
-
-    def _load_factor(self, v: Quantity) -> Quantity:
-        return load.share(
-            v, load_friction=self.load_friction, transition_velocity=self.transition_velocity
-        )
+    def load_share(self, v: Quantity, carried: Quantity) -> Quantity:
+        """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals, by the sign of N."""
+        return 0.0 * v if self.rubs_flywheel else load.share(self, carried, v)
 
     def acceleration(
         self, x: Quantity, v: Quantity, force: Quantity, z: Quantity = 0.0
@@ -173,7 +166,7 @@ class ReferenceDevice(DeviceParameters):
                 "terminals' acceleration; ask state_rate for the flywheel's"
             )
         remainder = force - self.rest_force(x, v, z)
-        carried = remainder / (1.0 + self.load_share(v) * np.sign(remainder))
+        carried = remainder / (1.0 + self.load_share(v, remainder) * np.sign(remainder))
         mass, rest = self.branch(x, v, z)
         return (carried - rest) / mass
 
@@ -181,6 +174,21 @@ class ReferenceDevice(DeviceParameters):
         self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
         """Rates of the states, in the form of `z`; zero for a device without any."""
+        inner = self._inner_rate(x, v, z, contact)
+        count = branches.count(self)
+        if not count:
+            return inner
+        beside = branches.rates(self, v, self._split(z)[1])
+        if self.nstate == 1:
+            return beside[..., 0]
+        columns = list(np.moveaxis(beside, -1, 0))
+        if self.nstate > count:
+            several = self.nstate - count > 1
+            columns = [*(np.moveaxis(np.asarray(inner), -1, 0) if several else [inner]), *columns]
+        return np.stack(np.broadcast_arrays(*columns), axis=-1)
+
+    def _inner_rate(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
+        """The same of all states but those of the branches."""
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
         place, rubbing = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
@@ -220,7 +228,7 @@ class ReferenceDevice(DeviceParameters):
         energy = energy + gas.stored_energy(self, position)
         if self.has_series:
             energy = energy + series.stored_energy(self, deflection, gap)
-        return energy
+        return energy + branches.stored_energy(self, self._split(z)[1])
 
     def dissipated_power(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0
@@ -242,6 +250,7 @@ class ReferenceDevice(DeviceParameters):
             heat = heat + series.dissipated_power(self, deflection, v - speed, gap)
         else:
             speed = v
+        heat = heat + branches.dissipated_power(self, v, self._split(z)[1])
         flywheel = self.flywheel_viscous * speed * speed
         return heat + flywheel + channel.dissipated_power(self, speed)
 
@@ -264,7 +273,7 @@ class ReferenceDevice(DeviceParameters):
         """Every parameter by name, defaults included; NaN for one that is not given."""
         return asdict(self)
 
-    def _beside(self, x: Quantity, v: Quantity) -> Quantity:
+    def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
         """T [N] without friction."""
         stretch = x - self.rest_length
         spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
@@ -273,12 +282,14 @@ class ReferenceDevice(DeviceParameters):
             spring = spring + self.along["force"](stretch)
         if "viscous" in self.along:
             damper = damper + self.along["viscous"](stretch) * v
-        return spring + damper + self.force_offset + end_stops.force(self, stretch, v)
+        force = spring + damper + self.force_offset + end_stops.force(self, stretch, v)
+        return force + branches.force(self, self._split(z)[1])
 
     def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         """N [N] where friction takes its part of F_s behind the series element."""
         left = self._series_force(x, v, z, contact) - self.friction_force(x, v, z)
-        return left / (1.0 + self._load_factor(self._states(z)[2]) * np.sign(left))
+        share = load.share(self, left, self._states(z)[2])
+        return left / (1.0 + share * np.sign(left))
 
     def _series_force(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         _, deflection, speed, gap = self._states(z)
@@ -289,14 +300,28 @@ class ReferenceDevice(DeviceParameters):
         pipe = channel.force(self, velocity)
         return self.flywheel_viscous * velocity + pipe + gas.force(self, displacement)
 
+    def _split(self, z: Quantity) -> tuple[Quantity, NDArray[np.float64]]:
+        """The states without those of the branches, in the form of `z`; deflections (..., n)."""
+        count, array = branches.count(self), np.asarray(z, dtype=np.float64)
+        if not count:
+            return z, np.zeros(0)
+        if array.ndim == 0 and array == 0.0:
+            return 0.0, np.zeros(count)
+        if self.nstate == 1:
+            return 0.0, array[..., np.newaxis]
+        inner, beside = array[..., :-count], array[..., -count:]
+        size = self.nstate - count
+        return (inner[..., 0] if size == 1 else inner if size else 0.0), beside
+
     def _states(self, z: Quantity) -> tuple[Quantity, Quantity, Quantity, Quantity]:
         """Friction state, s, w, gap; zero where there is none."""
+        z = self._split(z)[0]
         if not self.has_series:
             return z, 0.0, 0.0, 0.0
         array: NDArray[np.float64] = np.asarray(z, dtype=np.float64)
         if array.ndim == 0 and array == 0.0:
             return 0.0, 0.0, 0.0, 0.0
-        if array.ndim == 0 or array.shape[-1] != self.nstate:
+        if array.ndim == 0 or array.shape[-1] != self.nstate - branches.count(self):
             raise ValueError(
                 f"z: shape {array.shape}, but this device has the states "
                 f"{', '.join(self.state_names)} along the last axis"

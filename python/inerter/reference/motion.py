@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 
 from .contacts import Clutch, Contacts, integrate
 from .device import ReferenceDevice
-from .laws import Quantity, maxwell_slip
+from .laws import Quantity, branches, maxwell_slip
 
 Signal = Callable[[Quantity], Quantity]
 
@@ -134,7 +134,8 @@ def response(
     initial_state
         States at `times[0]`, shape (nstate,); a number stands for each of them.
     method
-        "LSODA" (fast; RK23 in its place for maxwell_slip) or any stiff method of `scipy.integrate.solve_ivp`, for instance "Radau".
+        "LSODA" (fast; RK23 in its place for maxwell_slip) or any stiff method of
+        `scipy.integrate.solve_ivp`, for instance "Radau".
     rtol
         Relative tolerance; the absolute one is `rtol` times the state's own scale.
     scan_step
@@ -183,6 +184,8 @@ def state_scales(device: ReferenceDevice) -> NDArray[np.float64]:
     elements = maxwell_slip.elements(device)
     for i, (spring, slip) in enumerate(zip(*elements, strict=True)):
         sizes[f"friction_state_{i + 1}"] = lambda _, size=slip / spring: size
+    for i in range(branches.count(device)):
+        sizes[f"branch_deflection_{i + 1}"] = lambda _: 1e-3
     return np.array([sizes[name](device) for name in device.state_names])
 
 

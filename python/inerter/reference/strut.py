@@ -70,6 +70,12 @@ class Strut:
         if self.layout not in LAYOUTS:
             raise ValueError(f"layout: '{self.layout}' is not one of {', '.join(LAYOUTS)}")
         inertance = self.device.total_inertance
+        if self.device.load_shares[0] != self.device.load_shares[1]:
+            raise ValueError(
+                f"mu_forward {self.device.load_shares[0]} and mu_backward "
+                f"{self.device.load_shares[1]} differ: the reference vehicles have one load "
+                "friction for both; give load_friction"
+            )
         if self.layout == "S3" and not (self.damping > 0.0 and inertance > 0.0):
             raise ValueError(
                 f"S3: damping {self.damping} N s/m and inertance {inertance} kg stand "
@@ -109,7 +115,7 @@ class Strut:
                 known=spring + self.damping * v + float(self.device.rest_force(x, v, z)),
                 mass=float(mass),
                 rest=float(rest),
-                share=float(self.device.load_share(v)),
+                share=float(self.device.load_share(v, 1.0)),
                 rates=self._device_rates(x, v, z, contact),
                 device_displacement=x,
                 device_velocity=v,

@@ -23,6 +23,7 @@ _COLORS = ("after", "before", "measured", "warn", "shade", "text")
 STATE_UNITS = {
     "friction_state": "m",
     **{f"friction_state_{i}": "m" for i in range(1, 9)},
+    **{f"branch_deflection_{i}": "m" for i in range(1, 4)},
     "series_deflection": "m",
     "flywheel_velocity": "m/s",
     "gap_position": "m",

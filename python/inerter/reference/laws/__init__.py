@@ -11,6 +11,7 @@ from types import ModuleType
 
 from . import (
     bouc_wen,
+    branches,
     brown_mcphee,
     channel,
     coulomb,
@@ -52,6 +53,7 @@ __all__ = [
     "FrictionParameters",
     "Quantity",
     "bouc_wen",
+    "branches",
     "brown_mcphee",
     "channel",
     "coulomb",

@@ -38,6 +38,12 @@ class DeviceParameters(FrictionParameters):
         0.0, "-", "friction share mu of the inertance force", at_least=0.0, at_most=1.0
     )
 
+    mu_forward: float = parameter(
+        UNSET, "-", "the same while the motion drives the flywheel", at_least=0.0
+    )
+    mu_backward: float = parameter(
+        UNSET, "-", "the same while the flywheel drives", at_least=0.0, at_most=1.0
+    )
     friction_side: str = "terminals"
 
     series_stiffness: float = parameter(0.0, "N/m", "spring in series k_s", at_least=0.0)
@@ -45,6 +51,13 @@ class DeviceParameters(FrictionParameters):
     series_hardening: float = parameter(0.0, "1/m", "relative rise of k_s per deflection")
     backlash: float = parameter(0.0, "m", "half of the free play", at_least=0.0)
     flywheel_viscous: float = parameter(0.0, "N s/m", "damping of the flywheel", at_least=0.0)
+
+    branch_stiffness_1: float = parameter(0.0, "N/m", "spring of branch 1", at_least=0.0)
+    branch_damping_1: float = parameter(0.0, "N s/m", "dashpot of branch 1", at_least=0.0)
+    branch_stiffness_2: float = parameter(0.0, "N/m", "spring of branch 2", at_least=0.0)
+    branch_damping_2: float = parameter(0.0, "N s/m", "dashpot of branch 2", at_least=0.0)
+    branch_stiffness_3: float = parameter(0.0, "N/m", "spring of branch 3", at_least=0.0)
+    branch_damping_3: float = parameter(0.0, "N s/m", "dashpot of branch 3", at_least=0.0)
 
     stop_lower: float = parameter(UNSET, "m", "shortest displacement before the stop")
     stop_upper: float = parameter(UNSET, "m", "longest displacement before the stop")
@@ -74,6 +87,13 @@ class DeviceParameters(FrictionParameters):
         return self.series_stiffness > 0.0 or self.series_damping > 0.0
 
     @property
+    def load_shares(self) -> tuple[float, float]:
+        """Mu forward and backward [-]."""
+        given = (self.mu_forward, self.mu_backward)
+        forward, backward = (self.load_friction if np.isnan(mu) else mu for mu in given)
+        return forward, backward
+
+    @property
     def rubs_flywheel(self) -> bool:
         """Whether friction acts behind a series element."""
         return self.has_series and self.friction_side == "flywheel"
@@ -82,20 +102,45 @@ class DeviceParameters(FrictionParameters):
         """Check what was given, see Raises."""
         super().__post_init__()
         self._check_side()
+        self._check_branches()
         self._check_channel()
         self._check_series()
         self._check_stops()
         self._check_gas()
         self._check_along(self.friction, self.friction_asymmetry, self.viscous)
 
+    def _check_branches(self) -> None:
+        last = True
+        for i in (1, 2, 3):
+            pair = [getattr(self, f"branch_{name}_{i}") for name in ("stiffness", "damping")]
+            there = pair[0] > 0.0
+            if there != (pair[1] > 0.0):
+                raise ValueError(
+                    f"branch_stiffness_{i}: {pair[0]} N/m with branch_damping_{i} {pair[1]} N s/m "
+                    "is half a branch; give both above 0, or neither"
+                )
+            if there and not last:
+                raise ValueError(
+                    f"branch_stiffness_{i}: {pair[0]} N/m comes after branch {i - 1}, which is not "
+                    "there; number the branches from 1 without a gap"
+                )
+            last = there
+
     def _check_side(self) -> None:
         if self.friction_side not in FRICTION_SIDES:
             raise ValueError(
                 f"friction_side: '{self.friction_side}' is not one of {', '.join(FRICTION_SIDES)}"
             )
-        if self.friction_side == "flywheel" and self.load_friction >= 1.0:
+        for name in ("mu_forward", "mu_backward"):
+            mu = getattr(self, name)
+            if self.load_friction > 0.0 and not np.isnan(mu) and mu != self.load_friction:
+                raise ValueError(
+                    f"{name}: {mu}, but load_friction {self.load_friction} is for both directions; "
+                    "give one or the other"
+                )
+        if self.friction_side == "flywheel" and self.load_shares[1] >= 1.0:
             raise ValueError(
-                f"load_friction: {self.load_friction} locks the flywheel that it acts on; give "
+                f"load_friction: {self.load_shares[1]} locks the flywheel that it acts on; give "
                 "less than 1"
             )
 

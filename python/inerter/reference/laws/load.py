@@ -1,13 +1,14 @@
 """Load-dependent friction: a share of the force that the mechanism transmits.
 
-    F = mu |N| tanh(v / v_t)
+    F = mu |N| tanh(v / v_t),   mu = mu_f where N v >= 0, mu_b where N v < 0
 
-Symbols: mu `load_friction` [-], N force through the inertance branch [N],
-v_t `transition_velocity` [m/s]. For an ideal inertance N = b a.
+Symbols: mu_f `mu_forward`, mu_b `mu_backward` [-] (both `load_friction` where not given), N force
+through the inertance branch [N], v_t `transition_velocity` [m/s]. For an ideal inertance N = b a.
 Sign: tension positive; F v >= 0.
-Range: 0 <= mu < 1, so that the acceleration still follows uniquely from the force.
+Range: 0 <= mu_b < 1, so that the acceleration still follows uniquely from the force.
+Efficiency: power forward 1 / (1 + mu_f), backward 1 - mu_b.
 Source: Coulomb's law with the screw's own load as normal force; efficiency of a ball screw.
-Not modelled: different losses when driving and when back-driven, load from other branches.
+Not modelled: memory of this friction, load from other branches.
 
 Solving for the acceleration is exact, because the law is piecewise linear in a:
 
@@ -18,20 +19,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from .device_parameters import DeviceParameters
 from .parameters import Quantity
 
 
-def force(
-    inertance_force: Quantity,
-    velocity: Quantity,
-    *,
-    load_friction: float,
-    transition_velocity: float,
-) -> Quantity:
+def share(parameters: DeviceParameters, carried: Quantity, velocity: Quantity) -> Quantity:
+    """The factor mu tanh(v / v_t) [-] on |N|; of N [N] only the sign counts."""
+    forward, backward = parameters.load_shares
+    mu = forward if forward == backward else np.where(carried * velocity < 0.0, backward, forward)
+    return mu * np.tanh(velocity / parameters.transition_velocity)
+
+
+def force(parameters: DeviceParameters, carried: Quantity, velocity: Quantity) -> Quantity:
     """Load-dependent friction [N] for the branch force N [N] and velocity [m/s]."""
-    return load_friction * abs(inertance_force) * np.tanh(velocity / transition_velocity)
-
-
-def share(velocity: Quantity, *, load_friction: float, transition_velocity: float) -> Quantity:
-    """The factor mu tanh(v / v_t) [-], so that the force is share |N|."""
-    return load_friction * np.tanh(velocity / transition_velocity)
+    return share(parameters, carried, velocity) * abs(carried)
