@@ -132,7 +132,7 @@ def along_the_stroke() -> None:
             friction="dahl", **FRICTION["dahl"], friction_curve=(0.6, 0, 0, 0, 0.3), **pitch
         ),
         "force": Device(force_periods=(5e-3, 4.0, 0.0)),
-        "damping": Device(viscous_curve=(300, 60, 60, 300), **pitch),
+        "damping": Device(viscous_curve=(300, 80, 60, 80, 300), **pitch),
     }
     loops("along_the_stroke", devices, 1.0, AMPLITUDE)
 
