@@ -260,7 +260,8 @@ static int check_range(const InerterDevice* device, char* message) {
              found, isnan(lower) ? "curve_lower" : "curve_upper");
     return -1;
   }
-  if (found && !(lower < upper && isfinite(INERTER_MAXCURVE / (upper - lower)))) {
+  if (found &&
+      !(lower < upper && isfinite(INERTER_MAXCURVE / (upper - lower)) && isfinite(upper - lower))) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "curve_lower is %g m, not below curve_upper %g m; give curve_lower < curve_upper",
              lower, upper);

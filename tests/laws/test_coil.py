@@ -1,4 +1,4 @@
-"""A coiled channel: White and Mishra-Gupta by hand, limits, three tellings; fluid behind a spring."""
+"""A coiled channel: White, Mishra and Gupta by hand; limits; three tellings; behind a spring."""
 
 from __future__ import annotations
 
@@ -104,13 +104,11 @@ def test_three_tellings_agree() -> None:
             w = z[:, core.state_names.index("flywheel_velocity")]
         # the loss alone, by three hands
         only = {k: p[k] for k in p if k.startswith(("piston", "channel", "fluid", "minor", "coil"))}
+        alike = ElementParameters.of(Device(**only))
         alone = [
             Device(**only).evaluate(0.0, w, 0.0, 0.0)["total"],
             ReferenceDevice(**only).force(0.0, w, 0.0),
-            [
-                element.forces(ElementParameters.of(Device(**only)), 0.0, float(s), 0.0, [])["total"]
-                for s in w
-            ],
+            [element.forces(alike, 0.0, float(s), 0.0, [])["total"] for s in w],
         ]
         np.testing.assert_allclose(alone[1], alone[0], rtol=1e-12)
         np.testing.assert_allclose(alone[2], alone[0], rtol=1e-12)
@@ -122,9 +120,7 @@ def test_three_tellings_agree() -> None:
 def test_a_fluid_inerter_behind_a_spring_is_one_device() -> None:
     """A tuned inerter damper: F / X = k (i c w - b w^2) / (k - b w^2 + i c w), laminar."""
     viscosity = 0.05
-    device = Device(
-        **FLUID, fluid_viscosity=viscosity, coil_diameter=0.5, series_stiffness=4e5
-    )
+    device = Device(**FLUID, fluid_viscosity=viscosity, coil_diameter=0.5, series_stiffness=4e5)
     b = DENSITY * LENGTH * AREA**2 / CHANNEL
     c = 8 * np.pi * viscosity * LENGTH * (AREA / CHANNEL) ** 2
     rate, h = 0.9 * np.sqrt(4e5 / b), 1e-4

@@ -185,8 +185,12 @@ BAD: dict[str, tuple[dict[str, Any], list[str]]] = {
     "too many": ({"force_curve": range(65), **RANGE}, ["force_curve has 65 numbers", "2 to 64"]),
     "two of three": ({"force_periods": (0.02, 1.0)}, ["force_periods has 2 numbers", "three"]),
     "nine periods": ({"force_periods": [[0.02, 1, 0]] * 9}, ["has 27 numbers", "8 periods"]),
-    "no length": ({"force_periods": (0.0, 1.0, 0.0)}, ["number 1 is 0", "length"]),
+    "no length": ({"force_periods": (0.0, 1.0, 0.0)}, ["number 1 is 0", "length", ">= 1e-09"]),
     "infinite": ({"force_periods": (0.1, np.inf, 0.0)}, ["number 2 is inf"]),
+    "too large": ({"force_periods": (0.1, 1e200, 0.0)}, ["number 2 is 1e+200", "1e+150"]),
+    "endless": (
+        {"force_curve": VALUES, "curve_lower": -1.5e308, "curve_upper": 1.5e308}, ["curve_upper"],
+    ),
     "a word": ({"force_periods": "0.1 one 0"}, ['"one" is not a number', "blanks"]),
     "nothing": ({"force_periods": " "}, ["force_periods is empty"]),
     "words": ({"force_periods": ["0.1", 1, 2]}, ["force_periods"]),
@@ -206,7 +210,7 @@ def test_what_cannot_be_is_refused_in_one_line(name: str) -> None:
 
 def test_the_reference_refuses_what_the_core_refuses() -> None:
     for name, (keys, _) in BAD.items():
-        if name not in ("nothing", "words"):
+        if name not in ("nothing", "words", "too large", "endless"):
             with pytest.raises(ValueError):  # noqa: PT011
                 ReferenceDevice(**keys)
 

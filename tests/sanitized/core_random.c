@@ -68,6 +68,23 @@ static int random_device(InerterDevice* device, int tame) {
       abort();
     }
   }
+  for (int i = 0; i < INERTER_NLIST; i++) {
+    const InerterList* list = inerter_list(i);
+    if (below(&source, tame ? 3 : 6) || (law == INERTER_FRICTION_none && *list->laws)) {
+      continue;
+    }
+    double values[INERTER_MAXCURVE];
+    int count =
+        list->periods ? 3 * (1 + below(&source, INERTER_MAXPERIOD)) : 2 + below(&source, 63);
+    for (int k = 0; k < count; k++) {
+      values[k] = tame ? 0.02 * moderate() : any(&source);
+      if (tame && list->periods && k % 3 == 0) values[k] = 1e-3 + fabs(values[k]);
+    }
+    memset(message, 0, sizeof(message));
+    if (inerter_set_list(device, i, count, values, message) && !strstr(message, list->name)) {
+      abort();
+    }
+  }
   memset(message, 0, sizeof(message));
   int refused = inerter_finish(device, message);
   if (refused && !*message) {

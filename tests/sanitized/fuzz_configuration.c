@@ -21,8 +21,11 @@
 static const char* key_of(char* line) {
   unsigned choice = (unsigned char)*line;
   if (choice >= 0x80) {
-    int i = (int)(choice - 0x80) % (INERTER_NPARAMETER + 2);
+    int i = (int)(choice - 0x80) % (INERTER_NPARAMETER + 2 + INERTER_NLIST);
     const InerterParameter* p = inerter_parameter(i);
+    if (i >= INERTER_NPARAMETER + 2) {
+      return inerter_list(i - INERTER_NPARAMETER - 2)->name;
+    }
     return p ? p->name : i == INERTER_NPARAMETER ? "friction" : "gas_law";
   }
   return line;

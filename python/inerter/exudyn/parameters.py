@@ -8,7 +8,7 @@ from inerter.core import Device, lists, parameters
 
 
 class Parameters(SimpleNamespace):
-    """Every parameter and list of the device by name, `friction`, `gas_law`, `nstate`, `state_names`.
+    """Parameters and lists of the device by name, `friction`, `gas_law`, `nstate`, `state_names`.
 
     `smooth_play` is this element's own, see `series.py`.
     """

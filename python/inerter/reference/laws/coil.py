@@ -19,9 +19,7 @@ import numpy as np
 from .stroke import Quantity
 
 
-def friction_product(
-    reynolds: Quantity, relative_roughness: float, curvature: float
-) -> Quantity:
+def friction_product(reynolds: Quantity, relative_roughness: float, curvature: float) -> Quantity:
     """The product f Re [-] at the Reynolds number, r / D [-] and D / D_c [-]."""
     number = np.maximum(reynolds, 1e-6)
     dean = np.maximum(number * np.sqrt(curvature), 11.6)
