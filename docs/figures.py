@@ -125,7 +125,7 @@ def friction_level() -> None:
 
 def along_the_stroke() -> None:
     """Each quantity that can change along the stroke, by one period of 5 mm and a curve."""
-    pitch = {"curve_lower": -10e-3, "curve_upper": 10e-3}
+    pitch: dict[str, Any] = {"curve_lower": -10e-3, "curve_upper": 10e-3}
     devices = {
         "inertance": Device(inertance=100, inertance_periods=(5e-3, 0.03, 0.0)),
         "friction level": Device(
@@ -139,7 +139,8 @@ def along_the_stroke() -> None:
 
 def along_each_direction() -> None:
     """Friction whose level along the stroke differs between the directions."""
-    level = {"friction": "dahl", **FRICTION["dahl"], "friction_periods": (5e-3, 0.2, 0.0)}
+    level: dict[str, Any] = {"friction": "dahl", **FRICTION["dahl"]}
+    level |= {"friction_periods": (5e-3, 0.2, 0.0)}
     devices = {
         "both alike": Device(**level),
         "the other flank": Device(**level, friction_back_periods=(5e-3, 0.2, 2.0)),
