@@ -21,15 +21,16 @@ static double moderate(void) {
 // whether a parameter belongs to a part that a tame device leaves out; bits: series element,
 // backlash, stops, gas, channel
 static int left_out(const char* name, unsigned parts) {
-  const char* const starts[] = {"series_",  "backlash", "stop_",   "gas_",
-                                "channel_", "fluid_",   "piston_", "minor_"};
-  const int bits[] = {0, 1, 2, 3, 4, 4, 4, 4};
-  for (int i = 0; i < 8; i++) {
+  const char* const starts[] = {"series_", "backlash", "stop_",  "gas_", "channel_",
+                                "fluid_",  "piston_",  "minor_", "coil_"};
+  const int bits[] = {0, 1, 2, 3, 4, 4, 4, 4, 4};
+  for (int i = 0; i < 9; i++) {
     if (!strncmp(name, starts[i], strlen(starts[i]))) {
       return !(parts >> bits[i] & 1);
     }
   }
-  return !strcmp(name, "inertance") && parts >> 4 & 1;
+  // the range of curves comes with them
+  return (!strcmp(name, "inertance") && parts >> 4 & 1) || !strncmp(name, "curve_", 6);
 }
 
 // a device with random keys; returns 0 where the core refused it, always with a
@@ -60,6 +61,7 @@ static int random_device(InerterDevice* device, int tame) {
     }
     double value = tame ? fabs(moderate()) : any(&source);
     if (tame && !strcmp(p->name, "stop_lower")) value = -value;
+    if (tame && !strcmp(p->name, "coil_diameter")) value += 1e3;
     if (tame && value < p->lower) value = p->lower;
     if (tame && value > p->upper) value = p->upper;
     snprintf(text, sizeof(text), "%.17g", value);
@@ -70,15 +72,24 @@ static int random_device(InerterDevice* device, int tame) {
   }
   for (int i = 0; i < INERTER_NLIST; i++) {
     const InerterList* list = inerter_list(i);
-    if (below(&source, tame ? 3 : 6) || (law == INERTER_FRICTION_none && *list->laws)) {
+    if (below(&source, tame ? 3 : 6) || (law == INERTER_FRICTION_none && *list->laws) ||
+        (tame && i / 2 == INERTER_STROKE_friction_back && device->friction_asymmetry != 0)) {
       continue;
     }
     double values[INERTER_MAXCURVE];
     int count =
         list->periods ? 3 * (1 + below(&source, INERTER_MAXPERIOD)) : 2 + below(&source, 63);
     for (int k = 0; k < count; k++) {
-      values[k] = tame ? 0.02 * moderate() : any(&source);
+      values[k] = tame ? fmod(moderate(), 0.05) : any(&source);
+      if (tame && i / 2 == INERTER_STROKE_viscous) values[k] = list->periods ? 0 : 0.01;
       if (tame && list->periods && k % 3 == 0) values[k] = 1e-3 + fabs(values[k]);
+    }
+    if (tame && !list->periods) {
+      // every curve has its range
+      if (inerter_set(device, "curve_lower", "-0.5", message) ||
+          inerter_set(device, "curve_upper", "0.75", message)) {
+        abort();
+      }
     }
     memset(message, 0, sizeof(message));
     if (inerter_set_list(device, i, count, values, message) && !strstr(message, list->name)) {
