@@ -143,6 +143,31 @@ def friction_level() -> None:
     loops("friction_level", devices, 0.5, AMPLITUDE)
 
 
+def along_the_stroke() -> None:
+    """Each quantity that can change along the stroke, by one period of 5 mm and a curve."""
+    pitch: dict[str, Any] = {"curve_lower": -10e-3, "curve_upper": 10e-3}
+    devices = {
+        "inertance": Device(inertance=100, inertance_periods=(5e-3, 0.03, 0.0)),
+        "friction level": Device(
+            friction="dahl", **FRICTION["dahl"], friction_curve=(0.6, 0, 0, 0, 0.3), **pitch
+        ),
+        "force": Device(force_periods=(5e-3, 4.0, 0.0)),
+        "damping": Device(viscous_curve=(300, 80, 60, 80, 300), **pitch),
+    }
+    loops("along_the_stroke", devices, 1.0, AMPLITUDE)
+
+
+def along_each_direction() -> None:
+    """Friction whose level along the stroke differs between the directions."""
+    level: dict[str, Any] = {"friction": "dahl", **FRICTION["dahl"]}
+    level |= {"friction_periods": (5e-3, 0.2, 0.0)}
+    devices = {
+        "both alike": Device(**level),
+        "the other flank": Device(**level, friction_back_periods=(5e-3, 0.2, 2.0)),
+    }
+    loops("along_each_direction", devices, 0.5, AMPLITUDE)
+
+
 def load_friction() -> None:
     """Friction of what the inertance presses on."""
     devices = {
@@ -243,9 +268,22 @@ def fluid() -> None:
     loops("fluid", devices, 1.0, AMPLITUDE)
 
 
+def coil() -> None:
+    """The same channel straight and wound to a coil."""
+    channel = {"piston_area": 2e-3, "channel_area": 8e-5, "channel_length": 2.0}
+    oil = {"fluid_density": 850, "fluid_viscosity": 0.02}
+    devices = {
+        "straight": Device(**channel, **oil),
+        "coil of 0.3 m": Device(**channel, **oil, coil_diameter=0.3),
+        "coil of 0.05 m": Device(**channel, **oil, coil_diameter=0.05),
+    }
+    loops("coil", devices, 1.0, AMPLITUDE)
+
+
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
     damping_and_stiffness, branches, inertance, series, friction_side, end_stops, gas, fluid,
+    along_the_stroke, along_each_direction, coil,
 )  # fmt: skip
 
 

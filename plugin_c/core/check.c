@@ -220,9 +220,11 @@ static int check_channel(InerterDevice* device, char* message) {
                           INERTER_INDEX_channel_length};
   const int others[] = {INERTER_INDEX_channel_area,      INERTER_INDEX_channel_length,
                         INERTER_INDEX_fluid_density,     INERTER_INDEX_fluid_viscosity,
-                        INERTER_INDEX_channel_roughness, INERTER_INDEX_minor_loss};
+                        INERTER_INDEX_channel_roughness, INERTER_INDEX_minor_loss,
+                        INERTER_INDEX_coil_diameter};
+  const int nothers = (int)(sizeof(others) / sizeof(*others));
   const char* found = device->piston_area > 0 && device->gas_pressure == 0 ? "piston_area" : NULL;
-  for (int i = 0; i < 6; i++) {
+  for (int i = 0; i < nothers; i++) {
     if (inerter_is_given(device, others[i]) && *value_of(device, others[i]) != 0) {
       found = inerter_parameter(others[i])->name;
     }
@@ -243,6 +245,13 @@ static int check_channel(InerterDevice* device, char* message) {
                   "%s is given, but the channel is incomplete: %s missing; give piston_area, "
                   "channel_area and channel_length > 0, or remove %s",
                   found, missing, found);
+  }
+  double bore = pipe_diameter(device);
+  if (device->coil_diameter != 0 && !(device->coil_diameter > bore)) {
+    return refuse(message,
+                  "coil_diameter is %g m, but the channel itself is %g m wide (from channel_area); "
+                  "give coil_diameter > %g m, or 0 for a straight channel",
+                  device->coil_diameter, bore, bore);
   }
   double inertance = pipe_inertance(device);
   if (inerter_is_given(device, INERTER_INDEX_inertance)) {

@@ -92,6 +92,9 @@ const double* inerter_list_values(const InerterDevice* device, int i, int* count
   return i % 2 ? curve->period : curve->value;
 }
 
+// what lists may hold, so that sums and angles stay numbers
+static const double kLargest = 1e150, kShortest = 1e-9;
+
 int inerter_set_list(InerterDevice* device, int i, int count, const double* values,
                      char message[INERTER_MESSAGE_SIZE]) {
   const InerterList* list = inerter_list(i);
@@ -104,9 +107,11 @@ int inerter_set_list(InerterDevice* device, int i, int count, const double* valu
   }
   for (int k = 0; k < count; k++) {
     int length = list->periods && k % 3 == 0;
-    if (!isfinite(values[k]) || (length && values[k] <= 0)) {
-      snprintf(message, INERTER_MESSAGE_SIZE, "%s: number %d is %g; give a finite number%s",
-               list->name, k + 1, values[k], length ? " > 0, the length of a period in m" : "");
+    if (!(fabs(values[k]) <= kLargest) || (length && values[k] < kShortest)) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               length ? "%s: number %d is %g, the length of a period in m; give one >= %g"
+                      : "%s: number %d is %g; give a finite number of size <= %g",
+               list->name, k + 1, values[k], length ? kShortest : kLargest);
       return -1;
     }
   }

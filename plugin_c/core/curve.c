@@ -184,11 +184,14 @@ static int falls_below(const InerterCurve* c, double base, double least, double*
   enum { MOST = 4096, PER_PERIOD = 32, PER_VALUE = 16 };
   double bound = base, span = c->nvalue ? (c->nvalue - 1) / c->rate : 0, longest = 0;
   double fine = c->nvalue ? 1 / (c->rate * PER_VALUE) : INFINITY;
+  double size = fabs(base);
   for (int i = 0; c->nvalue && i < c->nvalue + 2; i++) {
     bound = fmin(bound, base + c->fit[i]);
+    size = fmax(size, fabs(c->fit[i]));
   }
   for (int k = 0; k < c->nperiod; k++) {
     bound -= fabs(c->period[3 * k + 1]);
+    size = fmax(size, fabs(c->period[3 * k + 1]));
     longest = fmax(longest, c->period[3 * k]);
     fine = fmin(fine, c->period[3 * k] / PER_PERIOD);
   }
@@ -218,7 +221,7 @@ static int falls_below(const InerterCurve* c, double base, double least, double*
       }
     }
   }
-  return *value < least;
+  return *value < least - 1e-12 * size;  // less is rounding
 }
 
 static int check_positive(const InerterDevice* device, InerterStroke stroke, double base,
@@ -257,7 +260,8 @@ static int check_range(const InerterDevice* device, char* message) {
              found, isnan(lower) ? "curve_lower" : "curve_upper");
     return -1;
   }
-  if (found && !(lower < upper && isfinite(INERTER_MAXCURVE / (upper - lower)))) {
+  if (found &&
+      !(lower < upper && isfinite(INERTER_MAXCURVE / (upper - lower)) && isfinite(upper - lower))) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "curve_lower is %g m, not below curve_upper %g m; give curve_lower < curve_upper",
              lower, upper);

@@ -119,8 +119,10 @@ double gas_force(const InerterDevice* p, double y);
 double gas_energy(const InerterDevice* p, double y);
 int gas_valid(const InerterDevice* p, double y, char* message);
 
-// pipe.c: inertance of the fluid; force of its losses at velocity w, with slope >= 0
+// pipe.c: inertance of the fluid; diameter of the channel [m]; force of its losses at velocity w,
+// with slope >= 0
 double pipe_inertance(const InerterDevice* p);
+double pipe_diameter(const InerterDevice* p);
 Tangent pipe_force(const InerterDevice* p, double w);
 
 // end_stop.c, at displacement x, velocity v

@@ -134,7 +134,9 @@
     "dashpot of viscoelastic branch 3, in series with its spring, C")                              \
   /* along the stroke */                                                                           \
   X(curve_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the first value of every curve") \
-  X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")
+  X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")  \
+  X(coil_diameter, "m", 0, 0, INFINITY, CLOSED, "",                                                \
+    "diameter of the coil that the channel is wound to, D_c; 0: straight")
 
 // What changes along the stroke (curve.c): X(name, unit, laws, meaning). Each has two lists of
 // numbers: NAME_curve, values at evenly spaced places, and NAME_periods, three numbers for each.

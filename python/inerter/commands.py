@@ -310,10 +310,10 @@ def plugin_path_command(
 
 @app.command("parameters")
 def parameters_command() -> None:
-    """Every parameter of a device: name, unit, default, range, meaning."""
+    """Every parameter and list of a device: name, unit, default, range, meaning."""
     from rich.table import Table
 
-    from inerter.core import parameters
+    from inerter.core import lists, parameters
 
     table = Table("name", "unit", "default", "range", "friction laws", "meaning")
     for p in parameters().values():
@@ -322,6 +322,9 @@ def parameters_command() -> None:
         default = "unset" if p.initial != p.initial else f"{p.initial:g}"
         bounds = " ".join(part for part in (lower, upper) if part) or "any"
         table.add_row(p.name, p.unit, default, bounds, " ".join(p.laws) or "-", p.meaning)
+    for each in lists().values():
+        most = f"3 numbers for each of 1 to {each.most // 3}" if each.periods else "2 to 64 numbers"
+        table.add_row(each.name, each.unit, "none", most, " ".join(each.laws) or "-", each.meaning)
     out.print(table)
 
 

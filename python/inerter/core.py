@@ -90,7 +90,9 @@ class Device:
         if core.inerter_finish(at, message):
             raise DeviceError(_text(message))
         self._given: dict[str, float | str] = {
-            name: value_text(getattr(self, name)) if name in lists() else getattr(self, name)
+            name: (value_text(getattr(self, name)) or "")
+            if name in lists()
+            else getattr(self, name)
             for name in values
         }
 

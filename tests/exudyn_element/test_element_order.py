@@ -25,6 +25,13 @@ DEVICES: dict[str, dict[str, Any]] = {
     "ideal": {"inertance": 4.0},
     "varying": {"inertance": 4.0, "inertance_gradient": 8.0, "inertance_curvature": 50.0},
     "friction": {"inertance": 4.0, **SMOOTH},
+    "along the stroke": {
+        "inertance": 4.0,
+        "inertance_periods": (0.2, 0.05, 1.0),
+        "force_periods": (0.3, 5.0, 0.5),
+        "viscous": 3.0,
+        "viscous_periods": (0.15, 1.5, 0.0),
+    },
     "series": {"inertance": 4.0, "series_stiffness": 800.0, "series_damping": 6.0, **SMOOTH},
     "lugre": {"inertance": 4.0, **LUGRE, "bristle_stiffness": 500.0},
     "free play": {

@@ -13,7 +13,7 @@ from inerter.core import Device, DeviceError
 from inerter.device_file import device_text, read_device
 from inerter.reference import ReferenceDevice
 
-RANGE = {"curve_lower": -0.05, "curve_upper": 0.07}
+RANGE: dict[str, Any] = {"curve_lower": -0.05, "curve_upper": 0.07}
 VALUES = (0.0, 0.2, -0.1, 0.3, 0.1, 0.0, 0.15)
 
 
@@ -85,7 +85,12 @@ def test_friction_slides_at_its_level_of_the_place_and_direction(law: str) -> No
 
 @pytest.mark.parametrize("n", [1.0, 1.7, 3.0])
 def test_bouc_wen_yields_at_its_level_and_keeps_its_stiffness(n: float) -> None:
-    shape = {"friction": "bouc_wen", "bw_stiffness": 2e4, "bw_beta": 300.0**n, "bw_gamma": 0.0}
+    shape: dict[str, Any] = {
+        "friction": "bouc_wen",
+        "bw_stiffness": 2e4,
+        "bw_beta": 300.0**n,
+        "bw_gamma": 0.0,
+    }
     plain = Device(**shape, bw_exponent=n)
     half = Device(**shape, bw_exponent=n, friction_curve=(-0.5, -0.5), **RANGE)
     for v in (0.3, -0.3):
@@ -185,8 +190,12 @@ BAD: dict[str, tuple[dict[str, Any], list[str]]] = {
     "too many": ({"force_curve": range(65), **RANGE}, ["force_curve has 65 numbers", "2 to 64"]),
     "two of three": ({"force_periods": (0.02, 1.0)}, ["force_periods has 2 numbers", "three"]),
     "nine periods": ({"force_periods": [[0.02, 1, 0]] * 9}, ["has 27 numbers", "8 periods"]),
-    "no length": ({"force_periods": (0.0, 1.0, 0.0)}, ["number 1 is 0", "length"]),
+    "no length": ({"force_periods": (0.0, 1.0, 0.0)}, ["number 1 is 0", "length", ">= 1e-09"]),
     "infinite": ({"force_periods": (0.1, np.inf, 0.0)}, ["number 2 is inf"]),
+    "too large": ({"force_periods": (0.1, 1e200, 0.0)}, ["number 2 is 1e+200", "1e+150"]),
+    "endless": (
+        {"force_curve": VALUES, "curve_lower": -1.5e308, "curve_upper": 1.5e308}, ["curve_upper"],
+    ),
     "a word": ({"force_periods": "0.1 one 0"}, ['"one" is not a number', "blanks"]),
     "nothing": ({"force_periods": " "}, ["force_periods is empty"]),
     "words": ({"force_periods": ["0.1", 1, 2]}, ["force_periods"]),
@@ -206,14 +215,19 @@ def test_what_cannot_be_is_refused_in_one_line(name: str) -> None:
 
 def test_the_reference_refuses_what_the_core_refuses() -> None:
     for name, (keys, _) in BAD.items():
-        if name not in ("nothing", "words"):
+        if name not in ("nothing", "words", "too large", "endless"):
             with pytest.raises(ValueError):  # noqa: PT011
                 ReferenceDevice(**keys)
 
 
 def test_a_curve_that_periods_save_is_taken() -> None:
     # each alone would fail, the sum does not: the places count
-    dip = {"inertance": 1.0, "inertance_curve": (0, -0.9, 0), "curve_lower": 0, "curve_upper": 1}
+    dip: dict[str, Any] = {
+        "inertance": 1.0,
+        "inertance_curve": (0, -0.9, 0),
+        "curve_lower": 0,
+        "curve_upper": 1,
+    }
     with pytest.raises(DeviceError):
         Device(**dip, inertance_periods=(2.0, -0.2, 0.0))
     Device(**dip, inertance_periods=(2.0, 0.2, 0.0))

@@ -15,7 +15,7 @@ from topology_models import mjcf, slide
 
 WHEEL, CAR, TYRE, STRUT, B = 25.0, 180.0, 2500.0, 800.0, 113.0
 LAYOUTS = ("nested", "siblings")
-RANGE = {"curve_lower": -0.04, "curve_upper": 0.05}
+RANGE: dict[str, Any] = {"curve_lower": -0.04, "curve_upper": 0.05}
 RISE = (0.1, -0.1, 0.2, 0.0, 0.15, -0.05)
 DEVICES: dict[str, dict[str, Any]] = {
     "curve": {"inertance_curve": RISE, **RANGE},
@@ -89,7 +89,8 @@ def test_the_motion_is_that_of_the_equations(name: str, layout: str) -> None:
 def test_force_and_acceleration_fit_each_other_in_contact(layout: str, integrator: str) -> None:
     """The car runs onto stops: momentum of both bodies, the constraint's force included."""
     stops = 'limited="true" range="-0.02 0.02"'
-    keys = {"inertance_periods": (0.03, 0.2, 1.0), "inertance_back_periods": (0.02, 0.2, 0.0)}
+    keys: dict[str, Any] = {"inertance_periods": (0.03, 0.2, 1.0)}
+    keys |= {"inertance_back_periods": (0.02, 0.2, 0.0)}
     model = build(layout, keys, f'integrator="{integrator}" timestep="5e-4"', stops, 0.0, 0.0)
     data = mujoco.MjData(model)
     data.qvel[:] = (0.3, -0.8) if layout == "nested" else (0.3, -0.5)
@@ -175,7 +176,7 @@ def test_lists_can_be_live() -> None:
 
 
 def test_viscous_damping_along_the_stroke_goes_with_the_damper_flag() -> None:
-    keys = {"viscous_periods": (0.02, -3.0, 1.0), "viscous": 5.0}
+    keys: dict[str, Any] = {"viscous_periods": (0.02, -3.0, 1.0), "viscous": 5.0}
     model = build("nested", keys, 'timestep="1e-3" integrator="implicitfast"')
     data = mujoco.MjData(model)
     data.qpos[1], data.qvel[1] = 0.004, 0.5

@@ -35,6 +35,10 @@ def _signed(size: float) -> st.SearchStrategy[float]:
     return st.floats(-size, size)
 
 
+def _text(numbers: list[float]) -> str:
+    return " ".join(map(repr, numbers))
+
+
 @st.composite
 def anything(draw: st.DrawFn) -> Values:
     """Some parameters of a device at any number at all, a law by any name."""
@@ -116,6 +120,17 @@ def meant(draw: st.DrawFn) -> Values:
         }
         values |= {"inertance_speed_gradient": draw(st.floats(0.0, 0.5))}
         values |= {"flywheel_viscous": draw(st.floats(0.0, 200.0))}
+    if draw(st.booleans()):
+        rises = st.lists(_signed(0.15), min_size=2, max_size=8)
+        values |= {
+            "inertance_periods": _text([draw(_around(0.02, 0.5)), draw(_signed(0.1)), 1.0]),
+            "force_curve": _text([100.0 * rise for rise in draw(rises)]),
+            "viscous_curve": _text([50.0 + 50.0 * rise for rise in draw(rises)]),
+            "curve_lower": -0.03,
+            "curve_upper": draw(st.floats(-0.01, 0.05)),
+        }
+        if values["friction"] != "none":
+            values |= {"friction_curve": _text(draw(rises))}
     if draw(st.booleans()):
         values |= {
             "stop_upper": draw(st.floats(5e-3, 5e-2)),

@@ -14,13 +14,13 @@
 
 #include "engine_models.h"
 
-#define REQUIRE(condition)                                                     \
-  do {                                                                         \
-    if (!(condition)) {                                                        \
-      fprintf(stderr, "engine.c:%d: %s; last message: %s\n", __LINE__,         \
-              #condition, last_message());                                     \
-      exit(1);                                                                 \
-    }                                                                          \
+#define REQUIRE(condition)                                                         \
+  do {                                                                             \
+    if (!(condition)) {                                                            \
+      fprintf(stderr, "engine.c:%d: %s; last message: %s\n", __LINE__, #condition, \
+              last_message());                                                     \
+      exit(1);                                                                     \
+    }                                                                              \
   } while (0)
 
 //------------------------------ messages
@@ -30,7 +30,7 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static char last[1024];
 static long count;
 
-static void hear(const mjLogMessage *message) {
+static void hear(const mjLogMessage* message) {
   if (message->level < mjLOG_WARNING) {
     return;
   }
@@ -40,7 +40,9 @@ static void hear(const mjLogMessage *message) {
   pthread_mutex_unlock(&lock);
 }
 
-static const char *last_message(void) { return last; }
+static const char* last_message(void) {
+  return last;
+}
 
 static long message_count(void) {
   pthread_mutex_lock(&lock);
@@ -52,10 +54,10 @@ static long message_count(void) {
 //------------------------------ helpers
 //-----------------------------------------------------------
 
-static mjModel *compile_text(const char *text) {
+static mjModel* compile_text(const char* text) {
   char error[1000] = "";
-  mjSpec *spec = mj_parseXMLString(text, NULL, error, sizeof(error));
-  mjModel *m = spec ? mj_compile(spec, NULL) : NULL;
+  mjSpec* spec = mj_parseXMLString(text, NULL, error, sizeof(error));
+  mjModel* m = spec ? mj_compile(spec, NULL) : NULL;
   if (!m) {
     fprintf(stderr, "%s\n%s\n", text, spec ? mjs_getError(spec) : error);
     exit(1);
@@ -64,31 +66,30 @@ static mjModel *compile_text(const char *text) {
   return m;
 }
 
-static mjModel *random_model(Random *random, int devices) {
+static mjModel* random_model(Random* random, int devices) {
   int first = below(random, LAWS * VARIANTS);
-  char *text = engine_model(random, devices, first,
-                            kIntegrators[below(random, INTEGRATORS)]);
-  mjModel *m = compile_text(text);
+  char* text = engine_model(random, devices, first, kIntegrators[below(random, INTEGRATORS)]);
+  mjModel* m = compile_text(text);
   free(text);
   return m;
 }
 
-static void kick(const mjModel *m, mjData *d, Random *random) {
+static void kick(const mjModel* m, mjData* d, Random* random) {
   for (int i = 0; i < m->nv; i++) {
     d->qvel[i] = 0.5 * (uniform(random) - 0.5);
   }
 }
 
-static void steps(const mjModel *m, mjData *d, int n) {
+static void steps(const mjModel* m, mjData* d, int n) {
   for (int i = 0; i < n; i++) {
     mj_step(m, d);
   }
 }
 
 // whether two mjData are at the same state, bit for bit
-static int same_state(const mjModel *m, const mjData *a, const mjData *b) {
+static int same_state(const mjModel* m, const mjData* a, const mjData* b) {
   int size = mj_stateSize(m, mjSTATE_INTEGRATION);
-  mjtNum *states = malloc(2 * sizeof(mjtNum) * (size_t)size);
+  mjtNum* states = malloc(2 * sizeof(mjtNum) * (size_t)size);
   mj_getState(m, a, states, mjSTATE_INTEGRATION);
   mj_getState(m, b, states + size, mjSTATE_INTEGRATION);
   int same = !memcmp(states, states + size, sizeof(mjtNum) * (size_t)size);
@@ -96,18 +97,13 @@ static int same_state(const mjModel *m, const mjData *a, const mjData *b) {
   return same;
 }
 
-static int finite_state(const mjModel *m, const mjData *d) {
+static int finite_state(const mjModel* m, const mjData* d) {
   int finite = 1;
-  for (int i = 0; i < m->nq; i++)
-    finite &= isfinite(d->qpos[i]);
-  for (int i = 0; i < m->nv; i++)
-    finite &= isfinite(d->qvel[i]);
-  for (int i = 0; i < m->na; i++)
-    finite &= isfinite(d->act[i]);
-  for (int i = 0; i < m->nsensordata; i++)
-    finite &= isfinite(d->sensordata[i]);
-  for (int i = 0; i < m->npluginstate; i++)
-    finite &= isfinite(d->plugin_state[i]);
+  for (int i = 0; i < m->nq; i++) finite &= isfinite(d->qpos[i]);
+  for (int i = 0; i < m->nv; i++) finite &= isfinite(d->qvel[i]);
+  for (int i = 0; i < m->na; i++) finite &= isfinite(d->act[i]);
+  for (int i = 0; i < m->nsensordata; i++) finite &= isfinite(d->sensordata[i]);
+  for (int i = 0; i < m->npluginstate; i++) finite &= isfinite(d->plugin_state[i]);
   return finite;
 }
 
@@ -115,57 +111,56 @@ static int finite_state(const mjModel *m, const mjData *d) {
 //---------------------------------------------------------
 
 // make, copy, reset, restore, step and free in random order
-static void lifetimes(Random *random) {
+static void lifetimes(Random* random) {
   enum { POOL = 5 };
-  mjData *pool[POOL] = {NULL};
-  mjModel *m = random_model(random, 1 + below(random, 12));
+  mjData* pool[POOL] = {NULL};
+  mjModel* m = random_model(random, 1 + below(random, 12));
   int size = mj_stateSize(m, mjSTATE_INTEGRATION);
-  mjtNum *state = malloc(sizeof(mjtNum) * (size_t)size);
+  mjtNum* state = malloc(sizeof(mjtNum) * (size_t)size);
   for (int turn = 0; turn < 60; turn++) {
     int i = below(random, POOL), j = below(random, POOL);
     if (!pool[i]) {
-      pool[i] = pool[j] && below(random, 2) ? mj_copyData(NULL, m, pool[j])
-                                            : mj_makeData(m);
+      pool[i] = pool[j] && below(random, 2) ? mj_copyData(NULL, m, pool[j]) : mj_makeData(m);
       kick(m, pool[i], random);
       continue;
     }
     switch (below(random, 8)) {
-    case 0:
-      mj_deleteData(pool[i]);
-      pool[i] = NULL;
-      break;
-    case 1:
-      mj_resetData(m, pool[i]);
-      break;
-    case 2:
-      mj_resetDataKeyframe(m, pool[i], 0);
-      kick(m, pool[i], random);
-      break;
-    case 3:
-      if (pool[j] && i != j) {
-        mj_copyData(pool[i], m, pool[j]);
-        steps(m, pool[i], 2);
-        steps(m, pool[j], 2);
-        REQUIRE(same_state(m, pool[i], pool[j]));
-      }
-      break;
-    case 4:
-      if (pool[j] && i != j) {
-        mj_getState(m, pool[j], state, mjSTATE_INTEGRATION);
-        mj_setState(m, pool[i], state, mjSTATE_INTEGRATION);
-        steps(m, pool[i], 2);
-        steps(m, pool[j], 2);
-        REQUIRE(same_state(m, pool[i], pool[j]));
-      }
-      break;
-    case 5:
-      mj_step1(m, pool[i]);
-      mj_step2(m, pool[i]);
-      break;
-    default:
-      steps(m, pool[i], 3);
-      REQUIRE(finite_state(m, pool[i]));
-      break;
+      case 0:
+        mj_deleteData(pool[i]);
+        pool[i] = NULL;
+        break;
+      case 1:
+        mj_resetData(m, pool[i]);
+        break;
+      case 2:
+        mj_resetDataKeyframe(m, pool[i], 0);
+        kick(m, pool[i], random);
+        break;
+      case 3:
+        if (pool[j] && i != j) {
+          mj_copyData(pool[i], m, pool[j]);
+          steps(m, pool[i], 2);
+          steps(m, pool[j], 2);
+          REQUIRE(same_state(m, pool[i], pool[j]));
+        }
+        break;
+      case 4:
+        if (pool[j] && i != j) {
+          mj_getState(m, pool[j], state, mjSTATE_INTEGRATION);
+          mj_setState(m, pool[i], state, mjSTATE_INTEGRATION);
+          steps(m, pool[i], 2);
+          steps(m, pool[j], 2);
+          REQUIRE(same_state(m, pool[i], pool[j]));
+        }
+        break;
+      case 5:
+        mj_step1(m, pool[i]);
+        mj_step2(m, pool[i]);
+        break;
+      default:
+        steps(m, pool[i], 3);
+        REQUIRE(finite_state(m, pool[i]));
+        break;
     }
   }
   free(state);
@@ -185,16 +180,16 @@ static void lifetimes(Random *random) {
 
 // copies and files of the model step as the model does, also with mjData of the
 // other
-static void models(Random *random) {
-  mjModel *m = random_model(random, 1 + below(random, 8));
+static void models(Random* random) {
+  mjModel* m = random_model(random, 1 + below(random, 8));
   mjtSize size = mj_sizeModel(m);
-  void *file = malloc((size_t)size);
+  void* file = malloc((size_t)size);
   mj_saveModel(m, NULL, file, size);
-  mjModel *others[] = {mj_copyModel(NULL, m), mj_loadModelBuffer(file, size)};
+  mjModel* others[] = {mj_copyModel(NULL, m), mj_loadModelBuffer(file, size)};
   free(file);
-  mjData *d = mj_makeData(m);
+  mjData* d = mj_makeData(m);
   kick(m, d, random);
-  mjData *swapped = mj_copyData(NULL, m, d);
+  mjData* swapped = mj_copyData(NULL, m, d);
   steps(m, d, 10);
   for (int i = 0; i < 2; i++) {
     REQUIRE(others[i]);
@@ -210,21 +205,20 @@ static void models(Random *random) {
 }
 
 // a specification edited and compiled again in place, also into what cannot be
-static void recompile(Random *random) {
+static void recompile(Random* random) {
   char error[1000] = "";
   int devices = 2 + below(random, 6);
-  const char *integrator = kIntegrators[below(random, INTEGRATORS)];
-  char *text =
-      engine_model(random, devices, below(random, LAWS * VARIANTS), integrator);
-  mjSpec *spec = mj_parseXMLString(text, NULL, error, sizeof(error));
+  const char* integrator = kIntegrators[below(random, INTEGRATORS)];
+  char* text = engine_model(random, devices, below(random, LAWS * VARIANTS), integrator);
+  mjSpec* spec = mj_parseXMLString(text, NULL, error, sizeof(error));
   free(text);
   REQUIRE(spec);
-  mjModel *m = mj_compile(spec, NULL);
+  mjModel* m = mj_compile(spec, NULL);
   REQUIRE(m);
-  mjData *d = mj_makeData(m);
+  mjData* d = mj_makeData(m);
   kick(m, d, random);
   steps(m, d, 5);
-  mjData *plain = mj_copyData(NULL, m, d);
+  mjData* plain = mj_copyData(NULL, m, d);
 
   // nothing changed: goes on as if it had not been
   REQUIRE(mj_recompile(spec, NULL, m, d) == 0);
@@ -235,9 +229,9 @@ static void recompile(Random *random) {
   // a device goes
   char name[32];
   snprintf(name, sizeof(name), "a%d", 1 + below(random, devices - 1));
-  mjsElement *actuator = mjs_findElement(spec, mjOBJ_ACTUATOR, name);
+  mjsElement* actuator = mjs_findElement(spec, mjOBJ_ACTUATOR, name);
   REQUIRE(actuator);
-  mjsElement *sensor = mjs_firstElement(spec, mjOBJ_SENSOR);
+  mjsElement* sensor = mjs_firstElement(spec, mjOBJ_SENSOR);
   if (below(random, 2) && sensor) {
     REQUIRE(mjs_delete(spec, sensor) == 0);
   }
@@ -249,7 +243,7 @@ static void recompile(Random *random) {
   // lost
   mjs_asActuator(actuator)->actdim = 17;
   long before = message_count();
-  mjModel *refused = mj_compile(spec, NULL);
+  mjModel* refused = mj_compile(spec, NULL);
   REQUIRE(!refused && (message_count() > before || *mjs_getError(spec)));
   steps(m, d, 2);
   mj_deleteData(d);
@@ -259,18 +253,18 @@ static void recompile(Random *random) {
 
 // the engine's batch: threads of its own, live values per simulation, one of
 // them bad
-static void batch(Random *random) {
+static void batch(Random* random) {
   enum { SIMULATIONS = 9 };
   char error[1000] = "";
-  mjModel *m = random_model(random, 1 + below(random, 6));
+  mjModel* m = random_model(random, 1 + below(random, 6));
   mjBatchConfig config;
   mjb_defaultConfig(&config);
   config.nthread = 3;
   config.persistent = below(random, 2);
-  mjBatch *b = mjb_makeBatch(m, SIMULATIONS, &config, error, sizeof(error));
+  mjBatch* b = mjb_makeBatch(m, SIMULATIONS, &config, error, sizeof(error));
   REQUIRE(b);
   int size = 0;
-  mjtNum *live = mjb_expand(b, "numeric_data", &size, NULL);
+  mjtNum* live = mjb_expand(b, "numeric_data", &size, NULL);
   REQUIRE(live && size == m->nnumericdata);
   for (int i = 0; i < SIMULATIONS; i++) {
     live[i * size] = i;
@@ -290,42 +284,40 @@ static void batch(Random *random) {
 // threads of ours: one model for all, each with its own data; each compiles a
 // model, too
 typedef struct Task_ {
-  const mjModel *m;
+  const mjModel* m;
   uint64_t seed;
   mjtNum sum;
 } Task;
 
-static mjtNum run_alone(const mjModel *m, uint64_t seed) {
+static mjtNum run_alone(const mjModel* m, uint64_t seed) {
   Random random = {seed};
-  mjData *d = mj_makeData(m);
+  mjData* d = mj_makeData(m);
   kick(m, d, &random);
   steps(m, d, 20);
-  mjData *duplicate = mj_copyData(NULL, m, d);
+  mjData* duplicate = mj_copyData(NULL, m, d);
   mj_resetData(m, d);
   mj_deleteData(d);
   steps(m, duplicate, 5);
   mjtNum sum = 0;
-  for (int i = 0; i < m->nq; i++)
-    sum += duplicate->qpos[i];
-  for (int i = 0; i < m->na; i++)
-    sum += duplicate->act[i];
+  for (int i = 0; i < m->nq; i++) sum += duplicate->qpos[i];
+  for (int i = 0; i < m->na; i++) sum += duplicate->act[i];
   mj_deleteData(duplicate);
   return sum;
 }
 
-static void *run_task(void *argument) {
-  Task *task = argument;
+static void* run_task(void* argument) {
+  Task* task = argument;
   task->sum = run_alone(task->m, task->seed);
   Random random = {task->seed};
-  mjModel *own = random_model(&random, 3);
+  mjModel* own = random_model(&random, 3);
   run_alone(own, task->seed);
   mj_deleteModel(own);
   return NULL;
 }
 
-static void threads(Random *random) {
+static void threads(Random* random) {
   enum { THREADS = 4 };
-  mjModel *m = random_model(random, 1 + below(random, 10));
+  mjModel* m = random_model(random, 1 + below(random, 10));
   pthread_t thread[THREADS];
   Task task[THREADS];
   for (int i = 0; i < THREADS; i++) {
@@ -341,14 +333,14 @@ static void threads(Random *random) {
 
 // derivatives, inverse dynamics, a scene, disabled actuation: other ways into
 // the callbacks
-static void other_ways(Random *random) {
-  mjModel *m = random_model(random, 1 + below(random, 5));
-  mjData *d = mj_makeData(m);
+static void other_ways(Random* random) {
+  mjModel* m = random_model(random, 1 + below(random, 5));
+  mjData* d = mj_makeData(m);
   kick(m, d, random);
   steps(m, d, 3);
   int n = 2 * m->nv + m->na;
-  mjtNum *A = malloc(sizeof(mjtNum) * (size_t)(n * n));
-  mjtNum *B = malloc(sizeof(mjtNum) * (size_t)(n * m->nu));
+  mjtNum* A = malloc(sizeof(mjtNum) * (size_t)(n * n));
+  mjtNum* B = malloc(sizeof(mjtNum) * (size_t)(n * m->nu));
   if (m->opt.integrator != mjINT_DISCRETE) {
     mjd_transitionFD(m, d, 1e-6, 1, A, B, NULL, NULL);
   }
@@ -361,7 +353,7 @@ static void other_ways(Random *random) {
   mjv_defaultScene(&scene);
   mjv_defaultOption(&option);
   mjv_defaultCamera(&camera);
-  mjv_makeScene(m, &scene, 20 + below(random, 200)); // too few now and then
+  mjv_makeScene(m, &scene, 20 + below(random, 200));  // too few now and then
   mjv_updateScene(m, d, &option, NULL, &camera, mjCAT_ALL, &scene);
   mjv_freeScene(&scene);
   m->opt.disableflags |= mjDSBL_ACTUATION;
@@ -378,18 +370,15 @@ static void other_ways(Random *random) {
 // numbers that are none, or absurd, put where users can put them: what is no
 // number gives a message and is gone three steps later; nothing turns into such
 // without a message
-static void bad_numbers(Random *random) {
-  mjModel *m = random_model(random, 1 + below(random, 6));
+static void bad_numbers(Random* random) {
+  mjModel* m = random_model(random, 1 + below(random, 6));
   for (int turn = 0; turn < 10; turn++) {
-    mjData *d = mj_makeData(m);
+    mjData* d = mj_makeData(m);
     kick(m, d, random);
     steps(m, d, 2);
-    const char *const name[] = {"qpos", "qvel",         "act",
-                                "ctrl", "plugin_state", "qacc_warmstart"};
-    mjtNum *place[] = {d->qpos, d->qvel,         d->act,
-                       d->ctrl, d->plugin_state, d->qacc_warmstart};
-    int size[] = {m->nq, m->nv, m->na, m->nu, m->npluginstate, m->nv},
-        which = below(random, 6);
+    const char* const name[] = {"qpos", "qvel", "act", "ctrl", "plugin_state", "qacc_warmstart"};
+    mjtNum* place[] = {d->qpos, d->qvel, d->act, d->ctrl, d->plugin_state, d->qacc_warmstart};
+    int size[] = {m->nq, m->nv, m->na, m->nu, m->npluginstate, m->nv}, which = below(random, 6);
     if (size[which]) {
       const double bad[] = {NAN, INFINITY, -INFINITY, 1e300, 5e-324};
       double value = below(random, 2) ? bad[below(random, 5)] : any(random);
@@ -398,12 +387,10 @@ static void bad_numbers(Random *random) {
       place[which][index] = value;
       steps(m, d, 3);
       int told = message_count() > before, finite = finite_state(m, d);
-      int guess = place[which] ==
-                  d->qacc_warmstart; // which the solver is free to throw away
+      int guess = place[which] == d->qacc_warmstart;  // which the solver is free to throw away
       if (isfinite(value) ? !finite && !told : !finite || (!told && !guess)) {
-        fprintf(stderr, "%s[%d] = %g under %s: %sfinite later, %stold\n",
-                name[which], index, value, kIntegrators[m->opt.integrator],
-                finite ? "" : "not ", told ? "" : "not ");
+        fprintf(stderr, "%s[%d] = %g under %s: %sfinite later, %stold\n", name[which], index, value,
+                kIntegrators[m->opt.integrator], finite ? "" : "not ", told ? "" : "not ");
         exit(1);
       }
     }
@@ -415,10 +402,10 @@ static void bad_numbers(Random *random) {
 //------------------------------ all of them
 //-------------------------------------------------------
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   const struct {
-    const char *name;
-    void (*run)(Random *random);
+    const char* name;
+    void (*run)(Random* random);
   } scenarios[] = {{"lifetimes", lifetimes},    {"models", models},
                    {"recompile", recompile},    {"batch", batch},
                    {"threads", threads},        {"other_ways", other_ways},
@@ -439,8 +426,7 @@ int main(int argc, char **argv) {
       Random random = {20261122 + 1000003 * (uint64_t)round};
       scenarios[i].run(&random);
     }
-    printf("%s: %d rounds, %ld messages so far\n", scenarios[i].name, rounds,
-           message_count());
+    printf("%s: %d rounds, %ld messages so far\n", scenarios[i].name, rounds, message_count());
     fflush(stdout);
   }
   return 0;

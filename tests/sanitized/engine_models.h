@@ -11,9 +11,8 @@ enum { LAWS = 7, VARIANTS = 8, INTEGRATORS = 5 };
 
 // MJCF text to be freed: devices of consecutive laws and variants, from number
 // `first` on.
-char *engine_model(Random *random, int devices, int first,
-                   const char *integrator);
+char* engine_model(Random* random, int devices, int first, const char* integrator);
 
-extern const char *const kIntegrators[INTEGRATORS];
+extern const char* const kIntegrators[INTEGRATORS];
 
-#endif // TESTS_SANITIZED_ENGINE_MODELS_H_
+#endif  // TESTS_SANITIZED_ENGINE_MODELS_H_

@@ -10,22 +10,24 @@
 
 #include "core/device.h"
 
-#define REQUIRE(condition)                                                     \
-  do {                                                                         \
-    if (!(condition)) {                                                        \
-      fprintf(stderr, "%s:%d: %s: %s\n", __FILE__, __LINE__, #condition,       \
-              message);                                                        \
-      abort();                                                                 \
-    }                                                                          \
+#define REQUIRE(condition)                                                         \
+  do {                                                                             \
+    if (!(condition)) {                                                            \
+      fprintf(stderr, "%s:%d: %s: %s\n", __FILE__, __LINE__, #condition, message); \
+      abort();                                                                     \
+    }                                                                              \
   } while (0)
 
 // A key: its first byte, if it is no letter, chooses one that exists.
-static const char *key_of(char *line) {
+static const char* key_of(char* line) {
   unsigned choice = (unsigned char)*line;
   if (choice >= 0x80) {
-    int i = (int)(choice - 0x80) % (INERTER_NPARAMETER + 3);
-    const InerterParameter *p = inerter_parameter(i);
-    const char *names[] = {"friction", "gas_law", "friction_side"};
+    int i = (int)(choice - 0x80) % (INERTER_NPARAMETER + 3 + INERTER_NLIST);
+    const InerterParameter* p = inerter_parameter(i);
+    if (i >= INERTER_NPARAMETER + 3) {
+      return inerter_list(i - INERTER_NPARAMETER - 3)->name;
+    }
+    const char* names[] = {"friction", "gas_law", "friction_side"};
     return p ? p->name : names[i - INERTER_NPARAMETER];
   }
   return line;
@@ -33,26 +35,24 @@ static const char *key_of(char *line) {
 
 // the text of a value: its first byte, if it is no ASCII, chooses the name of a
 // law
-static const char *value_of_line(const char *text) {
+static const char* value_of_line(const char* text) {
   unsigned choice = (unsigned char)*text;
   if (choice < 0x80) {
     return text;
   }
-  int i =
-      (int)(choice - 0x80) % (INERTER_NFRICTION + INERTER_NGAS + INERTER_NSIDE);
+  int i = (int)(choice - 0x80) % (INERTER_NFRICTION + INERTER_NGAS + INERTER_NSIDE);
   if (i < INERTER_NFRICTION) {
     return inerter_friction_name(i);
   }
   i -= INERTER_NFRICTION;
-  return i < INERTER_NGAS ? inerter_gas_law_name(i)
-                          : inerter_friction_side_name(i - INERTER_NGAS);
+  return i < INERTER_NGAS ? inerter_gas_law_name(i) : inerter_friction_side_name(i - INERTER_NGAS);
 }
 
 // every value a finite number within its bounds, or unset
-static void check_values(const InerterDevice *device, const char *message) {
+static void check_values(const InerterDevice* device, const char* message) {
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
-    const InerterParameter *p = inerter_parameter(i);
-    double value = *(const double *)((const char *)device + p->offset);
+    const InerterParameter* p = inerter_parameter(i);
+    double value = *(const double*)((const char*)device + p->offset);
     if (inerter_is_given(device, i)) {
       REQUIRE(isfinite(value) && value >= p->lower && value <= p->upper);
       REQUIRE(!p->lower_open || value > p->lower);
@@ -60,9 +60,9 @@ static void check_values(const InerterDevice *device, const char *message) {
   }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   char message[INERTER_MESSAGE_SIZE] = "";
-  char *text = malloc(size + 1);
+  char* text = malloc(size + 1);
   if (!text) {
     abort();
   }
@@ -70,17 +70,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
   text[size] = 0;
   InerterDevice device;
   inerter_default(&device);
-  char *rest = NULL;
-  for (char *line = strtok_r(text, "\n", &rest); line;
-       line = strtok_r(NULL, "\n", &rest)) {
-    char *split = strchr(line, ' ');
+  char* rest = NULL;
+  for (char* line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+    char* split = strchr(line, ' ');
     if (!split) {
       split = line + strlen(line);
     } else {
       *split++ = 0;
     }
     InerterDevice before = device;
-    const char *key = key_of(line);
+    const char* key = key_of(line);
     memset(message, 1, sizeof(message));
     if (inerter_set(&device, key, value_of_line(split), message)) {
       REQUIRE(memchr(message, 0, sizeof(message)) && strlen(message) > 20);
@@ -97,8 +96,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
   }
 
   // a second time changes nothing but what the channel has given
-  REQUIRE(inerter_nstate(&device) >= 0 &&
-          inerter_nstate(&device) <= INERTER_MAXSTATE);
+  REQUIRE(inerter_nstate(&device) >= 0 && inerter_nstate(&device) <= INERTER_MAXSTATE);
   double z[INERTER_MAXSTATE] = {0};
   *message = 0;
   REQUIRE(inerter_valid(&device, device.rest_length, z, message));

@@ -17,19 +17,17 @@ enum { N = 4 };
 static InerterDevice device;
 static double x[N], v[N], a[N], z[N * INERTER_MAXSTATE], h, mobility, total;
 
-static void fail(int line, const char *promise) {
+static void fail(int line, const char* promise) {
   fprintf(stderr, "fuzz_core.c:%d: %s\nfriction %s\n", line, promise,
           inerter_friction_name(device.friction));
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
-    const InerterParameter *p = inerter_parameter(i);
+    const InerterParameter* p = inerter_parameter(i);
     if (inerter_is_given(&device, i)) {
-      fprintf(stderr, "%s %.17g\n", p->name,
-              *(const double *)((const char *)&device + p->offset));
+      fprintf(stderr, "%s %.17g\n", p->name, *(const double*)((const char*)&device + p->offset));
     }
   }
-  fprintf(stderr,
-          "x %.17g v %.17g a %.17g h %.17g mobility %.17g force %.17g\nz", x[0],
-          v[0], a[0], h, mobility, total);
+  fprintf(stderr, "x %.17g v %.17g a %.17g h %.17g mobility %.17g force %.17g\nz", x[0], v[0], a[0],
+          h, mobility, total);
   for (int i = 0; i < inerter_nstate(&device); i++) {
     fprintf(stderr, " %.17g", z[i]);
   }
@@ -37,22 +35,22 @@ static void fail(int line, const char *promise) {
   abort();
 }
 
-#define REQUIRE(condition)                                                     \
-  do {                                                                         \
-    if (!(condition)) {                                                        \
-      fail(__LINE__, #condition);                                              \
-    }                                                                          \
+#define REQUIRE(condition)        \
+  do {                            \
+    if (!(condition)) {           \
+      fail(__LINE__, #condition); \
+    }                             \
   } while (0)
 
 // what is left of the input
 typedef struct Input_ {
-  const uint8_t *bytes;
+  const uint8_t* bytes;
   size_t size;
-  int tame;     // 1: only moderate numbers are wanted
-  int moderate; // 1: every number so far is 0 or from 1e-3 to 1e3
+  int tame;      // 1: only moderate numbers are wanted
+  int moderate;  // 1: every number so far is 0 or from 1e-3 to 1e3
 } Input;
 
-static unsigned byte(Input *input) {
+static unsigned byte(Input* input) {
   if (!input->size) {
     return 0;
   }
@@ -61,68 +59,61 @@ static unsigned byte(Input *input) {
 }
 
 // a double of any eight bytes, an awkward one, or one of moderate size
-static double number(Input *input) {
-  static const double awkward[] = {
-      0,      -0.0,  5e-324, -5e-324,  2.2250738585072014e-308,
-      1e-300, 1e300, -1e300, 1.7e308,  -1.7e308,
-      1e12,   -1e12, 1e-12,  INFINITY, -INFINITY,
-      NAN};
+static double number(Input* input) {
+  static const double awkward[] = {0,      -0.0,  5e-324, -5e-324,  2.2250738585072014e-308,
+                                   1e-300, 1e300, -1e300, 1.7e308,  -1.7e308,
+                                   1e12,   -1e12, 1e-12,  INFINITY, -INFINITY,
+                                   NAN};
   unsigned kind = byte(input);
   double value = 0;
   if (kind < 40 && !input->tame) {
     uint8_t raw[8];
-    for (int i = 0; i < 8; i++)
-      raw[i] = (uint8_t)byte(input);
+    for (int i = 0; i < 8; i++) raw[i] = (uint8_t)byte(input);
     memcpy(&value, raw, sizeof(value));
   } else if (kind < 60 && !input->tame) {
     value = awkward[kind % 16];
   } else {
-    value = pow(10, (double)byte(input) / 42.5 - 3) * (kind & 1 ? 1 : -1) *
-            (kind % 32 ? 1 : 0);
+    value = pow(10, (double)byte(input) / 42.5 - 3) * (kind & 1 ? 1 : -1) * (kind % 32 ? 1 : 0);
   }
   double size = fabs(value);
   input->moderate &= size == 0 || (size >= 1e-3 && size <= 1e3);
   return value;
 }
 
-static void set(Input *input, const InerterParameter *p) {
+static void set(Input* input, const InerterParameter* p) {
   char message[INERTER_MESSAGE_SIZE], text[64];
   int moderate = input->moderate;
   double value = number(input);
-  if (isfinite(p->lower))
-    value = fabs(value);
+  if (isfinite(p->lower)) value = fabs(value);
   snprintf(text, sizeof(text), "%.17g", value);
   if (inerter_set(&device, p->name, text, message)) {
-    input->moderate = moderate; // it was not taken
+    input->moderate = moderate;  // it was not taken
   }
 }
 
-static void set_each(Input *input, const char *names) {
+static void set_each(Input* input, const char* names) {
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
-    const InerterParameter *p = inerter_parameter(i);
+    const InerterParameter* p = inerter_parameter(i);
     size_t length = strlen(p->name);
-    for (const char *at = names; (at = strstr(at, p->name)); at += length) {
-      if ((at == names || at[-1] == ' ') && (at[length] == ' ' || !at[length]))
-        set(input, p);
+    for (const char* at = names; (at = strstr(at, p->name)); at += length) {
+      if ((at == names || at[-1] == ' ') && (at[length] == ' ' || !at[length])) set(input, p);
     }
   }
 }
 
 // a friction law with what it needs, some parts, some other parameters; 0 where
 // it was refused
-static int random_device(Input *input) {
-  static const char *const parts[] = {
-      "inertance series_stiffness",
-      "series_damping",
-      "backlash",
-      "stop_upper stop_stiffness",
-      "gas_pressure gas_area gas_volume",
-      "piston_area channel_area channel_length"};
+static int random_device(Input* input) {
+  static const char* const parts[] = {"inertance series_stiffness",
+                                      "series_damping",
+                                      "backlash",
+                                      "stop_upper stop_stiffness",
+                                      "gas_pressure gas_area gas_volume",
+                                      "piston_area channel_area channel_length"};
   char message[INERTER_MESSAGE_SIZE];
   int law = (int)byte(input) % INERTER_NFRICTION;
   inerter_default(&device);
-  REQUIRE(
-      !inerter_set(&device, "friction", inerter_friction_name(law), message));
+  REQUIRE(!inerter_set(&device, "friction", inerter_friction_name(law), message));
   if (law == INERTER_FRICTION_bouc_wen) {
     set_each(input, "bw_stiffness");
   } else if (law != INERTER_FRICTION_none) {
@@ -130,8 +121,7 @@ static int random_device(Input *input) {
   }
   unsigned wanted = byte(input);
   for (int i = 0; i < 6; i++) {
-    if (wanted >> i & 1)
-      set_each(input, parts[i]);
+    if (wanted >> i & 1) set_each(input, parts[i]);
   }
   for (unsigned count = byte(input) % 8; count; count--) {
     set(input, inerter_parameter((int)byte(input) % INERTER_NPARAMETER));
@@ -139,10 +129,9 @@ static int random_device(Input *input) {
   return !inerter_finish(&device, message);
 }
 
-static int all_finite(const double *values, int n) {
+static int all_finite(const double* values, int n) {
   int finite = 1;
-  for (int i = 0; i < n; i++)
-    finite &= isfinite(values[i]);
+  for (int i = 0; i < n; i++) finite &= isfinite(values[i]);
   return finite;
 }
 
@@ -151,12 +140,11 @@ static long sound_count[INERTER_MAXSTATE + 1];
 
 static void tell(void) {
   for (int i = 0; i <= INERTER_MAXSTATE; i++) {
-    printf("%ld inputs with moderate numbers and %d states\n", sound_count[i],
-           i);
+    printf("%ld inputs with moderate numbers and %d states\n", sound_count[i], i);
   }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   Input input = {bytes, size, 0, 1};
   input.tame = byte(&input) & 1;
   if (!random_device(&input)) {
@@ -188,10 +176,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
   // everything once, for moderate numbers with finite results; not where a law
   // has been left, as by gas without volume, and not by Bouc-Wen where its
   // state grows exponentially (bouc_wen.c)
-  int grows = device.friction == INERTER_FRICTION_bouc_wen &&
-              device.bw_beta < fabs(device.bw_gamma);
-  int sound =
-      input.moderate && !grows && inerter_valid(&device, x[0], z, message);
+  int grows =
+      device.friction == INERTER_FRICTION_bouc_wen && device.bw_beta < fabs(device.bw_gamma);
+  int sound = input.moderate && !grows && inerter_valid(&device, x[0], z, message);
   if (!sound_count[0] && sound && !nstate) {
     atexit(tell);
   }
@@ -199,22 +186,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
 
   // gas at a flywheel behind a series element is taken explicitly: a step has
   // to resolve it
-  int steady = sound && !(device.gas_pressure > 0 &&
-                          device.series_stiffness + device.series_damping > 0);
+  int steady =
+      sound && !(device.gas_pressure > 0 && device.series_stiffness + device.series_damping > 0);
   double own[INERTER_MAXSTATE], end[INERTER_MAXSTATE];
   memcpy(own, z, sizeof(double) * (size_t)wide);
   InerterForce force = inerter_force(&device, x[0], v[0], a[0], own);
   inerter_evaluate(&device, N, x, v, a, z, result, rates);
   inerter_state_rate(&device, x[0], v[0], own, end);
-  REQUIRE(!sound || (isfinite(force.total) && isfinite(force.inertance) &&
-                     isfinite(force.friction)));
+  REQUIRE(!sound ||
+          (isfinite(force.total) && isfinite(force.inertance) && isfinite(force.friction)));
   REQUIRE(!sound || !nstate || all_finite(end, nstate));
   inerter_state_of_force(&device, x[0], v[0], a[0], total, end);
   REQUIRE(!sound || !nstate || all_finite(end, nstate));
-  force =
-      inerter_force_over_step(&device, x[0], v[0], a[0], own, h, mobility, end);
-  REQUIRE(!steady ||
-          (isfinite(force.total) && (!nstate || all_finite(end, nstate))));
+  force = inerter_force_over_step(&device, x[0], v[0], a[0], own, h, mobility, end);
+  REQUIRE(!steady || (isfinite(force.total) && (!nstate || all_finite(end, nstate))));
   inerter_state_step(&device, x[0], v[0], own, h);
   REQUIRE(!steady || !nstate || all_finite(own, nstate));
   memcpy(own, z, sizeof(double) * (size_t)wide);

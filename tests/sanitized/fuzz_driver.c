@@ -10,9 +10,9 @@
 
 #include "random.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   enum { LONGEST = 512, KEPT = 64 };
   static uint8_t kept[KEPT][LONGEST];
   static size_t sizes[KEPT];
@@ -20,7 +20,7 @@ int main(int argc, char **argv) {
   Random random = {argc > 2 ? strtoull(argv[2], NULL, 10) : 20261122};
 
   // texts with which changes begin
-  const char *const seeds[] = {
+  const char* const seeds[] = {
       "inertance 113\nfriction lugre\ncoulomb_force 10\nstatic_force 14",
       "inertance 2\nseries_stiffness 1e5\nseries_damping 3\nbacklash 1e-3",
       "friction bouc_wen\nbw_stiffness 1e4\nbw_exponent 2.5",
@@ -30,22 +30,20 @@ int main(int argc, char **argv) {
     memcpy(kept[i], seeds[i % 4], sizes[i]);
   }
   for (long i = 0; i < count; i++) {
-    uint8_t *input = kept[below(&random, KEPT)];
-    size_t *size = sizes + (input - kept[0]) / LONGEST;
+    uint8_t* input = kept[below(&random, KEPT)];
+    size_t* size = sizes + (input - kept[0]) / LONGEST;
     if (below(&random, 4) == 0) {
       *size = (size_t)below(&random, LONGEST);
-      for (size_t k = 0; k < *size; k++)
-        input[k] = (uint8_t)below(&random, 256);
+      for (size_t k = 0; k < *size; k++) input[k] = (uint8_t)below(&random, 256);
     } else {
       for (int changes = 1 + below(&random, 8); changes && *size; changes--) {
         input[below(&random, (int)*size)] = (uint8_t)below(&random, 256);
       }
-      if (*size < LONGEST && below(&random, 2))
-        input[(*size)++] = (uint8_t)below(&random, 256);
+      if (*size < LONGEST && below(&random, 2)) input[(*size)++] = (uint8_t)below(&random, 256);
     }
 
     // exactly as long as it is, so that a look beyond it is reported
-    uint8_t *exact = malloc(*size + 1);
+    uint8_t* exact = malloc(*size + 1);
     if (!exact) {
       abort();
     }

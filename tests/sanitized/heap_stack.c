@@ -7,15 +7,15 @@
 
 // blocks of this thread, newest first; a mark is a block too
 typedef struct Block_ {
-  struct Block_ *next;
+  struct Block_* next;
   int mark;
   _Alignas(16) unsigned char bytes[];
 } Block;
 
-static _Thread_local Block *newest;
+static _Thread_local Block* newest;
 
-static Block *push(size_t size, int mark) {
-  Block *block = malloc(sizeof(Block) + size);
+static Block* push(size_t size, int mark) {
+  Block* block = malloc(sizeof(Block) + size);
   if (!block) {
     abort();
   }
@@ -24,25 +24,25 @@ static Block *push(size_t size, int mark) {
   return block;
 }
 
-void *heap_block(size_t size) {
-  Block *block = push(size, 0);
+void* heap_block(size_t size) {
+  Block* block = push(size, 0);
 
   // what is read before it is written is a NaN, or an index far away
   memset(block->bytes, 0xff, size);
   return block->bytes;
 }
 
-void heap_mark(mjData *d) {
+void heap_mark(mjData* d) {
   (void)d;
   push(0, 1);
 }
 
-void heap_free(mjData *d) {
+void heap_free(mjData* d) {
   (void)d;
   for (int mark = 0; !mark;) {
-    Block *block = newest;
+    Block* block = newest;
     if (!block) {
-      abort(); // freed more often than marked
+      abort();  // freed more often than marked
     }
     newest = block->next;
     mark = block->mark;

@@ -113,11 +113,24 @@ def _friction_number(f: Functions, p: Parameters, number: Value, diameter: float
     """Darcy's friction factor times the Reynolds number [-], by Churchill."""
     reynolds = f.greatest(number, 1e-6)
     rough = f.power(7.0 / reynolds, 0.9) + 0.27 * p.channel_roughness / diameter
+    if p.coil_diameter:
+        return _coiled(f, reynolds, rough, math.sqrt(diameter / p.coil_diameter))
     a = f.power(2.457 * f.log(1.0 / rough), 16.0)
     b = 37530.0**16
     turbulent = f.power(reynolds, 24.0) / f.power(a * f.power(reynolds, 16.0) + b, 1.5)
     # (P + Q)^-1.5 Re^12 with Re^-16 taken out of P + Q
     return 8.0 * f.power(8.0**12 + f.power(reynolds, 12.0) * turbulent, 1.0 / 12.0)
+
+
+def _coiled(f: Functions, reynolds: Value, rough: Value, root: float) -> Value:
+    """The same in a coil, `root` the square root of D / D_c: White, Mishra and Gupta."""
+    fall = f.power(11.6 / f.greatest(11.6, reynolds * root), 0.45)
+    laminar = 64.0 / (1.0 - f.power(f.greatest(0.0, 1.0 - fall), 2.2))
+    a = f.power(2.457 * f.log(1.0 / rough), 16.0)
+    sum_of_both = a * f.power(reynolds, 16.0) + 37530.0**16
+    straight = 8.0 * reynolds * reynolds / f.power(sum_of_both, 0.125)
+    ratio = reynolds * (straight + 0.03 * root) / laminar
+    return laminar * f.power(1.0 + f.power(ratio, 12.0), 1.0 / 12.0)
 
 
 def _gas(f: Functions, p: Parameters, y: Value) -> Value:

@@ -30,7 +30,7 @@ def own_names(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Parameters(SimpleNamespace):
-    """Every parameter and list of the device by name, those of `WORDS`, `nstate`, `state_names`.
+    """Parameters and lists of the device by name, those of `WORDS`, `nstate`, `state_names`.
 
     `smooth_play` is this element's own, see `series.py`.
     """

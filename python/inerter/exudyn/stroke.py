@@ -44,7 +44,7 @@ def there(p: Parameters, name: str) -> bool:
 
 
 def value(f: Functions, p: Parameters, name: str, x: Value) -> Value:
-    """Value at x [m]."""
+    """The quantity at x [m]."""
     total = 0.0
     if values := getattr(p, f"{name}_curve"):
         moments = _moments(values, p.curve_lower, p.curve_upper)

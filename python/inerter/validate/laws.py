@@ -13,7 +13,7 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-from inerter.core import parameters
+from inerter.core import lists, parameters
 
 Kind = Literal["smooth", "corner", "contact"]
 INERTANCE = 128.57
@@ -54,6 +54,12 @@ LAWS = {
         _law("cubic_stiffness", "smooth", stiffness_cubic=2e8),
         _law("gas_spring", "smooth", gas_pressure=5e5, gas_area=2e-3, gas_volume=1e-4),
         _law("variable_inertance", "smooth", inertance_gradient=8.0, inertance_curvature=500.0),
+        _law("along_the_stroke", "smooth", inertance_periods="0.02 0.05 1.0",
+             force_periods="0.015 60.0 0.5", viscous=300.0, viscous_periods="0.03 200.0 0.0"),
+        _law("curve", "corner", inertance_curve="0 0.1 0.05 -0.05 0.1", curve_lower=-0.06,
+             curve_upper=0.06),
+        _law("coil", "corner", piston_area=1.649e-3, channel_area=2.827e-5, channel_length=1.34,
+             fluid_density=998.0, fluid_viscosity=2e-2, coil_diameter=0.2),
         _law("series", "smooth", **_SHAFT),
         _law("series_hardening", "smooth", **_SHAFT, series_hardening=200.0,
              flywheel_viscous=100.0),
@@ -87,8 +93,11 @@ LAWS = {
 
 def exponents(name: str, device: dict[str, float | str] | None = None) -> tuple[float, float]:
     """Powers of mass and length in the unit of a parameter; `m^-n` takes n from `device`."""
-    unit = parameters()[name].unit
     power = float((device or {}).get("bw_exponent", parameters()["bw_exponent"].initial))
+    return _powers(parameters()[name].unit, power)
+
+
+def _powers(unit: str, power: float = 1.0) -> tuple[float, float]:
     mass = length = 0.0
     sign = 1
     for part in re.split(r"([*/])", unit):
@@ -120,4 +129,20 @@ def in_units(
             continue
         of_mass, of_length = exponents(name, device)
         found[name] = value * mass**of_mass * length**of_length
-    return {name: value for name, value in device.items() if isinstance(value, str)} | found
+    words = {name: value for name, value in device.items() if isinstance(value, str)}
+    for name in lists().keys() & words.keys():
+        words[name] = _list_in_units(name, words[name], mass, length)
+    return words | found
+
+
+def _list_in_units(name: str, text: str, mass: float, length: float) -> str:
+    """The same for a list, as a text; periods are length, amplitude and phase."""
+    declared = lists()[name]
+    of_mass, of_length = _powers(declared.unit)
+    scale, values = mass**of_mass * length**of_length, [float(word) for word in text.split()]
+    if declared.periods:
+        factors = (length, scale, 1.0) * (len(values) // 3)
+        values = [value * factor for value, factor in zip(values, factors, strict=True)]
+    else:
+        values = [value * scale for value in values]
+    return " ".join(map(repr, values))

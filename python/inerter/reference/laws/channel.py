@@ -16,13 +16,15 @@ Dissipated: pipe w. The stored energy is the inertance's.
 Source: inertance: Swift et al., "Design and modelling of a fluid inerter", Int. J. Control 86(11),
 2013. Friction: Churchill, "Friction-factor equation spans all fluid-flow regimes", Chem. Eng.
 84(24), 1977; the product f Re stays finite at rest, so that is what is computed.
-Not modelled: entrance length, curvature of a coil (Dean), unsteady friction.
+A coil (`coil_diameter`) has another f: `coil.py`.
+Not modelled: entrance length, unsteady wall friction.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from . import coil
 from .device_parameters import DeviceParameters
 from .parameters import Quantity
 
@@ -57,7 +59,12 @@ def force(parameters: DeviceParameters, velocity: Quantity) -> Quantity:
     if viscosity > 0.0:
         width = np.sqrt(4.0 * parameters.channel_area / np.pi)
         reynolds = parameters.fluid_density * abs(flow) * width / viscosity
-        product = friction_product(reynolds, parameters.channel_roughness / width)
+        roughness = parameters.channel_roughness / width
+        if parameters.coil_diameter > 0.0:
+            curvature = float(width / parameters.coil_diameter)
+            product = coil.friction_product(reynolds, roughness, curvature)
+        else:
+            product = friction_product(reynolds, roughness)
         total = total + product * viscosity * flow * parameters.channel_length / (2.0 * width**2)
     return parameters.piston_area * total
 

@@ -81,6 +81,8 @@ class DeviceParameters(FrictionParameters):
     curve_lower: float = parameter(UNSET, "m", "place of the first value of every curve")
     curve_upper: float = parameter(UNSET, "m", "place of the last value of every curve")
 
+    coil_diameter: float = parameter(0.0, "m", "diameter of the channel's coil D_c", at_least=0.0)
+
     @property
     def has_series(self) -> bool:
         """Whether something stands in series with the inertance."""
@@ -202,7 +204,7 @@ class DeviceParameters(FrictionParameters):
 
     def _check_channel(self) -> None:
         geometry = ("piston_area", "channel_area", "channel_length")
-        losses = ("fluid_viscosity", "minor_loss", "channel_roughness")
+        losses = ("fluid_viscosity", "minor_loss", "channel_roughness", "coil_diameter")
         wanted = [n for n in (*geometry[1:], *losses) if getattr(self, n) > 0.0]
         # the piston may also be there for the gas alone
         if self.piston_area > 0.0 and self.gas_pressure == 0.0:
@@ -214,6 +216,11 @@ class DeviceParameters(FrictionParameters):
             raise ValueError(
                 f"{missing[0]}: 0 leaves the channel ({wanted[0]} {getattr(self, wanted[0])}) "
                 f"incomplete; give {' and '.join(missing)}"
+            )
+        if 0.0 < self.coil_diameter <= np.sqrt(4.0 * self.channel_area / np.pi):
+            raise ValueError(
+                f"coil_diameter: {self.coil_diameter} m is not above the channel's own diameter; "
+                "give a larger one, or 0 for a straight channel"
             )
         if self.inertance > 0.0:
             raise ValueError(

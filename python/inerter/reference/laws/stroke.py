@@ -55,7 +55,7 @@ class Curve:
         return bool(self.values or self.periods)
 
     def __call__(self, x: Quantity) -> Quantity:
-        """f [its unit] at x [m]."""
+        """The quantity [its unit] at x [m]."""
         return self._of(x, 0)
 
     def slope(self, x: Quantity) -> Quantity:
