@@ -9,13 +9,14 @@ import pytest
 from inerter.diagnose import wording
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.composition import bristle_is_known
+from inerter.diagnose.composition import bristle_is_known, effects_of
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange
 from inerter.diagnose.other_runs import badly_missed, missed_in_words
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.search import Search
+from inerter.diagnose.stages import identified
 from inerter.diagnose.unexplained import unexplained
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
@@ -111,6 +112,25 @@ def test_a_bristle_without_a_known_stiffness_is_none(error: float, known: bool) 
     values = {"inertance": 50.0, "coulomb_force": 12.0, "presliding": 1e-5}
     model = Model("dahl", values, tuple(values))
     assert bristle_is_known(Fit(model, [], np.diag([1e-4, 1e-4, error**2]), 1)) is known
+
+
+def test_an_effect_whose_own_parameters_may_be_none_goes() -> None:
+    """Friction that varies along the stroke leaves its level where it does not vary."""
+    made = record((0.7, 2.0), viscous=0.0)
+    v = np.gradient(made.displacement, TIME)
+    smooth = np.convolve(v, np.ones(25) / 25, "same")
+    made = replace(made, force=made.force + 8 * np.sign(smooth))
+    data = divided([made], prepare([made]), ())
+    base = baseline_of(None, data.band.scales)
+    search = Search(data.runs, data.split, base)
+    start = base.adding("coulomb", coulomb_force=5.0, friction_gradient=0.0, friction_curvature=0.0)
+    fit = search.problem.fit(start)
+    assert effects_of(fit.model, base) == [("position_dependent_friction", None)]
+    known = identified(search, base, search.score("", None, fit))
+    assert effects_of(known.model, base) == [("coulomb_friction", None)]
+    assert known.model.values["coulomb_force"] == pytest.approx(8.0, rel=0.05)
+    # and what has a value stays
+    assert identified(search, base, known) is known
 
 
 # --- texts ---------------------------------------------------------------------------------------

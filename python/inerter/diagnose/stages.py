@@ -281,9 +281,8 @@ def settled(found: Searched) -> Settled:
     """Every effect compared with its rivals; where they are equal, the usual one is named."""
     search, baseline = found.search, found.prepared.baseline
     before = search.baseline_fit()
-    final = identified(search, baseline, _plainest_law(found))
-    final, standings = compared(search, baseline, final)
-    # a rival that took an effect's place may leave another one without a value
+    # first the rivals: the usual cause takes the place of one that has no value of its own
+    final, standings = compared(search, baseline, _plainest_law(found))
     known = identified(search, baseline, final)
     if known is not final:
         final, standings = compared(search, baseline, known)
