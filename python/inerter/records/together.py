@@ -105,7 +105,10 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
     lags, r = _correlations(a, b)
     if not len(lags):
         raise RecordError(f"{path}: no motion that {other} has seen, too; give files of one test")
-    best = int(np.argmax(np.abs(r)))
+    # of a motion that repeats, half a period with the other sign is as good: the same sign is meant
+    best = int(np.argmax(r))
+    if r[best] < ALIKE * np.max(np.abs(r)):
+        best = int(np.argmax(np.abs(r)))
     if abs(r[best]) < LEAST:
         raise RecordError(
             f"{path}: no motion that {other} has seen, too (highest correlation "
@@ -118,8 +121,8 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
         )
     offset = float(theirs["time"][0] - mine["time"][0])
     _refuse_several(path, other, lags, r, best, step, offset)
-    lag, stderr, ratio = _refined(a, b, int(lags[best]), step)
-    rate, rate_stderr = _rate(a, b, int(lags[best]), step)
+    lag, stderr, ratio = _refined(a, b, int(lags[best]))
+    rate, rate_stderr = _rate(a, b, int(lags[best]))
     value = lag * step + float(mine["time"][0] - theirs["time"][0])
     return Lag(
         value=value, stderr=stderr * step, correlation=float(r[best]), ratio=ratio, rate=rate,
@@ -186,9 +189,8 @@ def _overlap(a: Array, b: Array, lag: int) -> tuple[Array, Array]:
     return a[start:stop], b[start - lag : stop - lag]
 
 
-def _refined(a: Array, b: Array, lag: int, step: float) -> tuple[float, float, float]:
+def _refined(a: Array, b: Array, lag: int) -> tuple[float, float, float]:
     """Lag in samples with its standard error, and the ratio of b to a, by least squares."""
-    del step
     first, second = _overlap(a, b, lag)
     shift = 0.0
     gain, stderr = 1.0, 0.0
@@ -219,7 +221,7 @@ def _correlation_time(rest: Array) -> float:
     return float(1 + 2 * np.sum(auto[1:end]))
 
 
-def _rate(a: Array, b: Array, lag: int, step: float) -> tuple[float, float]:
+def _rate(a: Array, b: Array, lag: int) -> tuple[float, float]:
     """By how much the lag grows per second, from its two halves, and the standard error."""
     first, second = _overlap(a, b, lag)
     middle = len(first) // 2
@@ -227,8 +229,12 @@ def _rate(a: Array, b: Array, lag: int, step: float) -> tuple[float, float]:
     least = 0.05 * np.sum(first**2)
     if middle < 50 or any(np.sum(one**2) < least for one, _ in halves):
         return 0.0, np.inf
-    found = [_refined(one, two, 0, step)[:2] for one, two in halves]
+    found = [_refined(one, two, 0)[:2] for one, two in halves]
+    # each half tells the lag where its motion is
+    weights = [np.gradient(two) ** 2 for _, two in halves]
+    centres = [float(np.average(np.arange(len(w)), weights=w)) for w in weights]
+    apart = middle + centres[1] - centres[0]
     return (
-        (found[1][0] - found[0][0]) / middle,
-        float(np.hypot(found[0][1], found[1][1])) / middle,
+        (found[1][0] - found[0][0]) / apart,
+        float(np.hypot(found[0][1], found[1][1])) / apart,
     )
