@@ -12,7 +12,7 @@ from inerter.printable import PLAIN
 
 # what the lab brings: a command imports it when it is run
 _LAB = (
-    "PyEMD", "click", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotly", "polars", "pyarrow",
+    "PyEMD", "jinja2", "loky", "markupsafe", "matplotlib", "pint", "plotly", "polars", "pyarrow",
     "rich", "scipy", "threadpoolctl", "typer",
 )  # fmt: skip
 

@@ -25,8 +25,8 @@ from inerter.console import (
 )
 from inerter.design.commands import app as design_app
 from inerter.folder import json_text
-from inerter.inspection.command import inspect_command
 from inerter.identify.command import identify_command
+from inerter.inspection.command import inspect_command
 from inerter.plugin import plugin_path, supported_text
 from inerter.records.convert import convert_command
 from inerter.records.options import told_reading, with_reading
@@ -78,7 +78,9 @@ def common(
 def diagnose_command(
     record: Annotated[
         list[str],
-        typer.Argument(metavar="RECORD...", help="Records: files, folders or globs; several are several runs."),
+        typer.Argument(
+            metavar="RECORD...", help="Records: files, folders or globs; several are several runs."
+        ),
     ],
     device: Annotated[
         Path | None,
@@ -225,8 +227,8 @@ def simulate_command(
     """
     import mujoco
 
-    from inerter.models import model_file
     from inerter.engine_errors import SimulationError, engine_text
+    from inerter.models import model_file
     from inerter.simulate.output import write_run
     from inerter.simulate.run import run_model
     from inerter.simulate.summary import at_rest, print_run, summary
@@ -266,7 +268,9 @@ def validate_command(
         list[str] | None,
         typer.Option(help="Models, or a layout as in quarter_car/S2; with commas, or given again."),
     ] = None,
-    law: Annotated[list[str] | None, typer.Option(help="Laws; with commas, or given again.")] = None,
+    law: Annotated[
+        list[str] | None, typer.Option(help="Laws; with commas, or given again.")
+    ] = None,
     engine: Annotated[
         list[str] | None, typer.Option(help="mujoco, exudyn; with commas, or given again.")
     ] = None,

@@ -112,7 +112,7 @@ def exudyn_model(name: str) -> ModuleType:
     if not installed():
         raise ImportError(
             f"the model {name!r} needs Exudyn, which is not installed: "
-            '`pip install exudyn` (the extra `exudyn`)'
+            "`pip install exudyn` (the extra `exudyn`)"
         )
     known = f"inerter_exudyn_model_{name}"
     if known not in sys.modules:
@@ -136,6 +136,4 @@ def _folder(kind: str) -> Path:
         if folder.is_dir():
             return folder
     looked = " or ".join(str(folder) for folder in folders)
-    raise ValueError(
-        f"no models in {looked}; install inerter again"
-    )
+    raise ValueError(f"no models in {looked}; install inerter again")

@@ -45,7 +45,8 @@ def test_two_files_are_brought_together(lag: float, tmp_path: Path) -> None:
         (record,) = read_records(first, "bench")
     assert record.velocity is not None
     found, error = (
-        float(part) for part in record.reading.split("its clock + ")[1].split(" s,")[0].split(" s ± ")
+        float(part)
+        for part in record.reading.split("its clock + ")[1].split(" s,")[0].split(" s ± ")
     )
     assert error < 1e-3
     assert abs(found - lag) < 4 * error + 1e-5
@@ -84,8 +85,9 @@ def test_a_motion_that_repeats_is_asked_for(tmp_path: Path) -> None:
         (second, (6 * np.cos(6 * time + 1),), "t,v [mm/s]"),
     ):
         np.savetxt(path, np.column_stack([time, *values]), delimiter=",", header=head, comments="")
-    with pytest.raises(RecordError, match=r"say --lag -?[\d.]+ or --lag -?[\d.]+"), reading(
-        partner=second
+    with (
+        pytest.raises(RecordError, match=r"say --lag -?[\d.]+ or --lag -?[\d.]+"),
+        reading(partner=second),
     ):
         read_records(first, "bench")
     with reading(partner=second, lag=1 / 6):

@@ -30,7 +30,7 @@ def exudyn(module: str = "") -> Any:
     """
     if not installed():
         raise ImportError(
-            'Exudyn is not installed; run `pip install exudyn` (the extra `exudyn`) '
+            "Exudyn is not installed; run `pip install exudyn` (the extra `exudyn`) "
             "(it has wheels for the usual Pythons)"
         )
     package = importlib.import_module("exudyn")

@@ -15,7 +15,10 @@ from inerter.records.options import told_reading, with_reading
 def identify_command(
     record: Annotated[
         list[str],
-        typer.Argument(metavar="RECORD...", help="Records: files, folders or globs; several are fitted together."),
+        typer.Argument(
+            metavar="RECORD...",
+            help="Records: files, folders or globs; several are fitted together.",
+        ),
     ],
     law: Annotated[
         list[str],

@@ -18,7 +18,10 @@ SCHEMA = "inerter.conversion/1"
 @with_reading
 def convert_command(
     record: Annotated[
-        list[str], typer.Argument(metavar="RECORD...", help="Records: files, folders or globs; any known format.")
+        list[str],
+        typer.Argument(
+            metavar="RECORD...", help="Records: files, folders or globs; any known format."
+        ),
     ],
     form: Annotated[
         str, typer.Option("--format", metavar="FORMAT", help="What to write: csv or parquet.")

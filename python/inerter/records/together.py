@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from numpy.fft import irfft, rfft
+from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import gaussian_filter1d
 
@@ -42,7 +43,10 @@ class Lag:
 
 
 def joined(
-    path: Path, values: dict[str, Array], other_path: Path, other: dict[str, Array],
+    path: Path,
+    values: dict[str, Array],
+    other_path: Path,
+    other: dict[str, Array],
     stated: float | None = None,
 ) -> tuple[dict[str, Array], slice, str]:
     """Channels of the other file on the clock of this one, the rows in both, what is to be told.
@@ -71,7 +75,8 @@ def joined(
         if abs(lag.ratio - 1) > 0.1:
             told += f"; its motion is {lag.ratio:.3g} times as large: check scales and units"
         if abs(lag.rate) > 4 * lag.rate_stderr and abs(lag.rate) > 1e-5:
-            told += f"; the clocks drift apart by {1e6 * lag.rate:.3g} ± {1e6 * lag.rate_stderr:.2g} ppm"
+            drift, error = 1e6 * lag.rate, 1e6 * lag.rate_stderr
+            told += f"; the clocks drift apart by {drift:.3g} ± {error:.2g} ppm"
         value = lag.value
     else:
         value, told = stated, f"{other_path.name} joined: its clock + {stated:g} s, as stated"
@@ -135,7 +140,7 @@ def _velocity(path: Path, columns: dict[str, Array], step: float, width: float) 
     name = next((name for name in _SHARED if name in columns), None)
     if name is None:
         raise RecordError(
-            f"{path}: no displacement, velocity or acceleration is known, by which two files of one "
+            f"{path}: no displacement, velocity or acceleration is known, by which two files of a "
             "test are brought together; say --column displacement=NAME or velocity=NAME"
         )
     time = columns["time"]
@@ -162,7 +167,7 @@ def _correlations(a: Array, b: Array) -> tuple[Array, Array]:
     enough = (energy_a > LEAST_ENERGY * np.sum(a**2)) & (energy_b > LEAST_ENERGY * np.sum(b**2))
     # b may have seen more or less than a: of one of them nearly all has to be there
     r = cross[enough] / np.sqrt(energy_a[enough] * energy_b[enough])
-    return lags[enough], r
+    return lags[enough].astype(float), r
 
 
 def _refuse_several(

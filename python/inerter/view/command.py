@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from inerter.console import number, out, refuse
-from inerter.core import DeviceError
 
 if TYPE_CHECKING:
     from inerter.view.session import Session

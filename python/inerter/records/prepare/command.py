@@ -16,7 +16,10 @@ from inerter.records.options import told_reading, with_reading
 @with_reading
 def prepare_command(
     record: Annotated[
-        list[str], typer.Argument(metavar="RECORD...", help="Records: files, folders or globs; CSV, Parquet, .mat.")
+        list[str],
+        typer.Argument(
+            metavar="RECORD...", help="Records: files, folders or globs; CSV, Parquet, .mat."
+        ),
     ],
     denoise: Annotated[str, typer.Option(help="emd, savgol, lowpass, spline or none.")] = "none",
     channel: Annotated[
