@@ -24,6 +24,9 @@ if "PYTEST_XDIST_WORKER" in os.environ:
     for _library in ("OPENBLAS", "OMP", "MKL"):
         os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
+# a command that takes long here says nothing more than it does where it is quick
+os.environ.setdefault("INERTER_PROGRESS", "0")
+
 ROOT = Path(__file__).resolve().parents[1]
 MEASURED = ROOT.parent / "shared" / "data"
 DEFAULT_SEED = 20261121

@@ -79,7 +79,7 @@ def diagnose_command(
     record: Annotated[
         list[str],
         typer.Argument(
-            metavar="RECORD...", help="Records: files, folders or globs; several are several runs."
+            metavar="RECORD", help="Records: files, folders or globs; several are several runs."
         ),
     ],
     device: Annotated[

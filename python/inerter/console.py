@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 import time
@@ -31,7 +32,8 @@ notes = _Console(stderr=True, markup=False, emoji=False)
 
 # exit statuses: the input cannot be used; it could, but something else failed
 UNUSABLE, FAILED = 2, 1
-EVERY = 10.0  # seconds between lines of progress where there is no terminal
+# seconds between lines of progress where there is no terminal; the variable sets it, 0 for none
+EVERY, EVERY_VARIABLE = 10, "INERTER_PROGRESS"
 
 Folder = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the JSON result alone on stdout.")]
@@ -118,11 +120,16 @@ def _unwritten(error: OSError, folder: Path | None) -> str:
 @contextmanager
 def _lines(told: Callable[[], str]) -> Iterator[None]:
     """Where there is no terminal: a line on stderr every ten seconds."""
+    given = os.environ.get(EVERY_VARIABLE, "")
+    every = int(given) if given.isascii() and given.isdigit() else EVERY
+    if every == 0:
+        yield
+        return
     ended = threading.Event()
     start = time.monotonic()
 
     def say() -> None:
-        while not ended.wait(EVERY):
+        while not ended.wait(every):
             spent = time.monotonic() - start
             print(f"inerter: {printable(told())}, {spent:.0f} s", file=sys.stderr, flush=True)
 

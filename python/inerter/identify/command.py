@@ -16,7 +16,7 @@ def identify_command(
     record: Annotated[
         list[str],
         typer.Argument(
-            metavar="RECORD...",
+            metavar="RECORD",
             help="Records: files, folders or globs; several are fitted together.",
         ),
     ],

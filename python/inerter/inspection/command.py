@@ -19,7 +19,7 @@ def inspect_command(
     record: Annotated[
         list[str],
         typer.Argument(
-            metavar="RECORD...", help="Records: files, folders or globs; any known format."
+            metavar="RECORD", help="Records: files, folders or globs; any known format."
         ),
     ],
     out_dir: Folder = Path("out/inspection"),

@@ -20,7 +20,7 @@ def convert_command(
     record: Annotated[
         list[str],
         typer.Argument(
-            metavar="RECORD...", help="Records: files, folders or globs; any known format."
+            metavar="RECORD", help="Records: files, folders or globs; any known format."
         ),
     ],
     form: Annotated[

@@ -18,7 +18,7 @@ def prepare_command(
     record: Annotated[
         list[str],
         typer.Argument(
-            metavar="RECORD...", help="Records: files, folders or globs; CSV, Parquet, .mat."
+            metavar="RECORD", help="Records: files, folders or globs; CSV, Parquet, .mat."
         ),
     ],
     denoise: Annotated[str, typer.Option(help="emd, savgol, lowpass, spline or none.")] = "none",
