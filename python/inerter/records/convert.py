@@ -38,7 +38,7 @@ def convert_command(
     \b
     Examples:
       inerter convert test.xlsx --out records
-      inerter convert card.csv --with servo.csv --column force='-200 N/V * u' --out records
+      inerter convert card.csv --with servo.csv --column force='-200 N/V * u'
     """
     from inerter.folder import file_names, json_text, write_files
     from inerter.records import read_records
