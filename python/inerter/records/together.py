@@ -155,7 +155,7 @@ def _velocity(path: Path, columns: dict[str, Array], step: float, width: float) 
 
 def _correlations(a: Array, b: Array) -> tuple[Array, Array]:
     """Lags in samples of b behind a, and the correlation in the overlap at each."""
-    size = next_fast_len(len(a) + len(b), real=True)
+    size = int(next_fast_len(len(a) + len(b), real=True) or 0)
 
     def slide(x: Array, y: Array) -> Array:
         full = irfft(rfft(x, size) * np.conj(rfft(y, size)), size)
