@@ -33,6 +33,8 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 # a shell that runs tests in the background lets them ignore Ctrl-C, and so what they start
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+# a command that takes long here says nothing more than it does where it is quick
+os.environ.setdefault("INERTER_PROGRESS", "0")
 
 ROOT = Path(__file__).resolve().parents[1]
 MEASURED = ROOT.parent / "shared" / "data"

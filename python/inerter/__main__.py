@@ -99,10 +99,11 @@ def _command() -> None:
 
 def _without_lab(missing: str) -> None:
     """What needs no lab; for the rest, how to install it."""
-    if sys.argv[1:2] == ["plugin-path"] and sys.argv[2:3] in ([], ["--mujoco"]):
+    command, rest = sys.argv[1:2], sys.argv[2:]
+    if command == ["plugin-path"] and rest[:1] in ([], ["--mujoco"]):
         from inerter.plugin import plugin_path
 
-        print(plugin_path(*sys.argv[3:4]))
+        print(plugin_path(*rest[1:2]))
         return
     if sys.argv[1:] == ["--version"]:
         from inerter import __version__
@@ -110,12 +111,36 @@ def _without_lab(missing: str) -> None:
 
         print(f"inerter {__version__} for {supported_text()}")
         return
+    if command == ["parameters"] and "--help" not in rest:
+        _list_parameters(rest)
+        return
     print(
-        f"inerter: this needs the lab, and {missing} is not installed; "
-        "run `pip install 'inerter[lab]'` (`inerter plugin-path` works without)",
+        f"inerter: this needs the extra `lab` of inerter, and {missing} is not installed; install "
+        "inerter again with it: `pip install '.[lab]'` in the folder of its sources, or with "
+        "`[lab]` behind the name of its wheel (`inerter plugin-path` and `inerter parameters` work "
+        "without)",
         file=sys.stderr,
     )
     sys.exit(2)
+
+
+def _list_parameters(arguments: list[str]) -> None:
+    import json
+    import shutil
+
+    from inerter.parameter_list import chosen, rows, text
+
+    parts = [argument for argument in arguments if argument != "--json"]
+    try:
+        found = chosen(parts[0] if parts else None)
+    except ValueError as error:
+        print(f"inerter: {error}", file=sys.stderr)
+        sys.exit(2)
+    if "--json" in arguments:
+        print(json.dumps(rows(found), indent=2))
+        return
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    print(text(found, width))
 
 
 if __name__ == "__main__":

@@ -11,11 +11,22 @@ import typer
 import inerter
 from inerter.benchmark.command import benchmark_command
 from inerter.blind_test.command import blind_test_command
-from inerter.console import AsJson, Folder, Jobs, number, out, progress_bar, refusing, status
+from inerter.console import (
+    AsJson,
+    Commands,
+    Folder,
+    Jobs,
+    number,
+    out,
+    parts_of,
+    progress_bar,
+    refusing,
+    status,
+)
 from inerter.design.commands import app as design_app
 from inerter.folder import json_text
-from inerter.inspection.command import inspect_command
 from inerter.identify.command import identify_command
+from inerter.inspection.command import inspect_command
 from inerter.plugin import plugin_path, supported_text
 from inerter.records.convert import convert_command
 from inerter.records.options import told_reading, with_reading
@@ -32,7 +43,7 @@ SHOWN = 6  # records of which a diagnosis says first what they hold
 
 # what a command needs is imported in it: a design is not to wait for what a diagnosis loads
 app = typer.Typer(
-    add_completion=False,
+    cls=Commands,
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -67,7 +78,9 @@ def common(
 def diagnose_command(
     record: Annotated[
         list[str],
-        typer.Argument(help="Records: files, folders or globs; several are several runs."),
+        typer.Argument(
+            metavar="RECORD", help="Records: files, folders or globs; several are several runs."
+        ),
     ],
     device: Annotated[
         Path | None,
@@ -171,7 +184,13 @@ def _first_look(records: Sequence[AnyRecord], quiet: bool, tell: Callable[[], No
 
 @app.command("simulate")
 def simulate_command(
-    model: Annotated[Path, typer.Argument(help="A MuJoCo model: .xml or compiled .mjb.")],
+    model: Annotated[
+        Path,
+        typer.Argument(
+            help="A MuJoCo model, .xml or compiled .mjb, or the name of a shipped one, see "
+            "`inerter models`."
+        ),
+    ],
     duration: Annotated[
         float | None, number("seconds", "Seconds; default: the control's length, else 10.")
     ] = None,
@@ -200,16 +219,23 @@ def simulate_command(
     """Run a model; write what each inerter.device did as a record, and a page of pictures.
 
     Writes DEVICE.csv per device (`inerter diagnose` reads it), simulation.html, simulation.json.
+
+    \b
+    Examples:
+      inerter simulate half_car --keyframe kerb --duration 2
+      inerter simulate car.xml --control road.csv --rate 500 --out out/car
     """
     import mujoco
 
     from inerter.engine_errors import SimulationError, engine_text
+    from inerter.models import model_file
     from inerter.simulate.output import write_run
     from inerter.simulate.run import run_model
-    from inerter.simulate.summary import print_run, summary
+    from inerter.simulate.summary import at_rest, print_run, summary
     from inerter.simulate.video import FRAME_RATE, refuse_video, write_video
 
     with refusing(out_dir, "simulation.json", "simulation.html"):
+        model = model_file(model)
         if video is not None:
             refuse_video(video)
         try:
@@ -229,6 +255,8 @@ def simulate_command(
         print(json_text(summary(run)), end="")
     else:
         print_run(run, out)
+        if hint := at_rest(run, keyframe):
+            out.print(hint, highlight=False)
         out.print(f"Written to {out_dir}: {', '.join(files)}")
         if video is not None:
             out.print(f"Video: {video}")
@@ -238,16 +266,18 @@ def simulate_command(
 def validate_command(
     model: Annotated[
         list[str] | None,
-        typer.Option(help="A model, or one layout as in quarter_car/S2; may be given again."),
+        typer.Option(help="Models, or a layout as in quarter_car/S2; with commas, or given again."),
     ] = None,
-    law: Annotated[list[str] | None, typer.Option(help="A law; may be given again.")] = None,
+    law: Annotated[
+        list[str] | None, typer.Option(help="Laws; with commas, or given again.")
+    ] = None,
     engine: Annotated[
-        list[str] | None, typer.Option(help="mujoco or exudyn; may be given again.")
+        list[str] | None, typer.Option(help="mujoco, exudyn; with commas, or given again.")
     ] = None,
     integrator: Annotated[
-        list[str] | None, typer.Option(help="An integrator; may be given again.")
+        list[str] | None, typer.Option(help="Integrators; with commas, or given again.")
     ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="A few cases, in a minute.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Fewer cases, in a minute.")] = False,
     jobs: Jobs = None,
     out_dir: Folder = Path("out/validate"),
     as_json: AsJson = False,
@@ -255,6 +285,11 @@ def validate_command(
     """Run models, laws and inputs in every engine and integrator, against the reference equations.
 
     Writes validation.json and validation.png. Exit status 1 if something misses its bound.
+
+    \b
+    Examples:
+      inerter validate --quick
+      inerter validate --model quarter_car/S2,half_car --engine mujoco
     """
     from inerter.validate import Selection, validate
     from inerter.validate.output import json_text as validation_text
@@ -262,7 +297,7 @@ def validate_command(
     from inerter.validate.table import print_validation
 
     with refusing(out_dir, "validation.json", "validation.png"):
-        names = (tuple(given or ()) for given in (model, law, engine, integrator))
+        names = (parts_of(given) for given in (model, law, engine, integrator))
         with progress_bar("validating", as_json) as progress:
             result = validate(Selection(*names, quick=quick), jobs=jobs, progress=progress)
         files = write_validation(result, out_dir)
@@ -279,7 +314,12 @@ def validate_command(
 def demo(
     out_dir: Folder = Path("out/demo"),
 ) -> None:
-    """Diagnose the two shipped records: a time record and a table of amplitudes."""
+    """Diagnose the two shipped records: a time record and a table of amplitudes.
+
+    \b
+    Example:
+      inerter demo --out out/demo
+    """
     from inerter.models import data_path
     from inerter.report.figures import loop_figure
 
@@ -304,28 +344,65 @@ def plugin_path_command(
         ),
     ] = None,
 ) -> None:
-    """Path of the MuJoCo plugin library, for C programs and `simulate`."""
+    """Print the path of the MuJoCo plugin library, for C programs and MuJoCo's `simulate`.
+
+    \b
+    Examples:
+      inerter plugin-path
+      inerter plugin-path --mujoco 3.16.0
+    """
     print(plugin_path(engine))
 
 
 @app.command("parameters")
-def parameters_command() -> None:
-    """Every parameter and list of a device: name, unit, default, range, meaning."""
-    from rich.table import Table
+def parameters_command(
+    part: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[PART]", help="Only those with this in their name, meaning or friction law."
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """List every parameter of a device: name, unit, default, range, friction laws, meaning.
 
-    from inerter.core import lists, parameters
+    Into a pipe each is one line, its columns apart by tabs.
 
-    table = Table("name", "unit", "default", "range", "friction laws", "meaning")
-    for p in parameters().values():
-        lower = f"{'>' if p.lower_open else '>='} {p.lower:g}" if p.lower > -1e300 else ""
-        upper = f"<= {p.upper:g}" if p.upper < 1e300 else ""
-        default = "unset" if p.initial != p.initial else f"{p.initial:g}"
-        bounds = " ".join(part for part in (lower, upper) if part) or "any"
-        table.add_row(p.name, p.unit, default, bounds, " ".join(p.laws) or "-", p.meaning)
-    for each in lists().values():
-        most = f"3 numbers for each of 1 to {each.most // 3}" if each.periods else "2 to 64 numbers"
-        table.add_row(each.name, each.unit, "none", most, " ".join(each.laws) or "-", each.meaning)
-    out.print(table)
+    \b
+    Examples:
+      inerter parameters
+      inerter parameters series
+      inerter parameters --json
+    """
+    from inerter.parameter_list import chosen, rows, text
+
+    with refusing(None):
+        found = chosen(part)
+    if as_json:
+        print(json_text(rows(found)), end="")
+    else:
+        print(text(found, out.width if out.is_terminal else None))
+
+
+@app.command("models")
+def models_command(as_json: AsJson = False) -> None:
+    """List the shipped models, which `simulate` and `view` take by name, with their keyframes.
+
+    \b
+    Examples:
+      inerter models
+      inerter simulate half_car --keyframe kerb
+    """
+    from inerter.models import model_list
+
+    with refusing(None):
+        found = model_list()
+    if as_json:
+        print(json_text(found), end="")
+        return
+    for model in found:
+        keys = ", ".join(model["keyframes"]) or "none"
+        print(f"{model['name']}\n    devices: {', '.join(model['devices'])}\n    keyframes: {keys}")
 
 
 # in the order in which the help lists them: after those above, groups last
@@ -338,6 +415,6 @@ app.command("view")(view_command)
 app.command("benchmark")(benchmark_command)
 # its name before
 app.command("bench", hidden=True)(benchmark_command)
-app.add_typer(suspension_app, name="suspension")
-app.add_typer(design_app, name="design")
-app.add_typer(study_app, name="study")
+app.add_typer(suspension_app, name="suspension", cls=Commands)
+app.add_typer(design_app, name="design", cls=Commands)
+app.add_typer(study_app, name="study", cls=Commands)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
-from collections.abc import Callable, Iterator
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -12,6 +15,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.text import Text
+from typer.core import TyperGroup
 
 from inerter.printable import printable
 
@@ -28,12 +32,36 @@ notes = _Console(stderr=True, markup=False, emoji=False)
 
 # exit statuses: the input cannot be used; it could, but something else failed
 UNUSABLE, FAILED = 2, 1
+# seconds between lines of progress where there is no terminal; the variable sets it, 0 for none
+EVERY, EVERY_VARIABLE = 10, "INERTER_PROGRESS"
 
 Folder = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the JSON result alone on stdout.")]
 Jobs = Annotated[
     int | None, typer.Option("--jobs", min=1, help="Processes; default: one per processor.")
 ]
+
+
+class Commands(TyperGroup):
+    """A list of commands with whole sentences, wrapped and never cut."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write each command with the first sentence of its help."""
+        found = []
+        for name in self.list_commands(ctx):
+            command = self.get_command(ctx, name)
+            if command is None or command.hidden:
+                continue
+            first = (command.short_help or command.help or "").strip().split("\n\n")[0]
+            found.append((name, " ".join(first.replace("\b", "").split())))
+        with formatter.section("Commands"):
+            formatter.write_dl(found)
+
+
+def parts_of(given: Sequence[str] | None) -> tuple[str, ...]:
+    """What stands in an option that takes lists by comma and may be given again."""
+    parts = (part.strip() for text in given or () for part in text.split(","))
+    return tuple(part for part in parts if part)
 
 
 def number(unit: str, text: str, least: float | None = None, **more: Any) -> Any:
@@ -90,10 +118,40 @@ def _unwritten(error: OSError, folder: Path | None) -> str:
 
 
 @contextmanager
+def _lines(told: Callable[[], str]) -> Iterator[None]:
+    """Where there is no terminal: a line on stderr every ten seconds."""
+    given = os.environ.get(EVERY_VARIABLE, "")
+    every = int(given) if given.isascii() and given.isdigit() else EVERY
+    if every == 0:
+        yield
+        return
+    ended = threading.Event()
+    start = time.monotonic()
+
+    def say() -> None:
+        while not ended.wait(every):
+            spent = time.monotonic() - start
+            print(f"inerter: {printable(told())}, {spent:.0f} s", file=sys.stderr, flush=True)
+
+    thread = threading.Thread(target=say, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
+@contextmanager
 def status(quiet: bool) -> Iterator[Callable[[str], None]]:
     """A line that says what is being done; called with a text."""
-    if quiet or not notes.is_terminal:
+    if quiet:
         yield lambda text: None
+        return
+    if not notes.is_terminal:
+        said = ["starting"]
+        with _lines(lambda: said[0]):
+            yield lambda text: said.__setitem__(0, text)
         return
     with notes.status("starting") as line:
         yield lambda text: line.update(Text(printable(text)))
@@ -101,11 +159,31 @@ def status(quiet: bool) -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def progress_bar(text: str, quiet: bool) -> Iterator[Callable[..., None]]:
-    """A bar with the time that is left; called with the share that is done, and a new text."""
-    if quiet or not notes.is_terminal:
+    """The share that is done and the time that is left; called with that share, and a new text."""
+    if quiet:
         yield lambda share, text=None: None
         return
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeRemainingColumn())
+    if not notes.is_terminal:
+        now: dict[str, Any] = {"share": 0.0, "text": text}
+        begun = time.monotonic()
+
+        def told() -> str:
+            share = now["share"]
+            if not share > 0:
+                return str(now["text"])
+            left = (time.monotonic() - begun) * (1 / share - 1)
+            return f"{now['text']}: {100 * share:.0f} % done, about {left:.0f} s left"
+
+        def note(share: float, text: str | None = None) -> None:
+            now.update(share=share, text=now["text"] if text is None else text)
+
+        with _lines(told):
+            yield note
+        return
+    columns = (
+        TextColumn("{task.description}", markup=False), BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"), TimeRemainingColumn(),
+    )  # fmt: skip
     with Progress(*columns, console=notes, transient=True) as progress:
         task = progress.add_task(text, total=1.0)
 

@@ -6,6 +6,7 @@ import importlib.util
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from inerter.exudyn.engine import installed
 
@@ -43,6 +44,47 @@ def model_path(name: str, file: str = "model.xml") -> Path:
     return path
 
 
+def model_file(given: str | Path) -> Path:
+    """A model file as it is given, or the scene of a shipped model of that name."""
+    path = Path(given)
+    if path.exists() or path.suffix or len(path.parts) != 1:
+        return path
+    try:
+        names = model_names()
+    except ValueError:
+        return path
+    if str(path) not in names:
+        raise ValueError(
+            f"{path}: no such file, and no model of that name is shipped; give a .xml file, or one "
+            f"of {', '.join(names)}"
+        )
+    scene = _folder("mjcf_models") / str(path) / "scene.xml"
+    return scene if scene.exists() else model_path(str(path))
+
+
+def model_list() -> list[dict[str, Any]]:
+    """Name, file, keyframes and devices of each shipped model."""
+    import mujoco
+
+    from inerter.plugin import load_plugin
+
+    load_plugin()
+    found = []
+    for name in model_names():
+        path = model_file(name)
+        model = mujoco.MjModel.from_xml_path(str(path))
+        plugins = [i for i in range(model.nu) if model.actuator_plugin[i] >= 0]
+        found.append(
+            {
+                "name": name,
+                "file": str(path),
+                "keyframes": [model.key(i).name or str(i) for i in range(model.nkey)],
+                "devices": [model.actuator(i).name or str(i) for i in plugins],
+            }
+        )
+    return found
+
+
 def exudyn_model_names() -> list[str]:
     """Names of the shipped models that are there for Exudyn."""
     return sorted(path.parent.name for path in _folder("exudyn_models").glob("*/model.py"))
@@ -70,7 +112,7 @@ def exudyn_model(name: str) -> ModuleType:
     if not installed():
         raise ImportError(
             f"the model {name!r} needs Exudyn, which is not installed: "
-            '`pip install "inerter[exudyn]"`'
+            "`pip install exudyn` (the extra `exudyn`)"
         )
     known = f"inerter_exudyn_model_{name}"
     if known not in sys.modules:
@@ -94,6 +136,4 @@ def _folder(kind: str) -> Path:
         if folder.is_dir():
             return folder
     looked = " or ".join(str(folder) for folder in folders)
-    raise ValueError(
-        f"no models in {looked}; reinstall with `pip install --force-reinstall inerter`"
-    )
+    raise ValueError(f"no models in {looked}; install inerter again")

@@ -125,8 +125,8 @@ def _on_cluster(
 ) -> Generator[tuple[int, Result]]:
     if find_spec("distributed") is None:
         raise WorkError(
-            'scheduler: Dask is not installed; run `pip install "inerter[cluster]"` here and on '
-            "the workers"
+            "scheduler: Dask is not installed; run `pip install distributed` (the extra `cluster`) "
+            "here and on the workers"
         )
     import distributed
 

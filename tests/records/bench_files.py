@@ -22,8 +22,14 @@ Writer = Callable[[Path], None]
 
 
 def lines(
-    separator: str = ",", decimal: str = ".", *, length: float = 1.0, force: float = 1.0,
-    time: str | None = "s", quote: bool = False, rows: int = ROWS,
+    separator: str = ",",
+    decimal: str = ".",
+    *,
+    length: float = 1.0,
+    force: float = 1.0,
+    time: str | None = "s",
+    quote: bool = False,
+    rows: int = ROWS,
 ) -> str:
     """Data lines; length, force: units per SI unit; time: "s", "ms", or None for no time column."""
     made = []
@@ -37,12 +43,15 @@ def lines(
     return "\n".join(made)
 
 
-def text(
-    head: str, body: str, foot: str = "", encoding: str = "utf-8", end: str = "\n"
-) -> Writer:
+def text(head: str, body: str, foot: str = "", encoding: str = "utf-8", end: str = "\n") -> Writer:
     """A writer of a text file."""
     whole = f"{head}\n{body}\n{foot}".rstrip("\n") + "\n"
-    return lambda path: path.write_bytes(whole.replace("\n", end).encode(encoding)) and None
+    data = whole.replace("\n", end).encode(encoding)
+
+    def write(path: Path) -> None:
+        path.write_bytes(data)
+
+    return write
 
 
 def _clock(form: str) -> str:
@@ -127,7 +136,7 @@ TEXTS: dict[str, Writer] = {
     "german.csv": text("Zeit [s];Weg [mm];Kraft [kN]", lines(";", ",", length=1e3, force=1e-3)),
     "tab.txt": text("Time\tPosition_mm\tForce_N", lines("\t", length=1e3)),
     "blanks.dat": text("t x F", lines("   ")),
-    "padded.dat": text("  t        x        F", "\n".join("  " + x for x in lines("\t ").split("\n"))),
+    "padded.dat": text("  t     x     F", "\n".join("  " + x for x in lines("\t ").split("\n"))),
     "bar.txt": text("t|x|F", lines("|")),
     "commas_in_names.tsv": text("Time, s\tDisplacement, mm\tForce, N", lines("\t", length=1e3)),
     "strokes.csv": text("Time/s,Displacement/mm,Force/kN", lines(length=1e3, force=1e-3)),
@@ -135,7 +144,8 @@ TEXTS: dict[str, Writer] = {
     "units_brackets.csv": text("Time,Extension,Load\n(s),(mm),(N)", lines(length=1e3)),
     "units_first.csv": text("s,mm,N\nTime,Extension,Load", lines(length=1e3)),
     "bom.csv": text("Zeit;Weg in mm;Kraft in N", lines(";", ",", length=1e3), encoding="utf-8-sig"),
-    "utf16.txt": text("Time (s)\tStroke (mm)\tLoad (N)", lines("\t", length=1e3), encoding="utf-16"),
+    "utf16.txt": text("Time (s)\tStroke (mm)\tLoad (N)", lines("\t", length=1e3),
+                      encoding="utf-16"),
     "utf16_be.txt": text("Time (s)\tStroke (mm)\tLoad (N)", lines("\t", length=1e3),
                          encoding="utf-16-be"),
     "latin1.csv": text("Zeit;Weg (µm);Kraft (N)", lines(";", ",", length=1e6), encoding="latin-1"),
@@ -261,7 +271,9 @@ def _mat73(path: Path) -> None:
 
     with h5py.File(path, "w", userblock_size=512) as file:
         for name, values in (("time", TIME), ("displacement", DISPLACEMENT), ("force", FORCE)):
-            file.create_dataset(name, data=values[None, :]).attrs["MATLAB_class"] = np.bytes_("double")
+            file.create_dataset(name, data=values[None, :]).attrs["MATLAB_class"] = np.bytes_(
+                "double"
+            )
     with path.open("r+b") as raw:
         raw.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM")
 

@@ -13,7 +13,7 @@ from inerter.folder import json_text, write_files
 
 def benchmark_command(
     quick: Annotated[
-        bool, typer.Option("--quick", help="One car, three integrators, few rounds: seconds.")
+        bool, typer.Option("--quick", help="Fewer cases: one car, three integrators; seconds.")
     ] = False,
     out_dir: Annotated[
         Path | None, typer.Option("--out", help="Folder for bench.json; default: nothing written.")
@@ -23,6 +23,10 @@ def benchmark_command(
     """What a step with devices costs in MuJoCo, and a sample in the core, on this machine.
 
     Plugin against MuJoCo's own elements, Python and no device: ratios, taken in turn.
+
+    \b
+    Example:
+      inerter benchmark --quick
     """
     from inerter.benchmark.machine import busy
     from inerter.benchmark.report import measure, print_bench

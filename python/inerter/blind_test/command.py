@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, notes, number, out, progress_bar, refuse, refusing
+from inerter.console import AsJson, Folder, Jobs, notes, number, out, progress_bar, refuse, refusing
 
 _AS_COUNT = "default: as --count, none with --effects"
 
@@ -40,9 +40,8 @@ def blind_test_command(
         int | None,
         typer.Option(min=0, help="Seed; default: $INERTER_SEED, else a new one. It is printed."),
     ] = None,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default: one per processor.")
-    ] = None,
+    jobs: Jobs = None,
+    workers: Annotated[int | None, typer.Option("--workers", min=1, hidden=True)] = None,
     folder: Folder = Path("out/blind_test"),
     as_json: AsJson = False,
 ) -> None:
@@ -50,6 +49,11 @@ def blind_test_command(
 
     Writes blind_test.json, confusion.png and calibration.png. Broken off, the same command with the
     same --seed goes on where it ended: each outcome is kept in the folder "cases".
+
+    \b
+    Examples:
+      inerter blind-test --count 3 --clean 0
+      inerter blind-test --effects viscous_friction,end_stop --jobs 2
     """
     from inerter.blind_test.output import write_blind_test
     from inerter.blind_test.plan import Plan
@@ -72,7 +76,7 @@ def blind_test_command(
         start = time.perf_counter()
         with progress_bar("hiding and diagnosing", as_json) as progress:
             try:
-                outcomes = run_tasks(tasks, workers, progress, folder=folder / "cases")
+                outcomes = run_tasks(tasks, jobs or workers, progress, folder=folder / "cases")
             except KeyboardInterrupt:
                 notes.print(f"broken off; the same command with --seed {plan.seed} goes on")
                 raise

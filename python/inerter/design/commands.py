@@ -43,7 +43,12 @@ def ball_screw_command(
     as_json: AsJson = False,
     **inputs: Any,
 ) -> None:
-    """Ball screw: sliding and rolling of the balls, inertance against load and frequency."""
+    """Ball screw: sliding and rolling of the balls, inertance against load and frequency.
+
+    \b
+    Example:
+      inerter design ball-screw --lead "20 mm" --out out/screw
+    """
     from inerter.design.ball_screw.design import design_ball_screw
 
     _design(lambda: design_ball_screw(measured=measured, **inputs), out_dir, as_json)
@@ -65,7 +70,12 @@ def rack_pinion_command(
     as_json: AsJson = False,
     **inputs: Any,
 ) -> None:
-    """Rack and pinion with a gear train: inertance, play, elasticity of shafts, mesh losses."""
+    """Rack and pinion with a gear train: inertance, play, elasticity of shafts, mesh losses.
+
+    \b
+    Example:
+      inerter design rack-pinion --stage ratio=4,inertia=1e-4
+    """
     from inerter.design.rack_pinion.design import design_rack_pinion
 
     _design(lambda: design_rack_pinion(stages=stage or [], **inputs), out_dir, as_json)
@@ -74,7 +84,12 @@ def rack_pinion_command(
 @app.command("fluid")
 @with_options(FLUID)
 def fluid_command(out_dir: Folder = None, as_json: AsJson = False, **inputs: Any) -> None:
-    """Fluid: inertance, losses of the channel, cavitation limit, compressibility, trapped air."""
+    """Fluid: inertance, losses of the channel, cavitation limit, compressibility, trapped air.
+
+    \b
+    Example:
+      inerter design fluid --out out/fluid
+    """
     from inerter.design.fluid.design import design_fluid
 
     _design(lambda: design_fluid(**inputs), out_dir, as_json)

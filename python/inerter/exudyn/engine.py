@@ -30,7 +30,7 @@ def exudyn(module: str = "") -> Any:
     """
     if not installed():
         raise ImportError(
-            'Exudyn is not installed; run `pip install "inerter[exudyn]"` '
+            "Exudyn is not installed; run `pip install exudyn` (the extra `exudyn`) "
             "(it has wheels for the usual Pythons)"
         )
     package = importlib.import_module("exudyn")
@@ -47,8 +47,8 @@ def _check_version(package: Any) -> None:
     if not OLDEST <= numbers <= NEWEST:
         raise ImportError(
             f"Exudyn {told} is not one of the versions that inerter works with, "
-            f"{OLDEST[0]}.{OLDEST[1]} to {NEWEST[0]}.{NEWEST[1]}; run "
-            '`pip install "inerter[exudyn]"`'
+            f"{OLDEST[0]}.{OLDEST[1]} to {NEWEST[0]}.{NEWEST[1]}; run `pip install "
+            f"exudyn=={NEWEST[0]}.{NEWEST[1]}.*` (the extra `exudyn`)"
         )
 
 

@@ -16,7 +16,10 @@ from inerter.records.options import told_reading, with_reading
 def identify_command(
     record: Annotated[
         list[str],
-        typer.Argument(help="Records: files, folders or globs; several are fitted together."),
+        typer.Argument(
+            metavar="RECORD",
+            help="Records: files, folders or globs; several are fitted together.",
+        ),
     ],
     law: Annotated[
         list[str],
@@ -57,6 +60,11 @@ def identify_command(
     """Parameters of a device with errors and intervals, laws compared on held-out data.
 
     Writes identification.json, identification.png, device.toml and model.xml of the best law.
+
+    \b
+    Examples:
+      inerter identify runs/*.csv --law viscous,lugre+offset
+      inerter identify bench.csv --fix inertance=113 --holdout slow
     """
     from inerter.identify.estimate import identify
     from inerter.identify.output import (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,7 +110,7 @@ def _hum(frequency: Array, power: Array, band: float) -> tuple[tuple[float, floa
             floor = float(np.median(power[beside])) if beside.any() else 0.0
             if line.any() and floor > 0 and power[line].max() > HUM * floor:
                 lines.append((at, float(np.sqrt(np.sum(power[line] - floor) * width))))
-        found += lines if lines and lines[0][0] == mains or len(lines) > 1 else []
+        found += lines if (lines and lines[0][0] == mains) or len(lines) > 1 else []
     return tuple(found)
 
 
@@ -125,7 +126,7 @@ def _corner(frequency: Array, power: Array) -> float | None:
     edges = start * 2 ** np.arange(0, np.log2(top / start), 1 / PER_OCTAVE)
     middle = [
         (float(np.log2(a * b) / 2), 10 * float(np.log10(max(np.mean(power[inside]), 1e-300))))
-        for a, b in zip(edges[:-1], edges[1:], strict=True)
+        for a, b in itertools.pairwise(edges)
         if (inside := (frequency >= a) & (frequency < b)).any()
     ]
     place, level = (np.array(part) for part in zip(*middle, strict=True))

@@ -17,7 +17,10 @@ FILES = ("inspection.json", "inspection.png", "inspection.html")
 @with_reading
 def inspect_command(
     record: Annotated[
-        list[str], typer.Argument(help="Records: files, folders or globs; any known format.")
+        list[str],
+        typer.Argument(
+            metavar="RECORD", help="Records: files, folders or globs; any known format."
+        ),
     ],
     out_dir: Folder = Path("out/inspection"),
     as_json: AsJson = False,

@@ -85,7 +85,9 @@ def facts_of(record: AnyRecord) -> Facts:
     return Facts(
         record=record,
         rate=part.sample_rate,
-        duration=float(record.time[-1] - record.time[0]) if isinstance(record, TimeRecord) else None,
+        duration=float(record.time[-1] - record.time[0])
+        if isinstance(record, TimeRecord)
+        else None,
         jitter=float((high - low) / np.median(steps) / 2),
         channels=channels,
         smoothed=smoothed,

@@ -97,7 +97,7 @@ def _own_share(columns: Array, index: int) -> float:
 
 
 def _closest(columns: Array, index: int, names: list[str]) -> str:
-    alike = np.abs(np.corrcoef(columns.T)[index])
+    alike = np.abs(np.asarray(np.corrcoef(columns.T))[index])
     alike[index] = -1
     return names[int(np.argmax(alike))]
 
@@ -108,7 +108,8 @@ def _tell(
     base = {"name": name, "value": float(value), "stderr": float(stderr), "unit": unit}
     if facts.strokes < 3 and name != "inertance":
         return Tell(
-            **base, verdict="not told", reason="one stroke" if facts.strokes == 1 else f"{facts.strokes} strokes",
+            **base, verdict="not told",
+            reason="one stroke" if facts.strokes == 1 else f"{facts.strokes} strokes",
             motion="several strokes there and back",
         )  # fmt: skip
     if own < OWN:

@@ -22,7 +22,9 @@ from .units import _GRAVITY, QUANTITIES, si_factor
 ROLES = ("measured", "leave out")
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = rf"{_NUMBER}\s*[^\d\s()*][^()]*?|{_NUMBER}"
-_LEFT = re.compile(rf"({_NUMBER})((?:\s+|(?<=\d))[A-Za-zµ%°][^()*]*?)?\s+\*\s+(.+)|({_NUMBER})\s*\*\s*(.+)")
+_LEFT = re.compile(
+    rf"({_NUMBER})((?:\s+|(?<=\d))[A-Za-zµ%°][^()*]*?)?\s+\*\s+(.+)|({_NUMBER})\s*\*\s*(.+)"
+)
 _RIGHT = re.compile(rf"(.+?)\s+/\s+({_NUMBER})\s*([A-Za-zµ%°][^()]*)?")
 _INNER = re.compile(rf"\(\s*(.+?)\s+([+-])\s+(start|{_NUMBER}\s*[A-Za-zµ%°/^*0-9]*)\s*\)")
 _OUTER = re.compile(rf"(.+?)\s+([+-])\s+(start|{_NUMBER}\s*[A-Za-zµ%°][A-Za-zµ%°/^*0-9]*)")
@@ -115,7 +117,9 @@ def _formula(text: str, where: str) -> Statement:
     gain: tuple[float, str] | None = None
     rest = text
     if match := _LEFT.fullmatch(rest):
-        number, unit, rest = (match[1], match[2], match[3]) if match[1] else (match[4], "", match[5])
+        number, unit, rest = (
+            (match[1], match[2], match[3]) if match[1] else (match[4], "", match[5])
+        )
         gain = (float(number), (unit or "").strip())
     elif match := _RIGHT.fullmatch(rest):
         if float(match[2]) == 0:
@@ -237,7 +241,9 @@ def _factor(stated: Statement, name: str, unit: str | None, where: str) -> float
     registry, target = unit_registry(), parse_unit(QUANTITIES[name].unit)
     gain = registry.Quantity(value, parse_unit(own))
     if unit is None:
-        left = (registry.Quantity(1, target) / registry.Quantity(1, parse_unit(own))).to_base_units()
+        left = (
+            registry.Quantity(1, target) / registry.Quantity(1, parse_unit(own))
+        ).to_base_units()
         electric = (registry.Unit("V"), registry.Unit("A"), registry.Unit("dimensionless"))
         if not any(left.dimensionality == each.dimensionality for each in electric):
             raise RecordError(

@@ -73,8 +73,8 @@ def _alike(
     time = columns["time"]
     channels = {n: v for n, v in columns.items() if n != "time"}
     spacing, even = uniform_channels(time, channels)
-    if len(next(iter(even.values()))) != time.size or even is not channels and any(
-        even[n] is not channels[n] for n in channels
+    if len(next(iter(even.values()))) != time.size or (
+        even is not channels and any(even[n] is not channels[n] for n in channels)
     ):
         raise part.refuse("a stated filter needs an even clock; resample the record first")
     made = dict(columns)

@@ -18,7 +18,10 @@ SCHEMA = "inerter.conversion/1"
 @with_reading
 def convert_command(
     record: Annotated[
-        list[str], typer.Argument(help="Records: files, folders or globs; any known format.")
+        list[str],
+        typer.Argument(
+            metavar="RECORD", help="Records: files, folders or globs; any known format."
+        ),
     ],
     form: Annotated[
         str, typer.Option("--format", metavar="FORMAT", help="What to write: csv or parquet.")
@@ -35,7 +38,7 @@ def convert_command(
     \b
     Examples:
       inerter convert test.xlsx --out records
-      inerter convert card.csv --with servo.csv --column force='-200 N/V * u' --out records
+      inerter convert card.csv --with servo.csv --column force='-200 N/V * u'
     """
     from inerter.folder import file_names, json_text, write_files
     from inerter.records import read_records

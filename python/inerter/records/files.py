@@ -34,9 +34,7 @@ def _files(path: Path) -> list[Path]:
     matching = map(Path, glob.glob(str(path), recursive=True))
     found = sorted(p for p in matching if p.is_file() and p.suffix.lower() in EXTENSIONS)
     if not found:
-        raise RecordError(
-            f"{path}: no record ({_SOME}) matches; check the pattern and the folder"
-        )
+        raise RecordError(f"{path}: no record ({_SOME}) matches; check the pattern and the folder")
     return found
 
 

@@ -152,7 +152,9 @@ def agrees(quantity: str, unit: str | None) -> bool:
     if quantity == "force" and unit in ("kp",):
         return True
     parsed = parse_unit(unit)
-    return parsed is not None and parsed.dimensionality == parse_unit(_UNITS[quantity]).dimensionality
+    return (
+        parsed is not None and parsed.dimensionality == parse_unit(_UNITS[quantity]).dimensionality
+    )
 
 
 def quantity_of(header: str, only: str | None = None) -> int | None:

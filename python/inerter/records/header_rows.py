@@ -82,7 +82,7 @@ def heading(
 
 
 def _is_time(name: str) -> bool:
-    return quantity_of(name, "time") > 0
+    return bool(quantity_of(name, "time"))
 
 
 def _fits(row: Sequence[str], width: int) -> list[str] | None:

@@ -21,9 +21,7 @@ SHARE = 0.25  # of the slowest frequency: below it is drift
 MOST_COSINES = 200
 
 
-def with_displacement(
-    columns: dict[str, Array], part: Part
-) -> tuple[dict[str, Array], list[str]]:
+def with_displacement(columns: dict[str, Array], part: Part) -> tuple[dict[str, Array], list[str]]:
     """Columns with a displacement and without what it was made of; what was done.
 
     Two accelerometers make one acceleration where there is a displacement.
@@ -61,7 +59,9 @@ def integrated(time: Array, values: Array, order: int) -> tuple[Array, Array, fl
     """
     slowest = slowest_motion(time, values)
     start = time - time[0]
-    raw = np.asarray(make_interp_spline(start, values - values.mean(), k=3).antiderivative(order)(start))
+    raw = np.asarray(
+        make_interp_spline(start, values - values.mean(), k=3).antiderivative(order)(start)
+    )
     span = start[-1]
     count = min(MOST_COSINES, int(2 * span * SHARE * slowest))
     u = start / span

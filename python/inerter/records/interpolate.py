@@ -17,8 +17,10 @@ def on_times(values: Any, own: Any, times: Any) -> Any:
     known = np.isfinite(own) & np.isfinite(values)
     own, values = own[known], values[known]
     if len(own) < 4 or not np.all(np.diff(own) > 0):
-        return np.interp(times, own, values, left=np.nan, right=np.nan) if len(own) else np.full(
-            len(times), np.nan
+        return (
+            np.interp(times, own, values, left=np.nan, right=np.nan)
+            if len(own)
+            else np.full(len(times), np.nan)
         )
     from scipy.interpolate import make_interp_spline
 

@@ -59,9 +59,7 @@ def read_isolated(kind: str, path: Path, wanted: Wanted, sheet: str | None) -> A
                     answer["header"][int(name)],
                     values.tolist() if values.dtype.kind == "U" else values,
                 )
-    return RawTable(
-        path=path, header=tuple(answer["header"]), columns=columns, told=answer["told"]
-    )
+    return RawTable(path=path, header=tuple(answer["header"]), columns=columns, told=answer["told"])
 
 
 def _answer(kind: str, path: Path, line: str) -> dict[str, Any]:
@@ -76,7 +74,7 @@ def _answer(kind: str, path: Path, line: str) -> dict[str, Any]:
     if "missing" in answer:
         raise RecordError(
             f"{path}: a {_NAMES[kind]} is read by {_LIBRARIES[kind]}, which is not installed; run "
-            f"`pip install {_LIBRARIES[kind]}` (the extra `files` of inerter has all such readers), "
+            f"`pip install {_LIBRARIES[kind]}` (the extra `files` has all such readers), "
             "or export CSV"
         )
     return answer
@@ -117,7 +115,7 @@ def _work(kind: str, path: Path, folder: Path, sheet: str | None, say: Any) -> N
     arrays = {
         str(i): np.array(v, dtype=np.str_) if isinstance(v, list) else v for i, v in columns.items()
     }
-    np.savez(folder / "columns.npz", **arrays)
+    np.savez(folder / "columns.npz", **arrays)  # pyright: ignore[reportArgumentType]
     say({"header": header, "told": told})
 
 

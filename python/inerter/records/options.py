@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from inerter.console import notes
+from inerter.console import notes, number
 
 Column = Annotated[
     list[str] | None,
@@ -31,7 +31,7 @@ With = Annotated[
 ]
 Lag = Annotated[
     float | None,
-    typer.Option("--lag", metavar="SECONDS", help="What to add to the clock of --with."),
+    number("seconds", "Seconds to add to the clock of --with. Default: found."),
 ]
 Decimal = Annotated[
     str | None, typer.Option("--decimal", metavar="MARK", help="Decimal mark: point or comma.")

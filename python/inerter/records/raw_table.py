@@ -32,8 +32,8 @@ class RawTable:
     """Columns as they stand in one file.
 
     header: column names as written; columns: by index, a series for each that was wanted; comments:
-    the lines above the header; told: how the file was read. Of a text file: odd: by column, what is no number in it;
-    lines: number and text of the header and of every data line, read anew.
+    the lines above the header; told: how it was read. Of a text file: separator; odd: by column,
+    what is no number in it; lines: number and text of the header and of every data line, read anew.
     """
 
     path: Path

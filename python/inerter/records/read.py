@@ -28,6 +28,7 @@ from .table import read_table
 from .together import joined
 from .units import QUANTITIES, si_factor
 
+
 @overload
 def read_records(
     paths: Sequence[str | Path] | str | Path,
@@ -208,7 +209,7 @@ def si_values(table: RawTable, found: Columns) -> tuple[dict[str, Array], list[s
             notes.append(_of_column(name, header, found))
     counted = found.stated.get("time")
     if counted is not None and counted.interval is not None:
-        values["time"] = counted.interval * np.arange(table.rows)
+        values["time"] = counted.interval * np.arange(table.rows, dtype=np.float64)
         notes.append(f"a sample every {counted.interval:g} s, as stated")
     text = ", ".join(note for note in notes if note)
     return values, [text] if text else []

@@ -280,7 +280,9 @@ def _entry_text(files: Sequence[Path], entry: Mapping[str, Any]) -> str:
     # names with signs of patterns stand for themselves
     names = [fnmatch_escaped(path.name) for path in files]
     lines = ["[[files]]", f"match = {json.dumps(names, ensure_ascii=False)}"]
-    lines += [f"{k} = {json.dumps(v, ensure_ascii=False)}" for k, v in entry.items() if k != "columns"]
+    lines += [
+        f"{k} = {json.dumps(v, ensure_ascii=False)}" for k, v in entry.items() if k != "columns"
+    ]
     if entry.get("columns"):
         lines += ["", "[files.columns]"]
         lines += [f"{k} = {json.dumps(v, ensure_ascii=False)}" for k, v in entry["columns"].items()]

@@ -78,9 +78,7 @@ _BEGINNINGS: Mapping[bytes, str] = {
 }
 
 
-def read_table(
-    path: Path, wanted: Wanted = everything, stated: Stated | None = None
-) -> RawTable:
+def read_table(path: Path, wanted: Wanted = everything, stated: Stated | None = None) -> RawTable:
     """The raw table of a file; RecordError when it cannot be read.
 
     Columns that are not wanted are in its header, and nowhere else. What a file holds counts, not

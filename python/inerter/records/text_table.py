@@ -280,9 +280,7 @@ def _find_header(path: Path, block: _Block, comments: list[str]) -> tuple[str | 
     return None, start
 
 
-def _split_header_line(
-    path: Path, line: str, number: int, comments: list[str]
-) -> tuple[str, ...]:
+def _split_header_line(path: Path, line: str, number: int, comments: list[str]) -> tuple[str, ...]:
     """Header cells; RecordError for numbers in place of names."""
     cells = tuple(_cells(path, number, line, ","))
     if all(is_number(cell) for cell in cells):
@@ -393,8 +391,10 @@ def _rows(path: Path, block: _Block, width: int, separator: str) -> Iterator[lis
             yield cells
             continue
         advice = "correct or remove the line"
-        if separator == "," and len(cells) > width and all(
-            re.fullmatch(r"\s*[+-]?\d*([eE][+-]?\d+)?\s*", c) for c in cells
+        if (
+            separator == ","
+            and len(cells) > width
+            and all(re.fullmatch(r"\s*[+-]?\d*([eE][+-]?\d+)?\s*", c) for c in cells)
         ):
             advice = "numbers with decimal commas? write them with a point, such as 0.5"
             if len(cells) == 2 * width:

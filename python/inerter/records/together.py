@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from numpy.fft import irfft, rfft
+from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import gaussian_filter1d
 
@@ -42,7 +43,10 @@ class Lag:
 
 
 def joined(
-    path: Path, values: dict[str, Array], other_path: Path, other: dict[str, Array],
+    path: Path,
+    values: dict[str, Array],
+    other_path: Path,
+    other: dict[str, Array],
     stated: float | None = None,
 ) -> tuple[dict[str, Array], slice, str]:
     """Channels of the other file on the clock of this one, the rows in both, what is to be told.
@@ -71,7 +75,8 @@ def joined(
         if abs(lag.ratio - 1) > 0.1:
             told += f"; its motion is {lag.ratio:.3g} times as large: check scales and units"
         if abs(lag.rate) > 4 * lag.rate_stderr and abs(lag.rate) > 1e-5:
-            told += f"; the clocks drift apart by {1e6 * lag.rate:.3g} ± {1e6 * lag.rate_stderr:.2g} ppm"
+            drift, error = 1e6 * lag.rate, 1e6 * lag.rate_stderr
+            told += f"; the clocks drift apart by {drift:.3g} ± {error:.2g} ppm"
         value = lag.value
     else:
         value, told = stated, f"{other_path.name} joined: its clock + {stated:g} s, as stated"
@@ -105,7 +110,10 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
     lags, r = _correlations(a, b)
     if not len(lags):
         raise RecordError(f"{path}: no motion that {other} has seen, too; give files of one test")
-    best = int(np.argmax(np.abs(r)))
+    # of a motion that repeats, half a period with the other sign is as good: the same sign is meant
+    best = int(np.argmax(r))
+    if r[best] < ALIKE * np.max(np.abs(r)):
+        best = int(np.argmax(np.abs(r)))
     if abs(r[best]) < LEAST:
         raise RecordError(
             f"{path}: no motion that {other} has seen, too (highest correlation "
@@ -118,8 +126,8 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
         )
     offset = float(theirs["time"][0] - mine["time"][0])
     _refuse_several(path, other, lags, r, best, step, offset)
-    lag, stderr, ratio = _refined(a, b, int(lags[best]), step)
-    rate, rate_stderr = _rate(a, b, int(lags[best]), step)
+    lag, stderr, ratio = _refined(a, b, int(lags[best]))
+    rate, rate_stderr = _rate(a, b, int(lags[best]))
     value = lag * step + float(mine["time"][0] - theirs["time"][0])
     return Lag(
         value=value, stderr=stderr * step, correlation=float(r[best]), ratio=ratio, rate=rate,
@@ -132,7 +140,7 @@ def _velocity(path: Path, columns: dict[str, Array], step: float, width: float) 
     name = next((name for name in _SHARED if name in columns), None)
     if name is None:
         raise RecordError(
-            f"{path}: no displacement, velocity or acceleration is known, by which two files of one "
+            f"{path}: no displacement, velocity or acceleration is known, by which two files of a "
             "test are brought together; say --column displacement=NAME or velocity=NAME"
         )
     time = columns["time"]
@@ -147,7 +155,7 @@ def _velocity(path: Path, columns: dict[str, Array], step: float, width: float) 
 
 def _correlations(a: Array, b: Array) -> tuple[Array, Array]:
     """Lags in samples of b behind a, and the correlation in the overlap at each."""
-    size = next_fast_len(len(a) + len(b), real=True)
+    size = int(next_fast_len(len(a) + len(b), real=True) or 0)
 
     def slide(x: Array, y: Array) -> Array:
         full = irfft(rfft(x, size) * np.conj(rfft(y, size)), size)
@@ -159,7 +167,7 @@ def _correlations(a: Array, b: Array) -> tuple[Array, Array]:
     enough = (energy_a > LEAST_ENERGY * np.sum(a**2)) & (energy_b > LEAST_ENERGY * np.sum(b**2))
     # b may have seen more or less than a: of one of them nearly all has to be there
     r = cross[enough] / np.sqrt(energy_a[enough] * energy_b[enough])
-    return lags[enough], r
+    return lags[enough].astype(float), r
 
 
 def _refuse_several(
@@ -186,9 +194,8 @@ def _overlap(a: Array, b: Array, lag: int) -> tuple[Array, Array]:
     return a[start:stop], b[start - lag : stop - lag]
 
 
-def _refined(a: Array, b: Array, lag: int, step: float) -> tuple[float, float, float]:
+def _refined(a: Array, b: Array, lag: int) -> tuple[float, float, float]:
     """Lag in samples with its standard error, and the ratio of b to a, by least squares."""
-    del step
     first, second = _overlap(a, b, lag)
     shift = 0.0
     gain, stderr = 1.0, 0.0
@@ -219,7 +226,7 @@ def _correlation_time(rest: Array) -> float:
     return float(1 + 2 * np.sum(auto[1:end]))
 
 
-def _rate(a: Array, b: Array, lag: int, step: float) -> tuple[float, float]:
+def _rate(a: Array, b: Array, lag: int) -> tuple[float, float]:
     """By how much the lag grows per second, from its two halves, and the standard error."""
     first, second = _overlap(a, b, lag)
     middle = len(first) // 2
@@ -227,8 +234,12 @@ def _rate(a: Array, b: Array, lag: int, step: float) -> tuple[float, float]:
     least = 0.05 * np.sum(first**2)
     if middle < 50 or any(np.sum(one**2) < least for one, _ in halves):
         return 0.0, np.inf
-    found = [_refined(one, two, 0, step)[:2] for one, two in halves]
+    found = [_refined(one, two, 0)[:2] for one, two in halves]
+    # each half tells the lag where its motion is
+    weights = [np.gradient(two) ** 2 for _, two in halves]
+    centres = [float(np.average(np.arange(len(w)), weights=w)) for w in weights]
+    apart = middle + centres[1] - centres[0]
     return (
-        (found[1][0] - found[0][0]) / middle,
-        float(np.hypot(found[0][1], found[1][1])) / middle,
+        (found[1][0] - found[0][0]) / apart,
+        float(np.hypot(found[0][1], found[1][1])) / apart,
     )

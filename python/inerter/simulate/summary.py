@@ -17,6 +17,7 @@ from inerter.simulate.run import SimulatedRun
 from inerter.simulate.sample import DeviceRun
 
 SCHEMA = "inerter.simulation/1"
+STILL = 1e-9  # m or rad: less is no motion
 
 
 def summary(run: SimulatedRun) -> dict[str, Any]:
@@ -40,6 +41,18 @@ def summary(run: SimulatedRun) -> dict[str, Any]:
         },
         "warnings": run.warnings,
     }
+
+
+def at_rest(run: SimulatedRun, keyframe: str | None) -> str | None:
+    """Where no device moved: what would make them move; None where one did."""
+    if any(np.ptp(device.columns["displacement"]) > STILL for device in run.devices):
+        return None
+    names = [run.model.key(i).name or str(i) for i in range(run.model.nkey)]
+    names = [name for name in names if name != keyframe]
+    ways = [f"start from a keyframe (--keyframe {' or '.join(names)})"] if names else []
+    if run.model.nu:
+        ways.append("drive it (--control FILE)")
+    return f"No device moved: {', or '.join(ways) or 'give the model something that moves it'}."
 
 
 def _device(name: str, device: DeviceRun, model: mujoco.MjModel) -> dict[str, Any]:

@@ -68,7 +68,7 @@ def plan(selection: Selection, exudyn: bool = True) -> list[Task]:
     if not tasks and not exudyn:
         raise SelectionError(
             "no case is left without Exudyn, which is not installed: "
-            'pip install "inerter[exudyn]", or ask for --engine mujoco'
+            "pip install exudyn (the extra `exudyn`), or ask for --engine mujoco"
         )
     if not tasks:
         raise SelectionError(

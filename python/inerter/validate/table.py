@@ -29,7 +29,7 @@ def print_validation(validation: Validation, console: Console) -> None:
     )
     console.print(Text(f"{verdict}; {validation.seconds:.0f} s", style="bold"))
     if validation.json()["versions"]["exudyn"] is None:
-        advice = 'Exudyn is not installed and was left out: pip install "inerter[exudyn]"'
+        advice = "Exudyn is not installed and was left out: pip install exudyn (the extra exudyn)"
         console.print(Text(advice))
 
 

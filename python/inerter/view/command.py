@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from inerter.console import number, out, refuse
-from inerter.core import DeviceError
 
 if TYPE_CHECKING:
     from inerter.view.session import Session
@@ -19,7 +18,13 @@ if TYPE_CHECKING:
 
 
 def view_command(
-    model: Annotated[Path, typer.Argument(help="A MuJoCo model file (MJCF) with a device.")],
+    model: Annotated[
+        Path,
+        typer.Argument(
+            help="A MuJoCo model file (MJCF) with a device, or the name of a shipped one, see "
+            "`inerter models`."
+        ),
+    ],
     device: Annotated[
         str | None, typer.Option(help="Name of the device to begin with; default: the first.")
     ] = None,
@@ -44,15 +49,21 @@ def view_command(
 
     The page is in your browser. Its address has a token, without which no other page or user of
     this machine gets in. Ctrl-C ends, and prints what was changed.
+
+    \b
+    Examples:
+      inerter view half_car
+      inerter view car.xml --shake road=0.01@1.5 --picture view.png
     """
     from inerter.folder import refuse_file
+    from inerter.models import model_file
     from inerter.simulate.errors import SimulationError
     from inerter.view.picture import write_picture
     from inerter.view.session import Session
     from inerter.view.shake import read_shake, usual_shake
 
     try:
-        session = Session(model, keyframe)
+        session = Session(model_file(model), keyframe)
         if device is not None and device not in session.devices:
             listed = ", ".join(session.devices)
             raise SimulationError(f"--device {device!r}: the model's devices are {listed}")
@@ -64,7 +75,7 @@ def view_command(
             _serve(session, first, shaken, port)
             return
         notes = write_picture(session, first, shaken, picture, duration, shown)
-    except (SimulationError, DeviceError) as error:
+    except ValueError as error:
         refuse(str(error))
     except OSError as error:
         refuse(f"{error.filename or picture}: cannot be written ({error.strerror})")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -77,9 +77,7 @@ def _named(groups: Sequence[str]) -> str:
 def header_of(channels: Sequence[Channel]) -> list[str]:
     """Names of channels, apart where two are the same."""
     count = Counter(channel.name for channel in channels)
-    names = [
-        f"{c.group}/{c.name}" if count[c.name] > 1 and c.group else c.name for c in channels
-    ]
+    names = [f"{c.group}/{c.name}" if count[c.name] > 1 and c.group else c.name for c in channels]
     # a time of each group is one clock or another: the first keeps its name
     seen: Counter[str] = Counter()
     for index, name in enumerate(names):
@@ -102,7 +100,7 @@ def table_of(
     clocks = {c.group: _Clock(c.group, channels) for c in (channels[i] for i in picked)}
     # the clock of the force, else the one with the most values
     forces = [channels[i] for i in picked if (g := guess(channels[i].name)) and g[0] == "force"]
-    known = [c for c in forces or [channels[i] for i in picked]]
+    known = forces or [channels[i] for i in picked]
     base = clocks[max(known, key=lambda c: c.rows).group]
     told = []
     columns: dict[int, Any] = {}
@@ -133,9 +131,7 @@ def table_of(
         header = [*header, "time [s]"]
         told.append(f"a sample every {base.interval:g} s")
     elif base.time_index is not None:
-        name = header[base.time_index]
         header[base.time_index] = channels[base.time_index].name
-        del name
     return header, columns, ", ".join(told)
 
 
@@ -154,7 +150,9 @@ class _Clock:
             loaded = _loaded(channels[self.time_index])
             self.time = loaded if isinstance(loaded, np.ndarray) else None
             return
-        stated = next((c.clock for _, c in own if c.clock is not None and c.rows == self.rows), None)
+        stated = next(
+            (c.clock for _, c in own if c.clock is not None and c.rows == self.rows), None
+        )
         if stated is not None and stated[1] > 0:
             self.interval = stated[1]
             self.time = stated[0] + stated[1] * np.arange(self.rows)
@@ -191,8 +189,3 @@ def _loaded(channel: Channel) -> Any:
             v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in array.ravel()
         ]
     return None
-
-
-def renamed(channels: Sequence[Channel], group: str) -> list[Channel]:
-    """The same channels in another group."""
-    return [replace(channel, group=group) for channel in channels]

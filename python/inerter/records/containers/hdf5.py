@@ -110,8 +110,10 @@ def _parts(name: str, data: Any) -> Iterator[tuple[str, int, Any]]:
         if data.shape[1 - long] <= _WIDEST:
             names = _column_names(data, data.shape[1 - long])
             for k in range(data.shape[1 - long]):
-                yield names[k] if names else f"{name} {k + 1}", data.shape[long], _column(
-                    data, long, k
+                yield (
+                    names[k] if names else f"{name} {k + 1}",
+                    data.shape[long],
+                    _column(data, long, k),
                 )
 
 

@@ -26,9 +26,7 @@ def channels(path: Path, sheet: str | None) -> list[Channel]:
         for index, channel in enumerate(group.channels):
             if index == master:
                 found.append(
-                    Channel(
-                        name="time [s]", rows=rows, group=name, load=_master(file, number)
-                    )
+                    Channel(name="time [s]", rows=rows, group=name, load=_master(file, number))
                 )
                 continue
             unit = getattr(channel, "unit", "") or ""
@@ -48,4 +46,6 @@ def _master(file: Any, group: int) -> Any:
 
 
 def _loader(file: Any, group: int, index: int) -> Any:
-    return lambda: file.get(group=group, index=index, raw=False, ignore_invalidation_bits=True).samples
+    return lambda: (
+        file.get(group=group, index=index, raw=False, ignore_invalidation_bits=True).samples
+    )

@@ -96,7 +96,7 @@ def decompose(values: Array) -> tuple[Array, Array]:
     except ModuleNotFoundError as error:
         raise RecordError(
             f"EMD needs the package EMD-signal ({error.name} is not installed); "
-            "run pip install 'inerter[lab]' or choose another way to denoise"
+            "run `pip install EMD-signal` or choose another way to denoise"
         ) from None
     values = np.asarray(values, float)
     middle, size = float(np.mean(values)), float(np.std(values))

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from inerter.records.runs import MAX_MISSING_STRETCH
 from inerter.records.record import AnyRecord, Record, RecordError, TimeRecord
+from inerter.records.runs import MAX_MISSING_STRETCH
 
 
 def over_time(record: AnyRecord) -> TimeRecord:

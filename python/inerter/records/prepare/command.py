@@ -9,19 +9,22 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
-from inerter.console import AsJson, Folder, number, out, refuse, refusing, status
+from inerter.console import AsJson, Folder, number, out, parts_of, refuse, refusing, status
 from inerter.records.options import told_reading, with_reading
 
 
 @with_reading
 def prepare_command(
     record: Annotated[
-        list[str], typer.Argument(help="Records: files, folders or globs; CSV, Parquet, .mat.")
+        list[str],
+        typer.Argument(
+            metavar="RECORD", help="Records: files, folders or globs; CSV, Parquet, .mat."
+        ),
     ],
     denoise: Annotated[str, typer.Option(help="emd, savgol, lowpass, spline or none.")] = "none",
     channel: Annotated[
         list[str] | None,
-        typer.Option(help="Column to denoise; may be given again. Default: force."),
+        typer.Option(help="Columns to denoise, with commas or given again. Default: force."),
     ] = None,
     noise: Annotated[
         float | None,
@@ -54,6 +57,11 @@ def prepare_command(
 
     Writes NAME.csv (SI units), NAME.png and preparation.json. A diagnosis wants the records as
     measured: denoise for the eye, not for a fit.
+
+    \b
+    Examples:
+      inerter prepare bench.csv --delay auto --derivatives
+      inerter prepare runs/*.csv --denoise lowpass --channel force,displacement
     """
     from inerter.records import read_records
     from inerter.records.prepare.options import Options
@@ -64,7 +72,7 @@ def prepare_command(
     if form not in forms:
         refuse(f"--format is {form!r}; take one of {', '.join(forms)}")
     with refusing(out_dir, "preparation.json"):
-        chosen: dict[str, Any] = {"channels": tuple(channel)} if channel else {}
+        chosen: dict[str, Any] = {"channels": parts_of(channel)} if channel else {}
         options = Options(
             denoise=denoise, noise=noise, rate=resample, derivatives=derivatives, cutoff=cutoff,
             delay=_delay(delay), **chosen,

@@ -19,8 +19,8 @@ from inerter.records.preparation import prepare
 from inerter.records.prepare.checks import bench, over_time, refuse_cutoff
 from inerter.records.prepare.options import Options
 from inerter.records.quality import check_records
-from inerter.records.runs import MIN_SAMPLES
 from inerter.records.record import AnyRecord, Record, RecordError, TimeRecord
+from inerter.records.runs import MIN_SAMPLES
 
 Array = NDArray[np.float64]
 

@@ -28,6 +28,10 @@ def fluid_rig_command(
     """The fluid inerter's experiment: its sweeps simulated, disturbed, identified, drawn.
 
     Writes fluid_rig.json, fluid_rig.html, dry.png, complete.png and levels.png.
+
+    \b
+    Example:
+      inerter study fluid-rig --duration 20
     """
     from inerter.studies.fluid_rig.output import json_text, write_study
     from inerter.studies.fluid_rig.settings import Settings

@@ -29,7 +29,7 @@ def hysteresis_command(
     quick: Annotated[
         bool,
         typer.Option(
-            "--quick", help="3 draws and 4 random starts: to look at, not to quote; faster."
+            "--quick", help="Fewer cases: 3 draws and 4 random starts, to look at, not to quote."
         ),
     ] = False,
     jobs: Jobs = None,
@@ -40,6 +40,10 @@ def hysteresis_command(
 
     Takes about a quarter of an hour on two processors, --quick some minutes. Writes
     hysteresis.json, hysteresis.html and pictures.
+
+    \b
+    Example:
+      inerter study hysteresis --quick --jobs 2
     """
     from inerter.studies.hysteresis.output import json_text, print_study, write_study
     from inerter.studies.hysteresis.settings import Settings
