@@ -106,7 +106,7 @@ def test_a_file_is_the_case_that_it_describes(tmp_path: Path) -> None:
     common = ["--layout", "S2,S3", "--index", "J1", "--seeds", "2", "--step", "0.002", "--json"]
     rows = []
     for asked in (
-        ["--case", "both", "--inertance", "113"],
+        ["--case", "ideal,both", "--inertance", "113"],
         ["--device", str(tmp_path / "device.toml")],
     ):
         run = CliRunner().invoke(app, [*asked, *common, "--out", str(tmp_path / "out")])
