@@ -39,12 +39,17 @@ class StrutPlace:
 
 @dataclass(frozen=True)
 class WheelPlace:
-    """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m]."""
+    """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m].
+
+    `tyre` actuator, `static_load` [N] with which it presses the road at rest.
+    """
 
     road: int
     height: int
     tyre_stiffness: float
-    behind: float = 0.0
+    behind: float
+    tyre: int
+    static_load: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

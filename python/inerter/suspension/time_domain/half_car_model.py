@@ -56,8 +56,7 @@ def _compiled(layout: str, laws: build.Laws, car: HalfCar) -> Any:
 def _set_wheel(spec: Any, axle: str, car: HalfCar) -> None:
     values = car.front if axle == "front" else car.rear
     spec.body(f"wheel_{axle}").mass = values.wheel_mass
-    road, kt = spec.actuator(f"road_{axle}"), values.tyre_stiffness
-    road.gainprm[0], road.biasprm[1] = kt, -kt
+    build.set_tyre(spec.actuator(f"road_{axle}"), values.tyre_stiffness)
 
 
 def _add_strut(spec: Any, layout: str, laws: build.Laws, axle: str, lever: float) -> None:
@@ -140,9 +139,11 @@ def half_car_model(layout: str, case: Case, car: HalfCar) -> CarModel:
                 build.control_of(model, f"road_{axle}"),
                 int(model.sensor(f"wheel_{axle}").adr[0]),
                 parts[axle].tyre_stiffness,
-                0.0 if axle == "front" else wheelbase,
+                behind=0.0 if axle == "front" else wheelbase,
+                tyre=model.actuator(f"road_{axle}").id,
+                static_load=(share * car.body_mass + parts[axle].wheel_mass) * build.GRAVITY,
             )
-            for axle in AXLES
+            for axle, share in zip(AXLES, car.lever.tolist(), strict=True)
         ),
         load=build.control_of(model, "load"),
         body=int(model.sensor("heave").adr[0]),
