@@ -6,20 +6,21 @@ import math
 import textwrap
 from typing import Any
 
-from inerter.core import Parameter, parameters
+from inerter.core import NumberList, Parameter, lists, parameters
 
 UNSET, ANY = "unset", "any"
+Entry = Parameter | NumberList
 
 
-def chosen(part: str | None) -> list[Parameter]:
-    """Parameters whose name, meaning or law has a part of a text; all for None.
+def chosen(part: str | None) -> list[Entry]:
+    """Parameters and lists whose name, meaning or law has a part of a text; all for None.
 
     Raises
     ------
     ValueError
         None has.
     """
-    everything = list(parameters().values())
+    everything: list[Entry] = [*parameters().values(), *lists().values()]
     if part is None:
         return everything
     wanted = part.casefold()
@@ -32,28 +33,31 @@ def chosen(part: str | None) -> list[Parameter]:
     return found
 
 
-def rows(found: list[Parameter]) -> list[dict[str, Any]]:
+def rows(found: list[Entry]) -> list[dict[str, Any]]:
     """Parameters for JSON; what is not set or has no bound is null."""
-    return [
-        {
-            "name": p.name,
-            "unit": p.unit,
-            "default": _finite(p.initial),
-            "lower": _finite(p.lower),
-            "lower_open": p.lower_open,
-            "upper": _finite(p.upper),
-            "friction_laws": list(p.laws),
-            "meaning": p.meaning,
-        }
-        for p in found
-    ]
+    return [_row(p) for p in found]
+
+
+def _row(p: Entry) -> dict[str, Any]:
+    common = {"name": p.name, "unit": p.unit, "friction_laws": list(p.laws), "meaning": p.meaning}
+    if isinstance(p, NumberList):
+        return common | {"default": [], "most_numbers": p.most, "periods": p.periods}
+    return common | {
+        "default": _finite(p.initial),
+        "lower": _finite(p.lower),
+        "lower_open": p.lower_open,
+        "upper": _finite(p.upper),
+    }
 
 
 def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) and abs(value) < 1e300 else None
 
 
-def _cells(p: Parameter) -> tuple[str, str, str, str, str]:
+def _cells(p: Entry) -> tuple[str, str, str, str, str]:
+    if isinstance(p, NumberList):
+        most = f"1 to {p.most // 3} times 3" if p.periods else f"2 to {p.most}"
+        return p.name, p.unit or "-", "none", f"{most} numbers", ",".join(p.laws) or "-"
     lower = f"{'>' if p.lower_open else '>='} {p.lower:g}" if p.lower > -1e300 else ""
     upper = f"<= {p.upper:g}" if p.upper < 1e300 else ""
     bounds = " ".join(part for part in (lower, upper) if part) or ANY
@@ -64,7 +68,7 @@ def _cells(p: Parameter) -> tuple[str, str, str, str, str]:
 _HEADER = ("name", "unit", "default", "range", "friction laws")
 
 
-def text(found: list[Parameter], width: int | None) -> str:
+def text(found: list[Entry], width: int | None) -> str:
     """A line for each parameter; with a width [characters] its meaning wrapped below it.
 
     Without a width, for another program: columns apart by tabs, the meaning last.
