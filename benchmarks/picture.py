@@ -12,7 +12,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 COLOURS: dict[str, Any] = LIGHT | {
-    "laws": [to_hex(colormaps["viridis"](0.9 * i / 6)) for i in range(7)],
+    "laws": [to_hex(colormaps["viridis"](0.9 * i / 7)) for i in range(8)],
     "set": ["#0a6fa0", "#d4641c", "#3a8f4d", "#8a4fa3", "#b8860b", "#c23b5a", "#5b6571", "#17a2a2"],
 }
 """The report's colours, and those of things that stand beside one another."""

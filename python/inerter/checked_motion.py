@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 
-def checked_motion(h: float, x: NDArray, v: NDArray, a: NDArray) -> list[NDArray[np.float64]]:
+def checked_motion(h: float, x: ArrayLike, v: ArrayLike, a: ArrayLike) -> list[NDArray[np.float64]]:
     """x, v, a as arrays in one piece.
 
     Raises

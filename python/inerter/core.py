@@ -281,7 +281,7 @@ class Device:
         return _text(message)
 
     def along(
-        self, h: float, x: NDArray, v: NDArray, a: NDArray, state: ArrayLike = 0.0
+        self, h: float, x: ArrayLike, v: ArrayLike, a: ArrayLike, state: ArrayLike = 0.0
     ) -> dict[str, NDArray[np.float64]]:
         """Force and states along a motion sampled every h seconds.
 

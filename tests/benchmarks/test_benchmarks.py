@@ -146,11 +146,11 @@ def test_along_motion(checkout: None, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_laws_of_scipy_are_the_core_s() -> None:
-    from benchmarks.along_motion import _scipy_work
+    from benchmarks.along_motion import COMPARED, _scipy_work
 
     count = 400
     x, v, a = samples(count)
-    for law in LAWS:
+    for law in COMPARED:
         own = Device(**parameters_of(law)).along(SPACING, x, v, a)["total"]
         # steps of the core follow the mean velocity between samples
         found = np.asarray(_scipy_work(law, count).run(), dtype=np.float64)
@@ -159,10 +159,11 @@ def test_the_laws_of_scipy_are_the_core_s() -> None:
 
 def test_the_laws_of_numba_are_the_core_s() -> None:
     pytest.importorskip("numba")
+    from benchmarks.along_motion import COMPARED
     from benchmarks.laws_numba import along
 
     x, v, a = samples(500)
-    for law in LAWS:
+    for law in COMPARED:
         own = Device(**parameters_of(law)).along(SPACING, x, v, a)["total"]
         assert along(law)(SPACING, x, v, a) == pytest.approx(own, rel=1e-10, abs=1e-9)
 

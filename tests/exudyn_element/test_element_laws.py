@@ -154,7 +154,7 @@ def test_a_gap_position_beyond_the_edge() -> None:
 
 
 def test_more_coordinates_than_exudyn_evaluates_by_itself() -> None:
-    values = {f"slip_stiffness_{i}": 1e4 for i in range(1, 7)}
+    values: dict[str, Any] = {f"slip_stiffness_{i}": 1e4 for i in range(1, 7)}
     values |= {f"slip_force_{i}": 1.0 for i in range(1, 7)}
     system = line([2.0, 3.0], [0.0, 0.0])
     with pytest.raises(ValueError, match=r"at most 7 coordinates \(here 8\)"):

@@ -32,7 +32,7 @@ def test_core_is_the_reference_on_random_devices() -> None:
     for _ in range(150):
         bare = draw_complete(rng)
         bare["load_friction"] = min(0.9, bare["load_friction"])
-        p = bare | draw_branch(rng)
+        p: dict[str, Any] = bare | draw_branch(rng)
         core, reference = Device(**p), ReferenceDevice(**p)
         assert core.state_names == reference.state_names
         n = sum(name.startswith("branch_stiffness") for name in p)
@@ -91,7 +91,7 @@ def test_a_step_is_exact_however_long() -> None:
 
 
 def test_along_a_motion_the_core_is_the_reference() -> None:
-    more = {"inertance": 5.0, "series_stiffness": 1e5, "series_damping": 100.0}
+    more: dict[str, Any] = {"inertance": 5.0, "series_stiffness": 1e5, "series_damping": 100.0}
     motion, t = sine_motion(1e-3, 5.0), np.linspace(0.0, 0.4, 4001)
     core = Device(**RUBBER, **more)
     start = np.zeros(core.nstate)
@@ -116,10 +116,11 @@ def test_over_a_step_the_force_does_not_fall_and_goes_to_that_of_the_instant() -
 
 
 def test_half_a_branch_is_refused() -> None:
-    for values, message in (
+    cases: tuple[tuple[dict[str, Any], str], ...] = (
         ({"branch_stiffness_1": 1e4}, "branch_damping_1 0 N.s/m: half a branch"),
         ({"branch_stiffness_2": 1e4, "branch_damping_2": 1.0}, "branch_stiffness_1 is 0 N/m"),
-    ):
+    )
+    for values, message in cases:
         with pytest.raises(DeviceError, match=message):
             Device(**values)
         with pytest.raises(ValueError, match="branch"):

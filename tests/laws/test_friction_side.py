@@ -168,7 +168,8 @@ def test_a_stiff_shaft_is_none() -> None:
         values = {**LAWS[law], "friction": law, "inertance": 50.0, "load_friction": 0.1}
         values["transition_velocity"] = 1e-2
         motion, t = sine_motion(2e-3, 3.0), np.linspace(0.0, 0.4, 2001)
-        x, v, a = (each(t) for each in (motion.displacement, motion.velocity, motion.acceleration))
+        each = (motion.displacement, motion.velocity, motion.acceleration)
+        x, v, a = (np.asarray(of(t)) for of in each)
         stiff = {"series_stiffness": 1e9, "series_damping": 4e5, "friction_side": "flywheel"}
         strut = Device(**values, **stiff)
         start = np.zeros(strut.nstate)

@@ -191,7 +191,7 @@ def test_the_state_of_a_force_holds_it() -> None:
         ),
     ],
 )
-def test_half_an_element_is_refused(values: dict[str, float], message: str) -> None:
+def test_half_an_element_is_refused(values: dict[str, Any], message: str) -> None:
     with pytest.raises(DeviceError, match=message):
         Device(friction="maxwell_slip", **values)
     with pytest.raises(ValueError, match="slip_"):

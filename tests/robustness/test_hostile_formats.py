@@ -12,7 +12,7 @@ import pytest
 from inerter.records import RecordError, read_records
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "records"))
-from bench_files import BINARIES
+from bench_files import BINARIES  # pyright: ignore[reportMissingImports]
 
 CONTAINERS = ("sheet.xlsx", "wave.tdms", "logger.mf4", "data.h5", "frame.feather")
 

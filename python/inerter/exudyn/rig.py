@@ -85,13 +85,13 @@ def simulate_along(
     mbs.AddLoad(
         items.LoadCoordinate(markerNumber=marker, load=1.0, loadUserFunction=_push(h, x, v, a))
     )
-    given: dict[str, Any] = device.given
+    given: dict[str, Any] = {"inertance": 0.0, **device.given}
     inerter = CreateInerter(
         mbs,
         "device",
         [None, table],
         initialStates=dict(zip(device.state_names, states.tolist(), strict=True)),
-        **({"inertance": 0.0} | given),
+        **given,
     )
     forces = inerter.AddSensor("forces")
     own = inerter.AddSensor("states") if device.nstate else None

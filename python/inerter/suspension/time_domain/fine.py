@@ -82,7 +82,7 @@ def linear_value(
     parts, before = 1, -1.0
     high = 0.0
     if split < road.last:
-        f = road.spacing * np.arange(split + 1, road.last + 1)
+        f = road.spacing * np.arange(split + 1, road.last + 1, dtype=float)
         high = _rms(_gains(index, layout, design, pair, car, f, road.speed), road) ** 2
     while True:
         low = PeriodicRoad(
