@@ -129,12 +129,14 @@ def _corner(frequency: Array, power: Array) -> float | None:
         for a, b in itertools.pairwise(edges)
         if (inside := (frequency >= a) & (frequency < b)).any()
     ]
+    if not middle:
+        return None
     place, level = (np.array(part) for part in zip(*middle, strict=True))
     # down to the floor, where all spectra are level
     floor = np.flatnonzero(level > np.min(level) + 6.0)
-    place, level = place[: floor[-1] + 1], level[: floor[-1] + 1]
-    if len(place) < 4 * PER_OCTAVE:
+    if floor.size == 0 or floor[-1] + 1 < 4 * PER_OCTAVE:
         return None
+    place, level = place[: floor[-1] + 1], level[: floor[-1] + 1]
     best = (np.inf, 0.0, 0.0, 0.0)
     for knee in place[PER_OCTAVE:-PER_OCTAVE]:
         matrix = np.column_stack(
