@@ -8,7 +8,7 @@ import time
 import pytest
 from inerter.commands import app
 from inerter.console import EVERY_VARIABLE, progress_bar, status
-from inerter.core import parameters
+from inerter.core import lists, parameters
 from inerter.models import model_names
 from typer.main import get_command
 from typer.testing import CliRunner
@@ -50,7 +50,7 @@ def test_every_help_has_an_example_in_80_columns(name: tuple[str, ...]) -> None:
 
 def test_parameters_are_whole_in_a_pipe() -> None:
     rows = [line.split("\t") for line in output("parameters").splitlines()]
-    assert [row[0] for row in rows[1:]] == list(parameters())
+    assert [row[0] for row in rows[1:]] == [*parameters(), *lists()]
     assert {len(row) for row in rows} == {6}
 
 

@@ -63,7 +63,9 @@ class _Regression:
         c = self.columns(chosen)
         gram = np.sum([self.grams[k] for k in folds], axis=0)[np.ix_(c, c)]
         right = np.sum([self.rights[k] for k in folds], axis=0)[c]
-        return np.linalg.solve(gram + 1e-9 * np.trace(gram) * np.eye(c.size), right)
+        # a term may be 0 all over some folds
+        ridge = 1e-9 * np.trace(gram) or 1.0
+        return np.linalg.solve(gram + ridge * np.eye(c.size), right)
 
     def error(self, chosen: frozenset[int]) -> float:
         """Share of the fit data's power that is left when each fold is predicted by the others."""
