@@ -62,14 +62,15 @@ def least_missed(runs: Sequence[BenchRun], able: Sequence[int], usual: int) -> i
         The one to hold out where it takes nothing away that only it tells.
     """
     parts = shares(runs)
-    if parts[usual, -1] <= TOO_MUCH:
+    fair = [i for i in able if parts[i, -1] <= TOO_MUCH]
+    # where each takes something away, no other is better than the usual one
+    if parts[usual, -1] <= TOO_MUCH or not fair:
         return usual
     # much left to learn from, and something of everything to judge by
     left = np.log(1 - parts + LEAST).sum(axis=1)
     told = np.log(parts + LEAST).sum(axis=1)
     score = left + JUDGING * told
-    fair = [i for i in able if parts[i, -1] <= TOO_MUCH]
-    return int(max(fair or able, key=lambda i: score[i]))
+    return int(max(fair, key=lambda i: score[i]))
 
 
 def _columns(runs: Sequence[BenchRun]) -> list[Array]:
