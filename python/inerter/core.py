@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.checked_motion import checked_motion
 from inerter.core_library import (
     FORCES,
-    LIBRARY_FOLDER,
     MESSAGE_SIZE,
     WORDS,
     NumberList,
@@ -32,7 +31,6 @@ from inerter.core_library import (
 from inerter.parameter_text import value_text, with_suggestion
 
 __all__ = [
-    "LIBRARY_FOLDER",
     "WORDS",
     "Device",
     "DeviceError",

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
 
-from inerter import core
+from inerter import core_library
 
 _STEM = "inerter_mujoco"
 # built anew for the engine that is installed; from a wheel: for all of them
@@ -24,7 +24,7 @@ _loaded = False
 
 def plugin_versions() -> list[str]:
     """The versions of MuJoCo that this installation has a library for, oldest first."""
-    found = core.LIBRARY_FOLDER.glob(f"*/{core.library_path(_STEM).name}")
+    found = core_library.LIBRARY_FOLDER.glob(f"*/{core_library.library_path(_STEM).name}")
     return sorted((path.parent.name for path in found), key=_numbers)
 
 
@@ -46,9 +46,9 @@ def plugin_path(version: str | None = None) -> Path:
     there = plugin_versions()
     for each in there:
         if _numbers(each) == _numbers(version):
-            return core.library_path(_STEM, each)
+            return core_library.library_path(_STEM, each)
     if not there:
-        missing = core.LIBRARY_FOLDER / "VERSION" / core.library_path(_STEM).name
+        missing = core_library.LIBRARY_FOLDER / "VERSION" / core_library.library_path(_STEM).name
         raise ImportError(f"{missing} is missing for every VERSION: reinstall with `{_REINSTALL}`")
     raise ImportError(
         f"inerter has no library for MuJoCo {version}; there is one for MuJoCo {_listed(there)}: "

@@ -399,7 +399,10 @@ def test_state_of_force_with_a_damper_that_bears_it_all() -> None:
 
 @pytest.mark.parametrize("law", [law for law in friction_laws() if law not in MEMORY])
 def test_a_law_without_bristle_has_no_play(law: str) -> None:
-    level: Parameters = {} if law == "none" else {"coulomb_force": 5.0}
+    levels: dict[str, Parameters] = {
+        "none": {}, "maxwell_slip": {"slip_stiffness_1": 1e4, "slip_force_1": 5.0},
+    }  # fmt: skip
+    level = levels.get(law, {"coulomb_force": 5.0})
     with pytest.raises(DeviceError, match="friction_backlash is given, but friction is"):
         Device(friction=law, friction_backlash=HALF, **level)
 

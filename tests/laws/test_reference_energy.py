@@ -25,6 +25,8 @@ def device_with(friction: str, **changes: float) -> ReferenceDevice:
         "bw_exponent": 1.4,
         "bw_stiffness": 3e3,
         "bw_ratio": 0.2,
+        "slip_stiffness_1": 2e4,
+        "slip_force_1": 10.0,
     }
     return ReferenceDevice(friction=friction, **(parameters | changes))  # type: ignore[arg-type]
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import inerter
-import inerter.core
+import inerter.core_library
 import inerter.plugin
 import mujoco
 import pytest
@@ -146,7 +146,7 @@ def test_another_mujoco_is_refused(monkeypatch: pytest.MonkeyPatch, found: str) 
 def test_a_missing_plugin_is_an_import_error(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(inerter.core, "LIBRARY_FOLDER", tmp_path)
+    monkeypatch.setattr(inerter.core_library, "LIBRARY_FOLDER", tmp_path)
     monkeypatch.setattr(inerter.plugin, "_loaded", False)
     for call in (inerter.plugin_path, inerter.load_plugin):
         with pytest.raises(ImportError, match=r"inerter_mujoco.* is missing .*reinstall with `pip"):
@@ -156,9 +156,9 @@ def test_a_missing_plugin_is_an_import_error(
 def test_a_missing_core_is_an_import_error() -> None:
     # in a fresh interpreter: this one has the library loaded
     done = run(
-        "import pathlib, inerter.core as core\n"
-        "core.LIBRARY_FOLDER = pathlib.Path('nowhere')\n"
-        "core._library.cache_clear()\n"
+        "import pathlib, inerter.core as core, inerter.core_library as core_library\n"
+        "core_library.LIBRARY_FOLDER = pathlib.Path('nowhere')\n"
+        "core_library.library.cache_clear()\n"
         "try:\n"
         "    core.Device(inertance=1.0)\n"
         "except ImportError as error:\n"
@@ -185,7 +185,7 @@ def test_every_model_of_the_checkout_is_installed() -> None:
 
 def test_the_libraries_of_an_installation_in_place_are_found(tmp_path: Path) -> None:
     """`pip install -e .`: the package is two folders, modules in one, libraries in the other."""
-    from inerter.core import LIBRARY_FOLDER
+    from inerter.core_library import LIBRARY_FOLDER
 
     source, built = tmp_path / "source" / "inerter", tmp_path / "built" / "inerter"
     left_out = shutil.ignore_patterns("lib", "data", "__pycache__")
@@ -228,7 +228,7 @@ def test_every_import_is_a_declared_dependency(project: dict[str, Any]) -> None:
     # a package that only some other package brings along may be gone tomorrow
     extras = project["project"]["optional-dependencies"]
     stated = [*project["project"]["dependencies"], *extras["lab"], *extras["exudyn"]]
-    stated += [*extras["cluster"], *extras["gymnasium"]]
+    stated += [*extras["cluster"], *extras["gymnasium"], *extras["files"]]
     declared = {canonical(requirement) for requirement in stated} | {"inerter"}
     providers = importlib.metadata.packages_distributions()
     undeclared: dict[str, list[str]] = {}

@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import inerter
-import inerter.core
+import inerter.core_library
 import mujoco
 import pytest
 from falling_model import MODEL
@@ -24,8 +24,8 @@ LINUX = pytest.mark.skipif(sys.platform != "linux", reason="builds shared librar
 # the plugin from another folder, as a process finds it that knows nothing of this test
 IMPORT = f"""
 import pathlib, sys
-import inerter.core
-inerter.core.LIBRARY_FOLDER = pathlib.Path(sys.argv[1])
+import inerter.core_library
+inerter.core_library.LIBRARY_FOLDER = pathlib.Path(sys.argv[1])
 import mujoco
 try:
     inerter.load_plugin()
@@ -199,7 +199,7 @@ def test_an_installation_that_cannot_be_written_to() -> None:
         package = folder / "inerter"
         shutil.copytree(source, package, ignore=shutil.ignore_patterns("__pycache__"))
         # an installation in place has its libraries elsewhere
-        shutil.copytree(inerter.core.LIBRARY_FOLDER, package / "lib", dirs_exist_ok=True)
+        shutil.copytree(inerter.core_library.LIBRARY_FOLDER, package / "lib", dirs_exist_ok=True)
         for path in (folder, *folder.rglob("*")):
             path.chmod(0o555 if path.is_dir() else 0o444)
 

@@ -61,7 +61,7 @@ def test_another_mujoco_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("inerter.core.LIBRARY_FOLDER", tmp_path)
+    monkeypatch.setattr("inerter.core_library.LIBRARY_FOLDER", tmp_path)
     with pytest.raises(ImportError, match="reinstall"):
         inerter.plugin_path()
 

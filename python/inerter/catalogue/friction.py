@@ -144,7 +144,7 @@ _ALL = (
     FrictionLaw(
         name="maxwell_slip", words="Maxwell-slip", effect="hysteretic_friction", level="",
         constants=tuple(f"slip_{what}_{i}" for i in range(1, 9) for what in ("stiffness", "force")),
-        memory=True,
+        memory=True, varies=False,
     ),
 )  # fmt: skip
 
