@@ -12,8 +12,11 @@ from inerter.core import Device
 
 FOLDER = Path(inerter.__file__).parent / "exudyn"
 OUTSIDE = {"numpy", *sys.stdlib_module_names}
-FROM_CORE = {"Device", "DeviceError", "library_path", "parameters"}
-DATA = {"given", "friction", "gas_law", "nstate", "state_names", "replace"}
+FROM_CORE = {"WORDS", "Device", "DeviceError", "library_path", "lists", "names", "parameters"}
+DATA = {
+    "given", "friction", "gas_law", "friction_side", "has_load_friction", "nstate", "state_names",
+    "replace",
+}  # fmt: skip
 
 
 def trees() -> dict[str, ast.Module]:
