@@ -5,6 +5,7 @@
 #define INERTER_CORE_FRICTION_H_
 
 #include <math.h>
+#include <stddef.h>
 
 #include "device.h"
 
@@ -73,7 +74,7 @@ extern const FrictionLaw inerter_maxwell_slip;
 // maxwell_slip.c: how many elements there are; stiffness and slip force of one, side by side
 int slip_count(const InerterDevice* p);
 static inline const double* slip_element(const InerterDevice* p, int i) {
-  return &p->slip_stiffness_1 + 2 * i;
+  return (const double*)p + offsetof(InerterDevice, slip_stiffness_1) / sizeof(double) + 2 * i;
 }
 
 // by InerterFriction; nothing to call for "none"

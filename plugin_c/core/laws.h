@@ -3,6 +3,8 @@
 #ifndef INERTER_CORE_LAWS_H_
 #define INERTER_CORE_LAWS_H_
 
+#include <stddef.h>
+
 #include "device.h"
 #include "friction.h"
 
@@ -210,7 +212,7 @@ double branches_over_step(const InerterDevice* p, double v1, double* e, double h
 double branches_energy(const InerterDevice* p, const double* e);
 double branches_heat(const InerterDevice* p, const double* e);
 static inline const double* branch_element(const InerterDevice* p, int i) {
-  return &p->branch_stiffness_1 + 2 * i;
+  return (const double*)p + offsetof(InerterDevice, branch_stiffness_1) / sizeof(double) + 2 * i;
 }
 static inline int branch_index(const InerterDevice* p) {
   return p->nstate - p->nbranch;

@@ -17,7 +17,8 @@ void inerter_tape_run(const InerterTape* tape) {
       double a = values[step->a], b = values[step->b], c = values[step->c]; \
       *value++ = (expression);                                              \
       (void)b, (void)c;                                                     \
-    } while (++step < end && step->operation == operation);                 \
+      step++;                                                               \
+    } while (step < end && step->operation == operation);                   \
     break;
       INERTER_OPERATIONS(X)
 #undef X

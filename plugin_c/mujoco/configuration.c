@@ -2,6 +2,7 @@
 
 #include "mujoco/configuration.h"
 
+// NOLINTBEGIN(bugprone-suspicious-missing-comma)
 const char* const kAttributes[NATTRIBUTE] = {
 #define X(name, ...) #name,
     INERTER_PARAMETERS(X)
@@ -12,6 +13,7 @@ const char* const kAttributes[NATTRIBUTE] = {
     INERTER_STROKES(X)
 #undef X
 };
+// NOLINTEND(bugprone-suspicious-missing-comma)
 
 int configuration_read(const mjModel* m, int instance, InerterDevice* device,
                        char message[INERTER_MESSAGE_SIZE]) {

@@ -198,9 +198,11 @@ void watch_stiffness(const mjModel* m, Instance* self) {
     double branches = p->branch_stiffness_1 + p->branch_stiffness_2 + p->branch_stiffness_3;
     consider(&fastest, sqrt(branches * light), swing, "branch_stiffness", implicit);
     for (int i = 0; i < p->nbranch; i++) {
-      const double* branch = &p->branch_stiffness_1 + 2 * i;
-      consider(&fastest, branch[0] / branch[1], decay, "the relaxation of a viscoelastic branch",
-               implicit);
+      const double stiffness[] = {p->branch_stiffness_1, p->branch_stiffness_2,
+                                  p->branch_stiffness_3};
+      const double damping[] = {p->branch_damping_1, p->branch_damping_2, p->branch_damping_3};
+      consider(&fastest, stiffness[i] / damping[i], decay,
+               "the relaxation of a viscoelastic branch", implicit);
     }
     if (series) {
       consider(&fastest, sqrt(p->series_stiffness * both), swing, "series_stiffness", implicit);

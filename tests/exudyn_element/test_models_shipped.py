@@ -168,7 +168,7 @@ def test_an_unknown_model_is_named() -> None:
 
 def test_without_exudyn_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("inerter.models.installed", lambda: False)
-    with pytest.raises(ImportError, match=r'pip install "inerter\[exudyn\]"'):
+    with pytest.raises(ImportError, match="pip install exudyn"):
         exudyn_model("quarter_car")
 
 

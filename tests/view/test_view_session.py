@@ -89,7 +89,9 @@ def test_sliders_stay_within_what_a_parameter_may_be(law: str) -> None:
 def needed(law: str) -> dict[str, float]:
     if law in parameters()["coulomb_force"].laws:
         return {"coulomb_force": 20.0}
-    return {"bw_stiffness": 1e4} if law == "bouc_wen" else {}
+    more = {"bouc_wen": {"bw_stiffness": 1e4},
+            "maxwell_slip": {"slip_stiffness_1": 1e4, "slip_force_1": 20.0}}  # fmt: skip
+    return more.get(law, {})
 
 
 # --- live values ----------------------------------------------------------------------------------
