@@ -29,9 +29,7 @@ def struts(count: int) -> list[tuple[str, Rational]]:
         name = list(LAYOUTS)[n % len(LAYOUTS)]
         c, b, kb = 10.0 ** draw.uniform([2.0, 0.5, 4.0], [5.0, 3.5, 7.0])
         k = 10.0 ** draw.uniform(4.0, 5.5)
-        others = {x: 0.3 * k for x in LAYOUTS[name].variables if x.endswith("centring_stiffness")}
-        pair = PAIRS[n // len(LAYOUTS) % 3]
-        found.append((name, LAYOUTS[name].stiffness(k, c, b, kb, pair=pair, **others)))
+        found.append((name, LAYOUTS[name].stiffness(k, c, b, kb, pair=PAIRS[n // 6 % 3])))
     return found
 
 

@@ -4,12 +4,6 @@
 `body_acceleration`, `wheel_acceleration` [m/s^2], `suspension_travel` [m], `tyre_force` [N]:
 sensors with one value, or `framelinacc`, whose vertical part is taken and from which the engine's
 share of gravity is removed.
-
-A model with several wheels has a road each, `road_WHEEL`, and then its channels carry the names of
-the wheels: `tyre_force_WHEEL` [N], `suspension_travel_WHEEL` [m] from the tendon length
-`strut_length_WHEEL` less that of the reference pose; of the body `heave` [m], `pitch`, `roll`
-[rad], `body_acceleration` [m/s^2], and `pitch_acceleration`, `roll_acceleration` [rad/s^2] from
-`frameangacc`, about the y and the x axis. WHEEL is front, rear, front_left and so on.
 """
 
 from __future__ import annotations
@@ -33,8 +27,7 @@ class VehicleSensors:
         readers = {"road": _road(model)}
         readers |= {name: _sensor(model, name) for name in VehicleRecord.optional}
         found = {name: reader for name, reader in readers.items() if reader is not None}
-        found = found if "road" in found else _of_many_wheels(model)
-        self.readers = found if len(found) > 1 else {}
+        self.readers = found if "road" in found and len(found) > 1 else {}
         self.values = {name: np.empty(samples) for name in self.readers}
         self.count = 0
 
@@ -49,55 +42,17 @@ class VehicleSensors:
         return {"time": time, **self.values} if self.readers else {}
 
 
-def _of_many_wheels(model: mujoco.MjModel) -> dict[str, _Reader]:
-    """Roads and channels by wheel; none where no road is named after one."""
-    found: dict[str, _Reader] = {}
-    names = [model.actuator(n).name for n in range(model.nu)]
-    wheels = [name.removeprefix("road_") for name in names if name.startswith("road_")]
-    for wheel in wheels:
-        _put(found, f"road_{wheel}", _road(model, f"road_{wheel}"))
-    for name in ("heave", "pitch", "roll", "body_acceleration"):
-        _put(found, name, _sensor(model, name))
-    turning = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, "body_angular_acceleration")
-    if turning >= 0 and model.sensor_type[turning] == mujoco.mjtSensor.mjSENS_FRAMEANGACC:
-        address = int(model.sensor_adr[turning])
-        for name, axis in (("roll", 0), ("pitch", 1)):
-            if name in found:
-                found[f"{name}_acceleration"] = _value(address + axis)
-    for wheel in wheels:
-        _put(found, f"suspension_travel_{wheel}", _travel(model, f"strut_length_{wheel}"))
-        _put(found, f"tyre_force_{wheel}", _sensor(model, f"tyre_force_{wheel}"))
-    return found if wheels else {}
-
-
-def _put(found: dict[str, _Reader], name: str, reader: _Reader | None) -> None:
-    if reader is not None:
-        found[name] = reader
-
-
-def _value(address: int, less: float = 0.0) -> _Reader:
-    return lambda data: data.sensordata[address] - less
-
-
-def _travel(model: mujoco.MjModel, name: str) -> _Reader | None:
-    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, name)
-    if index < 0 or model.sensor_type[index] != mujoco.mjtSensor.mjSENS_TENDONPOS:
-        return None
-    tendon = int(model.sensor_objid[index])
-    return _value(int(model.sensor_adr[index]), float(model.tendon_length0[tendon]))
-
-
-def _road(model: mujoco.MjModel, name: str = "road") -> _Reader | None:
+def _road(model: mujoco.MjModel) -> _Reader | None:
     objects = mujoco.mjtObj
-    actuator = mujoco.mj_name2id(model, objects.mjOBJ_ACTUATOR, name)
+    actuator = mujoco.mj_name2id(model, objects.mjOBJ_ACTUATOR, "road")
     if actuator >= 0 and model.actuator_ctrlnum[actuator] == 1:
         control = int(model.actuator_ctrladr[actuator])
         return lambda data: data.ctrl[control]
-    joint = mujoco.mj_name2id(model, objects.mjOBJ_JOINT, name)
+    joint = mujoco.mj_name2id(model, objects.mjOBJ_JOINT, "road")
     if joint in scalar_joints(model):
         position = int(model.jnt_qposadr[joint])
         return lambda data: data.qpos[position]
-    body = mujoco.mj_name2id(model, objects.mjOBJ_BODY, name)
+    body = mujoco.mj_name2id(model, objects.mjOBJ_BODY, "road")
     if body >= 0 and model.body_mocapid[body] >= 0:
         mocap = int(model.body_mocapid[body])
         return lambda data: data.mocap_pos[mocap, 2]

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
 
 from inerter.model_parameters import QUARTER_CAR
-from inerter.suspension.car_file import read_car
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.study import (
     StudyError,
@@ -15,7 +12,7 @@ from inerter.suspension.study import (
     read_names,
     read_stiffnesses,
 )
-from inerter.suspension.vehicle.cars import FullCar, Vehicle, full_car, half_car
+from inerter.suspension.vehicle.cars import Vehicle, full_car, half_car
 
 CARS = ("quarter", "half", "full")
 
@@ -32,7 +29,7 @@ def chosen_car(
     Parameters
     ----------
     name
-        "quarter", "half" or "full", or a file that ends in .toml.
+        "quarter", "half" or "full".
     quarter
         Parameters of the quarter-car by name; None where not given.
     equal, correlation
@@ -45,8 +42,6 @@ def chosen_car(
     ValueError
         A value is out of its range.
     """
-    if name.lower().endswith(".toml"):
-        return _from_file(name, quarter, equal=equal, correlation=correlation)
     names = read_names(name, CARS, "car")
     if len(names) != 1:
         raise StudyError(f"car {name!r}: choose one of {', '.join(CARS)}")
@@ -60,7 +55,7 @@ def chosen_car(
         options = ", ".join("--" + key.replace("_", "-") for key in given)
         raise StudyError(
             f"{options}: of the quarter-car; --car {names[0]} is a published set, and another "
-            "car is given by a file, --car FILE.toml"
+            "car is given in Python, see inerter.suspension.vehicle"
         )
     if names[0] == "half":
         _only_full(correlation)
@@ -68,35 +63,16 @@ def chosen_car(
     return full_car() if correlation is None else full_car(correlation)
 
 
-def _from_file(
-    name: str, quarter: Mapping[str, float | None], *, equal: bool, correlation: float | None
-) -> QuarterCar | Vehicle:
-    """The car of a file; what its file states is not given again."""
-    given = [key for key, value in quarter.items() if value is not None]
-    if given:
-        raise StudyError(f"--{given[0].replace('_', '-')}: {name} states it; change it there")
-    car = read_car(Path(name)).car
-    if equal and isinstance(car, QuarterCar):
-        raise StudyError(f"--equal is of cars with two axles, and {name} is a quarter-car")
-    if correlation is not None and not isinstance(car, FullCar):
-        raise StudyError(f"--correlation is of a full car, and {name} is none")
-    if correlation is not None and isinstance(car, FullCar):
-        return replace(car, correlation=correlation)
-    return car
-
-
 def chosen_stiffnesses(
-    text: str | None, car: QuarterCar | Vehicle, file: str | None = None
+    text: str | None, car: QuarterCar | Vehicle
 ) -> tuple[float, ...] | tuple[tuple[float, float], ...]:
-    """Stiffnesses [N/m] of a car from the option, or its own; `file` as in `chosen_car`."""
+    """Stiffnesses [N/m] of a car from the option, or its own."""
     if not isinstance(car, QuarterCar):
         return read_axle_stiffnesses(text, car)
     if text is not None and "/" in text:
         raise StudyError(
             f"stiffness {text!r}: KF/KR, front and rear, are of --car half and --car full"
         )
-    if text is None and file is not None and file.lower().endswith(".toml"):
-        return (read_car(Path(file)).stiffnesses[0],)
     return read_stiffnesses(f"{QUARTER_CAR.stiffness:g}" if text is None else text)
 
 

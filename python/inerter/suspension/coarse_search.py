@@ -19,7 +19,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import minimum_filter
-from scipy.stats.qmc import Halton
 
 from inerter.suspension.h_infinity_norm import squared_polynomials
 from inerter.suspension.problem import Array, SuspensionProblem
@@ -29,10 +28,6 @@ _SLICE = 0.5
 _WORTH_POLISHING = 1.01
 _MOST = {True: 6, False: 3}
 _CHUNK = 1024
-_LEAST = 5
-_POLISHED = 5
-_SPREAD = 8192
-_KEPT = 12
 _FREQUENCIES = 160
 
 
@@ -41,66 +36,12 @@ def starting_points(problem: SuspensionProblem) -> Array:
 
     Those left out are 1 % worse than the best after looking closer, or close to a better one.
     """
-    if len(problem.variables) not in _PER_DECADE:
-        return _spread_points(problem)
     axes = _axes(problem)
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = coarse_values(problem, grid.reshape(-1, len(axes))).reshape(grid.shape[:-1])
     points = _closer(problem, grid[_candidates(values, axes)], axes)
     chosen = _distinct(points, coarse_values(problem, points))
     return chosen[: _MOST[problem.objective.smooth]]
-
-
-def _spread_points(problem: SuspensionProblem) -> Array:
-    """Of a sequence of Halton over many variables the best, apart and moved downhill.
-
-    Half of the points fill the whole range, half the three decades in its middle where most
-    optima lie. Nothing is random.
-    """
-    low, high = problem.bounds.T
-    unit = Halton(len(low), scramble=False).random(_SPREAD + 1)[1:]
-    middle = np.clip(_unit(problem), low, high)
-    inner_low, inner_high = np.maximum(low, middle - 3.5), np.minimum(high, middle + 3.5)
-    half = len(unit) // 2
-    points = np.vstack(
-        [low + unit[:half] * (high - low), inner_low + unit[half:] * (inner_high - inner_low)]
-    )
-    values = coarse_values(problem, points)
-    order = np.argsort(values, kind="stable")
-    kept: list[Array] = []
-    for point in points[order]:
-        if all(np.abs(point - other).max() > 1.0 for other in kept):
-            kept.append(point)
-        if len(kept) == _KEPT:
-            break
-    # a pattern search takes each to its own valley
-    moved, size = np.array(kept), np.full(len(low), 0.8)
-    axes = np.vstack([np.zeros(len(low)), np.eye(len(low)), -np.eye(len(low))])
-    for _ in range(24):
-        around = np.clip(moved[:, None, :] + axes * size, low, high)
-        values = coarse_values(problem, around.reshape(-1, len(low))).reshape(len(moved), -1)
-        best = values.argmin(axis=1)
-        moved = around[np.arange(len(moved)), best]
-        size = np.where((best == 0).all(), size / 2.0, size)
-    values = coarse_values(problem, moved)
-    order = np.argsort(values, kind="stable")
-    found: list[Array] = []
-    for point in moved[order]:
-        if all(np.abs(point - other).max() > 0.2 for other in found):
-            found.append(point)
-    return np.array(found[:_POLISHED])
-
-
-def _unit(problem: SuspensionProblem) -> Array:
-    """Middle of the interesting range: what the car itself suggests, logarithms."""
-    car = problem.car
-    mass = car.sprung_mass + car.unsprung_mass
-    units = {
-        "damper": 0.5 * math.sqrt(problem.stiffness * mass),
-        "inerter": mass,
-        "spring": problem.stiffness,
-    }
-    return np.log([units[problem.network.kinds[name]] for name in problem.variables])
 
 
 def coarse_values(problem: SuspensionProblem, points: Array) -> Array:
@@ -116,7 +57,7 @@ def _axes(problem: SuspensionProblem) -> list[Array]:
     bounds = problem.bounds
     per_decade = _PER_DECADE[len(bounds)]
     decades = (bounds[:, 1] - bounds[:, 0]) / math.log(10.0)
-    counts = np.maximum(np.rint(decades * per_decade).astype(int) + 1, _LEAST)
+    counts = np.rint(decades * per_decade).astype(int) + 1
     return [np.linspace(low, high, n) for (low, high), n in zip(bounds, counts, strict=True)]
 
 

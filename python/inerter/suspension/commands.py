@@ -9,7 +9,6 @@ import typer
 
 from inerter.console import AsJson, Jobs, number, out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
-from inerter.suspension.front_command import pareto_command
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
 
@@ -20,7 +19,6 @@ app = typer.Typer(
 )
 
 app.command("evaluate")(evaluate_command)
-app.command("pareto")(pareto_command)
 
 _ROAD = Road()
 
@@ -28,13 +26,10 @@ _ROAD = Road()
 @app.command("optimize")
 def optimize_command(
     layout: Annotated[
-        str, typer.Option(help="Layouts S1 ... S6, SW1 ... SW8 (Smith and Wang's), with commas.")
+        str, typer.Option(help="Layouts S1 ... S6, with commas between.")
     ] = "S1,S2,S3",
     index: Annotated[
-        str,
-        typer.Option(
-            help="J1 comfort, J3 tyre load, J5 load carrying; quarter: Wk, travel, load_ratio."
-        ),
+        str, typer.Option(help="J1 comfort, J3 tyre load, J5 load carrying; with commas.")
     ] = "J1,J3,J5",
     stiffness: Annotated[
         str | None,
@@ -49,10 +44,7 @@ def optimize_command(
         typer.Option(help="none (ideal), soft, hard or KS/CS [N/m, N s/m]; with commas."),
     ] = "none",
     car: Annotated[
-        str,
-        typer.Option(
-            help="quarter (Wang and Su's), half or full (a published passenger car), or FILE.toml."
-        ),
+        str, typer.Option(help="quarter (Wang and Su's), half or full (a published passenger car).")
     ] = "quarter",
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
@@ -73,22 +65,6 @@ def optimize_command(
         float | None,
         number("N/m", "Quarter: kt [N/m].", show_default=f"{QUARTER_CAR.tyre_stiffness:g}"),
     ] = None,
-    design: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Quarter: NAME=VALUE given, NAME=LOW:HIGH a range, NAME=V/V/V a catalogue, SI, as "
-            "in inertance=60; several times."
-        ),
-    ] = None,
-    limit: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Quarter: INDEX=VALUE (SI), largest value of J1, J3, Wk, travel, load_ratio."
-        ),
-    ] = None,
-    network: Annotated[
-        list[Path] | None, typer.Option(help="Quarter: FILE.toml of an own network, as a layout.")
-    ] = None,
     velocity: Annotated[float, number("m/s", "V [m/s].")] = _ROAD.velocity,
     roughness: Annotated[float, number("m^3/cycle", "kappa [m^3/cycle].")] = _ROAD.roughness,
     jobs: Jobs = None,
@@ -104,10 +80,8 @@ def optimize_command(
 ) -> None:
     """Damping and inertance that minimise an index of a car, globally and exactly."""
     from inerter.suspension.car_options import chosen_car, chosen_stiffnesses
-    from inerter.suspension.design_options import read_allowed, read_layouts_and_networks
-    from inerter.suspension.layouts import LAYOUTS
     from inerter.suspension.output import rows_json, write_sweep
-    from inerter.suspension.study import Study, read_indices, read_series
+    from inerter.suspension.study import Study, read_indices, read_layouts, read_series
     from inerter.suspension.sweep import sweep
     from inerter.suspension.table import print_rows
 
@@ -119,17 +93,14 @@ def optimize_command(
             "tyre_stiffness": tyre_stiffness,
         }
         which = chosen_car(car, quarter, equal=equal, correlation=correlation)
-        layouts = read_layouts_and_networks(layout, network or [])
         study = Study(
-            layouts=tuple(layouts),
+            layouts=read_layouts(layout),
             indices=read_indices(index),
-            stiffnesses=chosen_stiffnesses(stiffness, which, car),
+            stiffnesses=chosen_stiffnesses(stiffness, which),
             series=read_series(series),
             car=which,
             road=Road(velocity=velocity, roughness=roughness),
             equal=equal,
-            allowed=read_allowed(design or [], limit or [], layouts.values()),
-            own={name: one for name, one in layouts.items() if name not in LAYOUTS},
         )
         with progress_bar("optimising", as_json) as progress:
             rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)

@@ -28,16 +28,7 @@ _COLOURS = {
     "S4": "#a63d73",
     "S5": "#3f8f4f",
     "S6": "#7a5cc0",
-    "SW1": LIGHT["text"],
-    "SW2": "#b0722a",
-    "SW3": LIGHT["before"],
-    "SW4": "#a63d73",
-    "SW5": LIGHT["after"],
-    "SW6": "#3f8f4f",
-    "SW7": "#5b7f95",
-    "SW8": "#9a4b3c",
 }
-_OWN_COLOUR = "#6b7d2a"
 _DASHES: dict[str, tuple[str, Any]] = {
     "none": ("solid", "-"),
     "hard": ("dash", (0, (5, 2))),
@@ -45,11 +36,6 @@ _DASHES: dict[str, tuple[str, Any]] = {
 }
 _OTHER_DASHES: tuple[str, Any] = ("dashdot", "-.")
 _SCALES = {"J5": (1e5, "1e-5 m/N")}
-
-
-def colour_of(layout: str) -> str:
-    """Colour of a layout; networks that are the same have the same."""
-    return _COLOURS.get(layout, _OWN_COLOUR)
 
 
 def picture(rows: list[SweepRow]) -> bytes:
@@ -68,7 +54,7 @@ def picture(rows: list[SweepRow]) -> bytes:
         ):
             for (layout, series), (k, values) in lines.items():
                 axes.plot(
-                    [x / 1e3 for x in k], values, color=colour_of(layout),
+                    [x / 1e3 for x in k], values, color=_COLOURS[layout],
                     ls=_dashes(series)[1], lw=1.6, label=_label(layout, series),
                 )  # fmt: skip
             axes.set_title(title, fontsize=10, loc="left", color=LIGHT["text"])
@@ -110,7 +96,7 @@ def page(rows: list[SweepRow]) -> str:
                         name=html.escape(_label(layout, series)),
                         legendgroup=html.escape(_label(layout, series)),
                         showlegend=row == 1 and column == 1,
-                        line={"color": colour_of(layout), "dash": _dashes(series)[0], "width": 1.8},
+                        line={"color": _COLOURS[layout], "dash": _dashes(series)[0], "width": 1.8},
                         hovertemplate="k = %{x:.4g} kN/m: %{y:.5g}",
                     ),
                     row, column,

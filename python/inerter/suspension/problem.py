@@ -1,9 +1,8 @@
 """One optimisation: a car, a layout and an index; designs as logarithms of what is free.
 
 Bounds are relative to the car, with m = ms + mu: damping 1e-3 ... 1e3 times sqrt(kt m), inertance
-1e-3 ... 1e6 times m, other springs 1e-3 ... 1e5 times kt. Outside lies nothing but limits (an
-inertance that is not felt or that holds still, a relaxation spring that is rigid). `ranges` narrows
-them, as a maker's list or a packaging does; `fixed` takes a parameter out of the search.
+1e-3 ... 1e6 times m, relaxation stiffness 1e-3 ... 1e5 times kt. Outside lies nothing but limits
+(an inertance that is not felt or that holds still, a relaxation spring that is rigid).
 """
 
 from __future__ import annotations
@@ -41,16 +40,6 @@ class SuspensionProblem:
         Series pair of the inerter; ideal without.
     massless
         Only designs without inertance.
-    fixed
-        (parameter, value) that are given, SI units.
-    ranges
-        (parameter, lowest, highest) within which the search stays, SI units.
-    choices
-        (parameter, values) of which one is taken, as of a catalogue, SI units.
-    limits
-        (index, value): largest values of other indices, SI units.
-    own
-        A layout that is not in `LAYOUTS`, under the name `layout`.
     """
 
     car: QuarterCar
@@ -60,16 +49,11 @@ class SuspensionProblem:
     stiffness: float
     pair: SeriesPair | None = None
     massless: bool = False
-    fixed: tuple[tuple[str, float], ...] = ()
-    ranges: tuple[tuple[str, float, float], ...] = ()
-    choices: tuple[tuple[str, tuple[float, ...]], ...] = ()
-    limits: tuple[tuple[str, float], ...] = ()
-    own: Layout | None = None
 
     @property
     def network(self) -> Layout:
         """The layout by its name."""
-        return LAYOUTS[self.layout] if self.own is None else self.own
+        return LAYOUTS[self.layout]
 
     @property
     def objective(self) -> Index:
@@ -79,24 +63,20 @@ class SuspensionProblem:
     @property
     def variables(self) -> tuple[str, ...]:
         """What is free."""
-        left_out = {name for name, _ in self.fixed} | ({"inertance"} if self.massless else set())
-        return tuple(name for name in self.network.variables if name not in left_out)
+        names = self.network.variables
+        return tuple(name for name in names if not (self.massless and name == "inertance"))
 
     @property
     def bounds(self) -> Array:
         """Lower and upper bound of each variable, logarithms, shape (variables, 2)."""
         mass = self.car.sprung_mass + self.car.unsprung_mass
-        scales = {
-            "damper": (math.sqrt(self.car.tyre_stiffness * mass), 1e-3, 1e3),
-            "inerter": (mass, 1e-3, 1e6),
-            "spring": (self.car.tyre_stiffness, 1e-3, 1e5),
+        ranges = {
+            "damping": (math.sqrt(self.car.tyre_stiffness * mass), 1e-3, 1e3),
+            "inertance": (mass, 1e-3, 1e6),
+            "relaxation_stiffness": (self.car.tyre_stiffness, 1e-3, 1e5),
         }
-        narrow = {name: (low, high) for name, low, high in self.ranges}
-        found = []
-        for name in self.variables:
-            unit, low, high = scales[self.network.kinds[name]]
-            found.append(narrow.get(name, (unit * low, unit * high)))
-        return np.log(np.array(found, dtype=float).reshape(-1, 2))
+        chosen = (ranges[name] for name in self.variables)
+        return np.log([[unit * low, unit * high] for unit, low, high in chosen])
 
     def without(self) -> SuspensionProblem:
         """The same without inertance."""
@@ -104,12 +84,8 @@ class SuspensionProblem:
 
     def strut(self, points: NDArray[Any]) -> Rational:
         """Dynamic stiffness of the strut of each point."""
-        return self.network.stiffness(pair=self.pair, **self.parameters(points))
-
-    def parameters(self, points: NDArray[Any]) -> dict[str, Any]:
-        """Parameters of the netlist of each point, the given spring too."""
-        sought = dict(zip(self.variables, np.moveaxis(np.exp(points), -1, 0), strict=True))
-        return self.network.values(self.stiffness, dict(self.fixed) | sought)
+        values = dict(zip(self.variables, np.moveaxis(np.exp(points), -1, 0), strict=True))
+        return self.network.stiffness(self.stiffness, pair=self.pair, **values)
 
     def value(self, points: NDArray[Any]) -> NDArray[Any]:
         """The index of each point."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from inerter.suspension.indices import INDICES
-from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, Layout, SeriesPair
+from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, SeriesPair
 from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.vehicle.cars import Vehicle
@@ -21,20 +21,6 @@ SERIES: Mapping[str, SeriesPair | None] = {"none": None, "soft": SOFT, "hard": H
 
 class StudyError(ValueError):
     """What is asked for cannot be computed: one sentence with the value and what is allowed."""
-
-
-@dataclass(frozen=True)
-class Allowed:
-    """What a design may be.
-
-    `fixed` (parameter, value), `ranges` (parameter, lowest, highest), `choices` (parameter,
-    values), SI units; `limits` (index, largest value).
-    """
-
-    fixed: tuple[tuple[str, float], ...] = ()
-    ranges: tuple[tuple[str, float, float], ...] = ()
-    choices: tuple[tuple[str, tuple[float, ...]], ...] = ()
-    limits: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +43,7 @@ class Study:
     """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
 
     A half- or full car has `stiffnesses` of front and rear, and struts that may be `equal` but for
-    those. `allowed` and `own`, networks by name that are not in `LAYOUTS`, are of a quarter-car.
+    those.
     """
 
     layouts: tuple[str, ...]
@@ -67,16 +53,13 @@ class Study:
     car: QuarterCar | Vehicle = field(default_factory=QuarterCar)
     road: Road = field(default_factory=Road)
     equal: bool = False
-    allowed: Allowed = field(default_factory=Allowed)
-    own: Mapping[str, Layout] = field(default_factory=dict)
 
     def cases(self) -> Iterator[Case]:
         """The combinations in order. S1 has no inerter: its problem is the same in each series."""
         for layout in self.layouts:
             for index in self.indices:
                 for name, pair in self.series.items():
-                    network = self.own.get(layout) or LAYOUTS[layout]
-                    used = pair if network.has_inerter else None
+                    used = pair if LAYOUTS[layout].has_inerter else None
                     for k in self.stiffnesses:
                         yield self._case(layout, index, k, name, used)
 
@@ -91,15 +74,7 @@ class Study:
         if isinstance(self.car, QuarterCar):
             if isinstance(stiffness, tuple):
                 raise StudyError("stiffness: a quarter-car has one, not front and rear")
-            own = self.own.get(layout)
-            names = (own or LAYOUTS[layout]).variables
-            allowed = self.allowed
             problem = SuspensionProblem(
-                fixed=tuple(one for one in allowed.fixed if one[0] in names),
-                ranges=tuple(one for one in allowed.ranges if one[0] in names),
-                choices=tuple(one for one in allowed.choices if one[0] in names),
-                limits=allowed.limits,
-                own=own,
                 car=self.car,
                 road=self.road,
                 layout=layout,
@@ -109,11 +84,6 @@ class Study:
             )
             return Case(
                 layout=layout, index=index, stiffness=stiffness, series=name, problem=problem
-            )
-        if self.own or self.allowed != Allowed():
-            raise StudyError(
-                "--network, --design and --limit are of a quarter-car; leave them out for a car "
-                "with two axles"
             )
         if not isinstance(stiffness, tuple):
             raise StudyError("stiffness: a half- or full car has two, front and rear")

@@ -46,7 +46,7 @@ def print_rows(rows: list[SweepRow], console: Console) -> None:
             *(["front\nrear"] if vehicles else []),
             "\n".join(f"{strut.stiffness / 1e3:{digits}}" for strut in struts),
             f"{row.optimum.value:.5g}",
-            _unit(case.index),
+            INDICES[case.index].unit,
             # what rounding leaves of nothing has no sign
             f"{round(gains[n], 2) + 0.0:.2f}" if n in gains else "",
             "\n".join(f"{strut.damping:.5g}" for strut in struts),
@@ -68,11 +68,6 @@ def _struts(row: SweepRow) -> tuple[VehicleStrut, ...]:
         return best.struts
     k = row.case.stiffness
     return (VehicleStrut(k, best.damping, best.inertance, best.relaxation_stiffness),)
-
-
-def _unit(index: str) -> str:
-    unit = INDICES[index].unit
-    return "" if unit == "1" else unit
 
 
 def _names(row: SweepRow) -> tuple[str, ...]:

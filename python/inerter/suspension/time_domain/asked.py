@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inerter.model_parameters import QUARTER_CAR
-from inerter.suspension.car_file import read_car
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.cases import CASES, NUMBERED, Case, case_named
 from inerter.suspension.time_domain.device_case import NAME, read_case
 from inerter.suspension.time_domain.model import Car
-from inerter.suspension.vehicle.cars import FullCar, half_car
+from inerter.suspension.vehicle.cars import half_car
 
 _DEFAULT = "ideal,friction,elastic,both"
 
@@ -27,7 +26,7 @@ class Asked:
 
 
 def car_named(name: str) -> Asked:
-    """The quarter-car of Wang and Su, the published half-car, or the car of a .toml file.
+    """The quarter-car of Wang and Su, or the published half-car, whose pitch rings for longer.
 
     Raises
     ------
@@ -39,18 +38,7 @@ def car_named(name: str) -> Asked:
     if name == "half":
         car = half_car()
         return Asked(car, car.front.stiffness, 2000.0, 10.0)
-    if name.lower().endswith(".toml"):
-        own = read_car(Path(name))
-        if isinstance(own.car, FullCar):
-            raise ValueError(f"{name}: a full car has no time domain here; give kind half")
-        short = isinstance(own.car, QuarterCar)
-        return Asked(own.car, own.stiffnesses[0], *((1000.0, 4.0) if short else (2000.0, 10.0)))
     raise ValueError(f"car {name!r} has no MuJoCo model here: take quarter or half")
-
-
-def kind_of(car: Car) -> str:
-    """The word for a car: quarter or half."""
-    return "quarter" if isinstance(car, QuarterCar) else "half"
 
 
 def cases_asked(
@@ -78,31 +66,29 @@ def cases_asked(
 
 def given_struts(
     damping: str | None, inertance: str | None, own: float | None, car: str
-) -> tuple[
-    tuple[tuple[float, float], ...],
-    tuple[tuple[tuple[str, float], ...], ...],
-]:
-    """(c, b) of every strut where both are given, and what is kept where one of the two is.
+) -> tuple[tuple[float, float], ...]:
+    """(c, b) of every strut; empty where c and b are to be optimal.
 
-    `own` is the inertance of the device's file [kg], which counts where `inertance` is not given.
+    `own` is the inertance of the device's file [kg].
 
     Raises
     ------
     ValueError
-        They are not numbers.
+        One of the two is missing, or they are not numbers.
     """
-    if inertance is None and own:
+    if damping is None:
+        if inertance is not None:
+            raise ValueError("--inertance is given without --damping: give both for one design")
+        return ()
+    if inertance is None:
+        if own is None:
+            raise ValueError("--damping is given without --inertance: give both for one design")
         inertance = repr(own)
-    if damping is None or inertance is None:
-        for name, text in (("damping", damping), ("inertance", inertance)):
-            if text is not None:
-                return (), tuple(((name, value),) for value in _struts(text, name, car))
-        return (), ()
     dampings = _struts(damping, "damping", car)
     inertances = _struts(inertance, "inertance", car)
     count = max(len(dampings), len(inertances))
     dampings, inertances = (x * (count // len(x)) for x in (dampings, inertances))
-    return tuple(zip(dampings, inertances, strict=True)), ()
+    return tuple(zip(dampings, inertances, strict=True))
 
 
 def words(text: str, option: str) -> tuple[str, ...]:

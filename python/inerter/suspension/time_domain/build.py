@@ -77,19 +77,6 @@ def add_load(spec: Any, target: str, transmission: Any) -> None:
     load.set_to_motor()
 
 
-GRAVITY = 9.81
-"""[m/s^2] of static loads."""
-
-_NO_LIMIT = 1e12
-
-
-def set_tyre(road: Any, stiffness: float) -> None:
-    """A tyre as actuator kt (road - wheel), whose lower limit of force can be set while it runs."""
-    road.gainprm[0], road.biasprm[1] = stiffness, -stiffness
-    road.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
-    road.forcerange = [-_NO_LIMIT, _NO_LIMIT]
-
-
 def control_of(model: mujoco.MjModel, actuator: str) -> int:
     """Address of an actuator's control."""
     return int(model.actuator_ctrladr[model.actuator(actuator).id])

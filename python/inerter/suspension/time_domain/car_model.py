@@ -39,17 +39,12 @@ class StrutPlace:
 
 @dataclass(frozen=True)
 class WheelPlace:
-    """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m].
-
-    `tyre` actuator, `static_load` [N] with which it presses the road at rest.
-    """
+    """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m]."""
 
     road: int
     height: int
     tyre_stiffness: float
-    behind: float
-    tyre: int
-    static_load: float
+    behind: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

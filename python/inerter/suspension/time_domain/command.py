@@ -12,9 +12,9 @@ from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
 
 def evaluate_command(
     layout: Annotated[str, typer.Option(help="S1, S2, S3, with commas.")] = "S1,S2,S3",
-    car: Annotated[
-        str, typer.Option(help="quarter, half: heave and pitch, two struts; or FILE.toml.")
-    ] = ("quarter"),
+    car: Annotated[str, typer.Option(help="quarter, or half: heave and pitch, two struts.")] = (
+        "quarter"
+    ),
     stiffness: Annotated[
         str | None,
         typer.Option(
@@ -35,7 +35,7 @@ def evaluate_command(
         typer.Option(help="device.toml of a measured device: the case named device."),
     ] = None,
     index: Annotated[str, typer.Option(help="J1, J3, J5, with commas.")] = "J1,J3,J5",
-    road: Annotated[str, typer.Option(help="paper, or iso:A to iso:H.")] = "paper",
+    road: Annotated[str, typer.Option(help="paper, or iso:A to iso:E.")] = "paper",
     speed: Annotated[float, number("m/s", "Speed [m/s].")] = 25.0,
     seeds: Annotated[int, typer.Option(help="Number of roads, each with its own phases.")] = 20,
     reoptimise: Annotated[
@@ -47,15 +47,15 @@ def evaluate_command(
     damping: Annotated[
         str | None,
         typer.Option(
-            help="c [N s/m] of one given design in place of an optimum; alone: b is sought for it. "
-            "Of a half-car also FRONT/REAR."
+            help="c [N s/m] of one given design in place of an optimum; of a half-car also "
+            "FRONT/REAR."
         ),
     ] = None,
     inertance: Annotated[
         str | None,
         typer.Option(
-            help="b [kg] of the given design; default: that of --device. Alone: c is sought for "
-            "it. Of a half-car also FRONT/REAR."
+            help="b [kg] of the given design; default: that of --device. Of a half-car also "
+            "FRONT/REAR."
         ),
     ] = None,
     amplitude: Annotated[
@@ -65,18 +65,7 @@ def evaluate_command(
     step: Annotated[float, number("seconds", "Largest time step [s].")] = 1e-3,
     settle: Annotated[
         float | None,
-        number(
-            "seconds",
-            "Seconds before the means begin; default: what the slowest mode needs, from 4, of a "
-            "half-car 10.",
-        ),
-    ] = None,
-    tyre: Annotated[
-        str | None,
-        typer.Option(
-            help="unilateral: a tyre has its static load and lifts off; linear: it also pulls. "
-            "Default: unilateral, on the paper's road linear as in the paper.",
-        ),
+        number("seconds", "Seconds before the means begin; default 4, of a half-car 10."),
     ] = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Threads; default: one per processor.")
@@ -99,7 +88,6 @@ def evaluate_command(
         car_named,
         cases_asked,
         given_struts,
-        kind_of,
         numbers,
         words,
     )
@@ -115,18 +103,8 @@ def evaluate_command(
 
     with refusing(out_dir, "evaluation.json", "evaluation.csv"):
         asked = car_named(car)
-        if tyre not in (None, "unilateral", "linear"):
-            raise ValueError(f"--tyre is {tyre!r}: give unilateral or linear")
-        settings = RunSettings(
-            step=step,
-            settle=asked.settle if settle is None else settle,
-            jobs=jobs or 0,
-            unilateral=tyre == "unilateral" or (tyre is None and road != "paper"),
-        )
+        settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
         cases, own = cases_asked(case, device, step)
-        given, kept = given_struts(
-            damping, inertance, None if reoptimise else own, kind_of(asked.car)
-        )
         plan = Plan(
             layouts=words(layout, "layout"),
             cases=cases,
@@ -138,9 +116,7 @@ def evaluate_command(
             seeds=seeds,
             search_seeds=search_seeds,
             reoptimise=reoptimise,
-            given=given,
-            kept=kept,
-            auto_settle=settle is None,
+            given=given_struts(damping, inertance, own, car),
             amplitude=asked.amplitude if amplitude is None else amplitude,
             car=asked.car,
             settings=settings,

@@ -17,15 +17,8 @@ from dataclasses import replace
 from inerter.parallel import run_all
 from inerter.suspension.time_domain.cases import CASES, numbers_of
 from inerter.suspension.time_domain.evaluation import Evaluation
-from inerter.suspension.time_domain.fine import (
-    line_value,
-    linear_value,
-    parts_for,
-    settling,
-    slowest_decay,
-)
 from inerter.suspension.time_domain.linear import exact_index, spectrum
-from inerter.suspension.time_domain.piece import Found, Piece, linear_design, work
+from inerter.suspension.time_domain.piece import Found, Piece, work
 from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.samples import interval
 
@@ -36,9 +29,6 @@ def evaluate(
     plan: Plan, progress: Progress | None = None, *, scheduler: str | None = None
 ) -> list[Evaluation]:
     """Every row of a plan, in its order, the same wherever it is worked on.
-
-    The road's lines are as fine as the slowest mode of all designs needs; the settling time too,
-    where the plan does not state one (`RunSettings.settle`).
 
     Parameters
     ----------
@@ -76,8 +66,6 @@ def evaluate(
         )
         for p in rows
     ]
-    decay = min(_decay(piece) for piece in [*ideals, *rows])
-    rows, ideals = ([_fine(piece, decay) for piece in some] for some in (rows, ideals))
     # what several rows need is done once
     pieces = {piece.key: piece for piece in [*ideals, *rows]}
 
@@ -93,34 +81,11 @@ def evaluate(
     ]
 
 
-def _decay(piece: Piece) -> float:
-    return slowest_decay(piece.layout, linear_design(piece), piece.case.pair, piece.plan.car)
-
-
-def _fine(piece: Piece, decay: float) -> Piece:
-    """With the road and the settling time that a decay [1/s] asks for."""
-    plan = piece.plan
-    if all(index == "J5" for index in plan.indices):
-        return piece
-    settings = plan.settings
-    if plan.auto_settle:
-        settings = replace(settings, settle=max(settings.settle, settling(decay)))
-    road = plan.road.finer(parts_for(plan.road, decay))
-    return replace(piece, plan=replace(plan, road=road, settings=settings))
-
-
 def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
     plan, case, index = piece.plan, piece.case, piece.index
     design, values = found.design, found.samples.values
     value, low, high = interval(values)
     change, change_low, change_high = interval(values / ideal.samples.values - 1.0)
-    linear = None
-    if index != "J5":
-        # the interval is of chance; what the road's own lines leave is added to it
-        of = (index, piece.layout, design, case.pair, plan.car, plan.road)
-        linear = linear_value(*of)
-        error = value * abs(line_value(*of) / linear - 1.0)
-        low, high = low - error, high + error
     exact = None
     if case.linear and (index == "J5" or plan.road.name == "paper"):
         road = spectrum(plan.road)
@@ -148,10 +113,5 @@ def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
         change_high=change_high,
         roads=0 if index == "J5" else plan.seeds,
         reoptimised=found.reoptimised or (plan.reoptimise and case.linear),
-        linear=linear,
-        period=None if index == "J5" else plan.road.period,
-        settle=plan.settings.settle,
-        lift_off=found.samples.lift_off,
-        peak_tyre_force=found.samples.peak,
         peaks=found.samples.peaks,
     )

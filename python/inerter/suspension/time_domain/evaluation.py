@@ -30,14 +30,6 @@ class Evaluation:
         How many; 0 for J5.
     reoptimised
         Whether c and b are the best for this case.
-    linear
-        Of J1 and J3 the exact value of the linear car with this c and b on this road's band: no
-        friction, no play, tyres that never lift off.
-    period, settle
-        [s] of the road, and before the means begin.
-    lift_off, peak_tyre_force
-        Share of time with a tyre off the road (a linear one: pulling on it); largest force of a
-        tyre over the static one [N].
     peaks
         J5: (frequency [Hz], gain [m/N]) of each.
     """
@@ -63,11 +55,6 @@ class Evaluation:
     change_high: float
     roads: int
     reoptimised: bool
-    linear: float | None = None
-    period: float | None = None
-    settle: float | None = None
-    lift_off: float | None = None
-    peak_tyre_force: float | None = None
     peaks: tuple[tuple[float, float], ...] = ()
 
     def json(self) -> dict[str, Any]:

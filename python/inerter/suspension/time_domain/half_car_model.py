@@ -56,7 +56,8 @@ def _compiled(layout: str, laws: build.Laws, car: HalfCar) -> Any:
 def _set_wheel(spec: Any, axle: str, car: HalfCar) -> None:
     values = car.front if axle == "front" else car.rear
     spec.body(f"wheel_{axle}").mass = values.wheel_mass
-    build.set_tyre(spec.actuator(f"road_{axle}"), values.tyre_stiffness)
+    road, kt = spec.actuator(f"road_{axle}"), values.tyre_stiffness
+    road.gainprm[0], road.biasprm[1] = kt, -kt
 
 
 def _add_strut(spec: Any, layout: str, laws: build.Laws, axle: str, lever: float) -> None:
@@ -139,11 +140,9 @@ def half_car_model(layout: str, case: Case, car: HalfCar) -> CarModel:
                 build.control_of(model, f"road_{axle}"),
                 int(model.sensor(f"wheel_{axle}").adr[0]),
                 parts[axle].tyre_stiffness,
-                behind=0.0 if axle == "front" else wheelbase,
-                tyre=model.actuator(f"road_{axle}").id,
-                static_load=(share * car.body_mass + parts[axle].wheel_mass) * build.GRAVITY,
+                0.0 if axle == "front" else wheelbase,
             )
-            for axle, share in zip(AXLES, car.lever.tolist(), strict=True)
+            for axle in AXLES
         ),
         load=build.control_of(model, "load"),
         body=int(model.sensor("heave").adr[0]),

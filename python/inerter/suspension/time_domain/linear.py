@@ -55,30 +55,18 @@ def exact_index(
 
 @lru_cache(maxsize=1024)
 def linear_optimum(
-    index: str,
-    layout: str,
-    stiffness: float,
-    pair: SeriesPair | None,
-    car: Car,
-    road: Road,
-    fixed: tuple[tuple[tuple[str, float], ...], ...] = (),
+    index: str, layout: str, stiffness: float, pair: SeriesPair | None, car: Car, road: Road
 ) -> Design:
-    """The c and b of the smallest index, with an ideal or elastic inerter.
-
-    `fixed`: (parameter, value) that are given, of every strut or once for all of them.
-    """
+    """The c and b of the smallest index, with an ideal or elastic inerter."""
 
     def inertance(found: float) -> float:
         return 0.0 if layout == "S1" else max(found, SMALLEST_INERTANCE)
-
-    names = LAYOUTS[layout].variables
-    held = tuple(tuple(one for one in strut if one[0] in names) for strut in fixed or ((),))
 
     if not isinstance(car, QuarterCar):
         from inerter.suspension.vehicle import vehicle_optimum
 
         springs = (stiffness, stiffnesses_of(car, stiffness)[1])
-        best = vehicle_optimum(index, car, layout, springs, pair, road, fixed=(held[0], held[-1]))
+        best = vehicle_optimum(index, car, layout, springs, pair, road)
         front, rear = best.struts
         return Design(
             front.stiffness,
@@ -88,10 +76,9 @@ def linear_optimum(
         )
     found = optimise(
         SuspensionProblem(
-            car=car, road=road, layout=layout, index=index, stiffness=stiffness, pair=pair,
-            fixed=held[0],
+            car=car, road=road, layout=layout, index=index, stiffness=stiffness, pair=pair
         )
-    )  # fmt: skip
+    )
     return Design(stiffness, found.damping, inertance(found.inertance))
 
 

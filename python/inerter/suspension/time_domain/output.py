@@ -34,7 +34,6 @@ def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
         "confidence": CONFIDENCE,
         "amplitude": plan.amplitude,
         "reoptimise": plan.reoptimise,
-        "tyre": "unilateral" if plan.settings.unilateral else "linear",
         "rows": [row.json() for row in rows],
     }
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
@@ -73,7 +72,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
         quarter = plan.car_name == "quarter"
         for name in ("strut", "case", *(["paper"] if quarter else [])):
             table.add_column(name, no_wrap=True)
-        for name in (f"{index} ± 95 %", "exact", "linear", "loss %", "c", "b"):
+        for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
             table.add_column(name, justify="right", no_wrap=True)
         digits = ".4g" if quarter else ".3g"
         for row in rows:
@@ -86,7 +85,6 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
                 *([row.numbers] if quarter else []),
                 _with_error(scale * row.value, 0.5 * scale * (row.high - row.low)),
                 "" if row.exact is None else f"{scale * row.exact:.5g}",
-                "" if row.linear is None else f"{scale * row.linear:.5g}",
                 "" if ideal else _change(row),
                 _both(f"{row.damping:.0f}", row.rear_damping, ".0f"),
                 _both(f"{row.inertance:{digits}}", row.rear_inertance, digits)
@@ -94,30 +92,13 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
                 else "",
             )
         console.print(table, "", sep="\n")
-    _warn_of_lift_off(plan, rows, console)
     console.print(
         ("paper: table.case of Wang and Su. " if plan.car_name == "quarter" else "")
         + "exact: norm of the transfer function, where the case is "
-        "linear; linear: without friction and play on this road's band, tyres that never "
-        "lift off. loss: against the ideal inerter at its own optimum, road by road. c [N s/m], b "
+        "linear. loss: against the ideal inerter at its own optimum, road by road. c [N s/m], b "
         "[kg]" + ("; front/rear." if plan.car_name == "half" else "."),
         markup=False,
     )
-
-
-def _warn_of_lift_off(plan: Plan, rows: Sequence[Evaluation], console: Console) -> None:
-    """Where tyres leave the road: how long, and what was done about it."""
-    most = max((row.lift_off or 0.0 for row in rows), default=0.0)
-    if most < 1e-4:
-        return
-    if plan.settings.unilateral:
-        text = f"Tyres are off the road for up to {100.0 * most:.2g} % of the time."
-    else:
-        text = (
-            f"For up to {100.0 * most:.2g} % of the time a linear tyre pulls on the road, which "
-            "no tyre does: give --tyre unilateral."
-        )
-    console.print(text, markup=False)
 
 
 def _both(front: str, rear: float | None, form: str) -> str:

@@ -30,9 +30,7 @@ class Piece:
     @property
     def key(self) -> tuple[float, str, str, str, bool]:
         """What tells it from the other pieces of the plan."""
-        chosen = (
-            self.plan.given or self.plan.kept or (self.plan.reoptimise and not self.case.linear)
-        )
+        chosen = self.plan.given or (self.plan.reoptimise and not self.case.linear)
         return self.stiffness, self.index, self.layout, self.case.name, self.own or not chosen
 
 
@@ -56,26 +54,15 @@ def work(piece: Piece) -> Found:
     plan, index, layout, case = piece.plan, piece.index, piece.layout, piece.case
     model = compiled(layout, case, plan.car)
     searched = plan.reoptimise and not case.linear and not piece.own
-    design = linear_design(piece)
+    if plan.given and not piece.own:
+        design = _given(plan, layout, piece.stiffness)
+    else:
+        design = linear_optimum(
+            index, layout, piece.stiffness, case.pair, plan.car, spectrum(plan.road)
+        )
     if searched:
         design = reoptimised(plan, model, index, design)
     return Found(design, samples(plan, model, index, design, plan.seeds), searched)
-
-
-def linear_design(piece: Piece) -> Design:
-    """The design that is given, or the linear optimum with what of it is given."""
-    plan, layout = piece.plan, piece.layout
-    if plan.given and not piece.own:
-        return _given(plan, layout, piece.stiffness)
-    return linear_optimum(
-        piece.index,
-        layout,
-        piece.stiffness,
-        piece.case.pair,
-        plan.car,
-        spectrum(plan.road),
-        () if piece.own else plan.kept,
-    )
 
 
 def _given(plan: Plan, layout: str, stiffness: float) -> Design:

@@ -29,15 +29,10 @@ class Plan:
     given
         (c [N s/m], b [kg]) of every strut, front first, in place of an optimum; one pair counts
         for both struts of a half-car.
-    kept
-        ("damping" or "inertance", value) of every strut, or once for both, where one of the two is
-        given and the other is sought.
     amplitude
         [N] of the load for J5.
     car, settings
         The car, and how it is stepped.
-    auto_settle
-        The settling time of the settings is the shortest one; slow modes make it longer.
 
     Raises
     ------
@@ -54,11 +49,9 @@ class Plan:
     search_seeds: int = 4
     reoptimise: bool = False
     given: tuple[tuple[float, float], ...] = ()
-    kept: tuple[tuple[tuple[str, float], ...], ...] = ()
     amplitude: float = 1000.0
     car: Car = field(default_factory=QuarterCar)
     settings: RunSettings = field(default_factory=RunSettings)
-    auto_settle: bool = False
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
@@ -74,7 +67,7 @@ class Plan:
             raise ValueError(f"search_seeds is {self.search_seeds}: give 1 or more")
         if not 0.0 < self.amplitude < math.inf:
             raise ValueError(f"amplitude is {self.amplitude:g} N: give a positive number")
-        if (self.given or self.kept) and self.reoptimise:
+        if self.given and self.reoptimise:
             raise ValueError("a given damping and inertance cannot be sought anew: take one of two")
         if len(self.given) not in (0, 1, 1 if self.car_name == "quarter" else 2):
             raise ValueError(f"{len(self.given)} struts given, but the car is a {self.car_name}")
@@ -83,9 +76,6 @@ class Plan:
                 raise ValueError(f"damping is {damping:g} N s/m: give a positive number")
             if not 0.0 <= inertance < math.inf:
                 raise ValueError(f"inertance is {inertance:g} kg: give a number that is 0 or above")
-        for name, value in (pair for one in self.kept for pair in one):
-            if not 0.0 < value < math.inf:
-                raise ValueError(f"{name} is {value:g}: give a positive number")
         for layout in self.layouts:
             compiled(layout, CASES["ideal"], self.car)
         if not self.rows:

@@ -28,7 +28,8 @@ def _compiled(layout: str, laws: build.Laws, car: QuarterCar) -> Any:
     spec: Any = mujoco.MjSpec.from_file(str(model_path("quarter_car", file)))
     build.switch_off_contacts(spec)
     spec.geom("body").mass, spec.geom("wheel").mass = car.sprung_mass, car.unsprung_mass
-    build.set_tyre(spec.actuator("road"), car.tyre_stiffness)
+    road, kt = spec.actuator("road"), car.tyre_stiffness
+    road.gainprm[0], road.biasprm[1] = kt, -kt
 
     # spring and damper belong to the tendons in every layout, the device has the rest
     length = QUARTER_CAR.strut_length
@@ -83,9 +84,6 @@ def quarter_car_model(layout: str, case: Case, car: QuarterCar) -> CarModel:
                 build.control_of(model, "road"),
                 int(model.sensor("wheel").adr[0]),
                 car.tyre_stiffness,
-                behind=0.0,
-                tyre=model.actuator("road").id,
-                static_load=(car.sprung_mass + car.unsprung_mass) * build.GRAVITY,
             ),
         ),
         load=build.control_of(model, "load"),

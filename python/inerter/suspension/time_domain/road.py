@@ -2,8 +2,7 @@
 
     zr(t) = sum_i A_i sin(w_i t + phase_i),   A_i^2 / 2 = S(f_i) df,   S(f) = strength / f^2
 
-Symbols: zr [m], f = w / 2 pi [Hz], df the spacing (the road repeats every 1/df), 0.1 Hz and 10 s
-unless `finer` lines are asked for: those of a car whose modes ring long have to be closer,
+Symbols: zr [m], f = w / 2 pi [Hz], df = 0.1 Hz the spacing (the road repeats every 1/df = 10 s),
 S(f) [m^2/Hz] the one-sided density, `strength` [m^2 Hz], phases uniform in 0..2 pi.
 
 Paper: A_i = sqrt(8 pi kappa V dw) / w_i at 0.1, 0.2 ... 1000 Hz, which is strength = 2 kappa V:
@@ -23,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -34,7 +33,7 @@ from inerter.suspension.quarter_car import Road as Roughness
 Array = NDArray[np.float64]
 
 SPACING = 0.1
-"""Distance of the frequencies [Hz], of Wang and Su, unless finer."""
+"""Distance of the frequencies [Hz], of Wang and Su."""
 
 REFERENCE_FREQUENCY = 0.1
 """n0 of ISO 8608 [cycles/m]."""
@@ -43,14 +42,14 @@ ISO_RANGE = (0.01, 10.0)
 """Spatial frequencies of ISO roads [cycles/m]: the limits that ISO 8608 names for on-road use."""
 
 ISO_CLASSES: Mapping[str, float] = MappingProxyType(
-    {name: 16e-6 * 4.0**i for i, name in enumerate("ABCDEFGH")}
+    {name: 16e-6 * 4.0**i for i, name in enumerate("ABCDE")}
 )
-"""G(n0) [m^3] of classes A to H: the geometric means of ISO 8608."""
+"""G(n0) [m^3] of classes A to E: the geometric means of ISO 8608."""
 
 
 @dataclass(frozen=True)
 class PeriodicRoad:
-    """Sinusoids `first` to `last` times `spacing` [Hz], of density strength / f^2.
+    """Sinusoids `first` to `last` times `SPACING`, of density strength / f^2.
 
     `name` to be shown, `strength` [m^2 Hz] one-sided, `speed` V [m/s] at which later axles follow.
 
@@ -65,7 +64,6 @@ class PeriodicRoad:
     first: int = 1
     last: int = 10_000
     speed: float = 25.0
-    spacing: float = SPACING
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
@@ -78,34 +76,20 @@ class PeriodicRoad:
                 f"sinusoids {self.first} to {self.last} of the road: count from 1 upwards"
             )
 
-    def finer(self, parts: int) -> PeriodicRoad:
-        """The same band with lines `parts` times as close; odd, so that each line's band is cut.
-
-        Raises
-        ------
-        ValueError
-            `parts` is not an odd number from 1.
-        """
-        if parts < 1 or parts % 2 == 0:
-            raise ValueError(f"parts is {parts}: give an odd number, 1, 3, 5 ...")
-        half = (parts - 1) // 2
-        first, last = self.first * parts - half, self.last * parts + half
-        return replace(self, first=first, last=last, spacing=self.spacing / parts)
-
     @property
     def period(self) -> float:
         """[s]."""
-        return 1.0 / self.spacing
+        return 1.0 / SPACING
 
     @property
     def frequencies(self) -> Array:
         """[Hz], shape (sinusoids,)."""
-        return np.asarray(self.spacing * np.arange(self.first, self.last + 1), dtype=np.float64)
+        return np.asarray(SPACING * np.arange(self.first, self.last + 1), dtype=np.float64)
 
     @property
     def amplitudes(self) -> Array:
         """[m], shape (sinusoids,)."""
-        return math.sqrt(2.0 * self.strength * self.spacing) / self.frequencies
+        return math.sqrt(2.0 * self.strength * SPACING) / self.frequencies
 
     @property
     def rms(self) -> float:
@@ -168,7 +152,7 @@ def paper_road(roughness: Roughness | None = None) -> PeriodicRoad:
 
 
 def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
-    """The road of an ISO 8608 class, "A" to "H", at `speed` [m/s].
+    """The road of an ISO 8608 class, "A" to "E", at `speed` [m/s].
 
     Raises
     ------
@@ -187,7 +171,7 @@ def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
 
 
 def road_named(name: str, speed: float = 25.0) -> PeriodicRoad:
-    """A road by its name: "paper", or "iso:A" to "iso:H".
+    """A road by its name: "paper", or "iso:A" to "iso:E".
 
     Raises
     ------
@@ -199,4 +183,4 @@ def road_named(name: str, speed: float = 25.0) -> PeriodicRoad:
     kind, colon, letter = name.partition(":")
     if kind == "iso" and colon and letter.upper() in ISO_CLASSES:
         return iso_road(letter.upper(), speed)
-    raise ValueError(f"road {name!r}: give paper or iso:A, iso:B ... iso:H")
+    raise ValueError(f"road {name!r}: give paper or iso:A, iso:B ... iso:E")

@@ -22,16 +22,10 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Samples:
-    """An index of one design: `values` on every road, shape (roads,), one for J5 with its peaks.
-
-    `lift_off`: share of time with a tyre off the road; `peak`: largest force of a tyre over its
-    static one [N], both over all roads; None for J5.
-    """
+    """An index of one design: `values` on every road, shape (roads,), one for J5 with its peaks."""
 
     values: Array
     peaks: tuple[tuple[float, float], ...] = ()
-    lift_off: float | None = None
-    peak: float | None = None
 
 
 def samples(plan: Plan, model: CarModel, index: str, design: Design, seeds: int) -> Samples:
@@ -45,12 +39,7 @@ def samples(plan: Plan, model: CarModel, index: str, design: Design, seeds: int)
     if index == "J5":
         (found,) = load_peaks(model, [design], plan.amplitude, plan.settings)
         return Samples(np.array([found.value]), found.peaks)
-    found = road_indices(model, [design], plan.road, range(seeds), plan.settings)
-    return Samples(
-        found[index][0],
-        lift_off=float(found["lift_off"].mean()),
-        peak=float(found["peak"].max()),
-    )
+    return Samples(road_indices(model, [design], plan.road, range(seeds), plan.settings)[index][0])
 
 
 def interval(values: Array) -> tuple[float, float, float]:

@@ -51,9 +51,6 @@ _LOAD_BLOCK = 16
 class RunSettings:
     """How simulations are run; results do not depend on `jobs` and `block`.
 
-    `unilateral`: tyres press the road with their static load at rest and never pull it: they lift
-    off. Without, they are linear springs both ways, as in the exact norms.
-
     `step` [s] of RK4, the largest one; discrete takes fractions of it. `settle` [s]
     before the means begin. `jobs` threads, 0 for every processor. `block` simulations at a time.
 
@@ -67,7 +64,6 @@ class RunSettings:
     settle: float = 4.0
     jobs: int = 0
     block: int = 128
-    unilateral: bool = False
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
@@ -105,9 +101,7 @@ def road_indices(
     Returns
     -------
     dict of ndarray (designs, seeds)
-        "J1" and "J3"; "lift_off", the share of time in which a tyre is off the road (a
-        linear one: pulls on it), and "peak",
-        the largest force of a tyre over its static one [N].
+        "J1" and "J3".
 
     Raises
     ------
@@ -117,7 +111,7 @@ def road_indices(
     settings = settings or RunSettings()
     tell = progress or (lambda share: None)
     pairs = [(d, s) for s in range(len(seeds)) for d in range(len(designs))]
-    squares = np.empty((4, len(designs), len(seeds)))
+    squares = np.empty((2, len(designs), len(seeds)))
     for design in designs:
         car.refuse(design, settings.step)
     for start in range(0, len(pairs), settings.block):
@@ -130,8 +124,7 @@ def road_indices(
         d, s = np.array(part).T
         squares[:, d, s] = _extrapolated(car, settings.step, at)
         tell((start + len(part)) / len(pairs))
-    rms = dict(zip(("J1", "J3"), np.sqrt(squares[:2]), strict=True))
-    return rms | {"lift_off": squares[2], "peak": squares[3]}
+    return dict(zip(("J1", "J3"), np.sqrt(squares), strict=True))
 
 
 def load_gains(
@@ -192,12 +185,7 @@ def _extrapolated(car: CarModel, step: float, at: Callable[[float], Array]) -> A
     """Mean squares without the error of first order, where the integrator has one."""
     if not car.implicit:
         return at(step)
-    fine = at(0.5 * step / car.fineness)
-    found = 2.0 * fine - at(step / car.fineness)
-    # shares and peaks are no mean squares: of the finer step as they are
-    if found.ndim == 2:
-        found[2:] = fine[2:]
-    return found
+    return 2.0 * at(0.5 * step / car.fineness) - at(step / car.fineness)
 
 
 def _road_squares(
@@ -208,10 +196,7 @@ def _road_squares(
     step: float,
     settings: RunSettings,
 ) -> Array:
-    """Mean squares of zs'' and Fr over time and axles, then share of lift-off and peak of Fr.
-
-    Shape (4, simulations).
-    """
+    """Mean squares of zs'' and Fr over time and axles, shape (2, simulations)."""
     # a whole number of steps makes the period
     count = math.ceil(road.period / step - 1e-9)
     step = road.period / count
@@ -232,29 +217,19 @@ def _road_squares(
         steps = np.arange(first, first + number)
         return driven[:, (steps - settle) % count][which] * _fade(steps * step)[:, None]
 
-    # the force at which a tyre leaves the road, below the static one
-    least = -np.array([wheel.static_load for wheel in car.wheels])
-    sums, peak = np.zeros((3, len(designs))), np.zeros(len(designs))
+    sums = np.zeros((2, len(designs)))
     steps = np.full(len(designs), step)
     roads = [wheel.road for wheel in car.wheels]
-    for chunk in step_all(
-        car, designs, steps, settle + count, roads, control, settings.jobs, settings.unilateral
-    ):
+    for chunk in step_all(car, designs, steps, settle + count, roads, control, settings.jobs):
         skip = max(settle - chunk.first, 0)
         now = np.arange(chunk.first + skip, chunk.first + chunk.body.shape[1]) - settle
         if now.size == 0:
             continue
         height = shown[:, now][which]
         sudden = height - chunk.control[:, skip:]
-        force = kt * (height - chunk.wheels[:, skip:])
-        touching = force > least
-        if settings.unilateral:
-            sudden, force = sudden * touching, np.maximum(force, least)
         corrected = chunk.accelerations[:, skip:] + sudden @ at_once.transpose(0, 2, 1)
         sums[0] += _squares(corrected)
-        sums[1] += _squares(force)
-        sums[2] += (~touching).reshape(len(designs), -1).sum(axis=1)
-        peak = np.maximum(peak, force.reshape(len(designs), -1).max(axis=1))
+        sums[1] += _squares(kt * (chunk.wheels[:, skip:] - height))
     # sinusoids too quick for the step move nothing; they press the tyres
     rest = road.left_out(count, behind)
     quick = np.einsum("spw,wv,spv->s", at_once, rest, at_once)
@@ -263,8 +238,6 @@ def _road_squares(
         [
             (sums[0] / count + quick) / points,
             (sums[1] / count + float(np.sum(kt**2 * np.diag(rest)))) / wheels,
-            sums[2] / count / wheels,
-            peak,
         ]
     )
 

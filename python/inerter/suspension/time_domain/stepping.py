@@ -59,7 +59,6 @@ def step_all(
     addresses: Sequence[int],
     control: Control,
     threads: int,
-    unilateral: bool = False,
 ) -> Iterator[Chunk]:
     """Run one simulation per design from rest.
 
@@ -80,8 +79,6 @@ def step_all(
         (simulations, number, addresses).
     threads
         0 for every processor.
-    unilateral
-        Tyres never pull.
 
     Raises
     ------
@@ -90,11 +87,6 @@ def step_all(
     """
     model = car.model
     worlds = _worlds(car, designs, steps, threads)
-    if unilateral:
-        ranges = worlds.expand("actuator_forcerange")
-        for wheel in car.wheels:
-            ranges[:, wheel.tyre, 0] = -wheel.static_load
-        worlds.set_const()
     heights = [wheel.height for wheel in car.wheels]
     before = np.zeros((len(designs), 1, model.nv))
     for first in range(0, count, CHUNK):

@@ -58,8 +58,6 @@ def in_the_limit(problem: VehicleProblem) -> tuple[float, Array] | None:
     """
     if problem.index != "J5" or not problem.network.has_inerter or problem.network.may_vanish:
         return None
-    if any(problem.fixed):
-        return None
     plain = replace(problem, layout="S1", pair=None, massless=(False, False))
     value, point = best_point(plain)
     if not at_bound(plain, value):
@@ -79,7 +77,7 @@ def _like(problem: VehicleProblem, struts: tuple[VehicleStrut, VehicleStrut]) ->
     """The design that is most like one of springs and dampers alone."""
     # S4 is without inerter where it is small, the others where it is rigid
     ends = {
-        "inertance": 0 if problem.layout in ("S4", "SW4") else 1,
+        "inertance": 0 if problem.layout == "S4" else 1,
         "relaxation_stiffness": 0 if problem.layout == "S6" else 1,
     }
     return np.array(

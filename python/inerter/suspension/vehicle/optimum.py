@@ -7,8 +7,7 @@ smallest J1 is given.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -62,7 +61,6 @@ def vehicle_optimum(
     road: Road | None = None,
     *,
     equal: bool = False,
-    fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ()),
 ) -> VehicleOptimum:
     """Damping, inertance and relaxation spring of both axles that minimise an index.
 
@@ -74,8 +72,6 @@ def vehicle_optimum(
         k [N/m], front and rear.
     equal
         The same damping, inertance and relaxation spring at both axles.
-    fixed
-        Front, rear: (parameter, value) that are given, SI units.
     """
     problem = VehicleProblem(
         car=car,
@@ -85,48 +81,12 @@ def vehicle_optimum(
         stiffnesses=stiffnesses,
         pair=pair,
         equal=equal,
-        fixed=fixed,
     )
     return optimise_vehicle(problem)
 
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
-    """Minimise an index over all designs of a layout, and of those that it has as a limit.
-
-    `more` as in `starting_points`.
-    """
-    found = _optimise(problem, more)
-    for name, ends in problem.network.limits.items():
-        held = {key for axle in problem.fixed for key, _ in axle}
-        if at_bound(problem, found.value) or held & set(ends):
-            continue
-        other = optimise_vehicle(replace(problem, layout=name, massless=(False, False)), more)
-        if other.value < found.value * (1.0 - 1e-9):
-            found = _as_limit(problem, other, name, ends)
-    return found
-
-
-def _as_limit(
-    problem: VehicleProblem, other: VehicleOptimum, name: str, ends: Mapping[str, int]
-) -> VehicleOptimum:
-    """The optimum of a limit as one of the layout: what is absent is 0, what is rigid its bound."""
-    highs: tuple[dict[str, float], dict[str, float]] = {}, {}
-    for (axle, key), high in zip(problem.variables, np.exp(problem.bounds[:, 1]), strict=True):
-        highs[axle][key] = float(high)
-        if problem.equal:
-            highs[1][key] = float(high)
-    front, rear = (
-        replace(strut, **{key: high[key] if end else 0.0 for key, end in ends.items()})
-        for strut, high in zip(other.struts, highs, strict=True)
-    )
-    words = " and ".join(
-        f"{key.replace('_', ' ')} {'without limit' if end else '0'}" for key, end in ends.items()
-    )
-    note = f"best as {name}, which it is with {words}: the value is that of {name}"
-    return replace(other, struts=(front, rear), notes=(note, *other.notes))
-
-
-def _optimise(problem: VehicleProblem, more: int) -> VehicleOptimum:
+    """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
     notes = []
     best, value, point = problem, *(in_the_limit(problem) or best_point(problem, more))
     # without inertance counts as a design where the strut still is one
@@ -167,7 +127,7 @@ def _optimise(problem: VehicleProblem, more: int) -> VehicleOptimum:
 
 def _less(problem: VehicleProblem) -> list[tuple[bool, bool]]:
     """Which axles may go without inertance."""
-    if not problem.network.may_vanish or any("inertance" in dict(axle) for axle in problem.fixed):
+    if not problem.network.may_vanish:
         return []
     ways = [(True, True)] if problem.equal else [(True, False), (False, True), (True, True)]
     return [way for way in ways if way != problem.massless]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.indices import INDICES, VEHICLE_INDICES, Index
+from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
 from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.quarter_car import Road
@@ -45,13 +45,6 @@ class VehicleProblem:
         The same damping, inertance and relaxation spring at both axles.
     massless
         Front, rear: only designs without inertance there.
-    fixed
-        Front, rear: (parameter, value) that are given, SI units.
-
-    Raises
-    ------
-    ValueError
-        A layout with centring springs or an index of which there is no vehicle here.
     """
 
     car: Vehicle
@@ -62,20 +55,6 @@ class VehicleProblem:
     pair: SeriesPair | None = None
     equal: bool = False
     massless: tuple[bool, bool] = (False, False)
-    fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ())
-
-    def __post_init__(self) -> None:
-        """Check what was given, see Raises."""
-        if self.index not in VEHICLE_INDICES:
-            raise ValueError(
-                f"index {self.index}: a car with two axles has {', '.join(VEHICLE_INDICES)}; "
-                "give --car quarter for it"
-            )
-        if self.network.centring:
-            raise ValueError(
-                f"layout {self.layout} has centring springs: give --car quarter for it, or one of "
-                "S1 ... S6, SW1 ... SW6 for a car with two axles"
-            )
 
     @property
     def network(self) -> Layout:
@@ -96,7 +75,6 @@ class VehicleProblem:
             for axle in axles
             for name in self.network.variables
             if not (self.massless[axle] and name == "inertance")
-            and name not in dict(self.fixed[axle])
         )
 
     @property
@@ -121,11 +99,8 @@ class VehicleProblem:
                 stiffness=k,
                 pair=self.pair,
                 massless=no_inerter,
-                fixed=given,
             )
-            for car, k, no_inerter, given in zip(
-                cars, self.stiffnesses, self.massless, self.fixed, strict=True
-            )
+            for car, k, no_inerter in zip(cars, self.stiffnesses, self.massless, strict=True)
         )
         return front, rear
 
@@ -139,7 +114,7 @@ class VehicleProblem:
 
     def branches(self, points: NDArray[Any]) -> Branches:
         """The struts of each point."""
-        values: tuple[dict[str, Any], dict[str, Any]] = dict(self.fixed[0]), dict(self.fixed[1])
+        values: tuple[dict[str, Any], dict[str, Any]] = {}, {}
         for (axle, name), value in zip(
             self.variables, np.moveaxis(np.exp(points), -1, 0), strict=True
         ):
@@ -154,7 +129,7 @@ class VehicleProblem:
 
     def struts(self, point: Array) -> tuple[VehicleStrut, VehicleStrut]:
         """The design of a point."""
-        own: tuple[dict[str, float], dict[str, float]] = dict(self.fixed[0]), dict(self.fixed[1])
+        own: tuple[dict[str, float], dict[str, float]] = {}, {}
         for (axle, name), value in zip(self.variables, np.exp(point).tolist(), strict=True):
             # without what a logarithm and back leave in the last digits
             own[axle][name] = float(f"{value:.13g}")

@@ -89,23 +89,14 @@ def branch(
     relaxation_stiffness: ArrayLike = 1.0,
     *,
     pair: SeriesPair | None = None,
-    **others: ArrayLike,
 ) -> Branch:
     """The struts of a layout, divided; parameters as in `Layout.stiffness`."""
-    sought = {
-        "damping": damping,
-        "inertance": inertance,
-        "relaxation_stiffness": relaxation_stiffness,
-        **others,
-    }
-    values = layout.values(stiffness, sought) | {"stiffness": 0.0}
-    network = layout.stiffness(pair=pair, **values)
+    network = layout.stiffness(0.0, damping, inertance, relaxation_stiffness, pair=pair)
     top, below = _trimmed(network.numerator), _trimmed(network.denominator)
-    # what of the network is a spring at rest: centring springs, a part of the given stiffness
+    # what of the network is a spring at rest; none of the layouts has any
     static = top[..., :1] / below[..., :1]
-    if layout.centring:
+    if static.any():
         top = add(top, -static * below)
-        top[..., 0] = 0.0
     shape = np.broadcast_shapes(top.shape[:-1], below.shape[:-1], np.shape(stiffness))
     below, top = below / below[..., -1:], (top / below[..., -1:])[..., 1:]
     order = below.shape[-1] - 1
@@ -120,7 +111,7 @@ def branch(
     damping_left = rest[..., order]
     remainder = rest[..., :order] - damping_left[..., None] * below[..., :order]
     return Branch(
-        np.broadcast_to(np.asarray(stiffness), shape),
+        np.broadcast_to(np.asarray(stiffness) + static[..., 0], shape),
         np.broadcast_to(mass, shape),
         np.broadcast_to(damping_left, shape),
         Rational(
