@@ -204,6 +204,10 @@ def _friction(
         slip = level / stiff
         keys |= {"bw_stiffness": stiff, "bw_beta": 0.6 / slip, "bw_gamma": 0.4 / slip}
         return keys
+    if law == "maxwell_slip":
+        for i, share in enumerate((0.5, 0.3, 0.2), 1):
+            keys |= {f"slip_stiffness_{i}": stiff / 3, f"slip_force_{i}": level * share}
+        return keys
     keys["coulomb_force"] = level
     if law in ("stribeck", "lugre", "brown_mcphee"):
         keys |= {"static_force": level * rng.uniform(1, 2), "stribeck_velocity": 0.01}

@@ -161,8 +161,8 @@ LAW_COORDINATES = tuple(
 """What belongs to a friction law and leaves with it."""
 LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
 """Of a level that differs with direction and position; a drift is the record's, and every law's."""
-BRISTLES = tuple(law.name for law in _ALL if law.memory)
-"""Friction laws with a state."""
+BRISTLES = tuple(law.name for law in _ALL if law.memory and law.level)
+"""Friction laws with a bristle that a fit can vary."""
 LEVEL_LAWS = tuple(law.name for law in _ALL if law.varies)
 """Laws whose level can differ with the direction and along the stroke."""
 

@@ -55,7 +55,7 @@ def _friction(law: FrictionLaw) -> Part:
 _ALL = (
     Part(name="ideal", meaning="inertance alone"),
     Part(name="viscous", meaning="viscous damping", linear=("viscous",)),
-    *(_friction(law) for law in FRICTION.values() if law.effect),
+    *(_friction(law) for law in FRICTION.values() if law.level),
     # beta and gamma of any sign: hysteresis that hardens has no largest force
     Part(
         name="bouc_wen_any", meaning="Bouc-Wen hysteresis, softening or hardening",
