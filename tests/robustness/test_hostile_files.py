@@ -90,7 +90,7 @@ def test_a_bound_can_be_raised_and_says_how(
     from scipy.io import savemat
 
     time = 1e-3 * np.arange(300)
-    columns = {"time": time, "displacement": np.sin(time), "force": np.cos(time), "x": time}
+    columns = {"time": time, "displacement": np.sin(time), "force": np.cos(time), "aside": time}
     path = tmp_path / f"r{suffix}"
     if suffix == ".mat":
         savemat(path, columns)
