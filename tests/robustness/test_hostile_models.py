@@ -8,6 +8,7 @@ from pathlib import Path
 
 import mujoco
 import pytest
+from hostile_files import _RSS_UNIT
 from hostile_models import MODELS, arguments, cost, made
 from inerter.core import DeviceError
 from inerter.diagnose.vehicle.build import read_model
