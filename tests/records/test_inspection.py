@@ -20,7 +20,7 @@ def test_a_channel_of_any_kind_and_length_has_facts(count: int) -> None:
         np.zeros(count), np.full(count, 1e9), noise, np.sin(3 * t), np.round(np.sin(9 * t), 1),
         np.cumsum(noise), t, (t > t[-1] / 2) * 1.0, 1e-300 * noise, np.sin(50 * t) + 1e-3 * noise,
     ):  # fmt: skip
-        facts = channel_facts("force", "N", values, 2e-3)
+        facts = channel_facts("force", "N", np.asarray(values, dtype=np.float64), 2e-3)
         assert (facts.low, facts.high) == (values.min(), values.max())
 
 
