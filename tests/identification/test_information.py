@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from inerter.identify.information import leverage, shares
+from inerter.identify.information import least_missed, leverage, shares
 from inerter.identify.runs import BenchRun, thin
 from inerter.identify.split import split
 from inerter.records import Record
@@ -52,6 +52,18 @@ def test_of_two_sweeps_one_may_be_held_out() -> None:
     found = runs(sine("1 Hz", 1.0, 0.01), sweep("sweep"), sweep("sweep again"))
     assert split(found).role(0) == "fit"
     assert leverage(found)[1:] == pytest.approx([0.5, 0.5], abs=0.1)
+
+
+def test_where_each_run_takes_something_away_the_usual_one_is_held_out() -> None:
+    """Two runs of different kinds: the one whose amplitudes are nearest to the median."""
+    found = runs(sine("1 Hz", 1.0, 0.01), sweep("sweep"))
+    known = leverage(found)
+    assert known.min() > 0.8
+    usual = runs(sine("1 Hz", 1.0, 0.01), sweep("sweep"), sweep("sweep again"))
+    assert least_missed(found, [0, 1], 0) == 0
+    assert least_missed(found, [0, 1], 1) == 1
+    # where another one takes less away, it is held out
+    assert least_missed(usual, [0, 1, 2], 0) != 0
 
 
 def test_a_user_may_hold_out_what_he_likes() -> None:
