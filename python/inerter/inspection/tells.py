@@ -140,5 +140,5 @@ def words(tell: Tell) -> str:
         return f"{tell.name} {tell.value:.4g} ± {tell.stderr:.1g} {tell.unit}"
     if tell.verdict == "bounded":
         most = abs(tell.value) + TIMES * tell.stderr
-        return f"{tell.name} below {most:.2g} {tell.unit}"
+        return f"{tell.name} below {float(f'{most:.2g}'):g} {tell.unit}"
     return f"{tell.name} not: {tell.reason}; {tell.motion} would tell"
