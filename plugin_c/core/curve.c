@@ -34,7 +34,7 @@ static int place(const InerterCurve* c, double x, double* u) {
     *u = 0;
     return 0;
   }
-  int last = c->nvalue - 2;
+  int last = c->nvalue > 2 ? c->nvalue - 2 : 0;
   if (t >= last + 1) {
     *u = 1;
     return last;
@@ -160,6 +160,9 @@ uint32_t curve_parts(const InerterDevice* p) {
 static void fit(InerterCurve* c, double lower, double upper) {
   int n = c->nvalue;
   double pivot[INERTER_MAXCURVE], *f = c->fit + 1;
+  if (n < 2) {  // a straight line needs two
+    return;
+  }
   c->lower = lower;
   c->rate = (n - 1) / (upper - lower);
   pivot[0] = 0.5;

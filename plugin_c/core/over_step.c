@@ -130,7 +130,7 @@ static double friction_with_load(const InerterDevice* device, double friction, d
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
                                      const double* z, double h, double mobility, double* end) {
-  double next[INERTER_MAXSTATE];
+  double next[INERTER_MAXSTATE] = {0};
   double stretch = stretch_of(device, x), v1 = v + h * a;
   for (int i = 0; i < device->nstate; i++) {
     next[i] = z ? z[i] : 0;

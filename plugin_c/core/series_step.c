@@ -181,7 +181,8 @@ static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel
     b *= 2;
     fb = misfit(p, element, flywheel, rubbing, b);
   }
-  for (double part = 0.5, turns = 0; turns < MOST_TURNS; turns++) {
+  double part = 0.5;
+  for (int i = 0; i < MOST_TURNS; i++) {
     // the bracket is a, b with a the newest; c the one before
     double next = a + part * (b - a), value = misfit(p, element, flywheel, rubbing, next);
     double c = value * fa > 0 ? a : b, fc = value * fa > 0 ? fa : fb;

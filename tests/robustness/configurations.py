@@ -79,7 +79,13 @@ def friction(draw: st.DrawFn) -> Values:
             "bw_ratio": draw(st.floats(0.0, 1.0)),
         }
     level = draw(_around(50.0, 1.0))
-    values: Values = {"friction": law, "coulomb_force": level}
+    values: Values = {"friction": law}
+    if law == "maxwell_slip":
+        for k in range(1, 1 + draw(st.integers(1, 8))):
+            values[f"slip_force_{k}"] = level * draw(st.floats(0.02, 1.0))
+            values[f"slip_stiffness_{k}"] = draw(_around(3e4, 0.7))
+    else:
+        values["coulomb_force"] = level
     values["friction_asymmetry"] = draw(_signed(0.9))
     values["friction_gradient"] = draw(_signed(10.0))
     values["friction_curvature"] = draw(_signed(100.0))
@@ -129,7 +135,7 @@ def meant(draw: st.DrawFn) -> Values:
             "curve_lower": -0.03,
             "curve_upper": draw(st.floats(-0.01, 0.05)),
         }
-        if values["friction"] != "none":
+        if "friction" in values:
             values |= {"friction_curve": _text(draw(rises))}
     if draw(st.booleans()):
         values |= {
@@ -150,6 +156,9 @@ def meant(draw: st.DrawFn) -> Values:
             "series_damping": draw(_around(300.0, 0.5)),
         }
         values |= {"series_hardening": draw(_signed(5.0))}
+    for k in range(1, 1 + draw(st.sampled_from([0, 0, 1, 3]))):
+        values[f"branch_stiffness_{k}"] = draw(_around(1e4, 0.7))
+        values[f"branch_damping_{k}"] = draw(_around(300.0, 0.7))
     return values
 
 

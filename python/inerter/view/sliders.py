@@ -41,7 +41,18 @@ def keys_of(device: Device) -> list[str]:
     keys |= dict.fromkeys(key for key in device.given if key in parameters())
     if device.piston_area > 0:
         del keys["inertance"]  # follows from the channel
-    return [key for key in keys if key not in LEFT_OUT and math.isfinite(value_of(device, key))]
+    return [
+        key
+        for key in keys
+        if key not in LEFT_OUT
+        and math.isfinite(value_of(device, key))
+        and not (_is_numbered(key) and value_of(device, key) == 0)
+    ]
+
+
+def _is_numbered(key: str) -> bool:
+    """Whether a parameter belongs to one of several alike parts, which needs all of its values."""
+    return key[-1].isdigit()
 
 
 def value_of(device: Device, key: str) -> float:
@@ -55,6 +66,6 @@ def slider(key: str, stated: float, value: float) -> Slider:
     parameter = parameters()[key]
     reach = TIMES * abs(stated) or TYPICAL.get(key, 1.0)
     low, high = max(parameter.lower, -reach), min(parameter.upper, reach)
-    if parameter.lower_open and low == parameter.lower:
+    if (parameter.lower_open or _is_numbered(key)) and low == parameter.lower:
         low += 1e-3 * reach
     return Slider(key, parameter.unit, parameter.meaning, value, low, high)
