@@ -9,7 +9,7 @@ import polars as pl
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from inerter.records import RecordError, text_table, read_records
+from inerter.records import RecordError, read_records, text_table
 from scipy.io import savemat
 
 HEADER = "time,displacement,force,run"
