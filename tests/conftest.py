@@ -1,7 +1,8 @@
 """What the tests share: the folder of measured records, the seed of hidden effects, long tests.
 
 Tests marked `long` (whole diagnoses, campaigns) are left out unless `--long` asks for all of them
-or `--only-long SECONDS` for as many as begin in that time; every day begins at another one.
+or `--only-long SECONDS` for as many as begin in that time; every day begins at another one. Of a
+test marked `often("case", ...)` the other cases are long, of one marked `rarely("case", ...)` these.
 
 Tests that hide an effect and look for it draw it from one seed, so that a failure can be repeated:
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
@@ -71,6 +72,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Settle the seed and the day once per session: a worker has the controller's."""
     config.addinivalue_line("markers", "long: takes long; runs with --long or --only-long")
+    config.addinivalue_line("markers", "often(*cases): the other cases of this test are long")
+    config.addinivalue_line("markers", "rarely(*cases): these cases of this test are long")
     told = getattr(config, "workerinput", {})
     config.stash[_DAY] = told.get("day", date.today().toordinal())
     given = told.get("effects_seed")
@@ -88,6 +91,14 @@ def pytest_configure_node(node: Any) -> None:
     """Tell a worker of pytest-xdist the seed and the day."""
     node.workerinput["effects_seed"] = node.config.stash[_SEED]
     node.workerinput["day"] = node.config.stash[_DAY]
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark the cases of a test that are not run often."""
+    case = item.name.partition("[")[2].removesuffix("]")
+    often, rarely = item.get_closest_marker("often"), item.get_closest_marker("rarely")
+    if (often and case not in often.args) or (rarely and case in rarely.args):
+        item.add_marker("long")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

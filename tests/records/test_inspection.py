@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.inspection.channel import channel_facts
+from inerter.inspection.tells import Tell, words
 
 
 @pytest.mark.parametrize("count", [2, 3, 5, 12, 33, 60, 250, 1000])
@@ -43,3 +44,17 @@ def test_rate_and_noise_are_told(tmp_path: Path) -> None:
     assert found["samples"] == 8000
     assert channels["force"]["noise"] == pytest.approx(0.5, rel=0.1)
     assert channels["displacement"]["unit"] == "m"
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "said"),
+    [
+        (527.2, 31.0, "530 ± 30"),
+        (33.41, 0.6, "33.4 ± 0.6"),
+        (104.6, 9.6, "100 ± 10"),
+        (5.0, 0.0, "5"),
+    ],
+)
+def test_a_value_has_the_digits_of_its_error(value: float, error: float, said: str) -> None:
+    tell = Tell(name="stiffness", value=value, stderr=error, unit="N/m", verdict="told")
+    assert words(tell) == f"stiffness {said} N/m"

@@ -7,6 +7,7 @@ says what it cannot be told from.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -137,8 +138,18 @@ def _tell(
 def words(tell: Tell) -> str:
     """One clause."""
     if tell.verdict == "told":
-        return f"{tell.name} {tell.value:.4g} ± {tell.stderr:.1g} {tell.unit}"
+        return f"{tell.name} {_with_error(tell.value, tell.stderr)} {tell.unit}"
     if tell.verdict == "bounded":
         most = abs(tell.value) + TIMES * tell.stderr
         return f"{tell.name} below {float(f'{most:.2g}'):g} {tell.unit}"
     return f"{tell.name} not: {tell.reason}; {tell.motion} would tell"
+
+
+def _with_error(value: float, error: float) -> str:
+    """Both to the first digit of the error, such as "530 ± 30"."""
+    if not (math.isfinite(error) and error > 0):
+        return f"{value:.4g}"
+    digits = -math.floor(math.log10(float(f"{error:.1g}")))
+    if digits > 6:
+        return f"{value:.6g} ± {error:.1g}"
+    return " ± ".join(f"{round(x, digits):.{max(digits, 0)}f}" for x in (value, error))
