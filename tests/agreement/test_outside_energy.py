@@ -164,6 +164,13 @@ def test_energy_is_kept(device: str, engine: str) -> None:
     assert abs(total / total[0] - 1).max() < (1e-6 if device == "stops" else 1e-10)
 
 
+@pytest.mark.rarely(
+    "dahl-mujoco",
+    "bouc_wen-mujoco",
+    "brown_mcphee-mujoco",
+    "series-mujoco",
+    "varying inertance-mujoco",
+)
 @pytest.mark.parametrize("engine", ["mujoco", "exudyn"])
 @pytest.mark.parametrize("device", DEVICES)
 def test_heat_is_what_the_reference_loses(device: str, engine: str) -> None:

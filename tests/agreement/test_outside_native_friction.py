@@ -165,6 +165,7 @@ def test_armature(telling: str) -> None:
     assert np.all(np.log2(errors[:-1] / errors[1:]) > 3.8), errors
 
 
+@pytest.mark.often("mujoco", "exudyn")
 @pytest.mark.parametrize("telling", TELLINGS)
 def test_motor_friction(telling: str) -> None:
     """With LuGre: the engine's bristle is held over a step, so that it goes there in first order.

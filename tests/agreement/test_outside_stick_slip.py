@@ -207,6 +207,7 @@ def coulomb_cycle() -> Array:
     return np.array([period, speed(times).max(), force(times).min()])
 
 
+@pytest.mark.often("mujoco", "exudyn")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_published_end(engine: str) -> None:
     """Exudyn's example after Canudas de Wit et al.: the state at 25 s, to all printed digits.
@@ -242,6 +243,7 @@ def test_engines_share_the_limit_cycle(engine: str) -> None:
     assert cycle(run_of(engine)) == pytest.approx(cycle(reference()), rel=1e-8)
 
 
+@pytest.mark.long
 def test_limit_cycle_approaches_dry_friction() -> None:
     """Bristles k^2 stiffer, a Stribeck velocity k times smaller: the cycle of dry friction.
 

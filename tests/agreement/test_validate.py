@@ -185,6 +185,7 @@ def rows_of(law: str, *integrators: str) -> list[Any]:
     return run_task(Task(case(law), wanted))
 
 
+@pytest.mark.long
 def test_a_wrong_device_is_out_of_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
     """An inertance that is off by 1 %: every law, integrators of first and of fourth order."""
     right = mujoco_engine.merged

@@ -233,6 +233,7 @@ def test_the_truth_does_not_hang_on_its_step(problem: str) -> None:
     assert truth_error(problem) < 1e-11
 
 
+@pytest.mark.long
 def test_work_precision() -> None:
     from benchmarks import work_precision
 

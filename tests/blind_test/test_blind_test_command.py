@@ -10,6 +10,7 @@ from inerter.commands import app
 from typer.testing import CliRunner
 
 
+@pytest.mark.long
 def test_command_end_to_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("INERTER_SEED", "20261121")
     # how the engines agree is asked elsewhere

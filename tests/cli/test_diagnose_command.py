@@ -96,6 +96,7 @@ def test_quick_writes_nothing(folder: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.long
 def test_model_and_device_as_baseline(folder: Path, diagnosed, tmp_path: Path) -> None:
     for option, file in (("--device", "device.toml"), ("--model", "model.xml")):
         done = inerter("diagnose", folder, option, diagnosed[1] / file, "--json",

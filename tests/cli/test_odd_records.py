@@ -144,6 +144,7 @@ def test_record_that_no_cutoff_suits_is_refused(tmp_path: Path, odd: str) -> Non
     assert done.status == 2
 
 
+@pytest.mark.long
 def test_force_of_the_wrong_sign_is_not_called_right(tmp_path: Path) -> None:
     run = made(seconds=6)
     run = run._replace(force=-run.force)

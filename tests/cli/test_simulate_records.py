@@ -208,6 +208,7 @@ def drive(folder: Path) -> Path:
     return path
 
 
+@pytest.mark.often("ideal")
 @pytest.mark.parametrize("kind", ["ideal", "coulomb"])
 def test_a_diagnosis_of_the_record_finds_what_was_simulated(tmp_path: Path, kind: str) -> None:
     keys = {"friction": "coulomb", "coulomb_force": 30, "transition_velocity": 1e-3}

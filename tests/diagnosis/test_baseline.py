@@ -160,6 +160,7 @@ def test_two_effects_are_found_without_a_device(records) -> None:
     assert gains == sorted(gains, reverse=True)
 
 
+@pytest.mark.long
 def test_outputs_load_and_say_the_same(records, tmp_path: Path) -> None:
     diagnosis = diagnose_bench(records)
     write_outputs(diagnosis, tmp_path)

@@ -65,6 +65,7 @@ def written(path: Path, time: np.ndarray) -> Path:
     return path
 
 
+@pytest.mark.long
 def test_a_simulated_fifth_of_a_second_gives_files_that_load(tmp_path: Path) -> None:
     (tmp_path / "road.csv").write_text("time,road[mm]\n0.0,0\n0.1,20\n0.2,0\n")
     car = model_path("quarter_car", "scene.xml")
@@ -79,6 +80,7 @@ def test_a_simulated_fifth_of_a_second_gives_files_that_load(tmp_path: Path) -> 
     assert (tmp_path / "out" / "report.html").stat().st_size > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("end", [1.5, 2.5])
 def test_it_is_judged_on_what_was_measured(tmp_path: Path, end: float) -> None:
     """Most of a record is a gap."""

@@ -63,6 +63,7 @@ def spring_and_damper() -> Diagnosis:
     return diagnose_bench(slow_sampled(device), Device(inertance=50.0))
 
 
+@pytest.mark.long
 def test_the_main_cause_is_what_explains_most(spring_and_damper: Diagnosis) -> None:
     findings = spring_and_damper.findings
     assert {f.effect for f in findings} == {"viscous_friction", "parallel_stiffness"}
@@ -89,6 +90,7 @@ def test_an_experiment_is_named_only_where_it_tells_the_two_apart(
     assert "dwell" not in other
 
 
+@pytest.mark.long
 def test_friction_at_a_low_rate_is_no_noise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture
 ) -> None:

@@ -42,6 +42,7 @@ def test_free_motion(name: str) -> None:
     assert 13 < errors[0] / errors[1] < 20
 
 
+@pytest.mark.rarely("fluid_inerter complete", "fluid_inerter dry")
 @pytest.mark.parametrize("name", CASES)
 def test_inputs(name: str) -> None:
     """The solver asks for the input at every stage: fourth order, and forces as good."""
@@ -150,6 +151,7 @@ def states_of(model: Model, name: str, step: float) -> tuple[Run, Array]:
     return found, np.array(model.mbs.GetSensorStoredData(sensor)[:, 1:])
 
 
+@pytest.mark.often("S3")
 @pytest.mark.parametrize(
     ("layout", "extra"), [("S2", {}), ("S2", ELASTIC), ("S3", {})], ids=["S2", "S2 elastic", "S3"]
 )
@@ -174,6 +176,7 @@ def test_a_device_of_ones_own_in_the_quarter_car(layout: str, extra: dict[str, f
     assert error(found.force["strut"][1:], true.device_force[1:]) < 1e-6
 
 
+@pytest.mark.often("S2")
 @pytest.mark.parametrize("layout", ["S2", "S3"])
 def test_a_device_of_ones_own_in_the_half_car(layout: str) -> None:
     """In S3 the damper is the device's series element, its friction stays at the terminals."""

@@ -31,6 +31,7 @@ def problem(device: Device, noise: float, scale: float = 1.0, seed: int = 0) -> 
     return Problem([run_of(force, (x, v, a))], [np.ones(N, bool)])
 
 
+@pytest.mark.often("ideal", "viscous", "coulomb")
 @pytest.mark.parametrize("law", LAWS)
 def test_a_device_of_each_law_is_recovered(law: str) -> None:
     case = drawn(law, 3)
