@@ -83,20 +83,22 @@ def _content(record: Any, form: str) -> bytes:
 
     import inerter
     from inerter.printable import printable
+    from inerter.records.parquet_table import NOTES
 
     first = record.required[0]
     columns = {first: getattr(record, first), **record.channels()}
     columns |= {n: v for n, v in record.extra.items() if n.strip() and n not in columns}
     frame = pl.DataFrame({name: pl.Series(values) for name, values in columns.items()})
-    if form == "parquet":
-        target = BytesIO()
-        frame.write_parquet(target)
-        return target.getvalue()
     notes = [
         *record.comments,
         f"converted by inerter {inerter.__version__} from {record.source.name}; SI units",
     ]
     if record.reading:
         notes.append(f"read as: {record.reading}")
-    head = "".join(f"# {printable(' '.join(note.split()))}\n" for note in notes)
+    notes = [printable(" ".join(note.split())) for note in notes]
+    if form == "parquet":
+        target = BytesIO()
+        frame.write_parquet(target, metadata={NOTES: "\n".join(notes)})
+        return target.getvalue()
+    head = "".join(f"# {note}\n" for note in notes)
     return (head + frame.write_csv()).encode("utf-8", "replace")

@@ -35,7 +35,9 @@ def read_isolated(kind: str, path: Path, wanted: Wanted, sheet: str | None) -> A
 
     from .raw_table import RawTable
 
-    command = [sys.executable, "-P", "-m", "inerter.records.isolated", kind, os.fspath(path)]
+    # the process works in a folder of its own
+    where = os.path.abspath(path)
+    command = [sys.executable, "-P", "-m", "inerter.records.isolated", kind, where]
     with tempfile.TemporaryDirectory(prefix="inerter") as folder:
         with subprocess.Popen(
             [*command, folder, sheet or ""], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
@@ -70,7 +72,7 @@ def _answer(kind: str, path: Path, line: str) -> dict[str, Any]:
         )
     answer = json.loads(line)
     if "refused" in answer:
-        raise RecordError(answer["refused"])
+        raise RecordError(answer["refused"].replace(os.path.abspath(path), str(path)))
     if "missing" in answer:
         raise RecordError(
             f"{path}: a {_NAMES[kind]} is read by {_LIBRARIES[kind]}, which is not installed; run "

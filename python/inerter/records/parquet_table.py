@@ -13,6 +13,8 @@ from .record import RecordError
 
 # what stands at the end of a file about what is in it: pyarrow needs some ten times as much to read
 LARGEST_FOOTER = 1 << 24  # bytes
+# what it says of where it comes from, as comments above a text's header do
+NOTES = "inerter.comments"
 
 
 def read_parquet(path: Path, wanted: Wanted) -> RawTable:
@@ -31,6 +33,7 @@ def read_parquet(path: Path, wanted: Wanted) -> RawTable:
     try:
         with pyarrow.parquet.ParquetFile(path) as file:
             rows, names = file.metadata.num_rows, _names(file, path)
+            notes = (file.metadata.metadata or {}).get(NOTES.encode(), b"")
             kinds = {i: file.schema_arrow.field(i).type for i, n in enumerate(names) if wanted(n)}
             refuse_table(path, rows, len(kinds))
             refuse_packing(path, 8.0 * rows * len(kinds))
@@ -51,7 +54,8 @@ def read_parquet(path: Path, wanted: Wanted) -> RawTable:
         TypeError,
     ):
         raise RecordError(f"{path}: not a readable Parquet file; write it again") from None
-    return RawTable(path=path, header=names, columns=columns)
+    comments = tuple(notes.decode("utf-8", "replace").splitlines())
+    return RawTable(path=path, header=names, columns=columns, comments=comments)
 
 
 def _refuse_footer(path: Path) -> None:
