@@ -66,6 +66,7 @@ def test_core_is_the_reference(wide: float) -> None:
         assert np.all(abs(found["dissipated_power"] - heat) <= 1e-12 * (scale + abs(heat)))
 
 
+@pytest.mark.long
 def test_along_a_motion_the_core_is_the_reference() -> None:
     motion, t = sine_motion(3e-3, 5.0), np.linspace(0.0, 0.25, 2001)
     for more in ({}, {"inertance": 20.0, "series_stiffness": 5e4, "series_damping": 50.0,

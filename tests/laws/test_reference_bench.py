@@ -34,6 +34,13 @@ def forces(case: HiddenCase) -> np.ndarray:
     return np.concatenate([run.force for run in case.runs])
 
 
+@pytest.mark.rarely(
+    "11-hysteretic_friction-bouc_wen",
+    "11-hysteretic_friction-dahl",
+    "11-hysteretic_friction-lugre",
+    "12-hysteretic_friction-bouc_wen",
+    "12-hysteretic_friction-lugre",
+)
 @pytest.mark.parametrize(("effect", "law"), CASES)
 @pytest.mark.parametrize("seed", [11, 12])
 def test_case_is_what_it_says(seed: int, effect: str, law: str | None) -> None:
@@ -284,6 +291,7 @@ def test_disturbance_is_one_line_that_the_motion_lacks(seed: int) -> None:
     assert np.ptp(phases) > 1e-3
 
 
+@pytest.mark.long
 def test_shaft_is_an_inertance_behind_a_spring() -> None:
     case = hide_effect(70, "series_elasticity", noise=QUIET)
     b, k, c = case.device.inertance, case.device.series_stiffness, case.device.series_damping
@@ -300,6 +308,7 @@ def test_shaft_is_an_inertance_behind_a_spring() -> None:
         np.testing.assert_allclose(force, run.force, atol=2e-3 * float(np.max(abs(run.force))))
 
 
+@pytest.mark.long
 def test_gap_is_traversed() -> None:
     case = hide_effect(71, "backlash", noise=QUIET)
     gap, b = case.parameters["backlash"], case.device.inertance

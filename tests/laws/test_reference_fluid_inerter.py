@@ -19,6 +19,7 @@ from scipy.integrate import solve_ivp
 LOOSE: dict[str, Any] = {"rtol": 1e-4, "atol": 1e-7}
 
 
+@pytest.mark.often("0.35-0.55-0.117")
 @pytest.mark.parametrize(
     ("first", "last", "published"),
     [(0.35, 0.55, 0.117), (0.40, 0.60, 0.145), (0.50, 0.70, 0.181), (0.60, 0.80, 0.203)],
@@ -47,6 +48,7 @@ def lowest(air_damping: float, air_column: float) -> float:
     return float(frequencies[near][np.argmin(abs(found[near]))])
 
 
+@pytest.mark.long
 def test_anti_resonance_of_the_complete_test() -> None:
     without, weak, strong = lowest(300.0, 0.0), lowest(300.0, 0.016), lowest(700.0, 0.016)
     assert 4.4 < without < weak < strong < 4.9

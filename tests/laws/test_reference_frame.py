@@ -69,6 +69,7 @@ def test_impedances_agree_with_the_state_matrix() -> None:
     np.testing.assert_allclose(frame_receptance(MIXED, frequencies), exact, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_a_shaken_frame_settles_on_its_receptance() -> None:
     frequency = 3.0
     omega = 2.0 * np.pi * frequency
@@ -109,6 +110,7 @@ def test_static_floor_forces() -> None:
     np.testing.assert_allclose(run.displacement[-1], [1e-3, 2e-3, 3e-3], rtol=1e-4)
 
 
+@pytest.mark.long
 def test_energy_with_backlash_between_floors() -> None:
     loose = replace(FRAME_DEVICE, backlash=5e-4, flywheel_viscous=200.0)
     frame = ShearFrame(

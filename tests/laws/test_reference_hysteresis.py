@@ -24,6 +24,7 @@ def dahl_loop(x: np.ndarray, v: np.ndarray) -> np.ndarray:
     return LEVEL * np.where(v > 0.0, up, down)
 
 
+@pytest.mark.rarely("Radau")
 @pytest.mark.parametrize("method", ["LSODA", "Radau"])
 def test_dahl_loop_closed_form(method: str) -> None:
     device = ReferenceDevice(friction="dahl", coulomb_force=LEVEL, bristle_stiffness=STIFFNESS)
@@ -96,6 +97,7 @@ def test_lugre_slides_on_the_stribeck_curve(speed: float) -> None:
     assert run.force[-1] == pytest.approx(np.sign(speed) * curve + 4.0 * speed, rel=1e-9)
 
 
+@pytest.mark.long
 def test_lugre_leaps_over_no_stribeck_peak() -> None:
     # a curve much narrower than the time between reversals, against fifty times finer steps
     device = ReferenceDevice(

@@ -29,6 +29,7 @@ def linear_system(layout: str) -> np.ndarray:
     return np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ stiffness, -inverse @ damping]])
 
 
+@pytest.mark.rarely("Radau-S2", "Radau-S3")
 @pytest.mark.parametrize("layout", ["S1", "S2", "S3"])
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
 def test_linear_car_is_the_matrix_exponential(layout: str, method: str) -> None:

@@ -100,6 +100,7 @@ def test_symmetric_half_car_does_not_pitch(layout: str) -> None:
     assert np.max(abs(other.pitch)) > 1e-5
 
 
+@pytest.mark.often("S3-S1")
 @pytest.mark.parametrize(("front", "rear"), [("S2", "S2"), ("S3", "S1")])
 def test_decoupled_half_car_is_two_quarter_cars(front: str, rear: str) -> None:
     l_f, l_r, mass = 1.1, 1.6, 700.0
@@ -124,6 +125,7 @@ def test_decoupled_half_car_is_two_quarter_cars(front: str, rear: str) -> None:
         np.testing.assert_allclose(run.device_force[:, i], alone.device_force, atol=0.05)
 
 
+@pytest.mark.long
 def test_full_car_on_equal_tracks_is_the_half_car() -> None:
     front = corner_of(FULL_CAR.front, "S2", LOOSE)
     rear = corner_of(FULL_CAR.rear, "S3", ROUGH)
@@ -140,6 +142,7 @@ def test_full_car_on_equal_tracks_is_the_half_car() -> None:
     assert np.ptp(full.device_states[1][:, 2]) == pytest.approx(6e-4, rel=0.2)
 
 
+@pytest.mark.long
 def test_energy_of_a_half_car() -> None:
     car = HalfCar(
         front=corner_of(HALF_CAR.front, "S2", LOOSE), rear=corner_of(HALF_CAR.rear, "S2", ROUGH)

@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 from falling_model import MODEL
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[2]
 # 1 kg and 2 kg of inertance fall for 0.2 s
 FALLS = f"""

@@ -175,6 +175,7 @@ OF_THE_USER = {
 }  # fmt: skip
 
 
+@pytest.mark.often("general", "motor", "position", "muscle")
 @pytest.mark.parametrize("kind", schema())
 def test_no_default_reaches_a_device(kind: str) -> None:
     tried = settings(kind)

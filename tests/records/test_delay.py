@@ -47,6 +47,7 @@ def bench(seed: int, friction: str = "none", noise: float = 3.0) -> tuple[Record
     return Record(name="r", time=TIME, displacement=measured, force=force), tau
 
 
+@pytest.mark.long
 def test_two_channels_of_one_shape() -> None:
     """100 draws: 95 % intervals hold the truth, and the error is the least there can be."""
     time = TIME[:4000]

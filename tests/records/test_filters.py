@@ -86,6 +86,7 @@ def test_the_strength_chosen_is_nearly_the_best_there_is(method: str) -> None:
     assert np.mean(regret) < 1.25
 
 
+@pytest.mark.rarely("spline")
 @pytest.mark.parametrize("method", LINEAR)
 def test_noise_goes_and_the_signal_stays(method: str) -> None:
     found = denoise(SIGNAL + draw(2, 3.0), H, method)
