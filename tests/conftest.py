@@ -2,7 +2,8 @@
 
 Tests marked `long` (whole diagnoses, campaigns) are left out unless `--long` asks for all of them
 or `--only-long SECONDS` for as many as begin in that time; every day begins at another one. Of a
-test marked `often("case", ...)` the other cases are long, of one marked `rarely("case", ...)` these.
+test marked `often("case", ...)` its other cases are long; of one marked `rarely("case", ...)`,
+these cases.
 
 Tests that hide an effect and look for it draw it from one seed, so that a failure can be repeated:
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
