@@ -57,6 +57,8 @@ def test_the_record_format_holds_the_same(name: str, write, form: str, tmp_path:
     (told,) = json.loads(done.stdout)["records"]
     (before,) = read_records([tmp_path / name])
     (after,) = read_records([tmp_path / "records" / told["file"]])
+    assert isinstance(before, Record)
+    assert isinstance(after, Record)
     same(before, after)
     true = rows()
     np.testing.assert_allclose(after.displacement, 1e-3 * true[:, 1], rtol=1e-12)
