@@ -50,8 +50,8 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
 }
 
 
-# lost again: the run that is held out is chosen by what it tells of, and here it is another one; the
-# verdict says that an end stop would be added with run_1 held out
+# lost again: the run that is held out is chosen by what it tells of, and here it is another one;
+# the verdict says that an end stop would be added with run_1 held out
 LOST = ("a fold astray",)
 
 
