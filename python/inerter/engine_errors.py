@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from inerter.core import names
 from inerter.parameter_text import with_suggestion
@@ -50,6 +51,13 @@ def engine_text(error: Exception, endings: str = ".xml") -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     text = "; ".join(dict.fromkeys(lines)).removeprefix("Error: ").removeprefix("XML Error: ")
     return text + _meant(text)
+
+
+def cannot_be_opened(path: Path, error: OSError) -> str:
+    """What is said of a model file that is not there, or is none."""
+    if isinstance(error, FileNotFoundError):
+        return f"{path}: no such file; give a model, .xml or .mjb"
+    return f"{path}: cannot be opened ({error.strerror}); give a model, .xml or .mjb"
 
 
 def _meant(text: str) -> str:

@@ -8,7 +8,8 @@ from xml.etree import ElementTree
 import mujoco
 
 from inerter.core import Device, DeviceError
-from inerter.engine_errors import COMPILE_ERRORS, engine_text
+from inerter.engine_errors import COMPILE_ERRORS, cannot_be_opened, engine_text
+from inerter.model_bounds import refuse_unbounded
 from inerter.plugin import load_plugin
 
 
@@ -21,10 +22,11 @@ def device_of_model(path: Path) -> Device:
         The model cannot be read, has no device or several, or its device cannot be.
     """
     load_plugin()
-    if not path.is_file():
-        raise DeviceError(f"{path}: no such file; check the path")
     try:
+        refuse_unbounded(path)
         text = mujoco.MjSpec.from_file(str(path.absolute())).to_xml()
+    except OSError as error:
+        raise DeviceError(cannot_be_opened(path, error)) from None
     except COMPILE_ERRORS as error:
         raise DeviceError(f"{path}: {engine_text(error)}") from None
 

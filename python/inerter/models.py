@@ -85,6 +85,11 @@ def model_list() -> list[dict[str, Any]]:
     return found
 
 
+def models_folder() -> Path:
+    """The folder of the shipped MJCF models, without links in its path."""
+    return _folder("mjcf_models").resolve()
+
+
 def exudyn_model_names() -> list[str]:
     """Names of the shipped models that are there for Exudyn."""
     return sorted(path.parent.name for path in _folder("exudyn_models").glob("*/model.py"))

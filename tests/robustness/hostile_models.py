@@ -2,13 +2,12 @@
 
     python hostile_models.py FOLDER [NAME ...]
 
-makes each and tells what `inerter simulate` says of it, and what that costs. Not among them, for
-the engine alone could refuse them: a pipe that a model names (it waits), and
-counts of thousands of millions in `<replicate>` and `<flexcomp>`.
+makes each and tells what `inerter simulate` says of it, and what that costs.
 """
 
 from __future__ import annotations
 
+import os
 import struct
 import sys
 import zlib
@@ -63,6 +62,12 @@ def _picture(path: Path) -> str:
     return _model('<asset><texture name="t" type="2d" file="sky.png"/></asset>')
 
 
+def _pipe(path: Path) -> str:
+    """A pipe that nobody writes into: whoever reads it waits."""
+    os.mkfifo(path.parent / "mesh.stl")
+    return _model('<asset><mesh name="m" file="mesh.stl"/></asset>')
+
+
 def _asset(text: str) -> Callable[[Path], str]:
     return lambda _: _model(f"<asset>{text}</asset>")
 
@@ -104,6 +109,16 @@ MODELS: dict[str, Callable[[Path], str]] = {
     ),
     "texture_picture": _picture,
     "field_stated": _asset('<hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/>'),
+    "names_pipe": _pipe,
+    "replicated": _inside('<replicate count="2000000000" offset="0 0 1"><site/></replicate>'),
+    "replicated_twice": _inside(
+        '<replicate count="9999"><replicate count="9999"><site/></replicate></replicate>'
+    ),
+    "flexible": _inside(
+        '<flexcomp name="f" type="grid" count="9999 9999 99" spacing="1 1 1" mass="1" radius="1"/>'
+    ),
+    "sphere_fine": _asset('<mesh name="m" builtin="sphere" params="40"/>'),
+    "numeric_stated": _top('<custom><numeric name="n" size="2000000000"/></custom>'),
     "nested": _inside("<body>" * 20_000 + "</body>" * 20_000),
     "entities": lambda _: (
         '<!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]>' + _model("&b;")

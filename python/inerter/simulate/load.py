@@ -11,10 +11,11 @@ from inerter.device_in_model import PLUGIN, devices_of
 from inerter.engine_errors import (
     COMPILE_ERRORS,
     SimulationError,
+    cannot_be_opened,
     engine_text,
     timestep_fault,
 )
-from inerter.input_file import refuse_special
+from inerter.model_bounds import refuse_not_a_number, refuse_unbounded
 from inerter.plugin import load_plugin
 
 INTEGRATORS = {
@@ -50,14 +51,6 @@ def load_model(
         integrator, a time step that cannot be.
     """
     load_plugin()
-    try:
-        refuse_special(path)
-    except FileNotFoundError:
-        raise SimulationError(f"{path}: no such file; give a model, .xml or .mjb") from None
-    except OSError as error:
-        raise SimulationError(
-            f"{path}: cannot be opened ({error.strerror}); give a model, .xml or .mjb"
-        ) from None
     if timestep is not None and not 0 < timestep < 1e3:
         raise SimulationError(f"--timestep is {timestep:g}: give seconds above 0, below 1000")
     if integrator is not None and integrator.lower() not in INTEGRATORS:
@@ -65,6 +58,9 @@ def load_model(
         raise SimulationError(f"--integrator is {integrator!r}; choose one of {names}")
     try:
         model = _binary(path) if path.suffix.lower() == ".mjb" else readable_spec(path).compile()
+        refuse_not_a_number(model)
+    except OSError as error:
+        raise SimulationError(cannot_be_opened(path, error)) from None
     except (*COMPILE_ERRORS, mujoco.FatalError) as error:
         raise SimulationError(f"{path}: {engine_text(error, '.xml or .mjb')}") from None
     if timestep is not None:
@@ -84,6 +80,7 @@ def integrator_name(model: mujoco.MjModel) -> str:
 
 
 def _binary(path: Path) -> mujoco.MjModel:
+    refuse_unbounded(path)
     model = mujoco.MjModel.from_binary_path(str(path))
     for found in devices_of(model):
         if not found.sensor:
@@ -100,11 +97,13 @@ def readable_spec(path: Path) -> mujoco.MjSpec:
     Raises
     ------
     ValueError
-        The file is no model, or it does not compile.
+        The file is no model, it does not compile, or not within the bounds on memory and time.
+    OSError
+        It cannot be opened.
     """
-    path = (
-        path.absolute()
-    )  # of a relative one the engine looks for attached models in the wrong place
+    refuse_unbounded(path)
+    # of a relative one the engine looks for attached models in the wrong place
+    path = path.absolute()
     model = mujoco.MjSpec.from_file(str(path)).compile()
     unread = {found.actuator for found in devices_of(model) if not found.sensor}
 

@@ -55,9 +55,9 @@ def view_command(
       inerter view half_car
       inerter view car.xml --shake road=0.01@1.5 --picture view.png
     """
+    from inerter.engine_errors import SimulationError
     from inerter.folder import refuse_file
     from inerter.models import model_file
-    from inerter.simulate.errors import SimulationError
     from inerter.view.picture import write_picture
     from inerter.view.session import Session
     from inerter.view.shake import read_shake, usual_shake
@@ -85,7 +85,7 @@ def view_command(
 
 
 def _serve(session: Session, device: str, shake: Shake | None, port: int) -> None:
-    from inerter.simulate.errors import SimulationError
+    from inerter.engine_errors import SimulationError
 
     try:
         from inerter.view.browser import run

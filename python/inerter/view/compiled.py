@@ -11,7 +11,8 @@ import numpy as np
 
 from inerter.core import Device, lists, parameters
 from inerter.device_in_model import PLUGIN, DeviceInModel, devices_of
-from inerter.simulate.errors import SimulationError, engine_text
+from inerter.engine_errors import SimulationError, cannot_be_opened, engine_text
+from inerter.model_bounds import refuse_not_a_number
 from inerter.simulate.load import readable_spec
 from inerter.view.sliders import keys_of, value_of
 
@@ -56,8 +57,11 @@ def compiled(path: Path, laws: Mapping[str, str]) -> Compiled:
         _make_live(plain, places, laws)
         _take_plugin_out(plain, model.npluginstate)
         shown = plain.compile()
+        refuse_not_a_number(model)
     except SimulationError:
         raise
+    except OSError as error:
+        raise SimulationError(cannot_be_opened(path, error)) from None
     except (ValueError, mujoco.FatalError) as error:
         raise SimulationError(f"{path}: {engine_text(error)}") from None
     return Compiled(model, shown, {place.name: place for place in devices_of(model)}, first)

@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.engine_errors import SimulationError
 from inerter.folder import write_files
 from inerter.simulate.checks import engine_warnings
-from inerter.simulate.errors import SimulationError
 from inerter.simulate.video import renderer
 from inerter.view.loop import Loop, instant
 from inerter.view.session import Session

@@ -16,7 +16,7 @@ import numpy as np
 
 from inerter.core import Device, DeviceError, friction_laws, parameters
 from inerter.device_in_model import DeviceInModel
-from inerter.simulate.errors import SimulationError
+from inerter.engine_errors import SimulationError
 from inerter.simulate.load import start
 from inerter.view.compiled import Compiled, compiled
 from inerter.view.sliders import Slider, slider

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import mujoco
 
-from inerter.simulate.errors import SimulationError
+from inerter.engine_errors import SimulationError
 
 
 @dataclass(frozen=True)

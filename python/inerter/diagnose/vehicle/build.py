@@ -28,7 +28,13 @@ from inerter.core import Device, DeviceError, parameters
 from inerter.device_in_model import DeviceInModel, devices_of
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.parts import Parts, Suspension, Tyre, VehicleLink, find_parts
-from inerter.engine_errors import COMPILE_ERRORS, engine_text, timestep_fault
+from inerter.engine_errors import (
+    COMPILE_ERRORS,
+    cannot_be_opened,
+    engine_text,
+    timestep_fault,
+)
+from inerter.model_bounds import refuse_not_a_number, refuse_unbounded
 from inerter.plugin import load_plugin
 
 _FAR = 1e12  # a force that no one-sided actuator reaches [N]
@@ -266,12 +272,14 @@ def read_model(path: Path) -> UserModel:
         It cannot be read or compiled, or there is no device in it.
     """
     load_plugin()
-    if not path.is_file():
-        raise DeviceError(f"{path}: no such file; check the path")
     try:
+        refuse_unbounded(path)
         # the engine looks up attached models wrongly where the path is relative
         spec = mujoco.MjSpec.from_file(str(path.absolute()))
         model = spec.copy().compile()
+        refuse_not_a_number(model)
+    except OSError as error:
+        raise DeviceError(cannot_be_opened(path, error)) from None
     except COMPILE_ERRORS as error:
         raise DeviceError(f"{path}: {engine_text(error)}") from None
     if fault := timestep_fault(model.opt.timestep):
