@@ -1,10 +1,10 @@
 // Forces that are found together with the acceleration: see coupled.h.
 //
-// Group by group (groups.h): without constraints as the few numbers that the devices' accelerations
-// are (monotone.h), with constraints in the dofs of the group (constrained.h), whose solution the
-// engine's solver starts from. Where it leaves it (noslip, no warm start, gyroscopic terms of
-// `discrete`) it is asked what it makes of the forces, some rounds long, so that they fit the
-// acceleration that it ends with.
+// Group by group (groups.h): devices on joints, without constraints, in their dofs (joints.h);
+// without constraints as the few numbers that the devices' accelerations are (monotone.h), with
+// constraints in the dofs of the group (constrained.h), whose solution the engine's solver starts
+// from. Where it leaves it (noslip, no warm start, gyroscopic terms of `discrete`) it is asked what
+// it makes of the forces, some rounds long, so that they fit the acceleration that it ends with.
 
 #include "mujoco/coupled.h"
 
@@ -12,6 +12,7 @@
 
 #include "mujoco/constrained.h"
 #include "mujoco/engine_fit.h"
+#include "mujoco/joints.h"
 #include "mujoco/smooth.h"
 #include "mujoco/solution.h"
 
@@ -158,6 +159,17 @@ static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* 
   return monotone_solve(solution_law, part->all, n, W, p, part->a, part->force, scratch);
 }
 
+static int solve_joints(const mjModel* m, mjData* d, Solution* part, const Group* group) {
+  begin_all(m, part, NULL);
+  Joints problem = {part->n, part->all, solution_law, 1, part->moment, part->bias};
+  for (int i = 0; i < part->n; i++) {
+    const Instance* self = part->all[i].self;
+    problem.lines &= inerter_step_is_line(&part->all[i].step);
+    part->a[i] = instance_along(m, d, self, d->qacc_warmstart) + self->bias;
+  }
+  return joints_solve(m, d, &part->metric, group, &problem, part->smooth, part->a, part->force);
+}
+
 static int solve_constrained(const mjModel* m, mjData* d, Solution* part, const Group* group,
                              mjtNum* W) {
   int asked = 0;
@@ -193,8 +205,9 @@ static void solve_groups(const mjModel* m, mjData* d, Solution* s) {
     const Group* group = s->groups + g;
     mj_markStack(d);
     Solution part = solution_part(d, s, group);
-    int rounds = group->nrow ? solve_constrained(m, d, &part, group, s->W[g])
-                             : solve_free(m, d, &part, group, s->W[g]);
+    int rounds = s->on_joints  ? solve_joints(m, d, &part, group)
+                 : group->nrow ? solve_constrained(m, d, &part, group, s->W[g])
+                               : solve_free(m, d, &part, group, s->W[g]);
     s->constrained |= group->nrow > 0;
     s->large |= part.large;
     for (int i = 0; i < part.n; i++) {
@@ -208,22 +221,42 @@ static void solve_groups(const mjModel* m, mjData* d, Solution* s) {
 
 //------------------------------ solution ----------------------------------------------------------
 
+// whether every group can do without W; one that has constraints makes the others want theirs
+static int all_on_joints(const mjModel* m, const mjData* d, const Solution* s) {
+  for (int i = 0; i < s->n; i++) {
+    if (asks_mobility(s->all + i)) {
+      return 0;
+    }
+  }
+  for (int g = 0; g < s->ngroup; g++) {
+    if (!joints_fit(m, d, &s->metric, s->groups + g, s->moment)) {
+      return 0;
+    }
+  }
+  return 1;
+}
+
 static Solution prepare(const mjModel* m, mjData* d, int last) {
   int most = last + 1;
   Solution s = {0};
   s.all = mj_stackAllocByte(d, (size_t)most * sizeof(Coupled), _Alignof(Coupled));
+  s.groups = mj_stackAllocByte(d, (size_t)most * sizeof(Group), _Alignof(Group));
   s.moment = mj_stackAllocInt(d, most);
-  s.bias = mj_stackAllocNum(d, most);
+  s.bias = mj_stackAllocNum(d, 3 * most + 2 * m->nv);
+  s.a = s.bias + most;
+  s.force = s.a + most;
+  s.smooth = s.force + most;
+  s.shift = s.smooth + m->nv;
   collect(m, d, last, &s);
-  s.a = mj_stackAllocNum(d, s.n);
-  s.force = mj_stackAllocNum(d, s.n);
-  s.smooth = mj_stackAllocNum(d, m->nv);
-  s.shift = mj_stackAllocNum(d, m->nv);
   smooth_without(m, d, last, s.smooth, s.shift);
   mju_addTo(s.smooth, s.shift, m->nv);
   s.metric = metric_of_step(m, d);
-  s.groups = mj_stackAllocByte(d, (size_t)s.n * sizeof(Group), _Alignof(Group));
   s.ngroup = groups_find(m, d, &s.metric, s.n, s.moment, s.groups);
+  s.on_joints = all_on_joints(m, d, &s);
+  if (s.on_joints) {
+    return s;
+  }
+  metric_factor(m, d, &s.metric);
   s.W = (mjtNum**)mj_stackAllocByte(d, (size_t)s.ngroup * sizeof(mjtNum*), _Alignof(mjtNum*));
   for (int g = 0; g < s.ngroup; g++) {
     s.W[g] = mj_stackAllocNum(d, s.groups[g].n * s.groups[g].n);

@@ -66,6 +66,7 @@ static void move(const mjModel* m, mjData* d, const mjtNum* qacc, int n, Now* al
   int nv = (int)m->nv;
   mj_markStack(d);
   Metric metric = metric_of_step(m, d);
+  metric_factor(m, d, &metric);
   mjtNum* J = mj_stackAllocNum(d, (size_t)n * nv);
   mjtNum* X = mj_stackAllocNum(d, (size_t)n * nv);
   mjtNum* pull = mj_stackAllocNum(d, nv);

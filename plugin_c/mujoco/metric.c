@@ -6,13 +6,11 @@
 
 //------------------------------ factors -----------------------------------------------------------
 
-// factor H, whose lower half stands in metric->matrix in the sparsity of M
-static void factor_cholesky(const mjModel* m, mjData* d, Metric* metric) {
+// places for the factor of H, whose lower half stands in metric->matrix in the sparsity of M
+static void hold_cholesky(const mjModel* m, mjData* d, Metric* metric) {
   metric->kind = METRIC_CHOLESKY;
   metric->factor = mj_stackAllocNum(d, m->nC);
   metric->inverse = mj_stackAllocNum(d, m->nv);
-  mju_copy(metric->factor, metric->matrix, m->nC);
-  mj_factorI(metric->factor, metric->inverse, m->nv, m->M_rownnz, m->M_rowadr, m->M_colind, NULL);
 }
 
 // Euler: joint damping on the diagonal; returns 0 if there is none
@@ -106,7 +104,7 @@ static Metric metric_of_euler(const mjModel* m, mjData* d) {
   metric.matrix = mj_stackAllocNum(d, m->nC);
   mju_copy(metric.matrix, d->M, m->nC);
   if (add_joint_damping(m, d, metric.matrix)) {
-    factor_cholesky(m, d, &metric);
+    hold_cholesky(m, d, &metric);
   }
   return metric;
 }
@@ -128,7 +126,7 @@ static Metric metric_of_implicitfast(const mjModel* m, mjData* d) {
       mju_copy(metric.matrix + m->M_rowadr[i], d->M + m->M_rowadr[i], m->M_rownnz[i]);
     }
   }
-  factor_cholesky(m, d, &metric);
+  hold_cholesky(m, d, &metric);
   return metric;
 }
 
@@ -139,8 +137,6 @@ static Metric metric_of_implicit(const mjModel* m, mjData* d) {
     mjtNum inertia = m->mapM2D[k] >= 0 ? d->M[m->mapM2D[k]] : 0;
     metric.matrix[k] = inertia - m->opt.timestep * d->qDeriv[k];
   }
-  mju_copy(metric.factor, metric.matrix, m->nD);
-  factor_lu(m, d, metric.factor);
   return metric;
 }
 
@@ -158,6 +154,16 @@ Metric metric_of_step(const mjModel* m, mjData* d) {
         return (Metric){METRIC_INERTIA, NULL, NULL, NULL};
       }
       return (Metric){d->efm_active ? METRIC_DISCRETE : METRIC_INERTIA, NULL, NULL, NULL};
+  }
+}
+
+void metric_factor(const mjModel* m, mjData* d, const Metric* metric) {
+  if (metric->kind == METRIC_CHOLESKY) {
+    mju_copy(metric->factor, metric->matrix, m->nC);
+    mj_factorI(metric->factor, metric->inverse, m->nv, m->M_rownnz, m->M_rowadr, m->M_colind, NULL);
+  } else if (metric->kind == METRIC_LU) {
+    mju_copy(metric->factor, metric->matrix, m->nD);
+    factor_lu(m, d, metric->factor);
   }
 }
 

@@ -23,8 +23,10 @@ typedef struct Metric_ {
   mjtNum* inverse;  // inverse diagonal of the factor (METRIC_CHOLESKY)
 } Metric;
 
-// The metric of the present step, factorised; it lives on the stack of mjData.
+// The metric of the present step; it lives on the stack of mjData. And its factor, that is wanted
+// before anything is solved with it.
 Metric metric_of_step(const mjModel* m, mjData* d);
+void metric_factor(const mjModel* m, mjData* d, const Metric* metric);
 
 // Whether the acceleration of the step differs from mjData.qacc.
 int metric_moves_qacc(const Metric* metric);

@@ -29,6 +29,7 @@ typedef struct Solution_ {
   Metric metric;
   int ngroup;
   Group* groups;
+  int on_joints;    // 1: all are solved for without W (joints.h)
   mjtNum** W;       // of each group: how its accelerations fall with its forces
   int constrained;  // 1: constraints act on some group
   int large;        // 1: on one too large to be solved here
