@@ -4,7 +4,7 @@
 //   p  = clamp(u, lower, upper)                                                         T = 0
 //
 // p the parameter named by `control`, in its own unit; u the command, in the same unit; p_0 the
-// value that is stated, where nothing is: lower. lower, upper control_lower, control_upper; T [s]
+// value that is stated, where nothing is: the default within the bounds. lower, upper control_lower, control_upper; T [s]
 // control_lag. z [unit of p] control_change: all states 0 is the device as stated. Exact at a
 // constant command.
 //
@@ -139,13 +139,13 @@ static int check_control(InerterDevice* device, char* message) {
   }
   double* value = value_of(device);
   if (!inerter_is_given(device, inerter_controlled(device))) {
-    *value = lower;
+    *value = isnan(*value) ? lower : clamp(*value, lower, upper);
     inerter_mark_given(device, inerter_controlled(device));
   }
   if (!(*value >= lower && *value <= upper)) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "%s is %g %s, but the control sets it from %g to %g; give a value between "
-             "control_lower and control_upper, or none: then it begins at control_lower",
+             "control_lower and control_upper, or none: then it begins at the nearer one",
              p->name, *value, p->unit, lower, upper);
     return -1;
   }

@@ -208,7 +208,7 @@ def _device(model: mujoco.MjModel, actuator: int, instance: int) -> DeviceInMode
 def _live(model: mujoco.MjModel, instance: int) -> dict[str, int]:
     """Addresses of the numerics that hold parameters of an instance, as the plugin finds them."""
     found = {}
-    # one place between them, that of gas_law
+    # one place between them, that of gas_law (no number that could be live)
     keys = (*parameters(), "", *lists())
     for i, key in enumerate(keys if model.nnumeric else ()):
         address = plugin_library().inerter_live_address(model._address, instance, i)
