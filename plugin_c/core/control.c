@@ -4,22 +4,22 @@
 //   p  = clamp(u, lower, upper)                                                         T = 0
 //
 // p the parameter named by `control`, in its own unit; u the command, in the same unit; p_0 the
-// value that is stated, where nothing is: the default within the bounds. lower, upper control_lower, control_upper; T [s]
-// control_lag. z [unit of p] control_change: all states 0 is the device as stated. Exact at a
-// constant command.
+// value that is stated, where nothing is: the default within the bounds. lower, upper
+// control_lower, control_upper; T [s] control_lag. z [unit of p] control_change: all states 0 is
+// the device as stated. Exact at a constant command.
 //
 // Energy. The laws hold at the value of the moment: F = p a of an inertance, F = p x of a spring. A
 // device stores E(x, v, z; p), and its actuator gives it
 //   P = dE/dp p':   p' v^2 / 2 of an inertance,  p' x^2 / 2 of a spring
 // so that F v + P = dE/dt + heat. Who raises an inertance at speed pays for what it stores
-// more; who lowers it is paid, and at once (T = 0) by the difference of E before and after. Dampers,
-// valves and friction levels store nothing: P = 0, such a device is passive at any command.
-// Why F = p a and not d(p v)/dt: it needs no rate of the command, and has no impulse where p jumps.
-// It is the semi-active inerter of the control literature. One whose ratio changes without work has
-// F = p a + p' v / 2, one whose flywheel's masses move F = p a + p' v; state what is missing by a
-// force of your own.
-// Source: Karnopp, Crosby, Harwood 1974 (skyhook); Hu, Chen, Shu, Huang 2014 (semi-active inerter).
-// Not modelled: power and dynamics of the actuator beyond the lag, hysteresis of the field.
+// more; who lowers it is paid, and at once (T = 0) by the difference of E before and after.
+// Dampers, valves and friction levels store nothing: P = 0, such a device is passive at any
+// command. Why F = p a and not d(p v)/dt: it needs no rate of the command, and has no impulse where
+// p jumps. It is the semi-active inerter of the control literature. One whose ratio changes without
+// work has F = p a + p' v / 2, one whose flywheel's masses move F = p a + p' v; state what is
+// missing by a force of your own. Source: Karnopp, Crosby, Harwood 1974 (skyhook); Hu, Chen, Shu,
+// Huang 2014 (semi-active inerter). Not modelled: power and dynamics of the actuator beyond the
+// lag, hysteresis of the field.
 
 #include <stdio.h>
 

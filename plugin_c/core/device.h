@@ -255,7 +255,8 @@ INERTER_API void inerter_state_step(const InerterDevice* device, double x, doubl
 INERTER_API void inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
                                         double force, double* z);
 
-//------------------------------ control ------------------------------------------------------------
+//------------------------------ control
+//------------------------------------------------------------
 
 // From now on the device has the value of its controlled parameter that a command (in the
 // parameter's unit, limited to the bounds; NaN: the value that is stated) and the states z say;
@@ -266,7 +267,8 @@ INERTER_API void inerter_command(InerterDevice* device, double command, const do
 // Index of the parameter that the control sets, -1 where it is a force.
 INERTER_API int inerter_controlled(const InerterDevice* device);
 
-// Power that the actuator gives to the device as it changes the parameter [W]: dE/dp p' (control.c).
+// Power that the actuator gives to the device as it changes the parameter [W]: dE/dp p'
+// (control.c).
 INERTER_API double inerter_control_power(const InerterDevice* device, double x, double v,
                                          const double* z);
 

@@ -35,8 +35,8 @@ static void step_between(const InerterDevice* device, const double* x, const dou
 enum { BLOCK = 256 };
 
 static int is_plain(const InerterDevice* device) {
-  return !device->ncontrol && !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) && !inerter_has_load_friction(device) &&
-         device->friction_backlash == 0;
+  return !device->ncontrol && !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) &&
+         !inerter_has_load_friction(device) && device->friction_backlash == 0;
 }
 
 // b a + T with the friction forces given, for n samples

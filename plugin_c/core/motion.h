@@ -38,9 +38,8 @@ INERTER_API void inerter_evaluate(const InerterDevice* device, int n, const doub
 // The same with a command of the control at each of them; result is 6 x n, last the power of the
 // control's actuator.
 INERTER_API void inerter_evaluate_commanded(const InerterDevice* device, int n, const double* x,
-                                            const double* v, const double* a,
-                                            const double* command, const double* z, double* result,
-                                            double* rates);
+                                            const double* v, const double* a, const double* command,
+                                            const double* z, double* result, double* rates);
 
 #ifdef __cplusplus
 }

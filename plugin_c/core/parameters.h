@@ -179,16 +179,16 @@
   X(flywheel, "beside the inertance, behind the series element")
 
 // what the control is: X(identifier, meaning); but for `force` the parameter that it sets
-#define INERTER_CONTROLS(X)                                          \
-  X(force, "a force beside the device")                              \
-  X(viscous, "viscous damping: a magnetorheological or valve damper") \
-  X(quadratic_damping, "quadratic damping: an orifice")              \
-  X(flywheel_viscous, "viscous damping of the flywheel: a brake")    \
-  X(minor_loss, "loss of the channel: a valve in it")                \
+#define INERTER_CONTROLS(X)                                                        \
+  X(force, "a force beside the device")                                            \
+  X(viscous, "viscous damping: a magnetorheological or valve damper")              \
+  X(quadratic_damping, "quadratic damping: an orifice")                            \
+  X(flywheel_viscous, "viscous damping of the flywheel: a brake")                  \
+  X(minor_loss, "loss of the channel: a valve in it")                              \
   X(coulomb_force, "sliding friction level: a clutch, a magnetorheological brake") \
-  X(static_force, "breakaway friction level")                        \
-  X(stiffness, "parallel stiffness")                                 \
-  X(bw_stiffness, "stiffness of the Bouc-Wen law: a magnetorheological damper") \
+  X(static_force, "breakaway friction level")                                      \
+  X(stiffness, "parallel stiffness")                                               \
+  X(bw_stiffness, "stiffness of the Bouc-Wen law: a magnetorheological damper")    \
   X(inertance, "inertance")
 
 #endif  // INERTER_CORE_PARAMETERS_H_

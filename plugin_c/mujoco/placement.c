@@ -208,8 +208,8 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
     double own_viscous = device->control == INERTER_CONTROL_viscous ? 0 : device->viscous;
     if ((!series && merge(m, actuator, device, INERTER_INDEX_inertance, kInertanceSlot,
                           device->inertance, "armature", &inertance, message)) ||
-        merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, own_viscous, "damping", &viscous,
-              message)) {
+        merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, own_viscous, "damping",
+              &viscous, message)) {
       return -1;
     }
     model->actuator_armature[actuator] = inertance;

@@ -221,7 +221,7 @@ def test_refusals(values: dict[str, Any], says: str) -> None:
         Device(**values)
     if values.get("control") != "coulomb_force":
         # the reference leaves a parameter that no law reads alone
-        with pytest.raises(ValueError, match="control|channel|viscous"):
+        with pytest.raises(ValueError, match=r"control|channel|viscous"):
             ReferenceDevice(**values)
 
 

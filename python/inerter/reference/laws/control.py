@@ -4,8 +4,8 @@
     without lag (T = 0):  p = u
 
 Symbols: p the parameter that `control` names, in its unit; u `command`; p0 the value that is
-stated, where none is the default within the bounds; T `control_lag` [s]; lower, upper `control_lower`,
-`control_upper`; z "control_change", the state, 0 at the value that is stated.
+stated, where none is the default within the bounds; T `control_lag` [s]; lower, upper
+`control_lower`, `control_upper`; z "control_change", the state, 0 at the value that is stated.
 Energy: the laws hold at the value of the moment, so that the actuator gives dE/dp p' [W], E the
 stored energy: p' v^2 / 2 of an inertance, p' x^2 / 2 of a spring; nothing of dampers and friction.
 Source: Hu, Chen, Shu, Huang 2014 (semi-active inerter, F = b(t) a); first-order lag.
