@@ -65,9 +65,9 @@ def device_controls(model: mujoco.MjModel) -> list[int]:
 def _sets_parameter(spec: mujoco.MjSpec, actuator: Any) -> bool:
     """Whether the device's control is another than a force."""
     holder = actuator.plugin
-    instance = spec.plugin(holder.name) if holder.name else None
-    config = dict(holder.config) | dict(instance.config if instance else {})
-    return config.get("control", "force") != "force"
+    # what refers to an instance has no configuration of its own: reading it ends the process
+    owner = spec.plugin(holder.name) if holder.name else holder
+    return owner is not None and owner.config.get("control", "force") != "force"
 
 
 def _is_device(spec: mujoco.MjSpec, actuator: Any) -> bool:
