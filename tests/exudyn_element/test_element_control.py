@@ -152,7 +152,7 @@ def test_refusals() -> None:
 
 
 def test_a_command_is_taken_in_little_time() -> None:
-    # recorded anew: two parts in a thousand of a second, four times that at most on a busy machine
+    # recorded anew: one part in a thousand of a second, more on a busy machine
     system = line([4.0], [1.0])
     made = CreateInerter(
         system.mbs, "d", [None, system.parts[0]], viscous=4.0, control="viscous",

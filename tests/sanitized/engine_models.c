@@ -130,7 +130,7 @@ static void configuration(Text* text, int law, int variant, double rest_length) 
     case LAGGING:
       add(text, "<config key=\"control\" value=\"%s\"/>",
           variant == LAGGING ? "inertance" : "viscous");
-      key(text, "control_lower", 1);
+      key(text, "control_lower", variant == LAGGING ? 1 : 0);
       key(text, "control_upper", 20);
       key(text, "control_lag", variant == LAGGING ? 0.02 : 0);
       break;
