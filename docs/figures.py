@@ -5,6 +5,8 @@ The page builder runs this; `python docs/figures.py` does it by hand.
 
 from __future__ import annotations
 
+import re
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -280,10 +282,63 @@ def coil() -> None:
     loops("coil", devices, 1.0, AMPLITUDE)
 
 
+def control() -> None:
+    """A damping and an inertance that a control sets, at once and with a lag."""
+    t = np.arange(0, 1.0, 1 / RATE)
+    motion = t, 0.5 * t, np.full_like(t, 0.5), np.zeros_like(t)
+    figure = Figure(figsize=(9, 3), layout="constrained")
+    force, energy = figure.subplots(1, 2)
+    for lag in (0.0, 0.05):
+        bounds = {"control_lower": 50.0, "control_upper": 400.0, "control_lag": lag}
+        label = f"lag {1000 * lag:g} ms"
+        damper = Device(viscous=50, control="viscous", **bounds)
+        command = np.where((t > 0.2) & (t < 0.6), 300.0, 0.0)
+        told = damper.along(1 / RATE, *motion[1:], command=command)
+        force.plot(t, told["total"], label=label)
+        flywheel = Device(inertance=50, control="inertance", **bounds)
+        told = flywheel.along(1 / RATE, *motion[1:], command=command)
+        said = flywheel.evaluate(*motion[1:], told["states"] if lag else 0.0, command=command)
+        energy.plot(t, said["stored_energy"], label=label)
+    force.set(xlabel="time [s]", ylabel="force [N]", title="damper, 0.5 m/s, command 300 N s/m")
+    energy.set(xlabel="time [s]", ylabel="stored energy [J]", title="inertance, 0.5 m/s: no force")
+    energy.legend(frameon=False)
+    _save(figure, "control")
+
+
+def semi_active() -> None:
+    """The ride of the how-to page, with its own code."""
+    page = (Path(__file__).parent / "how_to" / "semi_active.md").read_text(encoding="utf-8")
+    (car,) = re.findall(r"^```xml\n(.*?)^```", page, re.S | re.M)
+    names: dict[str, Any] = {}
+    code = re.findall(r"^```python\n(.*?)^```", page, re.S | re.M)[0]
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder) / "car.xml"
+        place.write_text(car, encoding="utf-8")
+        code = code.replace('"car.xml"', repr(str(place)))
+        exec(compile(code, "semi_active.md", "exec"), names)
+    figure = Figure(figsize=(9, 4.5), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    ride, shown = names["ride"], slice(2000, 5000)
+    t = 1e-3 * np.arange(10000)[shown]
+    best = min(names["passive"], key=names["passive"].get)
+    for label, law in (
+        (f"{best} N s/m, the best constant damping", lambda body, travel: best),
+        ("skyhook", names["skyhook"]),
+    ):
+        rows = ride(law)
+        size = names["rms"](rows)
+        above.plot(t, rows[shown, 0], label=f"{label}: {size:.2f} m/s$^2$ rms", linewidth=1)
+        below.plot(t, rows[shown, 1], linewidth=1)
+    above.set(ylabel="body acceleration [m/s$^2$]")
+    above.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+    below.set(xlabel="time [s]", ylabel="damping [N s/m]")
+    _save(figure, "semi_active")
+
+
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
     damping_and_stiffness, branches, inertance, series, friction_side, end_stops, gas, fluid,
-    along_the_stroke, along_each_direction, coil,
+    along_the_stroke, along_each_direction, coil, control, semi_active,
 )  # fmt: skip
 
 

@@ -102,6 +102,10 @@ static int check_friction(const InerterDevice* device, char* message) {
     return check_slip(device, message);
   }
   int bristle = friction == INERTER_FRICTION_dahl || friction == INERTER_FRICTION_lugre;
+  if (!bristle && (device->control == INERTER_CONTROL_coulomb_force ||
+                   device->control == INERTER_CONTROL_static_force)) {
+    return 0;  // a clutch may be open
+  }
   if ((bristle ? device->coulomb_force : device->static_force) <= 0) {
     return refuse(message,
                   "coulomb_force is 0 N, but friction is \"%s\"; give coulomb_force > 0 N or "
@@ -303,7 +307,10 @@ static int check_series(const InerterDevice* device, char* message) {
 }
 
 static uint32_t parts_of(const InerterDevice* p) {
-  int pipe = p->fluid_viscosity > 0 || p->minor_loss > 0, gas = p->gas_pressure > 0;
+  // where the control sets it, what is 0 now may become more
+  int valve = p->control == INERTER_CONTROL_minor_loss;
+  int brake = p->control == INERTER_CONTROL_flywheel_viscous || p->flywheel_viscous > 0;
+  int pipe = p->fluid_viscosity > 0 || p->minor_loss > 0 || valve, gas = p->gas_pressure > 0;
   int series = p->series_stiffness > 0 || p->series_damping > 0;
   int varying =
       p->inertance_gradient != 0 || p->inertance_curvature != 0 || p->inertance_speed_gradient != 0;
@@ -311,10 +318,23 @@ static uint32_t parts_of(const InerterDevice* p) {
   int rubbing = p->friction != INERTER_FRICTION_none || inerter_has_load_friction(p);
   int wheel = series && rubbing && p->friction_side == INERTER_SIDE_flywheel;
   return curve_parts(p) | (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) |
-         (gas ? PART_GAS : 0) | (pipe || gas || p->flywheel_viscous > 0 ? PART_FLYWHEEL : 0) |
+         (gas ? PART_GAS : 0) | (pipe || gas || brake ? PART_FLYWHEEL : 0) |
          (series ? PART_SERIES : 0) | (p->backlash > 0 ? PART_BACKLASH : 0) |
          (stops ? PART_STOPS : 0) | (branch_count(p) ? PART_BRANCHES : 0) |
          (wheel ? PART_WHEEL_FRICTION : 0);
+}
+
+int device_check(InerterDevice* device, char* message) {
+  if (isnan(device->static_force)) {
+    device->static_force = device->coulomb_force;
+  }
+  return check_law(device, message) || check_ranges(device, message) ||
+                 check_friction(device, message) || check_load(device, message) ||
+                 check_branches(device, message) || check_stops(device, message) ||
+                 check_gas(device, message) || check_channel(device, message) ||
+                 check_series(device, message) || curve_check(device, message)
+             ? -1
+             : 0;
 }
 
 int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
@@ -327,14 +347,10 @@ int inerter_finish(InerterDevice* device, char message[INERTER_MESSAGE_SIZE]) {
   if (!inerter_friction_side_name(device->friction_side)) {
     return refuse(message, "friction_side is %d: no such side", device->friction_side);
   }
-  if (isnan(device->static_force)) {
-    device->static_force = device->coulomb_force;
+  if (!inerter_control_name(device->control)) {
+    return refuse(message, "control is %d: no such control", device->control);
   }
-  if (check_law(device, message) || check_ranges(device, message) ||
-      check_friction(device, message) || check_load(device, message) ||
-      check_branches(device, message) || check_stops(device, message) ||
-      check_gas(device, message) || check_channel(device, message) ||
-      check_series(device, message) || curve_check(device, message)) {
+  if (control_check(device, message) || device_check(device, message)) {
     return -1;
   }
   inerter_find_parts(device);
@@ -347,6 +363,7 @@ void inerter_find_parts(InerterDevice* device) {
                           ? slip_count(device)
                           : inerter_friction_nstate(device->friction);
   device->nbranch = branch_count(device);
+  device->ncontrol = device->control != INERTER_CONTROL_force && device->control_lag > 0;
   device->nstate = device->nfriction + (has(device, PART_SERIES) ? 2 : 0) +
-                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch;
+                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch + device->ncontrol;
 }

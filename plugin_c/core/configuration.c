@@ -78,8 +78,9 @@ static int set_law(const char* key, const char* text, const char* (*name)(int), 
       return 0;
     }
   }
+  const char* kind = !strcmp(key, "friction_side") ? "side" : !strcmp(key, "control") ? key : "law";
   int length = snprintf(message, INERTER_MESSAGE_SIZE, "%s is \"%.60s\": no such %s; choose one of",
-                        key, text, strcmp(key, "friction_side") ? "law" : "side");
+                        key, text, kind);
   for (int i = 0; name(i) && length < INERTER_MESSAGE_SIZE; i++) {
     length += snprintf(message + length, INERTER_MESSAGE_SIZE - length, " %s", name(i));
   }
@@ -186,6 +187,13 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
       return -1;
     }
     inerter_mark_given(device, INERTER_INDEX_friction_side);
+    return 0;
+  }
+  if (!strcmp(key, "control")) {
+    if (set_law(key, text, inerter_control_name, &device->control, message)) {
+      return -1;
+    }
+    inerter_mark_given(device, INERTER_INDEX_control);
     return 0;
   }
   for (int i = 0; i < INERTER_NLIST; i++) {

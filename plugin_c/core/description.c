@@ -40,6 +40,15 @@ static const struct {
 #undef X
 };
 
+static const struct {
+  const char* name;
+  const char* meaning;
+} kControl[] = {
+#define X(identifier, meaning) {#identifier, meaning},
+    INERTER_CONTROLS(X)
+#undef X
+};
+
 const FrictionLaw* const inerter_friction_law[] = {
 #define inerter_none inerter_coulomb  // never called: "none" is tested first
 #define X(identifier, nstate, meaning) &inerter_##identifier,
@@ -106,6 +115,14 @@ const char* inerter_friction_side_meaning(int i) {
   return i >= 0 && i < INERTER_NSIDE ? kSide[i].meaning : NULL;
 }
 
+const char* inerter_control_name(int i) {
+  return i >= 0 && i < INERTER_NCONTROL ? kControl[i].name : NULL;
+}
+
+const char* inerter_control_meaning(int i) {
+  return i >= 0 && i < INERTER_NCONTROL ? kControl[i].meaning : NULL;
+}
+
 const char* inerter_state_name(const InerterDevice* device, int i) {
   static const char* const kSeries[] = {"series_deflection", "flywheel_velocity", "gap_position"};
   if (i < 0 || i >= device->nstate) {
@@ -116,8 +133,11 @@ const char* inerter_state_name(const InerterDevice* device, int i) {
                                       "friction_state_7", "friction_state_8"};
   static const char* const kBranch[] = {"branch_deflection_1", "branch_deflection_2",
                                         "branch_deflection_3"};
-  if (i >= device->nstate - device->nbranch) {
-    return kBranch[i - device->nstate + device->nbranch];
+  if (device->ncontrol && i == device->nstate - 1) {
+    return "control_change";
+  }
+  if (i >= branch_index(device)) {
+    return kBranch[i - branch_index(device)];
   }
   if (i >= device->nfriction) {
     return kSeries[i - device->nfriction];

@@ -77,6 +77,9 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
   if (has(device, PART_BRANCHES)) {
     branches_rate(device, v, z + branch_index(device), rate + branch_index(device));
   }
+  if (device->ncontrol) {
+    rate[device->nstate - 1] = control_rate(device, z[device->nstate - 1]);
+  }
 }
 
 void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
@@ -89,6 +92,9 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double*
   }
   if (has(device, PART_BRANCHES)) {
     branches_step(device, v, z + branch_index(device), h);
+  }
+  if (device->ncontrol) {
+    z[device->nstate - 1] = control_step(device, z[device->nstate - 1], h);
   }
 }
 

@@ -15,8 +15,9 @@
 // positive. For a rotational device read rad, N m and kg m^2.
 //
 // States z, each only where it is needed, in this order: the friction law's, s, w, the position of
-// the free play, the springs of the viscoelastic branches (branches.c). All 0: unloaded, the
-// flywheel at rest, in the middle of the play.
+// the free play, the springs of the viscoelastic branches (branches.c), the change of a parameter
+// that the control sets (control.c). All 0: unloaded, the flywheel at rest, in the middle of the
+// play, the parameter as stated.
 //
 // This file and its neighbours are plain C17: no allocation, no globals, no simulator.
 
@@ -62,6 +63,14 @@ typedef enum InerterSide_ {
       INERTER_NSIDE
 } InerterSide;
 
+// what the control is: INERTER_CONTROL_force, or a parameter, INERTER_CONTROL_viscous, ...
+typedef enum InerterControl_ {
+#define X(identifier, meaning) INERTER_CONTROL_##identifier,
+  INERTER_CONTROLS(X)
+#undef X
+      INERTER_NCONTROL
+} InerterControl;
+
 enum {
 #define X(name, ...) INERTER_INDEX_##name,
   INERTER_PARAMETERS(X)
@@ -69,11 +78,12 @@ enum {
       INERTER_NPARAMETER,
   INERTER_INDEX_gas_law,  // not numbers, but they can be given
   INERTER_INDEX_friction_side,
-  INERTER_NGIVEN = (INERTER_INDEX_friction_side + 64) / 64,
+  INERTER_INDEX_control,
+  INERTER_NGIVEN = (INERTER_INDEX_control + 64) / 64,
   INERTER_MAXSLIP = 8,                    // elements of maxwell_slip
   INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
   INERTER_MAXBRANCH = 3,
-  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH,
+  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH + 1,
   INERTER_MAXCURVE = 64,  // most values of a curve
   INERTER_MAXPERIOD = 8,  // most periods of a sum
   INERTER_MESSAGE_SIZE = 512
@@ -104,9 +114,12 @@ typedef struct InerterDevice_ {
   int friction;                    // InerterFriction
   int gas_law;                     // InerterGas
   int friction_side;               // InerterSide
+  int control;                     // InerterControl
   uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
   uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
   int nstate, nfriction, nbranch;  // states, of the friction law, of branches; by inerter_finish
+  int ncontrol;                    // 1: a state of the control
+  double control_rest, command;    // value as stated; the one that is commanded (inerter_command)
   InerterCurve curve[INERTER_NSTROKE];
 } InerterDevice;
 
@@ -187,6 +200,10 @@ INERTER_API const char* inerter_gas_law_meaning(int i);
 INERTER_API const char* inerter_friction_side_name(int i);
 INERTER_API const char* inerter_friction_side_meaning(int i);
 
+// Name and meaning of control i; NULL past the end.
+INERTER_API const char* inerter_control_name(int i);
+INERTER_API const char* inerter_control_meaning(int i);
+
 //------------------------------ configuration -----------------------------------------------------
 
 // Fill the device with the defaults.
@@ -237,6 +254,23 @@ INERTER_API void inerter_state_step(const InerterDevice* device, double x, doubl
 // begins with. Behind free play a friction of 0 has many states: the middle of the play.
 INERTER_API void inerter_state_of_force(const InerterDevice* device, double x, double v, double a,
                                         double force, double* z);
+
+//------------------------------ control
+//------------------------------------------------------------
+
+// From now on the device has the value of its controlled parameter that a command (in the
+// parameter's unit, limited to the bounds; NaN: the value that is stated) and the states z say;
+// nothing where the control is a force. z may be NULL: no change so far. Rates and steps of the
+// states follow the last command; every other function reads the value.
+INERTER_API void inerter_command(InerterDevice* device, double command, const double* z);
+
+// Index of the parameter that the control sets, -1 where it is a force.
+INERTER_API int inerter_controlled(const InerterDevice* device);
+
+// Power that the actuator gives to the device as it changes the parameter [W]: dE/dp p'
+// (control.c).
+INERTER_API double inerter_control_power(const InerterDevice* device, double x, double v,
+                                         const double* z);
 
 //------------------------------ forces and energy -------------------------------------------------
 
@@ -305,7 +339,8 @@ INERTER_API double inerter_step_force(const InerterStep* step, double a, double*
 INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, double v,
                                          const double* z);
 
-// Power turned into heat [W]: F v - d(stored energy)/dt - F_0 v. The constant force is external.
+// Power turned into heat [W]: F v - d(stored energy)/dt - F_0 v + inerter_control_power. The
+// constant force is external.
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                             double a, const double* z);
 

@@ -215,8 +215,17 @@ static inline const double* branch_element(const InerterDevice* p, int i) {
   return (const double*)p + offsetof(InerterDevice, branch_stiffness_1) / sizeof(double) + 2 * i;
 }
 static inline int branch_index(const InerterDevice* p) {
-  return p->nstate - p->nbranch;
+  return p->nstate - p->nbranch - p->ncontrol;
 }
+
+// check.c: see that everything but the control fits, and derive what was not set; -1 with a message
+int device_check(InerterDevice* device, char* message);
+
+// control.c: see that a control fits the device, whose other parts are not checked yet; the rate of
+// its state, and the state after a time h
+int control_check(InerterDevice* device, char* message);
+double control_rate(const InerterDevice* p, double z);
+double control_step(const InerterDevice* p, double z, double h);
 
 // oscillator.c: a flywheel on a linear spring, and its states after a time
 typedef struct Oscillator_ {

@@ -24,6 +24,9 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     double jerk = 6 * (v[0] + v[1] - 2 * mean) / (h * h);
     series_step(device, start, v[0], a, jerk, z, z + series_index(device), h);
   }
+  if (device->ncontrol) {
+    z[device->nstate - 1] = control_step(device, z[device->nstate - 1], h);
+  }
 }
 
 // Most devices are b a + T, with the friction law's state at most: their samples are taken law by
@@ -32,8 +35,8 @@ static void step_between(const InerterDevice* device, const double* x, const dou
 enum { BLOCK = 256 };
 
 static int is_plain(const InerterDevice* device) {
-  return !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) && !inerter_has_load_friction(device) &&
-         device->friction_backlash == 0;
+  return !device->ncontrol && !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) &&
+         !inerter_has_load_friction(device) && device->friction_backlash == 0;
 }
 
 // b a + T with the friction forces given, for n samples
@@ -84,10 +87,46 @@ void inerter_along(const InerterDevice* device, int n, double h, const double* x
   if (z) memcpy(z, now, size);
 }
 
+void inerter_along_commanded(const InerterDevice* device, int n, double h, const double* x,
+                             const double* v, const double* a, const double* command, double* z,
+                             double* total, double* friction, double* states) {
+  if (!command || device->control == INERTER_CONTROL_force) {
+    inerter_along(device, n, h, x, v, a, z, total, friction, states);
+    return;
+  }
+  InerterDevice present = *device;
+  double now[INERTER_MAXSTATE] = {0};
+  size_t nstate = (size_t)inerter_nstate(device), size = nstate * sizeof(double);
+  if (z) memcpy(now, z, size);
+  for (int i = 0; i < n; i++) {
+    // the step runs with the value of its start
+    if (nstate && i) step_between(&present, x + i - 1, v + i - 1, now, h);
+    inerter_command(&present, command[i], now);
+    InerterForce force = inerter_force(&present, x[i], v[i], a[i], now);
+    if (total) total[i] = force.total;
+    if (friction) friction[i] = force.friction;
+    if (states) memcpy(states + i * nstate, now, size);
+  }
+  if (z) memcpy(z, now, size);
+}
+
 void inerter_along_many(const InerterDevice* devices, int ndevice, int n, double h, const double* x,
                         const double* v, const double* a, double* total) {
   for (int k = 0; k < ndevice; k++) {
     inerter_along(devices + k, n, h, x, v, a, 0, total + (size_t)k * n, 0, 0);
+  }
+}
+
+static void evaluate(const InerterDevice* device, int n, int i, double x, double v, double a,
+                     const double* z, double* result, double* rates) {
+  InerterForce force = inerter_force(device, x, v, a, z);
+  result[i] = force.total;
+  result[n + i] = force.inertance;
+  result[2 * n + i] = force.friction;
+  result[3 * n + i] = inerter_stored_energy(device, x, v, z);
+  result[4 * n + i] = inerter_dissipated_power(device, x, v, a, z);
+  if (device->nstate) {
+    inerter_state_rate(device, x, v, z, rates + (size_t)i * (size_t)device->nstate);
   }
 }
 
@@ -96,14 +135,19 @@ void inerter_evaluate(const InerterDevice* device, int n, const double* x, const
   int nstate = inerter_nstate(device);
   for (int i = 0; i < n; i++) {
     const double* state = nstate ? z + (size_t)i * nstate : NULL;
-    InerterForce force = inerter_force(device, x[i], v[i], a[i], state);
-    result[i] = force.total;
-    result[n + i] = force.inertance;
-    result[2 * n + i] = force.friction;
-    result[3 * n + i] = inerter_stored_energy(device, x[i], v[i], state);
-    result[4 * n + i] = inerter_dissipated_power(device, x[i], v[i], a[i], state);
-    if (nstate) {
-      inerter_state_rate(device, x[i], v[i], state, rates + (size_t)i * nstate);
-    }
+    evaluate(device, n, i, x[i], v[i], a[i], state, result, rates);
+  }
+}
+
+void inerter_evaluate_commanded(const InerterDevice* device, int n, const double* x,
+                                const double* v, const double* a, const double* command,
+                                const double* z, double* result, double* rates) {
+  InerterDevice present = *device;
+  int nstate = inerter_nstate(device);
+  for (int i = 0; i < n; i++) {
+    const double* state = nstate ? z + (size_t)i * nstate : NULL;
+    inerter_command(&present, command[i], state);
+    evaluate(&present, n, i, x[i], v[i], a[i], state, result, rates);
+    result[5 * n + i] = inerter_control_power(&present, x[i], v[i], state);
   }
 }

@@ -18,6 +18,12 @@ INERTER_API void inerter_along(const InerterDevice* device, int n, double h, con
                                const double* v, const double* a, double* z, double* total,
                                double* friction, double* states);
 
+// The same with commands of the control, one at each sample, held until the next; NULL: none.
+INERTER_API void inerter_along_commanded(const InerterDevice* device, int n, double h,
+                                         const double* x, const double* v, const double* a,
+                                         const double* command, double* z, double* total,
+                                         double* friction, double* states);
+
 // The same for ndevice parameter sets; total is ndevice x n, states start at 0.
 INERTER_API void inerter_along_many(const InerterDevice* devices, int ndevice, int n, double h,
                                     const double* x, const double* v, const double* a,
@@ -28,6 +34,12 @@ INERTER_API void inerter_along_many(const InerterDevice* devices, int ndevice, i
 INERTER_API void inerter_evaluate(const InerterDevice* device, int n, const double* x,
                                   const double* v, const double* a, const double* z, double* result,
                                   double* rates);
+
+// The same with a command of the control at each of them; result is 6 x n, last the power of the
+// control's actuator.
+INERTER_API void inerter_evaluate_commanded(const InerterDevice* device, int n, const double* x,
+                                            const double* v, const double* a, const double* command,
+                                            const double* z, double* result, double* rates);
 
 #ifdef __cplusplus
 }

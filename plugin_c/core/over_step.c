@@ -159,6 +159,9 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     if (has(device, PART_BRANCHES)) {
       stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
     }
+    if (device->ncontrol) {
+      next[device->nstate - 1] = control_step(device, next[device->nstate - 1], h);
+    }
     force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }

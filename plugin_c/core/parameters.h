@@ -136,7 +136,14 @@
   X(curve_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the first value of every curve") \
   X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")  \
   X(coil_diameter, "m", 0, 0, INFINITY, CLOSED, "",                                                \
-    "diameter of the coil that the channel is wound to, D_c; 0: straight")
+    "diameter of the coil that the channel is wound to, D_c; 0: straight")                         \
+  /* a control that sets a parameter; values in its unit */                                        \
+  X(control_lower, "1", NAN, -INFINITY, INFINITY, CLOSED, "",                                      \
+    "smallest value that the control sets, in the unit of what it sets")                           \
+  X(control_upper, "1", NAN, -INFINITY, INFINITY, CLOSED, "",                                      \
+    "largest value that the control sets, in the unit of what it sets")                            \
+  X(control_lag, "s", 0, 0, INFINITY, CLOSED, "",                                                  \
+    "time constant with which the value follows the control; 0: at once")
 
 // What changes along the stroke (curve.c): X(name, unit, laws, meaning). Each has two lists of
 // numbers: NAME_curve, values at evenly spaced places, and NAME_periods, three numbers for each.
@@ -170,5 +177,18 @@
 #define INERTER_FRICTION_SIDES(X)                                  \
   X(terminals, "between the terminals, before the series element") \
   X(flywheel, "beside the inertance, behind the series element")
+
+// what the control is: X(identifier, meaning); but for `force` the parameter that it sets
+#define INERTER_CONTROLS(X)                                                        \
+  X(force, "a force beside the device")                                            \
+  X(viscous, "viscous damping: a magnetorheological or valve damper")              \
+  X(quadratic_damping, "quadratic damping: an orifice")                            \
+  X(flywheel_viscous, "viscous damping of the flywheel: a brake")                  \
+  X(minor_loss, "loss of the channel: a valve in it")                              \
+  X(coulomb_force, "sliding friction level: a clutch, a magnetorheological brake") \
+  X(static_force, "breakaway friction level")                                      \
+  X(stiffness, "parallel stiffness")                                               \
+  X(bw_stiffness, "stiffness of the Bouc-Wen law: a magnetorheological damper")    \
+  X(inertance, "inertance")
 
 #endif  // INERTER_CORE_PARAMETERS_H_

@@ -1,12 +1,15 @@
-// The force that a control commands: see command.h.
+// What a control commands: see command.h.
 
 #include "mujoco/command.h"
 
+#include <math.h>
+#include <stdio.h>
+
 #include "mujoco/engine_private.h"
 
-mjtNum command_force(const mjModel* m, const mjData* d, int actuator) {
+mjtNum command_value(const mjModel* m, const mjData* d, int actuator) {
   if (!m->actuator_ctrlnum[actuator]) {
-    return 0;
+    return NAN;
   }
   int address = m->actuator_ctrladr[actuator];
   mjtNum ctrl = d->ctrl[address];
@@ -20,4 +23,68 @@ mjtNum command_force(const mjModel* m, const mjData* d, int actuator) {
         mju_clip(ctrl, m->actuator_ctrlrange[2 * address], m->actuator_ctrlrange[2 * address + 1]);
   }
   return mju_isBad(ctrl) ? 0 : ctrl;
+}
+
+mjtNum command_force(const mjModel* m, const mjData* d, const Instance* self) {
+  mjtNum force = 0;
+  if (self->device.control == INERTER_CONTROL_force) {
+    force = command_value(m, d, self->actuator);
+  }
+  return isnan(force) ? 0 : force;
+}
+
+static double* controlled(InerterDevice* device, int parameter) {
+  return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
+}
+
+void command_take(const mjModel* m, const mjData* d, Instance* self) {
+  InerterDevice* device = &self->device;
+  if (device->control == INERTER_CONTROL_force) {
+    return;
+  }
+  // where the actuator is disabled nobody hears the control
+  mjtNum command = instance_disabled(m, self) ? NAN : command_value(m, d, self->actuator);
+  inerter_command(device, command, d->act + (device->nstate ? instance_act(m, self) : 0));
+  int parameter = inerter_controlled(device);
+  if (parameter == INERTER_INDEX_viscous && self->undamped) {
+    device->viscous = 0;
+  }
+
+  // what is the plugin's of it, and what stays without actuation
+  InerterDevice *share = &self->share, *matter = &self->matter;
+  share->command = device->command;
+  share->static_force = device->static_force;
+  *controlled(share, parameter) = *controlled(device, parameter);
+  if (!instance_has_series(device) &&
+      (parameter == INERTER_INDEX_inertance || parameter == INERTER_INDEX_viscous)) {
+    *controlled(matter, parameter) = *controlled(device, parameter);
+  }
+}
+
+int command_range(const mjModel* m, int actuator, const InerterDevice* device,
+                  char message[INERTER_MESSAGE_SIZE]) {
+  if (device->control == INERTER_CONTROL_force || !m->actuator_ctrlnum[actuator]) {
+    return 0;
+  }
+  // the model is written here as in placement_decide, and only while it is compiled
+  mjModel* model = (mjModel*)m;
+  int address = m->actuator_ctrladr[actuator];
+  mjtNum* range = model->actuator_ctrlrange + 2 * (size_t)address;
+  double lower = device->control_lower, upper = device->control_upper;
+  if (m->actuator_ctrllimited[address]) {
+    const double size = fmax(fabs(lower), fabs(upper)), rounding = 1e-6 * size;
+    if (range[0] < lower - rounding || range[1] > upper + rounding) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "ctrlrange is %g to %g, but the control sets %s from %g to %g (control_lower, "
+               "control_upper); remove ctrlrange, or give one within them",
+               range[0], range[1], inerter_parameter(inerter_controlled(device))->name, lower,
+               upper);
+      return -1;
+    }
+    return 0;
+  }
+  range[0] = lower;
+  range[1] = upper;
+  model->actuator_ctrllimited[address] = 1;
+  return 0;
 }

@@ -6,8 +6,8 @@
 #include "mujoco/instance.h"
 
 // names of the attributes: every parameter of the device, "friction", "gas_law", "friction_side",
-// every list
-enum { NATTRIBUTE = INERTER_NPARAMETER + 3 + INERTER_NLIST };
+// "control", every list
+enum { NATTRIBUTE = INERTER_NPARAMETER + 4 + INERTER_NLIST };
 extern const char* const kAttributes[NATTRIBUTE];
 
 // Read what is stated of the device of an instance; inerter_finish makes it whole. Return 0, or -1

@@ -36,7 +36,8 @@ int coupled_needed(const mjModel* m, const Instance* self) {
   return !self->native || series || inertance || inerter_has_load_friction(share) ||
          instance_has_stop(share) || instance_has_branches(share) ||
          instance_has_sharp_friction(share) || self->stiff_bristle ||
-         inerter_has_curve(share, INERTER_STROKE_viscous);
+         inerter_has_curve(share, INERTER_STROKE_viscous) ||
+         share->control == INERTER_CONTROL_viscous;
 }
 
 // whether the force over a step depends on how easily the terminals give way

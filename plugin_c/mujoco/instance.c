@@ -66,6 +66,10 @@ void instance_complain(const mjModel* m, Instance* self, Complaint reason, const
 //------------------------------ the device --------------------------------------------------------
 
 int instance_is_live(const Instance* self, int parameter) {
+  return inerter_controlled(&self->stated) == parameter || instance_has_numeric(self, parameter);
+}
+
+int instance_has_numeric(const Instance* self, int parameter) {
   for (int k = 0; k < self->nlive; k++) {
     if (self->live[k].parameter == parameter) {
       return 1;
@@ -105,10 +109,10 @@ static InerterDevice matter_of(const InerterDevice* share) {
 }
 
 static int is_nothing(const InerterDevice* share) {
-  return share->friction == INERTER_FRICTION_none && !share->parts && share->inertance == 0 &&
-         !inerter_has_load_friction(share) && share->viscous == 0 &&
-         share->quadratic_damping == 0 && share->stiffness == 0 && share->stiffness_cubic == 0 &&
-         share->force_offset == 0;
+  return share->control == INERTER_CONTROL_force && share->friction == INERTER_FRICTION_none &&
+         !share->parts && share->inertance == 0 && !inerter_has_load_friction(share) &&
+         share->viscous == 0 && share->quadratic_damping == 0 && share->stiffness == 0 &&
+         share->stiffness_cubic == 0 && share->force_offset == 0;
 }
 
 void instance_refresh(const mjModel* m, Instance* self, int force) {

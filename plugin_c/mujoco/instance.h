@@ -146,8 +146,10 @@ static inline int instance_varies(const InerterDevice* device) {
          inerter_has_curve(device, INERTER_STROKE_inertance_back);
 }
 
-// Whether a numeric of the model holds a parameter of the device; one that the inertance comes
-// from: its own, or the channel's where this is what states it.
+// Whether a numeric of the model holds a parameter of the device; the same, or the control sets it;
+// one of these that the inertance comes from: its own, or the channel's where this is what states
+// it.
+int instance_has_numeric(const Instance* self, int parameter);
 int instance_is_live(const Instance* self, int parameter);
 int instance_has_live_inertance(const Instance* self);
 

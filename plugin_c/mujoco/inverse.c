@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "mujoco/command.h"
 #include "mujoco/coupled.h"
 #include "mujoco/live.h"
 #include "mujoco/metric.h"
@@ -35,6 +36,7 @@ static int look(const mjModel* m, const mjData* d, int instance, Now* now,
   self->x = instance_displacement(m, d, self);
   self->v = instance_velocity(m, d, self);
   self->bias = instance_bias_acceleration(m, d, self);
+  command_take(m, d, self);
   int nstate = inerter_nstate(&self->device);
   mju_copy(self->state, d->act + (nstate ? instance_act(m, self) : 0), nstate);
   self->disabled = instance_disabled(m, self);

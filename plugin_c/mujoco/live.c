@@ -96,7 +96,7 @@ int live_find(const mjModel* m, Instance* self, char message[INERTER_MESSAGE_SIZ
                m->numeric_size[i]);
       return -1;
     }
-    if (instance_is_live(self, parameter)) {
+    if (instance_has_numeric(self, parameter)) {
       snprintf(message, INERTER_MESSAGE_SIZE,
                "numeric \"%.120s\" is the second one that holds its %s: one is named after the "
                "actuator, one after the instance; remove one",

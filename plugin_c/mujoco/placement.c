@@ -204,9 +204,11 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   } else {
     mjtNum armature = m->actuator_armature[actuator], damping = m->actuator_damping[actuator];
     mjtNum inertance = armature, viscous = damping;
+    // a damping that the control sets is the plugin's as a whole
+    double own_viscous = device->control == INERTER_CONTROL_viscous ? 0 : device->viscous;
     if ((!series && merge(m, actuator, device, INERTER_INDEX_inertance, kInertanceSlot,
                           device->inertance, "armature", &inertance, message)) ||
-        merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, device->viscous, "damping",
+        merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, own_viscous, "damping",
               &viscous, message)) {
       return -1;
     }

@@ -90,7 +90,8 @@ static int prepare(const mjModel* m, int instance, Instance* self,
   int live = instance_has_live_inertance(self);
   if (attachment_check(m, self->actuator, &device, live, message) ||
       placement_decide(m, self->actuator, &device, &self->native, message) ||
-      live_derive(m, self, message)) {
+      live_derive(m, self, message) ||
+      (compiling && command_range(m, self->actuator, &device, message))) {
     return -1;
   }
   self->limited = attachment_limited(m, self->actuator);
@@ -217,6 +218,7 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
   live_update(m, self);
   instance_let_go(m, d, self);
   int nstate = inerter_nstate(&self->device);
+  command_take(m, d, self);
   if (!nstate) {
     return;
   }
@@ -244,10 +246,13 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   if (instance_asleep(m, d, self)) {
     return;
   }
+  if (!instance_sees_falling_asleep(m, d)) {
+    command_take(m, d, self);
+  }
   if (!self->disabled) {
     watch_stiffness(m, self);
     watch_sites(m, d, self);
-    d->actuator_force[m->actuator_outadr[self->actuator]] = command_force(m, d, self->actuator);
+    d->actuator_force[m->actuator_outadr[self->actuator]] = command_force(m, d, self);
   }
   if (self->forceless) {
     return;
@@ -337,9 +342,9 @@ static void compute(const mjModel* m, mjData* d, int instance, int capability) {
 //------------------------------ end of step -------------------------------------------------------
 
 // the stages of RK4 overshoot the ends of the free play by their order: back to them
-static void keep_gap(const InerterDevice* device, int nstate, mjtNum* state) {
+static void keep_gap(const InerterDevice* device, mjtNum* state) {
   if (device->backlash > 0) {
-    mjtNum* gap = state + nstate - device->nbranch - 1;
+    mjtNum* gap = state + device->nfriction + 2;
     *gap = mju_clip(*gap, -device->backlash, device->backlash);
   }
 }
@@ -362,7 +367,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   // RK4 has integrated the states; the last four evaluations were its stages, the newest at the end
   // of the step. In mj_step2 there is but one, since the engine takes a step of Euler there.
   if (m->opt.integrator == mjINT_RK4 && d->time == self->time) {
-    keep_gap(&self->device, nstate, state);
+    keep_gap(&self->device, state);
     if (heat) {
       *heat += h / 6 * (power[0] + 2 * power[1] + 2 * power[2] + power[3]);
       watch_heat(m, self, heat);
@@ -380,6 +385,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   }
   mju_copy(state, self->state, nstate);
   if (heat) {
+    inerter_command(&self->device, self->device.command, self->state);
     mjtNum end = inerter_dissipated_power(&self->device, self->x + h * v, v, a, self->state);
     *heat += 0.5 * h * (power[MAXSTAGE - 1] + end);
     watch_heat(m, self, heat);

@@ -34,7 +34,15 @@ int inerter_energy(const mjModel* m, const mjData* d, int actuator, double energ
   }
   const mjtNum* state = d->act + (self->device.nstate ? instance_act(m, self) : 0);
   mjtNum v = instance_velocity(m, d, self);
-  energy[0] = inerter_stored_energy(&self->device, instance_displacement(m, d, self), v, state);
+  mjtNum x = instance_displacement(m, d, self);
+  if (self->device.ncontrol) {
+    // the value that the state says now
+    InerterDevice present = self->device;
+    inerter_command(&present, present.command, state);
+    energy[0] = inerter_stored_energy(&present, x, v, state);
+  } else {
+    energy[0] = inerter_stored_energy(&self->device, x, v, state);
+  }
   energy[1] = 0.5 * m->actuator_armature[actuator] * v * v;
   return 0;
 }

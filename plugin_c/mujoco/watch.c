@@ -161,7 +161,10 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   self->timestep = m->opt.timestep;
 
   // masses at the terminals and at the flywheel
-  const InerterDevice* p = &self->device;
+  InerterDevice worst = self->device;
+  worst.ncontrol = 0;  // without lag
+  inerter_command(&worst, worst.control == INERTER_CONTROL_inertance ? -INFINITY : INFINITY, NULL);
+  const InerterDevice* p = &worst;
   int series = instance_has_series(p), stages = m->opt.integrator == mjINT_RK4;
   double light = mobility(m, self->actuator);
   if (!series && !self->native) {

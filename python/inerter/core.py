@@ -18,6 +18,7 @@ from inerter.core_library import (
     WORDS,
     NumberList,
     Parameter,
+    controls,
     device_type,
     friction_laws,
     friction_sides,
@@ -37,6 +38,7 @@ __all__ = [
     "NumberList",
     "Parameter",
     "along_many",
+    "controls",
     "friction_laws",
     "friction_sides",
     "gas_laws",
@@ -65,8 +67,8 @@ class Device:
     ----------
     **values : float or str
         Parameters by name (see `parameters()`), SI units, lists of numbers (see `lists()`; a
-        sequence, or a text with blanks), and names: `friction`, `gas_law`, `friction_side`. What is
-        not given has its default.
+        sequence, or a text with blanks), and names: `friction`, `gas_law`, `friction_side`,
+        `control`. What is not given has its default.
 
     Raises
     ------
@@ -115,6 +117,11 @@ class Device:
         return list(friction_sides())[self._c.friction_side]  # type: ignore[attr-defined]
 
     @property
+    def control(self) -> str:
+        """What its control is: force, or the parameter that it sets."""
+        return list(controls())[self._c.control]  # type: ignore[attr-defined]
+
+    @property
     def has_load_friction(self) -> bool:
         """Whether friction grows with the force through the inertance."""
         return self.mu_forward > 0.0 or self.mu_backward > 0.0
@@ -158,7 +165,7 @@ class Device:
         return Device(**{**self._given, **values})
 
     def evaluate(
-        self, x: ArrayLike, v: ArrayLike, a: ArrayLike, z: ArrayLike
+        self, x: ArrayLike, v: ArrayLike, a: ArrayLike, z: ArrayLike, command: ArrayLike = np.nan
     ) -> dict[str, NDArray[np.float64]]:
         """Force, state rate and energies at given states.
 
@@ -169,20 +176,28 @@ class Device:
         z : array_like
             States: shape (n, nstate), or anything that broadcasts to it. With at most one state
             also (n,); one number is the first state.
+        command : array_like
+            Where the control sets a parameter, the value that it asks for, in the parameter's unit;
+            NaN: the one that is stated.
 
         Returns
         -------
         dict of arrays (n,)
             total, inertance, friction [N]; stored_energy [J]; dissipated_power [W]; state_rate,
-            (n, nstate) with several states or where z has their axis.
+            (n, nstate) with several states or where z has their axis; where the control sets a
+            parameter, control_power [W], what its actuator gives.
         """
         told = (*FORCES, "stored_energy", "dissipated_power")
-        (x, v, a), z, axis = self._points((x, v, a), np.asarray(z, dtype=float))
+        commanded = self.control != "force"
+        (x, v, a, command), z, axis = self._points((x, v, a, command), np.asarray(z, dtype=float))
+        told = (*told, "control_power") if commanded else told
         result, rates = np.empty((len(told), x.size)), np.zeros((x.size, max(1, self.nstate)))
-        library().inerter_evaluate(
+        core, motion = library(), (x, v, a, command) if commanded else (x, v, a)
+        evaluate = core.inerter_evaluate_commanded if commanded else core.inerter_evaluate
+        evaluate(
             ctypes.byref(self._c),
             x.size,
-            *(_pointer(value) for value in (x, v, a, z)),
+            *(_pointer(value) for value in (*motion, z)),
             _pointer(result),
             _pointer(rates),
         )
@@ -220,6 +235,27 @@ class Device:
         else:
             raise ValueError(f"the state has shape {given.shape}; this device has {n} states")
         return states
+
+    def commanded(self, command: float, z: ArrayLike = 0.0) -> Device:
+        """The device at the value that its control commands, in the parameter's unit; states z.
+
+        A device by itself, whose control is a force: it has one state less where there is a lag.
+
+        Raises
+        ------
+        DeviceError
+            The control is a force.
+        """
+        if self.control == "force":
+            raise DeviceError(
+                "control is 'force', which sets no parameter; give the device a control, such as "
+                "control='viscous' with control_lower and control_upper"
+            )
+        c, states = device_type()(), self._states(z)
+        ctypes.pointer(c)[0] = self._c
+        library().inerter_command(ctypes.byref(c), command, states.ctypes.data)
+        kept = {key: value for key, value in self._given.items() if not key.startswith("control")}
+        return Device(**{**kept, self.control: getattr(c, self.control)})
 
     @overload
     def step(self, x: float, v: float, z: float, h: float) -> float: ...
@@ -279,7 +315,13 @@ class Device:
         return _text(message)
 
     def along(
-        self, h: float, x: ArrayLike, v: ArrayLike, a: ArrayLike, state: ArrayLike = 0.0
+        self,
+        h: float,
+        x: ArrayLike,
+        v: ArrayLike,
+        a: ArrayLike,
+        state: ArrayLike = 0.0,
+        command: ArrayLike | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Force and states along a motion sampled every h seconds.
 
@@ -291,6 +333,9 @@ class Device:
             Relative displacement [m], velocity, acceleration.
         state : float or sequence (nstate,)
             States at the first sample.
+        command : ndarray (n,) or float, optional
+            What the control commands, in the unit of the parameter that it sets, held from each
+            sample to the next.
 
         Returns
         -------
@@ -304,22 +349,32 @@ class Device:
             Channels of different lengths, a number that is not finite, a spacing that is not > 0.
         """
         x, v, a = checked_motion(h, x, v, a)
-        return self.along_checked(h, x, v, a, state)
+        return self.along_checked(h, x, v, a, state, command)
 
     def along_checked(
-        self, h: float, x: NDArray, v: NDArray, a: NDArray, state: ArrayLike = 0.0
+        self,
+        h: float,
+        x: NDArray,
+        v: NDArray,
+        a: NDArray,
+        state: ArrayLike = 0.0,
+        command: ArrayLike | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """`along` a motion that `checked_motion` has returned: many devices along the same one."""
         result, states = np.empty((2, x.size)), np.empty((x.size, self.nstate))
         now = self._states(state)
         at, row = result.ctypes.data, result.strides[0]
-        library().inerter_along(
+        told = None
+        if command is not None:
+            told = np.ascontiguousarray(np.broadcast_to(command, x.shape), dtype=float)
+        library().inerter_along_commanded(
             ctypes.byref(self._c),
             x.size,
             h,
             x.ctypes.data,
             v.ctypes.data,
             a.ctypes.data,
+            None if told is None else told.ctypes.data,
             now.ctypes.data,
             at,
             at + row,

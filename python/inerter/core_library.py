@@ -43,7 +43,7 @@ class _CList(ctypes.Structure):
 
 
 FORCES = ("total", "inertance", "friction")
-WORDS = ("friction", "gas_law", "friction_side")
+WORDS = ("friction", "gas_law", "friction_side", "control")
 """What of a device is stated by a name and not by a number."""
 
 
@@ -113,7 +113,8 @@ def library() -> ctypes.CDLL:
     found.inerter_valid.argtypes = [at, number, at, ctypes.c_char_p]
     found.inerter_force_over_step.argtypes = [at, *[number] * 3, at, number, number, at]
     found.inerter_force_over_step.restype = CForce
-    found.inerter_along.argtypes = [at, ctypes.c_int, number, *[at] * 7]
+    found.inerter_along_commanded.argtypes = [at, ctypes.c_int, number, *[at] * 8]
+    found.inerter_command.argtypes = [at, number, at]
     return found
 
 
@@ -165,6 +166,12 @@ def friction_sides() -> Mapping[str, str]:
     return _laws("friction_side")
 
 
+@functools.cache
+def controls() -> Mapping[str, str]:
+    """What a control can be by name: a force, or the parameter that it sets; with its meaning."""
+    return _laws("control")
+
+
 def _laws(kind: str) -> Mapping[str, str]:
     name, meaning = (getattr(library(), f"inerter_{kind}_{what}") for what in ("name", "meaning"))
     found: dict[str, str] = {}
@@ -179,10 +186,11 @@ def device_type() -> type[ctypes.Structure]:
     fields: list[tuple[str, Any]] = [(name, ctypes.c_double) for name in parameters()]
     fields += [(name, ctypes.c_int) for name in WORDS]
     # a bit for each parameter and each word
-    words = (len(parameters()) + 66) // 64
+    words = (len(parameters()) + 67) // 64
     fields += [("given", ctypes.c_uint64 * words)]
     fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int), ("nfriction", ctypes.c_int)]
-    fields += [("nbranch", ctypes.c_int)]
+    fields += [("nbranch", ctypes.c_int), ("ncontrol", ctypes.c_int)]
+    fields += [("control_rest", ctypes.c_double), ("command", ctypes.c_double)]
     known = type("_CKnown", (ctypes.Structure,), {"_fields_": fields})
     # what follows is read by functions of the core
     numbers = (library().inerter_device_size() - ctypes.sizeof(known)) // 8

@@ -104,7 +104,11 @@ class DeviceInModel:
         series = self.device.series_stiffness > 0 or self.device.series_damping > 0
         if not (series or _CHANNEL & self.live.keys()):
             held["inertance"] = float(model.actuator_armature[self.actuator])
-        return {key: value for key, value in held.items() if value != getattr(self.device, key)}
+        return {
+            key: value
+            for key, value in held.items()
+            if value != getattr(self.device, key) and key != self.device.control
+        }
 
     def stated(self, model: mujoco.MjModel) -> dict[str, float | str]:
         """What configuration and live parameters state, by name, SI units."""
@@ -123,6 +127,7 @@ def evaluate(
     v: NDArray[np.float64],
     a: NDArray[np.float64],
     states: Mapping[str, NDArray[np.float64]],
+    command: ArrayLike = np.nan,
 ) -> dict[str, NDArray[np.float64]]:
     """Forces and energies of a device at given displacement, velocity, acceleration and states.
 
@@ -134,6 +139,8 @@ def evaluate(
         [m], [m/s], [m/s^2].
     states : mapping of ndarray (n,)
         By name, every state of the device.
+    command : array_like (n,)
+        Of a control that sets a parameter, in its unit.
 
     Returns
     -------
@@ -141,7 +148,7 @@ def evaluate(
         total, inertance, friction [N], stored_energy [J].
     """
     z = np.column_stack([states[name] for name in device.state_names]) if states else 0.0
-    found = device.evaluate(x, v, a, z)
+    found = device.evaluate(x, v, a, z, command)
     return {name: found[name] for name in ("total", "inertance", "friction", "stored_energy")}
 
 
@@ -208,7 +215,7 @@ def _device(model: mujoco.MjModel, actuator: int, instance: int) -> DeviceInMode
 def _live(model: mujoco.MjModel, instance: int) -> dict[str, int]:
     """Addresses of the numerics that hold parameters of an instance, as the plugin finds them."""
     found = {}
-    # one place between them, that of gas_law
+    # one place between them, that of gas_law (no number that could be live)
     keys = (*parameters(), "", *lists())
     for i, key in enumerate(keys if model.nnumeric else ()):
         address = plugin_library().inerter_live_address(model._address, instance, i)

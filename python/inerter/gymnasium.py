@@ -13,7 +13,8 @@ from inerter.controls import device_controls
 class WithoutDeviceControls(gymnasium.ActionWrapper):
     """An environment of Gymnasium's MuJoCo family with the actions of its motors alone.
 
-    The devices' controls (a force beside the device) stay 0. A model that is compiled after
+    The devices' controls (a force beside the device) stay 0; one that sets a parameter of its
+    device is an action like that of a motor. A model that is compiled after
     `inerter.without_controls` has none to begin with and needs no wrapper.
 
     Parameters

@@ -90,7 +90,7 @@ def add_device(
     gear: float = 1.0,
     sensor: bool = True,
     live: Sequence[str] = (),
-    control: bool = False,
+    control: bool | str | None = None,
     **values: float | str | Sequence[Any],
 ) -> AddedDevice:
     """Add a device to a model under construction, with everything that it needs.
@@ -119,9 +119,11 @@ def add_device(
     live : sequence of str
         Parameters and lists to read from the model at every step: each becomes a numeric
         "NAME.key", whose values in `mjModel.numeric_data` can be changed without compiling again.
-    control : bool
-        Give the device a control, a force beside it [N]; without, `nu` stays as it was. A model
-        that is saved as XML has the control again.
+    control : bool or str
+        True: a control that is a force beside the device [N]; a name (`"viscous"`): one that sets
+        this parameter, from `control_lower` to `control_upper`, which become its `ctrlrange`; the
+        default is that of the device. Without a control `nu` stays as it was. A model that is saved
+        as XML has the control again.
     **values : float or str
         Parameters by name, SI units; beside `device` they replace its own.
 
@@ -139,7 +141,15 @@ def add_device(
         length that cannot be measured. One line; the spec is as it was.
     """
     load_plugin()
+    if isinstance(control, str):
+        values["control"] = control
     device = _device(device, values)
+    sets = device.control != "force"
+    if sets and isinstance(control, bool) and not control:
+        raise ValueError(
+            f"control is False, but the device's control sets {device.control}; leave it out, or "
+            "give a device without one"
+        )
     if sum(given is not None for given in (between, tendon, joint)) != 1:
         raise ValueError("give one of between=(site, site), tendon=... or joint=...")
     if not (np.isfinite(gear) and gear != 0):
@@ -167,7 +177,7 @@ def add_device(
     numerics = _live_values(spec, name, device, live)
 
     _add(spec, name, device, sites, target, gear, sensor, is_joint=joint is not None)
-    if not control:
+    if not (control or sets):
         remove_control(spec.actuator(name))
     for key, found in numerics.items():
         spec.add_numeric(name=f"{name}.{key}", data=found, size=len(found))

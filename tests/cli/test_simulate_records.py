@@ -294,6 +294,26 @@ def test_controls_interpolate_and_end_values_hold(tmp_path: Path) -> None:
     assert run.warnings == ["columns that drive nothing were left aside: force"]
 
 
+@pytest.mark.parametrize("lag", [0.0, 0.05])
+def test_a_command_is_recorded_and_the_force_follows_it(tmp_path: Path, lag: float) -> None:
+    # the record's force is what the engine's sensor of the step shows, at the commanded damping
+    damper = device(
+        states=int(lag > 0), inertance=1, viscous=2, control="viscous", control_lower=1,
+        control_upper=50, control_lag=lag,
+    )  # fmt: skip
+    path = written(tmp_path, oscillator(damper))
+    (tmp_path / "c.csv").write_text("time,strut\n0,1\n1,30\n2,500\n")
+    run = run_model(path, 2.0, control=tmp_path / "c.csv")
+    found = columns(run)
+    damping = np.clip(found["control_command"], 1, 50)
+    assert found["control_command"].max() > 400
+    if lag:
+        damping = 2 + found["control_change"]
+        assert found["control_change"].max() > 40
+    expected = found["acceleration"] + damping * found["velocity"]
+    assert np.allclose(found["force"], expected, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("table", "words"),
     [

@@ -11,6 +11,7 @@ import shlex
 import subprocess
 import sys
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -115,6 +116,8 @@ def test_a_how_to_works_as_it_stands(page: Path, tmp_path: Path) -> None:
     todo = steps(page)
     if any("exudyn" in str(content) for _, content in todo):
         pytest.importorskip("exudyn")
+    if find_spec("gymnasium") is None:
+        todo = [(kind, what) for kind, what in todo if "gymnasium" not in str(what)]
     # a viewer that serves until it is ended is tested on its own
     todo = [(kind, what) for kind, what in todo if kind != "sh" or not serves(what)]
     (tmp_path / "mjcf_models").symlink_to(ROOT / "mjcf_models")

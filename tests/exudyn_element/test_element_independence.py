@@ -14,8 +14,8 @@ FOLDER = Path(inerter.__file__).parent / "exudyn"
 OUTSIDE = {"numpy", *sys.stdlib_module_names}
 FROM_CORE = {"WORDS", "Device", "DeviceError", "library_path", "lists", "names", "parameters"}
 DATA = {
-    "given", "friction", "gas_law", "friction_side", "has_load_friction", "nstate", "state_names",
-    "replace",
+    "given", "friction", "gas_law", "friction_side", "control", "has_load_friction", "nstate",
+    "state_names", "replace",
 }  # fmt: skip
 
 

@@ -33,8 +33,41 @@ static int left_out(const char* name, unsigned parts, int slips, int branches) {
       return !(parts >> bits[i] & 1);
     }
   }
-  // the range of curves comes with them
+  // the range of curves comes with them, the bounds of a control with it
+  if (!strncmp(name, "control_", 8)) {
+    return 1;
+  }
   return (!strcmp(name, "inertance") && parts >> 4 & 1) || !strncmp(name, "curve_", 6);
+}
+
+// a control that sets a parameter around its value, or any, with a lag or without
+static void random_control(InerterDevice* device, int tame, int channel) {
+  char message[INERTER_MESSAGE_SIZE], text[64];
+  const char *name = NULL, *law = inerter_friction_name(device->friction);
+  for (int fits = 0; !fits;) {
+    name = inerter_control_name(below(&source, INERTER_NCONTROL));
+    fits = 1;
+    for (int i = 0; tame && i < INERTER_NPARAMETER; i++) {
+      const InerterParameter* p = inerter_parameter(i);
+      fits &= strcmp(p->name, name) || !*p->laws || strstr(p->laws, law);
+    }
+    fits &= !tame || strcmp(name, channel ? "inertance" : "minor_loss");
+  }
+  if (inerter_set(device, "control", name, message)) {
+    abort();
+  }
+  if (!strcmp(name, "force")) {
+    return;
+  }
+  int parameter = inerter_controlled(device);
+  double value = *(const double*)((const char*)device + inerter_parameter(parameter)->offset);
+  double lower = isnan(value) ? 1 : value - 0.5 * fabs(value), upper = value + fabs(value) + 1e-3;
+  const char* keys[] = {"control_lower", "control_upper", "control_lag"};
+  double values[] = {lower, upper, below(&source, 8) ? 1e-3 + fabs(moderate()) : 0};
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof(text), "%.17g", tame ? values[i] : any(&source));
+    inerter_set(device, keys[i], text, message);
+  }
 }
 
 // a device with random keys; returns 0 where the core refused it, always with a
@@ -54,7 +87,8 @@ static int random_device(InerterDevice* device, int tame) {
   }
   // as many as there can be of either, or fewer
   int slips = below(&source, 2) ? INERTER_MAXSLIP : 1 + below(&source, INERTER_MAXSLIP);
-  int branches = below(&source, 2) ? 0 : 1 + below(&source, INERTER_MAXBRANCH);
+  int branches =
+      below(&source, 2) ? below(&source, 2) * INERTER_MAXBRANCH : below(&source, INERTER_MAXBRANCH);
   if (tame ? parts >> 3 & 1 : below(&source, 8) == 0) {
     if (inerter_set(device, "gas_law", inerter_gas_law_name(below(&source, INERTER_NGAS)),
                     message)) {
@@ -86,6 +120,9 @@ static int random_device(InerterDevice* device, int tame) {
     if (inerter_set(device, p->name, text, message) && !strstr(message, p->name)) {
       abort();
     }
+  }
+  if (below(&source, tame ? 4 : 2)) {
+    random_control(device, tame, (int)(parts >> 4 & 1));
   }
   for (int i = 0; i < INERTER_NLIST; i++) {
     const InerterList* list = inerter_list(i);
@@ -153,7 +190,7 @@ static void awkward_texts(void) {
 int main(void) {
   enum { N = 64, DEVICES = 3, WIDE = INERTER_MAXSTATE };
   long calls = 0, by_states[WIDE + 1] = {0};
-  static double x[N], v[N], a[N], z[WIDE * N], rates[WIDE * N], result[5 * N], many[DEVICES * N];
+  static double x[N], v[N], a[N], z[WIDE * N], rates[WIDE * N], result[6 * N], many[DEVICES * N];
   awkward_texts();
 
   // past either end of the lists
@@ -165,6 +202,8 @@ int main(void) {
     if ((i >= 0 && i < INERTER_NPARAMETER) != (inerter_parameter(i) != NULL)) abort();
     if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_name(i) != NULL)) abort();
     if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_meaning(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NCONTROL) != (inerter_control_name(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NCONTROL) != (inerter_control_meaning(i) != NULL)) abort();
     if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_name(i) != NULL)) abort();
     if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_meaning(i) != NULL)) abort();
   }
@@ -230,6 +269,19 @@ int main(void) {
     if (!(inerter_inertance(&device, x[4], v[4], &rest) >= 0) && tame) abort();
     inerter_inertance(&device, x[4], v[4], NULL);
     inerter_evaluate(&device, N, x, v, a, z, result, rates);
+
+    // at commands; whatever they are, the value stays within its bounds
+    inerter_evaluate_commanded(&device, N, x, v, a, tame ? a : v, z, result, rates);
+    inerter_along_commanded(&device, N, fabs(h), x, v, a, v, states, result, result + N, rates);
+    int controlled = inerter_controlled(&device);
+    if (controlled >= 0) {
+      InerterDevice present = device;
+      inerter_command(&present, any(&source), below(&source, 2) ? states : NULL);
+      double value =
+          *(const double*)((const char*)&present + inerter_parameter(controlled)->offset);
+      if (!(value >= device.control_lower && value <= device.control_upper)) return 6;
+    }
+    memcpy(states, z, sizeof(double) * (size_t)nstate);
 
     // along a motion; n = 0 and missing outputs are allowed
     inerter_along(&device, N, fabs(h), x, v, a, states, result, result + N, rates);

@@ -39,7 +39,18 @@ static void key(Text* text, const char* name, double value) {
 //-----------------------------------------------------------
 
 enum { NONE, COULOMB, STRIBECK, DAHL, LUGRE, BOUC_WEN, BROWN_MCPHEE };
-enum { RIGID, SERIES, BACKLASH, STOPS, CHANNEL, VARYING, FRICTION_PLAY, DAMPER_ONLY };
+enum {
+  RIGID,
+  SERIES,
+  BACKLASH,
+  STOPS,
+  CHANNEL,
+  VARYING,
+  FRICTION_PLAY,
+  DAMPER_ONLY,
+  COMMANDED,
+  LAGGING
+};
 
 static int has_memory(int law) {
   return law == DAHL || law == LUGRE || law == BOUC_WEN;
@@ -47,7 +58,7 @@ static int has_memory(int law) {
 
 static int count_states(int law, int variant) {
   int series = variant == SERIES || variant == BACKLASH;
-  return has_memory(law) + 2 * series + (variant == BACKLASH);
+  return has_memory(law) + 2 * series + (variant == BACKLASH) + (variant == LAGGING);
 }
 
 static void friction(Text* text, int law) {
@@ -114,6 +125,14 @@ static void configuration(Text* text, int law, int variant, double rest_length) 
     case DAMPER_ONLY:
       key(text, "viscous", 10);
       key(text, "quadratic_damping", 10);
+      break;
+    case COMMANDED:
+    case LAGGING:
+      add(text, "<config key=\"control\" value=\"%s\"/>",
+          variant == LAGGING ? "inertance" : "viscous");
+      key(text, "control_lower", variant == LAGGING ? 1 : 0);
+      key(text, "control_upper", 20);
+      key(text, "control_lag", variant == LAGGING ? 0.02 : 0);
       break;
     default:
       break;

@@ -7,7 +7,7 @@
 
 #include "random.h"
 
-enum { LAWS = 7, VARIANTS = 8, INTEGRATORS = 5 };
+enum { LAWS = 7, VARIANTS = 10, INTEGRATORS = 5 };
 
 // MJCF text to be freed: devices of consecutive laws and variants, from number
 // `first` on.

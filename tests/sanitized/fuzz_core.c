@@ -138,6 +138,11 @@ static int random_device(Input* input) {
   for (unsigned count = wanted >> 6, k = 1; k <= count; k++) {
     set_pair(input, "branch_stiffness", "branch_damping", k);
   }
+  unsigned control = byte(input) % (2 * INERTER_NCONTROL);
+  if (control && control < INERTER_NCONTROL) {
+    REQUIRE(!inerter_set(&device, "control", inerter_control_name((int)control), message));
+    set_each(input, "control_lower control_upper control_lag");
+  }
   for (unsigned count = byte(input) % 8; count; count--) {
     set(input, inerter_parameter((int)byte(input) % INERTER_NPARAMETER));
   }
@@ -167,7 +172,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   }
   char message[INERTER_MESSAGE_SIZE] = "";
   int nstate = inerter_nstate(&device), wide = nstate ? nstate : 1;
-  double result[5 * N], rates[N * INERTER_MAXSTATE];
+  double result[6 * N], rates[N * INERTER_MAXSTATE];
   for (int i = 0; i < N; i++) {
     x[i] = number(&input);
     v[i] = number(&input);
@@ -217,6 +222,10 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   REQUIRE(!steady || (isfinite(force.total) && (!nstate || all_finite(end, nstate))));
   inerter_state_step(&device, x[0], v[0], own, h);
   REQUIRE(!steady || !nstate || all_finite(own, nstate));
+  memcpy(own, z, sizeof(double) * (size_t)wide);
+  inerter_evaluate_commanded(&device, N, x, v, a, a, z, result, rates);
+  REQUIRE(!sound || all_finite(result, N));
+  inerter_along_commanded(&device, N, h, x, v, a, v, own, result, result + N, rates);
   memcpy(own, z, sizeof(double) * (size_t)wide);
   inerter_along(&device, N, h, x, v, a, own, result, result + N, rates);
   return 0;

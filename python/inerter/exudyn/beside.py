@@ -20,11 +20,12 @@ from inerter.exudyn.parameters import Parameters
 def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """The sum of all of them [N]."""
     total = p.force_offset
-    if p.viscous:
+    # a value on a tape is no number that could be 0
+    if p.viscous != 0.0:
         total = total + p.viscous * v
-    if p.quadratic_damping:
+    if p.quadratic_damping != 0.0:
         total = total + p.quadratic_damping * f.abs(v) * v
-    if p.stiffness:
+    if p.stiffness != 0.0:
         total = total + p.stiffness * x
     if p.stiffness_cubic:
         total = total + p.stiffness_cubic * x * x * x

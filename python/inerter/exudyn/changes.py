@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -68,8 +69,9 @@ def read_geometry(mbs: Any, model: Model, assembling: bool = False) -> None:
         if assembling and model.free_length and isinstance(kinematics, Span):
             rest = reference_length(kinematics)
             model.device = model.device.replace(rest_length=rest)
-            smooth = element.device.smooth_play
-            element = replace(element, device=Parameters.of(model.device, smooth))
+            old = element.device
+            device = Parameters.of(model.device, old.smooth_play, old.command)
+            element = replace(element, device=device)
         take(mbs, model, element)
     if assembling:
         check_apart(mbs, model.name, model.element, model.nodeNumbers)
@@ -119,7 +121,7 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
         )
     device = model.device.replace(**changes)
     old = model.element
-    new = replace(old, device=Parameters.of(device, old.device.smooth_play))
+    new = replace(old, device=Parameters.of(device, old.device.smooth_play, old.device.command))
     told = f'inerter "{model.name}": {", ".join(f"{k}={v!r}" for k, v in changes.items())}'
     if new.device.state_names != old.device.state_names or new.own != old.own:
         raise ValueError(
@@ -138,6 +140,21 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
         )
     model.device = device
     take(mbs, model, new)
+
+
+def change_command(mbs: Any, model: Model, command: float) -> None:
+    """Take another command of the control that sets a parameter; see `Inerter.SetControl`."""
+    if model.device.control == "force":
+        raise ValueError(
+            f'inerter "{model.name}": its control is "force", which sets no parameter; make it '
+            'with control="viscous", control_lower and control_upper, or apply a load'
+        )
+    if not math.isfinite(command):
+        raise ValueError(f'inerter "{model.name}": command is {command}; give a finite number')
+    old = model.element
+    device = Parameters.of(model.device, old.device.smooth_play, float(command))
+    if device.aim != old.device.aim:
+        take(mbs, model, replace(old, device=device))
 
 
 def take(mbs: Any, model: Model, element: Element) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from inerter.core import Device, DeviceError
 from inerter.exudyn.carriers import Carrier, carry, is_carried
 from inerter.exudyn.changes import KEPT, check_apart, reference_length, start
+from inerter.exudyn.control import lags
 from inerter.exudyn.drawing import check_drawing, draw
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
@@ -73,8 +74,8 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         the first body.
     symbolic
         Whether Exudyn evaluates the forces itself, from matrices and expressions: None, where it
-        can (on 1D coordinates, unless load friction acts on a rigid device, or there are more than
-        seven coordinates: terminals and states). Else the package's
+        can (on 1D coordinates, unless load friction acts on a rigid device, `control_lag` is
+        given, or there are more than seven coordinates: terminals and states). Else the package's
         library evaluates them, as it does between points.
     initialStates
         States at the start by name, as in `Inerter.stateNames`; where none is given the shaft is
@@ -140,11 +141,12 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         device = device.replace(rest_length=reference_length(kinematics))
     element = Element(Parameters.of(device, smoothPlay), kinematics, dissipatedEnergy)
     straight = isinstance(kinematics, Line) and not element.loaded and element.size <= MOST_SYMBOLIC
+    straight = straight and not lags(element.device)
     if symbolic and not straight:
         raise ValueError(
             "symbolic: True, but Exudyn can evaluate by itself only devices on 1D coordinates, "
-            f"without load friction on a rigid inertance, of at most {MOST_SYMBOLIC} coordinates "
-            f"(here {element.size}); leave it None or set it False"
+            "without load friction on a rigid inertance and without control_lag, of at most "
+            f"{MOST_SYMBOLIC} coordinates (here {element.size}); leave it None or set it False"
         )
     names = (*device.state_names, *(("dissipated_energy",) if dissipatedEnergy else ()))
     given = _initial_states(names, initialStates or {})

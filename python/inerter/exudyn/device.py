@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.exudyn import beside, branches, flywheel, friction, series
+from inerter.exudyn import beside, branches, control, flywheel, friction, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -60,7 +60,7 @@ def states_of(p: Parameters, z: Sequence[Value]) -> States:
 def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -> list[Term]:
     """All that does not depend on acceleration; the inertance of `mass` is left out.
 
-    x [m] is the length minus rest_length, v [m/s] its rate.
+    x [m] is the length minus rest_length, v [m/s] its rate; p of `control.present`.
     """
     state, place = states_of(p, z), {name: i for i, name in enumerate(p.state_names)}
     rubbing = _rubbing(f, p, x, v, state)
@@ -69,6 +69,8 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     for spring, dashpot, e, at in branches.deflections(p, z):
         found.append(Term(e, spring, ((at, -spring / dashpot),)))
         found.append(Term(v, 0.0, ((at, 1.0),)))
+    if control.lags(p):
+        found.append(Term(control.rate(p, z), 0.0, ((p.nstate - 1, 1.0),)))
     wheel = rubs_flywheel(p)
     if not wheel:
         at_terminals = at_terminals + rubbing.bound
@@ -93,7 +95,7 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     elif rubs_by_load(p):
         at_terminals = at_terminals + _load_share(f, p, v, shaft.force) * f.abs(shaft.force)
     spinning = place["flywheel_velocity"]
-    if flywheel.varies(p):
+    if flywheel.varies(p) or (control.lags(p) and p.control == "inertance"):
         found.append(Term(shaft.force, 1.0))
         found.append(Term((shaft.force - rest) / mass, 0.0, ((spinning, 1.0),)))
     else:

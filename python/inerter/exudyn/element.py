@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.exudyn import control, flywheel, series
 from inerter.exudyn import device as law
-from inerter.exudyn import flywheel, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.kinematics import Line, Motion, Span, Twist
 from inerter.exudyn.parameters import Parameters
@@ -80,7 +80,10 @@ class Element:
     @property
     def constant_mass(self) -> bool:
         """Whether the mass matrix never changes."""
-        rigid = not series.is_there(self.device) and self.device.inertance > 0.0
+        p = self.device
+        if control.lags(p) and p.control == "inertance" and not series.is_there(p):
+            return False
+        rigid = not series.is_there(p) and p.inertance > 0.0
         if not rigid:
             return True
         straight = isinstance(self.kinematics, Line)
@@ -135,6 +138,7 @@ class Element:
         p, motion = self.device, self.motion(f, q, q_t)
         x, v = motion.length - p.rest_length, motion.rate
         z = self.states(x, q, q_t)
+        p = control.present(f, p, z)
         forces: list[Value] = [0.0] * self.size
         at_terminals: Value = 0.0
         for term in law.terms(f, p, x, v, z):

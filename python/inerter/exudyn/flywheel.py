@@ -46,7 +46,7 @@ def inertance(f: Functions, p: Parameters, y: Value, w: Value) -> tuple[Value, V
 def force(f: Functions, p: Parameters, y: Value, w: Value) -> Value:
     """G [N]."""
     total = 0.0
-    if p.flywheel_viscous:
+    if p.flywheel_viscous != 0.0:
         total = total + p.flywheel_viscous * w
     if p.channel_area:
         total = total + _pipe(f, p, w)

@@ -11,10 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
+from inerter.exudyn import control
 from inerter.exudyn import device as law
 from inerter.exudyn.carriers import Carrier
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
+from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.readings import FORCES, READINGS, Readings
 from inerter.exudyn.terminals import Terminals
 from inerter.exudyn.user_functions import UserFunctions
@@ -94,7 +96,8 @@ class Model:
         wanted = (*others, "displacement", "velocity", *self.device.state_names)
         found = self.read(mbs, configuration, wanted)
         x, v, *states = found[len(others) :]
-        energy = law.stored_energy(self.element.device, x, v, states)
+        p = control.present(NUMBERS, self.element.device, states)
+        energy = law.stored_energy(p, x, v, states)
         told = dict(zip(others, found, strict=False)) | {"stored_energy": energy}
         return [told[name] for name in names]
 
@@ -154,6 +157,22 @@ class Inerter:
         from inerter.exudyn.changes import change_parameters
 
         change_parameters(self.mbs, self._model, parameters)
+
+    def SetControl(self, command: float) -> None:  # noqa: N802
+        """Command the parameter that the device's `control` names, in its unit; as a run goes on.
+
+        Held until the next call, within `control_lower` and `control_upper`. Call it from a
+        PreStepUserFunction; without lag what holds is there at once, with `control_lag` the device
+        follows by a state of its own.
+
+        Raises
+        ------
+        ValueError
+            The device's control is a force, or the command is not a number.
+        """
+        from inerter.exudyn.changes import change_command
+
+        change_command(self.mbs, self._model, command)
 
     def Show(self, show: bool = True) -> None:  # noqa: N802
         """Draw the device, or not; also while the renderer runs."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
@@ -32,13 +33,27 @@ def own_names(given: Mapping[str, Any]) -> dict[str, Any]:
 class Parameters(SimpleNamespace):
     """Parameters and lists of the device by name, those of `WORDS`, `nstate`, `state_names`.
 
-    `smooth_play` is this element's own, see `series.py`.
+    `smooth_play` is this element's own, see `series.py`. For a control that sets a parameter
+    (`control.py`): `command`, `aim` (the same within the bounds), `control_rest`, `static_follows`.
     """
 
     @classmethod
-    def of(cls, device: Device, smooth_play: bool = False) -> Parameters:
-        """The parameters of a device that the core has checked."""
+    def of(cls, device: Device, smooth_play: bool = False, command: float = math.nan) -> Parameters:
+        """The parameters of a device that the core has checked, at a command of its control."""
         numbers = {name: getattr(device, name) for name in (*parameters(), *lists())}
         names = (*WORDS, "nstate", "state_names")
         numbers["smooth_play"] = smooth_play
-        return cls(**numbers, **{name: getattr(device, name) for name in names})
+        found = cls(**numbers, **{name: getattr(device, name) for name in names})
+        found.command = command
+        if device.control == "force":
+            return found
+        found.control_rest = getattr(device, device.control)
+        found.static_follows = "static_force" not in device.given
+        found.aim = found.control_rest
+        if not math.isnan(command):
+            found.aim = min(max(command, device.control_lower), device.control_upper)
+        if not device.control_lag:
+            setattr(found, device.control, found.aim)
+            if device.control == "coulomb_force" and found.static_follows:
+                found.static_force = found.aim
+        return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from inerter.exudyn import control
 from inerter.exudyn import device as law
 from inerter.exudyn.element import HEAT, Element
 from inerter.exudyn.functions import Functions, Value
@@ -73,6 +74,7 @@ def _told(
         gap, slide = (p.state_names.index(n) for n in ("gap_position", "series_deflection"))
         place = z[gap] if p.series_damping else z[slide]
         z[gap] = f.least(p.backlash, f.greatest(-p.backlash, place))
+    p = control.present(f, p, z)
     forces = law.forces(p, x, v, a, z, f)
     heat = law.dissipated_power(f, p, x, v, z, forces["inertance"])
     told = {"length": motion.length, "displacement": x, "velocity": v, "acceleration": a, **forces}

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.exudyn import control
 from inerter.exudyn import device as law
 from inerter.exudyn.element import HEAT, Element
 from inerter.exudyn.engine import exudyn
@@ -159,6 +160,7 @@ def _parts(element: Element, f: Functions, q: Any, q_t: Any) -> list[tuple[Any, 
     assert isinstance(line, Line)
     x, v = line.difference(q) - p.rest_length, line.difference(q_t)
     z = element.states(x, q, q_t)
+    p = control.present(f, p, z)
     found = []
     for term in law.terms(f, p, x, v, z):
         weights = np.zeros(element.size)

@@ -15,13 +15,18 @@ element y = x and w = v. Each term's law, range and source stand in its own file
 Sign: positive x = longer; F is the force that lengthens the device (tension positive) and acts on
 the bodies as -F along the line. By hand: b = 2 kg, a = 3 m/s^2 gives F = +6 N.
 States, each only if needed: friction_state [m], series_deflection s [m], flywheel_velocity w
-[m/s], gap_position [m]. All zero: unloaded, flywheel at rest, middle of the gap.
+[m/s], gap_position [m], branch_deflection_i [m], control_change (`laws/control.py`). All zero:
+unloaded, flywheel at rest, middle of the gap, every parameter as stated.
 Not modelled: masses of the terminals, several series elements.
 """
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
+from copy import copy
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +37,7 @@ from .laws import (
     Quantity,
     branches,
     channel,
+    control,
     end_stops,
     gas,
     inertance,
@@ -41,6 +47,41 @@ from .laws import (
     series,
 )
 from .laws.series import Contact
+
+
+def _at_command(method: Callable[..., Any]) -> Callable[..., Any]:
+    """The method of the device at the value that its control commands; the last argument is z."""
+
+    @functools.wraps(method)
+    def wrapped(self: ReferenceDevice, *arguments: Any, **named: Any) -> Any:
+        if self.control == "force":
+            return method(self, *arguments, **named)
+        places = _PLACE_OF_STATES[method.__name__]
+        given = list(arguments)
+        if places < len(given):
+            present, given[places] = self._at_present(given[places])
+        else:
+            present, named["z"] = self._at_present(named.get("z", 0.0))
+        return method(present, *given, **named)
+
+    return wrapped
+
+
+_PLACE_OF_STATES = {
+    "force": 3,
+    "branch": 2,
+    "inertance_force": 3,
+    "rest_force": 2,
+    "total_friction": 3,
+    "friction_force": 2,
+    "acceleration": 3,
+    "stored_energy": 2,
+    "dissipated_power": 3,
+    "gas_valid": 1,
+    "contact_of": 1,
+    "contact_guards": 1,
+}
+"""Where z stands among the arguments of the methods."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +109,7 @@ class ReferenceDevice(DeviceParameters):
         flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
         gap = ("gap_position",) if self.backlash > 0.0 else ()
         beside = tuple(f"branch_deflection_{i + 1}" for i in range(branches.count(self)))
-        return friction + flywheel + gap + beside
+        return friction + flywheel + gap + beside + ("control_change",) * control.count(self)
 
     @property
     def friction_states(self) -> int:
@@ -89,6 +130,7 @@ class ReferenceDevice(DeviceParameters):
             return 0.0
         return array[..., 0] if self.nstate == 1 else array
 
+    @_at_command
     def force(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
@@ -98,6 +140,7 @@ class ReferenceDevice(DeviceParameters):
         carried = self.inertance_force(x, v, a, z, contact=contact)
         return carried + self.load_friction_force(v, carried) + self.rest_force(x, v, z)
 
+    @_at_command
     def branch(
         self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> tuple[Quantity, Quantity]:
@@ -111,6 +154,7 @@ class ReferenceDevice(DeviceParameters):
         mass, rest = inertance.branch(self, self.total_inertance, stretch, v)
         return mass, rest + self._flywheel_side(stretch, v)
 
+    @_at_command
     def inertance_force(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
@@ -120,18 +164,21 @@ class ReferenceDevice(DeviceParameters):
         mass, rest = self.branch(x, v, z, contact=contact)
         return mass * a + rest
 
+    @_at_command
     def rest_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """The part T of F [N] that stands beside the inertance branch."""
         if self.rubs_flywheel:
             return self._beside(x, v, z)
         return self._beside(x, v, z) + self.friction_force(x, v, z)
 
+    @_at_command
     def total_friction(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
         """Friction law and load friction [N], on the side where they act."""
         speed = self._states(z)[2] if self.rubs_flywheel else v
         carried = self.inertance_force(x, v, a, z)
         return self.friction_force(x, v, z) + self.load_friction_force(speed, carried)
 
+    @_at_command
     def friction_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Force of the friction law alone [N], without load friction and without `viscous`."""
         state, deflection, speed, _ = self._states(z)
@@ -147,6 +194,7 @@ class ReferenceDevice(DeviceParameters):
         """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals, by the sign of N."""
         return 0.0 * v if self.rubs_flywheel else load.share(self, carried, v)
 
+    @_at_command
     def acceleration(
         self, x: Quantity, v: Quantity, force: Quantity, z: Quantity = 0.0
     ) -> Quantity:
@@ -174,6 +222,68 @@ class ReferenceDevice(DeviceParameters):
         self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
         """Rates of the states, in the form of `z`; zero for a device without any."""
+        if self.control == "force":
+            return self._own_rate(x, v, z, contact=contact)
+        present, inner = self._at_present(z)
+        if not control.count(self):
+            return present._own_rate(x, v, inner, contact=contact)
+        change = np.asarray(control.rate(self, self._change(z)))
+        if self.nstate == 1:
+            return change + 0.0 * np.asarray(v)
+        rates = np.asarray(present._own_rate(x, v, inner, contact=contact))
+        columns = [rates] if present.nstate == 1 else list(np.moveaxis(rates, -1, 0))
+        return np.stack(np.broadcast_arrays(*columns, change), axis=-1)
+
+    def control_power(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
+        """Power that the control's actuator gives to the device [W]: dE/dp p'."""
+        if not control.count(self):
+            return 0.0 * np.asarray(v)
+        present, inner = self._at_present(z)
+        return present._energy_per(self.control, x, v, inner) * control.value_rate(
+            self, self._change(z)
+        )
+
+    def _energy_per(self, name: str, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
+        """Stored energy per unit of a parameter that it is linear in [J]; 0 where in none."""
+        friction, deflection, speed, _ = self._states(z)
+        stretch = x - self.rest_length
+        position, speed = (stretch - deflection, speed) if self.has_series else (stretch, v)
+        if name == "stiffness":
+            return parallel.spring_energy(stretch, 1.0, 0.0)
+        if name == "inertance":
+            return inertance.stored_energy(self, 1.0, position, speed)
+        if name == "bw_stiffness":
+            place, rate = (position, speed) if self.rubs_flywheel else (stretch, v)
+            unit = self._with_value(name, 1.0)
+            return FRICTION[self.friction].stored_energy(unit, place, rate, friction)
+        return 0.0 * np.asarray(v)
+
+    def _change(self, z: Quantity) -> Quantity:
+        """The control's own state."""
+        array = np.asarray(z, dtype=np.float64)
+        return array if self.nstate == 1 or array.ndim == 0 else array[..., -1]
+
+    def _with_value(self, name: str, value: Quantity) -> ReferenceDevice:
+        """The device, already checked, with a value, perhaps of many moments, of a parameter."""
+        found = copy(self)
+        object.__setattr__(found, name, value)
+        return found
+
+    def _at_present(self, z: Quantity) -> tuple[ReferenceDevice, Quantity]:
+        """The device at the value of its control, without a state of it; its states."""
+        found = self._with_value(self.control, control.value(self, self._change(z)))
+        object.__setattr__(found, "control", "force")
+        array = np.asarray(z, dtype=np.float64)
+        if not control.count(self) or array.ndim == 0:
+            return found, z if self.nstate > control.count(self) else 0.0
+        if self.nstate == 1:
+            return found, 0.0
+        return found, array[..., 0] if self.nstate == 2 else array[..., :-1]
+
+    def _own_rate(
+        self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+    ) -> Quantity:
+        """The same without a state of the control."""
         inner = self._inner_rate(x, v, z, contact)
         count = branches.count(self)
         if not count:
@@ -213,6 +323,7 @@ class ReferenceDevice(DeviceParameters):
             rates.append(series.gap_rate(self, deflection, series_rate, gap, contact))
         return np.stack(np.broadcast_arrays(*rates), axis=-1)
 
+    @_at_command
     def stored_energy(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Kinetic, spring, bristle, stop and gas energy [J]."""
         friction, deflection, speed, gap = self._states(z)
@@ -230,6 +341,7 @@ class ReferenceDevice(DeviceParameters):
             energy = energy + series.stored_energy(self, deflection, gap)
         return energy + branches.stored_energy(self, self._split(z)[1])
 
+    @_at_command
     def dissipated_power(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0
     ) -> Quantity:
@@ -254,16 +366,19 @@ class ReferenceDevice(DeviceParameters):
         flywheel = self.flywheel_viscous * speed * speed
         return heat + flywheel + channel.dissipated_power(self, speed)
 
+    @_at_command
     def gas_valid(self, x: Quantity, z: Quantity = 0.0) -> bool | NDArray[np.bool_]:
         """Whether the gas law is inside its validity; true without gas."""
         deflection = self._states(z)[1]
         return gas.valid(self, x - self.rest_length - deflection)
 
+    @_at_command
     def contact_of(self, v: float, z: Quantity) -> int:
         """The contact of the backlash that the states mean: +1, -1 or 0 (in the gap)."""
         _, deflection, speed, gap = self._states(z)
         return series.contact_of(self, float(deflection), v - float(speed), float(gap))
 
+    @_at_command
     def contact_guards(self, v: float, z: Quantity, contact: int) -> list[tuple[float, int]]:
         """What ends the contact, see `series.guards`."""
         _, deflection, speed, gap = self._states(z)
@@ -271,7 +386,7 @@ class ReferenceDevice(DeviceParameters):
 
     def parameters(self) -> dict[str, float | str]:
         """Every parameter by name, defaults included; NaN for one that is not given."""
-        return asdict(self)
+        return {name: value for name, value in asdict(self).items() if name != "command"}
 
     def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
         """T [N] without friction."""

@@ -1,7 +1,8 @@
 """A run as records: one CSV per device, one for a vehicle, in the form that `diagnose` reads.
 
 Device: time, displacement, force, velocity, acceleration; then inertance_force, friction_force
-[N], the states, stored_energy, dissipated_energy [J], and control_force [N] if there was any.
+[N], the states, stored_energy, dissipated_energy [J], and control_force [N] if there was any; where
+the control sets a parameter control_command, in its unit.
 """
 
 from __future__ import annotations

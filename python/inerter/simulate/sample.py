@@ -111,7 +111,7 @@ class Sampler:
                 probe.actuator_length[row],
                 _along(model, probe, row, probe.qvel),
                 _along(model, probe, row, acceleration) + turning[i],
-                probe.ctrl[ctrl] if model.actuator_ctrlnum[place.actuator] else 0.0,
+                probe.ctrl[ctrl] if model.actuator_ctrlnum[place.actuator] else np.nan,
             )
         self.vehicle.take(probe)
         self.count += 1
@@ -140,7 +140,7 @@ class Sampler:
             device = place.now(self.model)
             displacement = length - place.rest_length(self.model)
             states = {name: self.states[:, address] for name, address in place.act.items()}
-            found = evaluate(device, displacement, velocity, acceleration, states)
+            found = evaluate(device, displacement, velocity, acceleration, states, control)
             columns = {
                 "time": time,
                 "displacement": displacement,
@@ -153,7 +153,9 @@ class Sampler:
                 "stored_energy": found["stored_energy"],
                 "dissipated_energy": place.read(self.sensors)["dissipated_energy"],
             }
-            if control.any():
+            if device.control != "force":
+                columns["control_command"] = control
+            elif np.nan_to_num(control).any():
                 columns["control_force"] = control
             runs.append(DeviceRun(place, {name: np.array(v) for name, v in columns.items()}))
         return runs

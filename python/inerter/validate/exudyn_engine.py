@@ -8,6 +8,7 @@ sizes, so that for negative values it shrinks and can pass through zero.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -83,6 +84,9 @@ def run_exudyn(case: Case, integrator: str, step: float) -> ValidationRun:
         for name in inerter.device.state_names
     }
     mbs.Assemble()
+    told = case.command(scale)
+    for inerter in inerters if not math.isnan(told) else ():
+        inerter.SetControl(told)
     settings = _settings(exu, case, integrator, step)
     try:
         done = mbs.SolveDynamic(settings, solverType=getattr(exu.DynamicSolverType, integrator))
@@ -105,7 +109,7 @@ def run_exudyn(case: Case, integrator: str, step: float) -> ValidationRun:
         displacement=coordinates("Coordinates"),
         velocity=coordinates("Coordinates_t"),
         force=np.column_stack([read(s) for s in force]) / scale if force else nothing,
-        state={key: read(sensor) / scale for key, sensor in states.items()},
+        state={key: read(s) / case.state_size(key[1], scale) for key, s in states.items()},
         energy=np.column_stack([read(s) for s in energy]) / scale**2 if energy else nothing,
     )
     if not (np.isfinite(run.displacement).all() and np.isfinite(run.force).all()):

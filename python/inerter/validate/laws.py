@@ -29,18 +29,20 @@ class Law:
 
     `kind` says how smooth its force is along a motion: "smooth" (all derivatives that an
     integrator of fourth order wants), "corner" (a kink, or a rise steeper than a step resolves),
-    "contact" (a state that starts and stops).
+    "contact" (a state that starts and stops). `command` is what the device's control is told, in
+    the unit of what it sets.
     """
 
     name: str
     kind: Kind
     device: dict[str, float | str]
+    command: float = math.nan
 
 
-def _law(name: str, kind: Kind, **device: float | str) -> Law:
+def _law(name: str, kind: Kind, command: float = math.nan, **device: float | str) -> Law:
     # a channel's geometry gives the inertance
     own = {} if "channel_area" in device else {"inertance": INERTANCE}
-    return Law(name, kind, own | device)
+    return Law(name, kind, own | device, command)
 
 
 _SLIDING = {"coulomb_force": 200.0, "static_force": 300.0, "stribeck_velocity": 0.05}
@@ -83,6 +85,8 @@ LAWS = {
              slip_force_3=60.0),
         _law("friction_side", "corner", **_SHAFT, friction="coulomb", coulomb_force=200.0,
              transition_velocity=2e-3, friction_side="flywheel"),
+        _law("control", "smooth", 300.0, control="inertance", control_lower=60.0,
+             control_upper=400.0, control_lag=0.3),
         _law("end_stops", "corner", stop_lower=-5e-3, stop_upper=6e-3, stop_stiffness=1e6,
              stop_damping=0.5),
         _law("backlash", "contact", **_SHAFT, backlash=5e-4),
@@ -93,7 +97,11 @@ LAWS = {
 
 def exponents(name: str, device: dict[str, float | str] | None = None) -> tuple[float, float]:
     """Powers of mass and length in the unit of a parameter; `m^-n` takes n from `device`."""
-    power = float((device or {}).get("bw_exponent", parameters()["bw_exponent"].initial))
+    device = device or {}
+    power = float(device.get("bw_exponent", parameters()["bw_exponent"].initial))
+    if name in ("control_lower", "control_upper"):
+        # in the unit of what the control sets
+        name = str(device.get("control", name))
     return _powers(parameters()[name].unit, power)
 
 

@@ -7,6 +7,7 @@ there; it is one callback for the whole process, put back when the run ends.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -61,6 +62,10 @@ def run_mujoco(case: Case, file: str, integrator: str, step: float) -> Validatio
     with engine_warnings():
         model, beside = compiled(case, file, integrator, step)
         data = mujoco.MjData(model)
+        told = case.command(setup.scale)
+        if not math.isnan(told):
+            for name in setup.inerters:
+                data.ctrl[model.actuator_ctrladr[model.actuator(name).id]] = told
         try:
             with control(model, case.signals(setup.scale)):
                 return _sampled(case, model, data, beside)
@@ -175,7 +180,8 @@ def _run(
     for i, (name, part) in enumerate(zip(case.setup.inerters, beside, strict=True)):
         first = model.actuator(name).actadr[0]
         for column, state_name in enumerate(part.device.state_names):
-            state[i, state_name] = acts[:, first + column] / size
+            unit = case.state_size(state_name, size)
+            state[i, state_name] = acts[:, first + column] / unit
     return ValidationRun(
         time=case.times,
         displacement=np.column_stack([qpos[:, at].sum(axis=1) for at in joints]) / size,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,19 @@ from .parameters import UNSET, FrictionParameters, parameter
 
 GAS_LAWS = ("polytropic", "expanded")
 FRICTION_SIDES = ("terminals", "flywheel")
+CONTROLS = (
+    "force",
+    "viscous",
+    "quadratic_damping",
+    "flywheel_viscous",
+    "minor_loss",
+    "coulomb_force",
+    "static_force",
+    "stiffness",
+    "bw_stiffness",
+    "inertance",
+)
+"""What a control can be: a force beside the device, or a parameter that it sets."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,6 +96,13 @@ class DeviceParameters(FrictionParameters):
 
     coil_diameter: float = parameter(0.0, "m", "diameter of the channel's coil D_c", at_least=0.0)
 
+    control: str = "force"
+    control_lower: float = parameter(UNSET, "-", "smallest value that the control sets")
+    control_upper: float = parameter(UNSET, "-", "largest value that the control sets")
+    control_lag: float = parameter(0.0, "s", "time constant of the control's value", at_least=0.0)
+    command: float = UNSET
+    """What the control commands at present, in the unit of what it sets; NaN: nothing."""
+
     @property
     def has_series(self) -> bool:
         """Whether something stands in series with the inertance."""
@@ -102,6 +122,7 @@ class DeviceParameters(FrictionParameters):
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
+        self._check_control()
         super().__post_init__()
         self._check_side()
         self._check_branches()
@@ -110,6 +131,43 @@ class DeviceParameters(FrictionParameters):
         self._check_stops()
         self._check_gas()
         self._check_along(self.friction, self.friction_asymmetry, self.viscous)
+
+    def _check_control(self) -> None:
+        if self.control not in CONTROLS:
+            raise ValueError(f"control: '{self.control}' is not one of {', '.join(CONTROLS)}")
+        bounds = {name: getattr(self, name) for name in ("control_lower", "control_upper")}
+        given = [name for name, bound in bounds.items() if not np.isnan(bound)]
+        given += ["control_lag"] * (self.control_lag > 0.0)
+        if self.control == "force":
+            if given:
+                raise ValueError(
+                    f"{given[0]}: {getattr(self, given[0])}, but control 'force' does not read it; "
+                    "drop it, or name the parameter that the control sets"
+                )
+            return
+        lower, upper = bounds.values()
+        if not lower < upper:
+            raise ValueError(
+                f"control_lower: {lower} is not below control_upper {upper}; give both, between "
+                f"which the control sets {self.control}"
+            )
+        declared = type(self).__dataclass_fields__[self.control]
+        stated = getattr(self, self.control)
+        if np.isnan(stated) or (stated == declared.default and not lower <= stated <= upper):
+            begin = lower if np.isnan(stated) else float(np.clip(stated, lower, upper))
+            object.__setattr__(self, self.control, begin)
+        elif not lower <= stated <= upper:
+            raise ValueError(
+                f"{self.control}: {stated} is not from control_lower {lower} to control_upper "
+                f"{upper}; give a value between them, or none"
+            )
+        # what holds at both bounds holds between them
+        for bound in (lower, upper):
+            free = {"control": "force", "control_lower": UNSET, "control_upper": UNSET}
+            if bound == 0.0 and self.control in ("coulomb_force", "static_force"):
+                # a clutch may be open, but no bristle goes without a level
+                bound = 0.0 if self.friction in ("dahl", "lugre") else 5e-324
+            replace(self, **free, control_lag=0.0, **{self.control: bound})
 
     def _check_branches(self) -> None:
         last = True

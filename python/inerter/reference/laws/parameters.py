@@ -147,7 +147,7 @@ class FrictionParameters(StrokeParameters):
     @property
     def breakaway_force(self) -> float:
         """f_s [N]: `static_force`, or `coulomb_force` where that is not given."""
-        return self.coulomb_force if np.isnan(self.static_force) else self.static_force
+        return self.coulomb_force if np.all(np.isnan(self.static_force)) else self.static_force
 
     def _check_levels(self) -> None:
         """A law slides at a level above zero, and breaks away at no less."""
@@ -167,7 +167,8 @@ class FrictionParameters(StrokeParameters):
         # a law with a bristle divides by its friction level
         bristle = self.friction in ("dahl", "lugre")
         level = self.coulomb_force if bristle else self.breakaway_force
-        if self.friction not in ("none", "bouc_wen") and level == 0.0:
+        open_clutch = getattr(self, "control", "force") in ("coulomb_force", "static_force")
+        if self.friction not in ("none", "bouc_wen") and level == 0.0 and not open_clutch:
             raise ValueError(
                 f"coulomb_force: {self.coulomb_force} N leaves friction='{self.friction}' without "
                 "a level to slide at; give coulomb_force > 0, or friction='none'"
