@@ -108,11 +108,11 @@ class Forces:
             # the damping of a LuGre bristle may give back what it has taken: the law is so
             if not each.keys.get("bristle_damping"):
                 fell = held - values["dissipated_energy"]
-                self._note("heat", float(fell > 1e-9 * (1e-12 + abs(held))))
+                self._note("heat", float(fell > 1e-9 * (1e-7 + abs(held))))
 
     def _compare(self, each: Drawn, row, values, qacc, stepped) -> float:
         """Note how well the inertance's force fits; what the step's own acceleration adds to it."""
-        b = float(each.keys["inertance"])
+        b = inertance_of(each)
         found = float(values["inertance"])
         for acceleration, noted in ((qacc, self._by_forward), (stepped, self._by_step)):
             a = float(row.J @ acceleration) + row.bias
@@ -182,6 +182,12 @@ def weighted_alike(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjMod
     return twin
 
 
+def inertance_of(each: Drawn) -> float:
+    """As stated, or as a control of 0 commands, which follows at once (see `draw`)."""
+    commanded = each.keys.get("control") == "inertance"
+    return float(each.keys["control_lower" if commanded else "inertance"])
+
+
 def rigid(each: Drawn) -> bool:
     """Whether the inertance acts at the terminals."""
     return "series_stiffness" not in each.keys
@@ -224,7 +230,7 @@ def dense(bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel, cas
         found = (data.qvel - before) / h
     read = [device_of(model, each.name).read(data.sensordata) for each in case.devices]
     rest = np.array([float(values["total"] - values["inertance"]) for values in read])
-    b = np.array([float(each.keys["inertance"]) for each in case.devices])
+    b = np.array([inertance_of(each) for each in case.devices])
     J = np.array([row.J for row in rows])
     response = np.array([answer(row.J) - free for row in rows])
     W = J @ response.T

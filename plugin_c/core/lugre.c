@@ -53,7 +53,7 @@ static double over_step(const InerterDevice* p, double x, double v, double z, do
   double factor = friction_level(p, x, v), curve = friction_stribeck_curve(p, v);
   double g = factor * curve, stiff = p->bristle_stiffness, speed = fabs(v);
   double end = sign(v) * g / stiff, gone = v == 0 ? 0 : -expm1(-stiff * speed * h / g);
-  double z1 = z + gone * (end - z), middle = z + share * (z1 - z);
+  double change = gone * (end - z);
 
   // g' over g: the fall of the curve
   double fall = 0, excess = p->static_force - p->coulomb_force;
@@ -64,12 +64,10 @@ static double over_step(const InerterDevice* p, double x, double v, double z, do
                : 0;
   }
   double path = stiff * h / g, left = 1 - gone;
-  double dz1 = v == 0 ? h - path * z
-                      : left * path * (sign(v) - speed * fall) * (end - z) + gone * end * fall;
-  double dmiddle = share * dz1;
-  double drate = 1 - stiff * (sign(v) * middle + speed * (dmiddle - middle * fall)) / g;
-  *slope = stiff * dmiddle + p->bristle_damping * drate;
-  return force_of_rate(p, middle, v - stiff * speed * middle / g);
+  double dchange = v == 0 ? h - path * z
+                          : left * path * (sign(v) - speed * fall) * (end - z) + gone * end * fall;
+  *slope = (stiff * share + p->bristle_damping / h) * dchange;
+  return force_of_rate(p, z + share * change, change / h);
 }
 
 static double energy(const InerterDevice* p, double x, double z) {

@@ -4,8 +4,8 @@
 //   level of friction without memory: at v;  springs, constant force, what changes along the
 //   stroke: at x
 //   end stops: at x + h v1, v1
-//   bristle: z1 = step(x, v1, z, h), force at v1 and z + share (z1 - z); behind free play its
-//   damper at the mean rate (friction_play.c)
+//   bristle: z1 = step(x, v1, z, h), force at z + share (z1 - z), its damper at the mean rate
+//   (z1 - z) / h, however soon within the step the bristle is bent
 //   rigid inertance: B a + R + G at (x, v), the dampers of G with their slope times (v1 - v)
 //   series element: series_step.c
 //   share(k, m) = max(0, 1 - 1 / (h^2 k m)), m = mobility [1/kg] of the masses at the spring's ends
@@ -79,7 +79,9 @@ static double bristle_over_step(const InerterDevice* device, double x, double v1
   if (device->friction_backlash > 0) {
     return play_force_over_step(device, x, v1, z, *z1, share, h);
   }
-  return law->force(device, x, v1, z + share * (*z1 - z));
+  double middle = z + share * (*z1 - z);
+  return law->force_of_rate ? law->force_of_rate(device, middle, (*z1 - z) / h)
+                            : law->force(device, x, v1, middle);
 }
 
 // the same of a law with several states

@@ -367,3 +367,23 @@ def test_backlash_takes_no_energy_out_of_nothing(damping: float) -> None:
         peaks = [max(energy[i : i + 500]) for i in range(0, 3000, 500)]
         assert peaks[0] < 1.1 * 0.5 * 400.0 * 0.01**2
         assert np.all(np.diff(peaks) <= 1e-9), (stiffness, peaks)
+
+
+@pytest.mark.parametrize("mobility", [0.0, 1e-3, 20.0])
+def test_a_bristle_that_bends_within_the_step_gives_no_more_than_it_can(mobility: float) -> None:
+    """LuGre: what the damper of a bristle adds over a step is its change of length per step.
+
+    At 0.07 m/s this one is bent in 4e-6 s. sigma1 v, the damper's force before it has bent, is
+    5000 times its level.
+    """
+    level, stiffness, damping, h = 0.0089, 31_300.0, 610.0, 2e-3
+    device = Device(
+        friction="lugre", inertance=0.0, coulomb_force=level, static_force=2 * level,
+        stribeck_velocity=0.01, bristle_stiffness=stiffness, bristle_damping=damping,
+    )  # fmt: skip
+    for v in np.geomspace(1e-6, 10, 60):
+        for bent in (-1.0, 0.0, 1.0):
+            force, end = device.over_step(0.0, v, 0.0, bent * level / stiffness, h, mobility)
+            most = 2 * level + damping * abs(end[0] - bent * level / stiffness) / h
+            assert abs(force["total"]) <= most * (1 + 1e-12)
+            assert abs(force["total"]) <= 2 * level * (1 + 2 * damping / (stiffness * h))
