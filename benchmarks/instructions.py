@@ -33,6 +33,7 @@ LEAST = {
     "lugre": 28 + 6,
     "bouc_wen": 17 + 5,
     "brown_mcphee": 13 + 4,
+    "rate_state": 25 + 6,
     "maxwell_slip": 7 + 4 * 10 + 4 + 4,
 }
 FEW, MANY = 2000, 20_000

@@ -112,6 +112,11 @@ double friction_grip(const InerterDevice* device, double x, double v) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
+  if (device->friction == INERTER_FRICTION_rate_state) {
+    double slope;
+    law_of(device)->over_step(device, x, v, 0, 0, 0, &slope);
+    return slope;
+  }
   if (has_bristle(device)) {
     return device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
   }
