@@ -30,7 +30,9 @@ def force(v: float, z: float, **more: Any) -> float:
 
 
 def draw(rng: np.random.Generator, wide: float = 1.0) -> dict[str, Any]:
-    p = draw_friction(rng, "rate_state", wide) | draw_branches(rng, wide) | draw_levels(rng)
+    p: dict[str, Any] = (
+        draw_friction(rng, "rate_state", wide) | draw_branches(rng, wide) | draw_levels(rng)
+    )
     p["load_friction"] = min(p["load_friction"], 0.9)
     return p
 
@@ -99,7 +101,7 @@ def test_the_reference_integrates_to_the_closed_form() -> None:
 def test_core_and_reference_agree() -> None:
     rng = np.random.default_rng(11)
     for k in range(60):
-        p = draw(rng, 0.5 + k % 3)
+        p: dict[str, Any] = draw(rng, 0.5 + k % 3)
         device, told = Device(**p), ReferenceDevice(**p)
         assert device.state_names == told.state_names == ("friction_state",)
         x, v, a, z = draw_points(rng, 50, 5.0)
@@ -119,7 +121,8 @@ def test_core_and_reference_agree() -> None:
 def test_behind_a_series_element_too() -> None:
     rng = np.random.default_rng(12)
     for _ in range(20):
-        p = draw(rng) | draw_series(rng, backlash=False) | {"friction_side": "flywheel"}
+        p: dict[str, Any] = draw(rng) | draw_series(rng, backlash=False)
+        p["friction_side"] = "flywheel"
         device, told = Device(**p), ReferenceDevice(**p)
         x, v, a, z0 = draw_points(rng, 30, 3.0)
         z = np.column_stack([z0, 1e-4 * rng.normal(size=(30, 2))])
