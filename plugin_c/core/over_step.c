@@ -165,7 +165,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
     }
     if (device->ncontrol) {
-      next[device->nstate - 1] = control_step(device, next[device->nstate - 1], h);
+      next[control_index(device)] = control_step(device, next[control_index(device)], h);
     }
     force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;

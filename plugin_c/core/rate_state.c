@@ -54,7 +54,8 @@ static double force(const InerterDevice* p, double x, double v, double z) {
 // the force at the state of the start, with its slope over v but for that of the level's asymmetry
 static double over_step(const InerterDevice* p, double x, double v, double z, double h,
                         double share, double* slope) {
-  (void)h, (void)share;
+  (void)h;
+  (void)share;
   double level = p->coulomb_force * friction_level(p, x, v), width = p->transition_velocity;
   double direction = friction_direction(p, v), bare = factor(p, v, z), size = fmax(kLeast, bare);
   double turn = bare > kLeast ? p->rate_effect * v / (v * v + width * width) : 0;
@@ -63,7 +64,9 @@ static double over_step(const InerterDevice* p, double x, double v, double z, do
 }
 
 static double energy(const InerterDevice* p, double x, double z) {
-  (void)p, (void)x, (void)z;
+  (void)p;
+  (void)x;
+  (void)z;
   return 0;
 }
 
