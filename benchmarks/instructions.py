@@ -33,6 +33,8 @@ LEAST = {
     "lugre": 28 + 6,
     "bouc_wen": 17 + 5,
     "brown_mcphee": 13 + 4,
+    "rate_state": 25 + 6,
+    "maxwell_slip": 7 + 4 * 10 + 4 + 4,
 }
 FEW, MANY = 2000, 20_000
 
@@ -53,7 +55,8 @@ for i in range(2000):
     a.append(-0.4 * math.sin(angle) - 2.8 * math.sin(5 * angle))
 series = ctypes.c_double * size
 inputs = [series(*(part * (size // 2000))) for part in (x, v, a)]
-outputs = [series() for _ in range(4)]
+states = ctypes.c_double * (size * max(1, core.inerter_nstate(device)))
+outputs = [series(), series(), series(), states()]
 core.inerter_along(device, n, ctypes.c_double(1e-3), *inputs, *outputs)
 """
 

@@ -34,6 +34,7 @@ FRICTION: Mapping[str, dict[str, Any]] = {
     },
     "bouc_wen": {"bw_stiffness": 1e4, "bw_beta": 600, "bw_gamma": 400},
     "brown_mcphee": {"coulomb_force": 10, "static_force": 15, "stribeck_velocity": 0.01},
+    "rate_state": {"coulomb_force": 10, "rate_effect": 0.02, "age_effect": 0.06},
     "maxwell_slip": {
         "slip_stiffness_1": 1e4, "slip_force_1": 4, "slip_stiffness_2": 2e3, "slip_force_2": 3,
         "slip_stiffness_3": 6e2, "slip_force_3": 3,
@@ -282,6 +283,27 @@ def coil() -> None:
     loops("coil", devices, 1.0, AMPLITUDE)
 
 
+def aging() -> None:
+    """Rate-and-state friction: a step of the velocity and back, and slides after holds."""
+    law = {"friction": "rate_state", "coulomb_force": 10, "rate_effect": 0.02, "age_effect": 0.04}
+    device = Device(**law, age_distance=1e-4, transition_velocity=1e-6)
+    figure = Figure(figsize=(9, 3), layout="constrained")
+    stepped, held = figure.subplots(1, 2)
+    t = np.arange(0, 3.0, 1 / RATE)
+    v = np.where((t > 1) & (t < 2), 1e-2, 1e-3)
+    x = np.concatenate([[0.0], np.cumsum(v[1:])]) / RATE
+    stepped.plot(1e3 * x, device.along(1 / RATE, x, v, np.zeros_like(t))["total"])
+    stepped.set(xlabel="displacement [mm]", ylabel="force [N]", title="1 mm/s, 10 mm/s, 1 mm/s")
+    for hold in (1.0, 10.0, 100.0):
+        begin = device.step(0.0, 0.0, 0.0, hold)
+        slide = np.full(t.shape, 1e-3)
+        told = device.along(1 / RATE, slide * t, slide, np.zeros_like(t), begin)["total"]
+        held.plot(t[t < 0.6], told[t < 0.6], label=f"held for {hold:g} s")
+    held.set(xlabel="time [s]", ylabel="force [N]", title="1 mm/s after a hold")
+    held.legend(frameon=False)
+    _save(figure, "aging")
+
+
 def control() -> None:
     """A damping and an inertance that a control sets, at once and with a lag."""
     t = np.arange(0, 1.0, 1 / RATE)
@@ -338,7 +360,7 @@ def semi_active() -> None:
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
     damping_and_stiffness, branches, inertance, series, friction_side, end_stops, gas, fluid,
-    along_the_stroke, along_each_direction, coil, control, semi_active,
+    along_the_stroke, along_each_direction, coil, aging, control, semi_active,
 )  # fmt: skip
 
 

@@ -227,6 +227,11 @@ def _friction(
     keys["coulomb_force"] = level
     if law in ("stribeck", "lugre", "brown_mcphee"):
         keys |= {"static_force": level * rng.uniform(1, 2), "stribeck_velocity": 0.01}
+    if law == "rate_state":
+        keys |= {
+            "age_effect": rng.uniform(0, 0.1),
+            "transition_velocity": 10 ** rng.uniform(-3, -2),
+        }
     if law in ("coulomb", "stribeck", "brown_mcphee") and rng.random() < 0.3:
         keys["transition_velocity"] = 10.0 ** rng.uniform(-3, -1)
     if law in ("dahl", "lugre"):

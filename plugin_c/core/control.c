@@ -52,7 +52,7 @@ void inerter_command(InerterDevice* device, double command, const double* z) {
   device->command = isnan(command) ? device->control_rest : clamp(command, lower, upper);
   double value = device->command;
   if (device->ncontrol) {
-    double change = z ? z[device->nstate - 1] : 0;
+    double change = z ? z[control_index(device)] : 0;
     value = device->control_rest + (isnan(change) ? 0 : change);
   }
   *value_of(device) = clamp(value, lower, upper);
@@ -96,7 +96,7 @@ double inerter_control_power(const InerterDevice* device, double x, double v, co
   if (!device->ncontrol) {
     return 0;
   }
-  double change = z[device->nstate - 1], rate = control_rate(device, change);
+  double change = z[control_index(device)], rate = control_rate(device, change);
   double value = device->control_rest + change;
   if (value < device->control_lower || value > device->control_upper) {
     return 0;  // held at the bound

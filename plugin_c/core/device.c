@@ -78,7 +78,7 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
     branches_rate(device, v, z + branch_index(device), rate + branch_index(device));
   }
   if (device->ncontrol) {
-    rate[device->nstate - 1] = control_rate(device, z[device->nstate - 1]);
+    rate[control_index(device)] = control_rate(device, z[control_index(device)]);
   }
 }
 
@@ -94,7 +94,7 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double*
     branches_step(device, v, z + branch_index(device), h);
   }
   if (device->ncontrol) {
-    z[device->nstate - 1] = control_step(device, z[device->nstate - 1], h);
+    z[control_index(device)] = control_step(device, z[control_index(device)], h);
   }
 }
 

@@ -70,6 +70,7 @@ extern const FrictionLaw inerter_lugre;
 extern const FrictionLaw inerter_bouc_wen;
 extern const FrictionLaw inerter_brown_mcphee;
 extern const FrictionLaw inerter_maxwell_slip;
+extern const FrictionLaw inerter_rate_state;
 
 // maxwell_slip.c: how many elements there are; stiffness and slip force of one, side by side
 int slip_count(const InerterDevice* p);

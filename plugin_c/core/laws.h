@@ -218,6 +218,11 @@ static inline int branch_index(const InerterDevice* p) {
   return p->nstate - p->nbranch - p->ncontrol;
 }
 
+// place of the control's state, the last
+static inline int control_index(const InerterDevice* p) {
+  return p->nstate > 0 ? p->nstate - 1 : 0;
+}
+
 // check.c: see that everything but the control fits, and derive what was not set; -1 with a message
 int device_check(InerterDevice* device, char* message);
 

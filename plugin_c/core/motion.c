@@ -25,7 +25,7 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     series_step(device, start, v[0], a, jerk, z, z + series_index(device), h);
   }
   if (device->ncontrol) {
-    z[device->nstate - 1] = control_step(device, z[device->nstate - 1], h);
+    z[control_index(device)] = control_step(device, z[control_index(device)], h);
   }
 }
 

@@ -114,6 +114,11 @@ double friction_grip(const InerterDevice* device, double x, double v) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
+  if (device->friction == INERTER_FRICTION_rate_state) {
+    double slope;
+    law_of(device)->over_step(device, x, v, 0, 0, 0, &slope);
+    return slope;
+  }
   if (has_bristle(device)) {
     return device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
   }
@@ -162,7 +167,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
     }
     if (device->ncontrol) {
-      next[device->nstate - 1] = control_step(device, next[device->nstate - 1], h);
+      next[control_index(device)] = control_step(device, next[control_index(device)], h);
     }
     force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;

@@ -63,8 +63,8 @@
   X(channel_roughness, "m", 0, 0, INFINITY, CLOSED, "", "roughness of the channel's wall")         \
   X(minor_loss, "1", 0, 0, INFINITY, CLOSED, "", "loss at bends and ends per rho u^2 / 2, K")      \
   /* friction levels, shared by every law but Bouc-Wen */                                          \
-  X(coulomb_force, "N", 0, 0, INFINITY, CLOSED, "coulomb stribeck dahl lugre brown_mcphee",        \
-    "sliding friction level, f_c")                                                                 \
+  X(coulomb_force, "N", 0, 0, INFINITY, CLOSED,                                                    \
+    "coulomb stribeck dahl lugre brown_mcphee rate_state", "sliding friction level, f_c")          \
   X(static_force, "N", NAN, 0, INFINITY, CLOSED, "stribeck lugre brown_mcphee",                    \
     "breakaway level, f_s >= f_c; unset: f_c")                                                     \
   X(stribeck_velocity, "m/s", 1e-2, 0, INFINITY, OPEN, "stribeck lugre brown_mcphee",              \
@@ -72,12 +72,14 @@
   X(stribeck_exponent, "1", 2, 0, 10, OPEN, "stribeck lugre", "shape of the fall from f_s to f_c") \
   X(transition_velocity, "m/s", 1e-4, 0, INFINITY, OPEN, "", "width of sign(v) = tanh(v / width)") \
   X(friction_asymmetry, "1", 0, -0.999, 0.999, CLOSED,                                             \
-    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip",                                       \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip rate_state",                            \
     "relative rise of the level for v > 0, fall for v < 0")                                        \
   X(friction_gradient, "1/m", 0, -INFINITY, INFINITY, CLOSED,                                      \
-    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x")   \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip rate_state",                            \
+    "relative rise of the level per x")                                                            \
   X(friction_curvature, "1/m^2", 0, -INFINITY, INFINITY, CLOSED,                                   \
-    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip", "relative rise of the level per x^2") \
+    "coulomb stribeck dahl lugre brown_mcphee maxwell_slip rate_state",                            \
+    "relative rise of the level per x^2")                                                          \
   /* bristles: Dahl and LuGre; free play also Bouc-Wen */                                          \
   X(bristle_stiffness, "N/m", 1e5, 0, INFINITY, OPEN, "dahl lugre",                                \
     "pre-sliding stiffness, sigma0")                                                               \
@@ -137,6 +139,15 @@
   X(curve_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last value of every curve")  \
   X(coil_diameter, "m", 0, 0, INFINITY, CLOSED, "",                                                \
     "diameter of the coil that the channel is wound to, D_c; 0: straight")                         \
+  /* rate-and-state friction */                                                                    \
+  X(rate_effect, "1", 0.02, 0, INFINITY, CLOSED, "rate_state",                                     \
+    "relative rise of the level per ln(v), at once, A")                                            \
+  X(age_effect, "1", 0.03, 0, INFINITY, CLOSED, "rate_state",                                      \
+    "relative rise of the level per ln(age of the contacts), B")                                   \
+  X(rate_velocity, "m/s", 1e-3, 0, INFINITY, OPEN, "rate_state",                                   \
+    "speed at which steady sliding is at coulomb_force, v_0")                                      \
+  X(age_distance, "m", 1e-5, 0, INFINITY, OPEN, "rate_state",                                      \
+    "way of sliding that renews the contacts, L")                                                  \
   /* a control that sets a parameter; values in its unit */                                        \
   X(control_lower, "1", NAN, -INFINITY, INFINITY, CLOSED, "",                                      \
     "smallest value that the control sets, in the unit of what it sets")                           \
@@ -147,26 +158,27 @@
 
 // What changes along the stroke (curve.c): X(name, unit, laws, meaning). Each has two lists of
 // numbers: NAME_curve, values at evenly spaced places, and NAME_periods, three numbers for each.
-#define INERTER_STROKES(X)                                                   \
-  X(friction, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee",      \
-    "relative rise of the friction level")                                   \
-  X(friction_back, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee", \
-    "the same for v < 0, where it differs")                                  \
-  X(inertance, "1", "", "relative rise of the inertance")                    \
-  X(inertance_back, "1", "", "the same for v < 0, where it differs")         \
-  X(force, "N", "", "force of the place alone")                              \
+#define INERTER_STROKES(X)                                                              \
+  X(friction, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee rate_state",      \
+    "relative rise of the friction level")                                              \
+  X(friction_back, "1", "coulomb stribeck dahl lugre bouc_wen brown_mcphee rate_state", \
+    "the same for v < 0, where it differs")                                             \
+  X(inertance, "1", "", "relative rise of the inertance")                               \
+  X(inertance_back, "1", "", "the same for v < 0, where it differs")                    \
+  X(force, "N", "", "force of the place alone")                                         \
   X(viscous, "N*s/m", "", "viscous damping beside viscous")
 
 // the friction laws: X(identifier, largest number of states, meaning)
-#define INERTER_FRICTION_LAWS(X)                                       \
-  X(none, 0, "no friction")                                            \
-  X(coulomb, 0, "constant level against the motion")                   \
-  X(stribeck, 0, "level falls from f_s to f_c with speed")             \
-  X(dahl, 1, "bristle that yields at f_c: memory, no Stribeck effect") \
-  X(lugre, 1, "bristle with Stribeck effect and micro-damping")        \
-  X(bouc_wen, 1, "smooth hysteresis with an elastic share")            \
-  X(brown_mcphee, 0, "smooth Stribeck curve without states")           \
-  X(maxwell_slip, 8, "springs that slip, side by side: memory of every reversal")
+#define INERTER_FRICTION_LAWS(X)                                                  \
+  X(none, 0, "no friction")                                                       \
+  X(coulomb, 0, "constant level against the motion")                              \
+  X(stribeck, 0, "level falls from f_s to f_c with speed")                        \
+  X(dahl, 1, "bristle that yields at f_c: memory, no Stribeck effect")            \
+  X(lugre, 1, "bristle with Stribeck effect and micro-damping")                   \
+  X(bouc_wen, 1, "smooth hysteresis with an elastic share")                       \
+  X(brown_mcphee, 0, "smooth Stribeck curve without states")                      \
+  X(maxwell_slip, 8, "springs that slip, side by side: memory of every reversal") \
+  X(rate_state, 1, "level falls with ln(speed) and grows with ln(time at rest)")
 
 // the laws of the gas spring: X(identifier, meaning)
 #define INERTER_GAS_LAWS(X)              \

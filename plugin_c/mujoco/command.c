@@ -26,22 +26,18 @@ mjtNum command_value(const mjModel* m, const mjData* d, int actuator) {
 }
 
 mjtNum command_force(const mjModel* m, const mjData* d, const Instance* self) {
-  mjtNum force = 0;
-  if (self->device.control == INERTER_CONTROL_force) {
-    force = command_value(m, d, self->actuator);
+  if (!m->actuator_ctrlnum[self->actuator] || self->device.control != INERTER_CONTROL_force) {
+    return 0;
   }
-  return isnan(force) ? 0 : force;
+  return command_value(m, d, self->actuator);
 }
 
 static double* controlled(InerterDevice* device, int parameter) {
   return (double*)(void*)((char*)device + inerter_parameter(parameter)->offset);
 }
 
-void command_take(const mjModel* m, const mjData* d, Instance* self) {
+void command_take_value(const mjModel* m, const mjData* d, Instance* self) {
   InerterDevice* device = &self->device;
-  if (device->control == INERTER_CONTROL_force) {
-    return;
-  }
   // where the actuator is disabled nobody hears the control
   mjtNum command = instance_disabled(m, self) ? NAN : command_value(m, d, self->actuator);
   inerter_command(device, command, d->act + (device->nstate ? instance_act(m, self) : 0));

@@ -13,7 +13,12 @@ mjtNum command_value(const mjModel* m, const mjData* d, int actuator);
 mjtNum command_force(const mjModel* m, const mjData* d, const Instance* self);
 
 // Let the device have the value that its control, and the state of it in mjData.act, say now.
-void command_take(const mjModel* m, const mjData* d, Instance* self);
+void command_take_value(const mjModel* m, const mjData* d, Instance* self);
+static inline void command_take(const mjModel* m, const mjData* d, Instance* self) {
+  if (self->device.control != INERTER_CONTROL_force) {
+    command_take_value(m, d, self);
+  }
+}
 
 // By the compiler's init: the range of a control that sets a parameter. Return 0, or -1 with a
 // message.

@@ -119,12 +119,14 @@ static inline int instance_has_stop(const InerterDevice* device) {
   return device->stop_stiffness > 0;
 }
 
-// Whether a device has friction with a state; friction without one.
+// Whether a device has friction with a state; friction whose sign is sharp, with a state or
+// without.
 static inline int instance_has_bristle(const InerterDevice* device) {
   return inerter_friction_nstate(device->friction) > 0;
 }
 static inline int instance_has_sharp_friction(const InerterDevice* device) {
-  return device->friction != INERTER_FRICTION_none && !instance_has_bristle(device);
+  return device->friction != INERTER_FRICTION_none &&
+         (!instance_has_bristle(device) || device->friction == INERTER_FRICTION_rate_state);
 }
 
 // Whether a device has viscoelastic branches.

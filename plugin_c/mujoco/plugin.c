@@ -246,8 +246,8 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   if (instance_asleep(m, d, self)) {
     return;
   }
-  if (!instance_sees_falling_asleep(m, d)) {
-    command_take(m, d, self);
+  if (self->device.control != INERTER_CONTROL_force && !instance_sees_falling_asleep(m, d)) {
+    command_take_value(m, d, self);
   }
   if (!self->disabled) {
     watch_stiffness(m, self);

@@ -69,7 +69,7 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
   }
 
   if (instance_rubs_flywheel(device)) {
-    v = state[1];
+    v = state[device->nfriction + 1];
   }
 
   // slope of the rate over the state, a little beyond the state
@@ -129,7 +129,7 @@ static double friction_slope(const InerterDevice* device) {
   const double small = 1e-9;
   double state[INERTER_MAXSTATE] = {0};
   if (instance_rubs_flywheel(device)) {
-    state[1] = small;  // the velocity of the flywheel: such a law has no state before it
+    state[device->nfriction + 1] = small;  // the velocity of the flywheel
   }
   return instance_has_sharp_friction(device)
              ? inerter_friction_force(device, 0, small, state) / small

@@ -285,5 +285,5 @@ def test_whatever_is_taken_out_leaves_a_device_that_can_be(law: str) -> None:
                 ]:
                     less.device()
                     looked_at += 1
-    # Maxwell-slip friction is held as it is stated, and no level of it varies
-    assert looked_at == 0 if law == "maxwell_slip" else looked_at > 20
+    # these are held as they are stated, and no level of them varies
+    assert looked_at == 0 if law in ("maxwell_slip", "rate_state") else looked_at > 20

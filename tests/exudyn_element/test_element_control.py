@@ -137,6 +137,27 @@ def test_set_keeps_the_command() -> None:
     assert made.Evaluate()["total"] == pytest.approx(80.0)
 
 
+def test_rate_and_state_friction_is_the_cores() -> None:
+    rng = np.random.default_rng(4)
+    law_of = {"friction": "rate_state", "coulomb_force": 7.0, "transition_velocity": 1e-3}
+    for more in ({}, SERIES, {**SERIES, "friction_side": "flywheel"}):
+        device = Device(**{**BASE, **law_of, **more})
+        for _ in range(20):
+            x, v, a = (rng.normal(size=3) * [0.02, 0.5, 4.0]).tolist()
+            z = rng.normal(size=device.nstate) * 1e-3
+            z[0] = rng.normal() * 4.0
+            p, true = Parameters.of(device), device.evaluate(x, v, a, z)
+            for key, value in law.forces(p, x, v, a, z.tolist()).items():
+                assert value == pytest.approx(true[key][0], rel=1e-11, abs=1e-10), key
+            rates = np.zeros(device.nstate)
+            for term in law.terms(NUMBERS, p, x, v, z.tolist()):
+                for place, share in term.rates:
+                    rates[place] += share * term.value
+            np.testing.assert_allclose(
+                rates, true["state_rate"].ravel()[: device.nstate], rtol=1e-11
+            )
+
+
 def test_refusals() -> None:
     system = line([4.0], [1.0])
     plain = CreateInerter(system.mbs, "d", [None, system.parts[0]], inertance=4.0)

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 LAWS = ("none", "coulomb", "stribeck", "dahl", "lugre", "bouc_wen", "brown_mcphee")
 MEMORY = ("dahl", "lugre", "bouc_wen")
+AGING = ("rate_state",)
+"""A state that is no deflection, and does not change its sign with the motion: tests of its own."""
 SEVERAL = ("maxwell_slip",)
 """Laws with several states; they have tests of their own."""
 
@@ -49,6 +51,13 @@ def draw_friction(rng: np.random.Generator, law: str, wide: float = 1.0) -> Para
 
     level = around(rng, 20.0, wide)
     drawn = {"friction": law, "coulomb_force": level}
+    if law == "rate_state":
+        return drawn | {
+            "rate_effect": float(rng.uniform(0.0, 0.1)),
+            "age_effect": float(rng.uniform(0.0, 0.1)),
+            "rate_velocity": around(rng, 1e-3, wide),
+            "age_distance": around(rng, 1e-4, wide),
+        }
     if law != "dahl":
         drawn["static_force"] = level * float(rng.uniform(1.0, 5.0))
     if law in ("stribeck", "lugre", "brown_mcphee"):
@@ -193,6 +202,8 @@ def draw_states(rng: np.random.Generator, count: int, p: Parameters) -> Array:
 
 def state_limit(p: Parameters) -> float:
     """Deflection [m] beyond which a slide cannot lead, at a friction level of 1."""
+    if p["friction"] == "rate_state":
+        return 5.0  # no limit, but that of times and speeds that anybody meets
     if p["friction"] == "bouc_wen":
         return (p["bw_alpha"] / (p["bw_beta"] + p["bw_gamma"])) ** (1.0 / p["bw_exponent"])
     return p.get("static_force", p["coulomb_force"]) / p["bristle_stiffness"]
@@ -234,6 +245,13 @@ def magnitudes(device: ReferenceDevice, x: Array, v: Array, a: Array, z: Array) 
         friction = yielding + elastic
         energy += elastic * stretch + yielding * size / device.bw_alpha
         stored = yielding * rate / device.bw_alpha + elastic * speed
+    elif device.friction == "rate_state":
+        aging = device.rate_velocity * np.exp(-z) + speed
+        rate = (1.0 + size) * aging / device.age_distance
+        spread = abs(np.log(np.hypot(v, device.transition_velocity) / device.rate_velocity))
+        bracket = 1.0 + device.rate_effect * spread + device.age_effect * size
+        level = np.asarray(friction_level(device, s, v)) * device.coulomb_force
+        friction, stored = level * bracket, np.zeros_like(x)
     elif device.nstate:
         level = np.asarray(friction_level(device, s, v)) * device.coulomb_force
         overload = device.bristle_stiffness * size / level

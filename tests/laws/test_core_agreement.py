@@ -10,6 +10,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 from core_draws import (
+    AGING,
     LAWS,
     MEMORY,
     SEVERAL,
@@ -36,7 +37,7 @@ def reach(p: Parameters) -> float:
 
 
 def test_both_know_the_same_laws_and_parameters() -> None:
-    assert tuple(friction_laws()) == tuple(FRICTION_LAWS) == LAWS + SEVERAL
+    assert tuple(friction_laws()) == tuple(FRICTION_LAWS) == LAWS + SEVERAL + AGING
     assert set(parameters()) == set(DECLARED)
 
 

@@ -19,6 +19,7 @@ VALID: dict[str, dict[str, float]] = {
     "bouc_wen": {"bw_stiffness": 1e4},
     "brown_mcphee": {"coulomb_force": 10.0},
     "maxwell_slip": {"slip_stiffness_1": 1e4, "slip_force_1": 5.0},
+    "rate_state": {"coulomb_force": 5.0},
 }
 
 # enough to make the part of a parameter valid

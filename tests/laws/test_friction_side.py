@@ -12,6 +12,7 @@ from core_draws import MEMORY, draw_branches, draw_complete, draw_friction, draw
 from inerter.core import Device, DeviceError
 from inerter.reference import ReferenceDevice, response, sine_motion
 from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares
 
 STRUT = {"inertance": 50.0, "series_stiffness": 5e4, "series_damping": 100.0}
 LAWS: dict[str, dict[str, Any]] = {
@@ -60,6 +61,59 @@ def test_equation_nine() -> None:
     assert said["state_rate"][0, 1] == pytest.approx((force - 10.0) / 50.0, rel=1e-14)
     # heat: friction where it slides, and the shaft's damper
     assert said["dissipated_power"][0] == pytest.approx(10.0 * w + 100.0 * (v - w) ** 2, rel=1e-12)
+
+
+def sines(t: np.ndarray, order: int) -> np.ndarray:
+    """Displacement of a bench [m], or a derivative of it."""
+    parts = ((1e-3, 3.1, 0.3), (2e-4, 9.7, 1.1), (1e-4, 14.3, 2.0), (6e-5, 21.9, 0.5))
+    rates = [2.0 * np.pi * f for _, f, _ in parts]
+    return sum(
+        size * rate**order * np.sin(rate * t + phase + order * np.pi / 2.0)
+        for (size, _, phase), rate in zip(parts, rates, strict=True)
+    )  # pyright: ignore[reportReturnType]
+
+
+def test_equation_nine_is_identified_again() -> None:
+    # the paper's device, b = 113 kg, k_s = 1000 kN/m, c_s = 3200 N s/m, f = 10 N, its equation
+    # integrated here, 0.3 N of noise: each within 1 %, and the residual is the noise
+    truth, width, noise = np.array([113.0, 1e6, 3200.0, 10.0]), 1e-3, 0.3
+    b, k, c, level = truth
+    t = np.arange(4001) / 2000.0
+    x, v, a = (sines(t, order) for order in range(3))
+
+    def rate(now: float, y: np.ndarray) -> list[float]:
+        rub = level * np.tanh(y[1] / width)
+        slide = float(sines(np.asarray(now), 1)) - y[1]
+        return [slide, (k * y[0] + c * slide - rub) / b]
+
+    y = solve_ivp(
+        rate, (0.0, t[-1]), [0.0, v[0]], t_eval=t, method="LSODA", rtol=1e-9, atol=1e-12,
+        max_step=5e-4,
+    ).y  # fmt: skip
+    measured = k * y[0] + c * (v - y[1])
+    measured = measured + noise * np.random.default_rng(1).standard_normal(t.size)
+
+    def fit(side: str) -> tuple[np.ndarray, float]:
+        def residual(q: np.ndarray) -> np.ndarray:
+            inertance, stiffness, damping, friction = np.exp(q)
+            strut = Device(
+                inertance=inertance, series_stiffness=stiffness, series_damping=damping,
+                friction="coulomb", coulomb_force=friction, transition_velocity=width,
+                friction_side=side,
+            )  # fmt: skip
+            return (strut.along(t[1], x, v, a, [0.0, v[0]])["total"] - measured) / noise
+
+        start = np.log([100.0, 7e5, 5000.0, 5.0])
+        found = least_squares(residual, start, x_scale=0.1, diff_step=1e-5)
+        return np.exp(found.x), float(np.sqrt(np.mean(found.fun**2)))
+
+    found, left = fit("flywheel")
+    np.testing.assert_allclose(found, truth, rtol=0.01)
+    assert 0.9 < left < 1.1
+    # with the friction at the terminals nothing fits
+    wrong, left = fit("terminals")
+    assert left > 20.0
+    assert (np.abs(wrong / truth - 1.0)[1:] > 0.03).all()
 
 
 def test_load_friction_takes_its_share_of_what_the_inertance_gets() -> None:

@@ -61,8 +61,10 @@ def test_power_balance(friction: str, point: tuple[float, float, float, float]) 
 def test_mirror_symmetry(friction: str, point: tuple[float, float, float, float]) -> None:
     x, v, a, z = point
     device = device_with(friction)
-    assert device.force(-x, -v, -a, -z) == -device.force(x, v, a, z)
-    assert device.state_rate(-x, -v, -z) == -device.state_rate(x, v, z)
+    # an age is the same in the mirror
+    side = 1.0 if friction == "rate_state" else -1.0
+    assert device.force(-x, -v, -a, side * z) == -device.force(x, v, a, z)
+    assert device.state_rate(-x, -v, side * z) == side * device.state_rate(x, v, z)
 
 
 @pytest.mark.parametrize("friction", [law for law in FRICTION_LAWS if law != "lugre"])

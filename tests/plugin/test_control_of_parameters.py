@@ -153,6 +153,36 @@ def test_work_heat_and_the_actuators_energy_add_up(integrator: str) -> None:
     assert left[0] / left[1] > 1.7
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["inertance", "stiffness"])
+def test_energy_over_a_hundred_seconds(name: str) -> None:
+    # a command every half second; nothing is lost but what the integrator of fourth order loses
+    p = {"inertance": 5.0, "stiffness": 400.0, "control": name, "control_lag": 0.05}
+    p |= {"control_lower": 0.5 * p[name], "control_upper": 3.0 * p[name]}
+    _, model, data, added = built("RK4", p)
+    device, reader, rng = Device(**p), added.of(model), np.random.default_rng(2)
+    started(data)
+    mujoco.mj_forward(model, data)
+    start = 5.0 * data.qvel[0] ** 2 + reader.read(data.sensordata)["stored_energy"]
+    given = largest = 0.0
+    for _ in range(200):
+        command = rng.uniform(device.control_lower, device.control_upper)
+        data.ctrl[0], rows = command, []
+        for _ in range(500):
+            rows.append([data.qpos[0], data.qvel[0], data.act[0]])
+            mujoco.mj_step(model, data)
+        rows.append([data.qpos[0], data.qvel[0], data.act[0]])
+        x, v, z = np.array(rows).T
+        flow = device.evaluate(x, v, 0.0, z[:, np.newaxis], command=command)["control_power"]
+        # Simpson's rule
+        given += 1e-3 / 3.0 * (flow[0] + 4 * flow[1::2].sum() + 2 * flow[2:-1:2].sum() + flow[-1])
+        mujoco.mj_forward(model, data)
+        now = 5.0 * data.qvel[0] ** 2 + reader.read(data.sensordata)["stored_energy"]
+        largest = max(largest, abs(now - start - given) / now)
+    assert largest < 1e-5
+    assert abs(given) > 0.1 * start
+
+
 def test_every_control_in_the_engine_is_the_reference() -> None:
     cases: dict[str, dict[str, Any]] = {
         "viscous": {}, "quadratic_damping": {"quadratic_damping": 40.0}, "stiffness": {},

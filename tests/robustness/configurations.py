@@ -94,6 +94,10 @@ def friction(draw: st.DrawFn) -> Values:
         values["stribeck_velocity"] = draw(_around(2e-2, 0.7))
     if law in ("coulomb", "stribeck"):
         values["transition_velocity"] = draw(_around(2e-2, 0.5))
+    if law == "rate_state":
+        values["rate_effect"] = draw(st.floats(0.0, 0.1))
+        values["age_effect"] = draw(st.floats(0.0, 0.1))
+        values["transition_velocity"] = draw(_around(2e-2, 0.5))
     if law in ("dahl", "lugre"):
         values["bristle_stiffness"] = draw(_around(3e4, 0.7))
     if law == "lugre":

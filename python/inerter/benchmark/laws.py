@@ -24,6 +24,7 @@ LAWS: dict[str, dict[str, Any]] = {
         **{f"slip_stiffness_{i}": k for i, k in enumerate((2e4, 1e4, 5e3, 5e3), 1)},
         **{f"slip_force_{i}": 20.0 for i in range(1, 5)},
     },
+    "rate_state": {**_LEVEL, **_SIGN},
 }
 """Parameters by law; the yield deflection of the bristles is 1.6 mm."""
 

@@ -140,11 +140,16 @@ _ALL = (
         grid={"presliding": (0.01, 0.1, 0.5), "bw_shape": (0.6, 1.0)},
         begin={"bw_exponent": 1.2}, rich=True,
     ),
-    # held as it is stated: no fit changes it yet, no trial takes it
+    # held as they are stated: no fit changes them yet, no trial takes them
     FrictionLaw(
         name="maxwell_slip", words="Maxwell-slip", effect="hysteretic_friction", level="",
         constants=tuple(f"slip_{what}_{i}" for i in range(1, 9) for what in ("stiffness", "force")),
         memory=True, varies=False,
+    ),
+    FrictionLaw(
+        name="rate_state", words="rate-and-state", effect="coulomb_friction", level="",
+        constants=("rate_effect", "age_effect", "rate_velocity", "age_distance"),
+        smoothed=True, memory=True, varies=False,
     ),
 )  # fmt: skip
 

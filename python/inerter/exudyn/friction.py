@@ -198,7 +198,20 @@ def maxwell_slip(f: Functions, p: Parameters, x: Value, v: Value, z: Any) -> Fri
     return Friction(total, 0.0, tuple(rates))
 
 
-_ALL = (none, coulomb, stribeck, dahl, lugre, bouc_wen, brown_mcphee, maxwell_slip)
+def rate_state(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
+    """Z' = (v0 exp(-z) - |v|) / L; F = f_c level (1 + A ln(V / v0) + B z) tanh(v / v_t).
+
+    V^2 = v^2 + v_t^2; at least 0.001 is left of the bracket.
+    """
+    width = p.transition_velocity
+    speed = 0.5 * f.log((v * v + width * width) / (p.rate_velocity * p.rate_velocity))
+    bracket = f.greatest(LEAST_LEVEL, 1.0 + p.rate_effect * speed + p.age_effect * z)
+    rate = (p.rate_velocity * f.exp(-z) - f.abs(v)) / p.age_distance
+    size = p.coulomb_force * level(f, p, x, v)
+    return Friction(size * bracket * f.tanh(v / width), 0.0, rate)
+
+
+_ALL = (none, coulomb, stribeck, dahl, lugre, bouc_wen, brown_mcphee, maxwell_slip, rate_state)
 LAWS = {law.__name__: law for law in _ALL}
 """The laws by their names."""
 

@@ -24,7 +24,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from copy import copy
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -265,7 +264,8 @@ class ReferenceDevice(DeviceParameters):
 
     def _with_value(self, name: str, value: Quantity) -> ReferenceDevice:
         """The device, already checked, with a value, perhaps of many moments, of a parameter."""
-        found = copy(self)
+        found = object.__new__(type(self))
+        found.__dict__.update(self.__dict__)
         object.__setattr__(found, name, value)
         return found
 

@@ -106,6 +106,9 @@ def marked_speeds(device: ReferenceDevice) -> list[float]:
     flanks: list[float] = []
     if device.friction == "lugre" and device.breakaway_force != device.coulomb_force:
         flanks += [device.stribeck_velocity, 4.0 * device.stribeck_velocity]
+    if device.friction == "rate_state":
+        # at the width of sign(v) the logarithm begins
+        flanks += [device.transition_velocity, 10.0 * device.transition_velocity]
     if device.friction in ("dahl", "lugre") and device.friction_asymmetry != 0.0:
         flanks += [device.transition_velocity, 10.0 * device.transition_velocity]
     return [0.0, *flanks, *(-speed for speed in flanks)]
@@ -197,6 +200,8 @@ def state_scale(device: ReferenceDevice) -> float:
         if narrowing > 0.0:
             return min(1e-3, (device.bw_alpha / narrowing) ** (1.0 / device.bw_exponent))
         return 1e-3
+    if device.friction == "rate_state":
+        return 1.0
     level = max(device.coulomb_force, device.breakaway_force if device.friction == "lugre" else 0.0)
     return level / device.bristle_stiffness
 

@@ -83,6 +83,8 @@ LAWS = {
         _law("maxwell_slip", "corner", friction="maxwell_slip", slip_stiffness_1=5e4,
              slip_force_1=60.0, slip_stiffness_2=3e4, slip_force_2=80.0, slip_stiffness_3=1e4,
              slip_force_3=60.0),
+        _law("rate_state", "corner", friction="rate_state", coulomb_force=200.0, rate_effect=0.03,
+             age_effect=0.05, rate_velocity=0.05, age_distance=2e-3, transition_velocity=2e-3),
         _law("friction_side", "corner", **_SHAFT, friction="coulomb", coulomb_force=200.0,
              transition_velocity=2e-3, friction_side="flywheel"),
         _law("control", "smooth", 300.0, control="inertance", control_lower=60.0,

@@ -26,6 +26,7 @@ from . import (
     maxwell_slip,
     none,
     parallel,
+    rate_state,
     series,
     series_spring,
     stribeck,
@@ -43,6 +44,7 @@ FRICTION: dict[str, ModuleType] = {
     "bouc_wen": bouc_wen,
     "brown_mcphee": brown_mcphee,
     "maxwell_slip": maxwell_slip,
+    "rate_state": rate_state,
 }
 
 __all__ = [

@@ -23,6 +23,7 @@ FRICTION_LAWS = (
     "bouc_wen",
     "brown_mcphee",
     "maxwell_slip",
+    "rate_state",
 )
 
 
@@ -94,6 +95,11 @@ class FrictionParameters(StrokeParameters):
     slip_force_7: float = parameter(0.0, "N", "force at which element 7 slips", at_least=0.0)
     slip_stiffness_8: float = parameter(0.0, "N/m", "stiffness of element 8", at_least=0.0)
     slip_force_8: float = parameter(0.0, "N", "force at which element 8 slips", at_least=0.0)
+
+    rate_effect: float = parameter(0.02, "-", "rise of the level per ln(v), A", at_least=0.0)
+    age_effect: float = parameter(0.03, "-", "rise of the level per ln(age), B", at_least=0.0)
+    rate_velocity: float = parameter(1e-3, "m/s", "speed of the level f_c, v_0", above=0.0)
+    age_distance: float = parameter(1e-5, "m", "way that renews the contacts, L", above=0.0)
 
     friction_backlash: float = parameter(
         0.0, "m", "half of the free play before a bristle", at_least=0.0
