@@ -1,5 +1,7 @@
 """device.toml: a device in a file, as the diagnosis writes it and reads it back.
 
+motion = "rotation"         # of a device that turns: rad for m, N*m for N, kg*m^2 for kg
+
 [device]
 inertance = 113.0           # SI units, or a text with a unit: "113 kg"
 friction = "lugre"
@@ -10,12 +12,14 @@ force_periods = [[0.02, 3.0, 0.0]]  # lists in SI units
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from inerter.core import WORDS, Device, DeviceError, lists, parameters
 from inerter.input_file import read_toml
+from inerter.motion_units import ROTATION, TRANSLATION, Kind, parameter_unit
 from inerter.printable import printable
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
@@ -41,6 +45,7 @@ def read_device(path: Path) -> Device:
             f"{path}: no [device] table; write one, with keys such as inertance = 113.0"
         )
     values: dict[str, Any] = {}
+    motion = read_motion(path) or TRANSLATION
     for key, value in table.items():
         if key in lists():
             values[key] = _numbers(path, key, value)
@@ -50,7 +55,7 @@ def read_device(path: Path) -> Device:
                 f"{path}: {key} is {_shown(value)}; give a number, or a text with a unit"
             )
         if isinstance(value, str) and key not in WORDS:
-            value = _with_unit(path, key, value)
+            value = _with_unit(path, key, value, motion)
         values[key] = value
     try:
         return Device(**values)
@@ -74,6 +79,65 @@ def read_bench_device(path: Path) -> Device:
                 f"at most {LARGEST:g}"
             )
     return device
+
+
+def read_motion(path: Path) -> Kind | None:
+    """What the device in a file does, as the file or the units in it say; None where they do not.
+
+    Raises
+    ------
+    DeviceError
+        `motion` is neither of both, or some units are of the one and some of the other.
+    """
+    content = _content(path)
+    said, table = content.get("motion"), content.get("device")
+    if said not in (None, TRANSLATION, ROTATION):
+        raise DeviceError(
+            f'{path}: motion is {_shown(said)}; write "{TRANSLATION}" or "{ROTATION}", or leave '
+            "it out"
+        )
+    told: dict[Kind, str] = {} if said is None else {said: f'motion = "{said}"'}
+    for key, value in (table if isinstance(table, dict) else {}).items():
+        motion = _motion_of(key, value) if isinstance(value, str) else None
+        if motion is not None:
+            told.setdefault(motion, f'{key} = "{printable(value[:60])}"')
+    if len(told) > 1:
+        raise DeviceError(
+            f"{path}: {told[TRANSLATION]} is of a device that moves along a line, and "
+            f"{told[ROTATION]} of one that turns; correct one of them"
+        )
+    return next(iter(told), None)
+
+
+def refuse_other_motion(where: Path, device: Kind | None, records: Iterable[Any]) -> None:
+    """DeviceError where a device does not move as the records do; None: it does not say."""
+    for record in records:
+        if device is not None and record.motion != device:
+            does = {TRANSLATION: "moves along a line (m, N, kg)", ROTATION: "turns (rad, N*m)"}
+            raise DeviceError(
+                f"{where}: the device {does[device]}, and {record.name} {does[record.motion]}; "
+                "give a record and a device of one kind"
+            )
+
+
+def _motion_of(key: str, text: str) -> Kind | None:
+    """The motion that the unit of a parameter tells; None where it is the same in both."""
+    if key not in parameters() or key in WORDS:
+        return None
+    along, about = (parameter_unit(m, key, parameters()[key].unit) for m in (TRANSLATION, ROTATION))
+    number, written = split_quantity(text) or (math.nan, "")
+    given = parse_unit(written) if written else None
+    if given is None or along == about or math.isnan(number):
+        return None
+    fits = [_fits(given, wanted) for wanted in (along, about)]
+    if fits[0] == fits[1]:
+        return None
+    return TRANSLATION if fits[0] else ROTATION
+
+
+def _fits(given: Any, wanted: str) -> bool:
+    wanted = re.sub(r"(m|rad)\^-n", "dimensionless", wanted)
+    return bool((1 * given).dimensionality == (1 * parse_unit(wanted)).dimensionality)
 
 
 def read_delay(path: Path) -> float:
@@ -139,18 +203,18 @@ def _shown(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _with_unit(path: Path, key: str, text: str) -> float:
+def _with_unit(path: Path, key: str, text: str, motion: Kind) -> float:
     """A text with a unit in the parameter's SI unit."""
     if key not in parameters():
         raise DeviceError(
             f"{path}: {key} is not a parameter of the device; `inerter parameters` lists them"
         )
-    return _in_unit(path, key, text, parameters()[key].unit)
+    return _in_unit(path, key, text, parameter_unit(motion, key, parameters()[key].unit))
 
 
 def _in_unit(path: Path, key: str, text: str, unit: str) -> float:
     """A text with a unit in another unit of the same quantity."""
-    wanted = "" if unit == "1" else unit.replace("m^-n", "dimensionless")
+    wanted = "" if unit == "1" else re.sub(r"(m|rad)\^-n", "dimensionless", unit)
     number, written = split_quantity(text) or (math.nan, "")
     given = parse_unit(written or "dimensionless")
     shown = printable(text if len(text) <= 60 else text[:57] + "...")
@@ -170,6 +234,7 @@ def device_text(
     comments: Mapping[str, str] | None = None,
     delay: float = 0.0,
     title: str = "",
+    motion: Kind = TRANSLATION,
 ) -> str:
     """The text of a device.toml.
 
@@ -183,11 +248,15 @@ def device_text(
         Time by which the force channel of the record was late [s]; not part of the device.
     title : str
         Comment for the first line.
+    motion : str
+        What the device does.
     """
     comments = comments or {}
     # names of records may hold what TOML does not allow
     lines = [f"# {printable(line)}" for line in title.splitlines()]
-    lines += [f'schema = "{SCHEMA}"', "", "[device]"]
+    lines += [f'schema = "{SCHEMA}"']
+    lines += [f'motion = "{motion}"'] if motion != TRANSLATION else []
+    lines += ["", "[device]"]
     for name, value in device.given.items():
         if name in lists():
             lines.append(f"{name} = {_list_toml(device, name)}")
@@ -195,7 +264,8 @@ def device_text(
         text = f'"{value}"' if isinstance(value, str) else repr(float(value))
         if isinstance(value, float) and not math.isfinite(value):
             continue
-        note = comments.get(name, "" if name in WORDS else parameters()[name].unit)
+        own = "" if name in WORDS else parameter_unit(motion, name, parameters()[name].unit)
+        note = comments.get(name, own)
         lines.append(f"{name} = {text}" + (f"  # {note}" if note and note != "1" else ""))
     if delay:
         lines += [

@@ -10,6 +10,7 @@ import mujoco
 from inerter.core import Device, DeviceError
 from inerter.engine_errors import COMPILE_ERRORS, cannot_be_opened, engine_text
 from inerter.model_bounds import refuse_unbounded
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.plugin import load_plugin
 
 
@@ -21,6 +22,27 @@ def device_of_model(path: Path) -> Device:
     DeviceError
         The model cannot be read, has no device or several, or its device cannot be.
     """
+    holder = _read(path)[1]
+    values = {config.get("key", ""): config.get("value", "") for config in holder.iter("config")}
+    try:
+        return Device(**values)
+    except DeviceError as error:
+        raise DeviceError(f"{path}: {error}") from None
+
+
+def motion_of_model(path: Path) -> Kind:
+    """What the device of a model with exactly one `inerter.device` does: on a hinge it turns.
+
+    Raises
+    ------
+    DeviceError
+        As `device_of_model`.
+    """
+    return _motion(*_read(path))
+
+
+def _read(path: Path) -> tuple[ElementTree.Element, ElementTree.Element]:
+    """The root of a model, and the element that configures its one device."""
     load_plugin()
     try:
         refuse_unbounded(path)
@@ -44,10 +66,16 @@ def device_of_model(path: Path) -> Device:
             f"{path}: {len(plugins)} configured inerter.device in the model, 1 is needed; give a "
             "device.toml with --device instead"
         )
-    values = {
-        config.get("key", ""): config.get("value", "") for config in plugins[0].iter("config")
-    }
-    try:
-        return Device(**values)
-    except DeviceError as error:
-        raise DeviceError(f"{path}: {error}") from None
+    return root, plugins[0]
+
+
+def _motion(root: ElementTree.Element, holder: ElementTree.Element) -> Kind:
+    """Whether the actuator of a device, or the one that names its instance, is on a hinge."""
+    name = holder.get("name")
+    for actuator in root.iterfind("actuator/plugin"):
+        if actuator is holder or (name and actuator.get("instance") == name):
+            joints = [j for j in root.iter("joint") if j.get("name") == actuator.get("joint")]
+            # a joint that does not say what it is is a hinge
+            if joints and actuator.get("joint") and joints[0].get("type", "hinge") == "hinge":
+                return ROTATION
+    return TRANSLATION

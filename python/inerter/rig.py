@@ -12,10 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.core import Device
 from inerter.models import model_path
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.plugin import load_plugin
 
 
-def device_mjcf(device: Device, name: str = "device", timestep: float = 1e-3) -> str:
+def device_mjcf(
+    device: Device, name: str = "device", timestep: float = 1e-3, motion: Kind = TRANSLATION
+) -> str:
     """A complete model in MJCF: the device on the test rig, ready to load.
 
     Parameters
@@ -26,6 +29,8 @@ def device_mjcf(device: Device, name: str = "device", timestep: float = 1e-3) ->
         Name of the model.
     timestep : float
         Time step [s].
+    motion : str
+        In rotation the table turns on a hinge and the device acts on that.
 
     Returns
     -------
@@ -46,8 +51,29 @@ def device_mjcf(device: Device, name: str = "device", timestep: float = 1e-3) ->
     ]
     if device.nstate:
         _only(root, "actuator/plugin").set("actdim", str(device.nstate))
+    if motion == ROTATION:
+        _turning(root)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _turning(root: ElementTree.Element) -> None:
+    """Make the table of the rig one that turns, as heavy, about the axis of the device."""
+    joint, table = _only(root, "worldbody/body/joint"), _only(root, "worldbody/body")
+    joint.set("type", "hinge")
+    heavy = _only(root, "actuator/motor").get("gear", "1e12")
+    inertia = ElementTree.Element(
+        "inertial", pos="0 0 0", mass="1", diaginertia=" ".join([heavy] * 3)
+    )
+    table.insert(0, inertia)
+    # the line that shows the device does not turn
+    tendon = _only(root, "tendon")
+    root.remove(tendon)
+    for comment in root.iter():
+        if comment.tag is not ElementTree.Comment:
+            continue
+        text = (comment.text or "").replace("m/s^2", "rad/s^2").replace("[N]", "[N m]")
+        comment.text = text.replace("too heavy to be held", "too heavy to be turned by it")
 
 
 def _only(root: ElementTree.Element, path: str) -> ElementTree.Element:
@@ -75,6 +101,7 @@ def simulate_along(
     v: ArrayLike,
     a: ArrayLike,
     state: ArrayLike = 0.0,
+    motion: Kind = TRANSLATION,
 ) -> dict[str, NDArray[np.float64]]:
     """Run a device in MuJoCo along a sampled motion, on the test rig.
 
@@ -95,6 +122,8 @@ def simulate_along(
         Relative displacement [m], velocity, acceleration.
     state : float or sequence (nstate,)
         States at the first sample; one number is the first of them, the others are 0.
+    motion : str
+        In rotation the rig turns: x is an angle [rad], forces are torques [N m].
 
     Returns
     -------
@@ -114,7 +143,7 @@ def simulate_along(
     if not h > 0:
         raise ValueError(f"h is {h}: give a sample spacing > 0 s")
     load_plugin()
-    model = mujoco.MjModel.from_xml_string(device_mjcf(device, timestep=h))
+    model = mujoco.MjModel.from_xml_string(device_mjcf(device, timestep=h, motion=motion))
     data = mujoco.MjData(model)
     if np.ndim(state):
         data.act[:] = state

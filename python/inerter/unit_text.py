@@ -13,6 +13,14 @@ from typing import Any
 
 # spellings of test benches that pint reads otherwise (mil is an angle) or not at all
 _SPELLINGS = {"kp": "kgf", "mil": "thou", "mils": "thou", "sec": "s", "secs": "s", "lbs": "lbf"}
+# torques written in one word or with a dash; mN stays a millinewton
+_SPELLINGS |= {
+    "Nm": "N*m", "kNm": "kN*m", "mNm": "mN*m", "uNm": "uN*m", "MNm": "MN*m", "Nmm": "N*mm",
+    "Ncm": "N*cm", "N-m": "N*m", "kgfm": "kgf*m", "kgfcm": "kgf*cm", "kpm": "kgf*m",
+    "lbfft": "lbf*ft", "lbf-ft": "lbf*ft", "ft-lbf": "lbf*ft", "ft-lb": "lbf*ft",
+    "lb-ft": "lbf*ft", "lbft": "lbf*ft", "lbfin": "lbf*in", "lbf-in": "lbf*in",
+    "in-lbf": "lbf*in", "in-lb": "lbf*in", "lb-in": "lbf*in", "oz-in": "ozf*in",
+}  # fmt: skip
 _LONGEST = 60
 _ALLOWED = re.compile(r"[A-Za-zµμ°%Ω_0-9\s*/^().\-]+")
 _EXPONENT = r"[+-]?\d{1,2}(?:\.\d)?(?![\d.])"
@@ -39,6 +47,7 @@ def split_quantity(text: str) -> tuple[float, str] | None:
 def parse_unit(unit: str) -> Any:
     """The pint unit, or None where pint knows none; ``m/s2``, ``m s-2`` and ``m·s^-2`` work."""
     text = _SPELLINGS.get(unit, unit)
+    text = re.sub(r"\brevs?\b", "revolution", text)
     for sign in ("\u00b7", "\u22c5", "\u00d7"):
         text = text.replace(sign, "*")
     text = text.translate(str.maketrans("⁻⁰¹²³⁴", "-01234"))

@@ -191,6 +191,7 @@ def test_a_hinge_says_its_units(tmp_path: Path) -> None:
     )
     run = run_model(written(tmp_path, xml), 0.01)
     assert "# on a hinge: read rad for m" in device_csv(run, run.devices[0])
+    assert "\ntime,displacement[rad],force[N*m],velocity[rad/s]," in device_csv(run, run.devices[0])
     slide = run_model(written(tmp_path, oscillator(device(inertance=2))), 0.01)
     assert "hinge" not in device_csv(slide, slide.devices[0])
 

@@ -7,12 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 
 from inerter.core import Device
-from inerter.device_file import read_bench_device, read_delay
+from inerter.device_file import (
+    read_bench_device,
+    read_delay,
+    read_motion,
+    refuse_other_motion,
+)
 from inerter.diagnose.result import Diagnosis, Finding
 from inerter.diagnose.rig import diagnose_bench
 from inerter.diagnose.table import diagnose_table
 from inerter.diagnose.vehicle import SystemInput, diagnose_model, is_for_a_model
-from inerter.mjcf import device_of_model
+from inerter.mjcf import device_of_model, motion_of_model
 from inerter.records import BenchTable, Record, RecordError, read_records
 
 __all__ = ["Diagnosis", "Finding", "diagnose", "diagnose_bench", "diagnose_table"]
@@ -56,20 +61,22 @@ def diagnose(
     mapping = SystemInput(tuple(inputs), tuple(sensors))
     if model is None and mapping:
         raise ValueError("--input and --sensor name parts of a model; give one with --model")
-    if model is not None and is_for_a_model(records, mapping):
+    if model is not None and is_for_a_model(records, mapping, model):
         return diagnose_model(records, model, mapping, holdout, progress)
     if isinstance(device, Path):
-        baseline, delay = read_bench_device(device), read_delay(device)
+        baseline, delay, motion = read_bench_device(device), read_delay(device), read_motion(device)
     else:
-        baseline, delay = device, 0.0
+        baseline, delay, motion = device, 0.0, None
     if model is not None:
-        baseline = device_of_model(model)
+        baseline, motion = device_of_model(model), motion_of_model(model)
     # the displacement of a record counts from the rest length
     rest_length = baseline.rest_length if baseline else 0.0
     if baseline and rest_length:
         baseline = Device(**{k: v for k, v in baseline.given.items() if k != "rest_length"})
     progress("reading the records")
     read = read_records(records, others=False)
+    if where := model or (device if isinstance(device, Path) else None):
+        refuse_other_motion(where, motion, read)
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):

@@ -76,7 +76,7 @@ def _error(
 
 def _mujoco(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     parts, channels = _steps(device, run)
-    found = rig.simulate_along(device, run.spacing / parts, *channels, state)
+    found = rig.simulate_along(device, run.spacing / parts, *channels, state, run.motion)
     return {name: found[name][::parts] for name in ("total", "friction")}
 
 
@@ -84,7 +84,8 @@ def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
     parts, channels = _steps(device, run)
-    found = simulate_along(device, run.spacing / parts, *channels, state, every=parts)
+    step = run.spacing / parts
+    found = simulate_along(device, step, *channels, state, every=parts, motion=run.motion)
     return {name: found[name] for name in ("total", "friction")}
 
 

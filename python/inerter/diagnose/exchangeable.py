@@ -20,6 +20,7 @@ from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
+from inerter.motion_units import Kind, words
 
 # the effects that make up for each other, each by one coordinate
 COUNTERPARTS = {"viscous_friction": "sensor_delay", "sensor_delay": "viscous_friction"}
@@ -95,7 +96,8 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     if exchange.is_told_apart:
         if moved < CRITERIA.distinction * found.stderr:
             return finding
-        beside = f"with {_amount(exchange)} beside it {name} would be {exchange.value:.3g}"
+        amount = _amount(exchange, finding.motion)
+        beside = f"with {amount} beside it {name} would be {exchange.value:.3g}"
         return replace(
             finding,
             parameters=_with_error(finding.parameters, name, error),
@@ -116,10 +118,10 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     )
 
 
-def _amount(exchange: Exchange) -> str:
+def _amount(exchange: Exchange, motion: Kind) -> str:
     if exchange.counterpart == "sensor_delay":
         return f"a delay of {1e3 * exchange.other:.3g} ms"
-    return f"viscous friction of {exchange.other:.3g} N s/m"
+    return f"viscous friction of {exchange.other:.3g} {words(motion, 'N s/m')}"
 
 
 def _with_error(

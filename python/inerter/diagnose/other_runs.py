@@ -15,6 +15,7 @@ from inerter.identify.fit import rms
 from inerter.identify.information import TOO_MUCH, leverage
 from inerter.identify.model import Model
 from inerter.identify.split import may_be_held, split
+from inerter.motion_units import TRANSLATION, Kind, words
 
 Array = NDArray[np.float64]
 
@@ -41,14 +42,15 @@ def badly_missed(data: Data, errors: Sequence[Array], noise: float) -> dict[str,
     return found
 
 
-def missed_in_words(found: dict[str, float], held: float) -> str:
+def missed_in_words(found: dict[str, float], held: float, motion: Kind = TRANSLATION) -> str:
     """A sentence about runs that are badly missed; empty where there are none."""
     if not found:
         return ""
-    runs = " and ".join(f"{name} by {error:.3g} N rms" for name, error in found.items())
+    newton = words(motion, "N")
+    runs = " and ".join(f"{name} by {error:.3g} {newton} rms" for name, error in found.items())
     return (
-        f"What is held out is met better than what was fitted ({held:.3g} N rms): the extended "
-        f"model misses {runs}."
+        f"What is held out is met better than what was fitted ({held:.3g} {newton} rms): the "
+        f"extended model misses {runs}."
     )
 
 

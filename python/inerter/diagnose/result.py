@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
+from inerter.motion_units import TRANSLATION, Kind
 
 Array = NDArray[np.float64]
 SCHEMA = "inerter.diagnosis/1"
@@ -52,7 +53,8 @@ class Finding:
     blocks left out of the fit where the held-out data do not reach the effect: seen_in_blocks);
     confidence: share of resamples of the data in which it does better than without it and better
     than every rival; gain_interval: 95 % interval of the gain, None where there are too few data;
-    members: effects that these data cannot tell apart, this one among them; none where they can.
+    members: effects that these data cannot tell apart, this one among them; none where they can;
+    motion: what the device does, in rotation read N m for N.
     """
 
     effect: str
@@ -66,6 +68,7 @@ class Finding:
     seen_in_blocks: bool = False
     gain_interval: tuple[float, float] | None = None
     members: tuple[str, ...] = ()
+    motion: Kind = TRANSLATION
 
     @property
     def gain(self) -> float:
@@ -187,7 +190,8 @@ class RunCurves:
     """Measured and simulated force of one run, for the report; arrays (n,), NaN-free.
 
     inner: False near the ends where the motion is uncertain and nothing is judged. quantity, unit:
-    what `force`, `baseline` and `extended` are where a channel of another kind is shown.
+    what `force`, `baseline` and `extended` are where a channel of another kind is shown; length:
+    the unit of the displacement.
     """
 
     name: str
@@ -203,6 +207,7 @@ class RunCurves:
     inner: NDArray[np.bool_]
     quantity: str = "force"
     unit: str = "N"
+    length: str = "m"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -215,6 +220,7 @@ class TablePoints:
     baseline: Array
     extended: Array
     holdout: NDArray[np.bool_]
+    motion: Kind = TRANSLATION
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -233,6 +239,8 @@ class Diagnosis:
     method: dict[str, Any] = field(default_factory=dict)
     curves: list[RunCurves] = field(default_factory=list)
     points: TablePoints | None = None
+    motion: Kind = TRANSLATION
+    """What the device does; in rotation read rad for m, N m for N, kg m^2 for kg."""
     rest_length: float = 0.0
     """As stated [m]; the displacement of records counts from it, so that no law reads it here."""
     gain_interval: tuple[float, float] | None = None
@@ -248,7 +256,7 @@ class Diagnosis:
         if self.unexplained.ceiling is None:
             return None
         errors = self.baseline.rmse, self.extended.rmse, self.unexplained.ceiling["rmse"]
-        return budget_of(*errors, self.repeatability)
+        return budget_of(*errors, self.repeatability, self.motion)
 
     @property
     def gain(self) -> float:
@@ -261,6 +269,7 @@ class Diagnosis:
         return _finite(
             {
                 "schema": SCHEMA,
+                "motion": self.motion,
                 "records": [record.json() for record in self.records],
                 "baseline": self.baseline.json(),
                 "findings": [finding.json() for finding in self.findings],

@@ -49,6 +49,7 @@ from inerter.identify.channel import channel_values
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.prediction import settled as without_nuisances
+from inerter.motion_units import force_word, one_motion, unit
 from inerter.records import Record
 from inerter.records.duplicates import repeats_another
 
@@ -82,8 +83,9 @@ def diagnose_bench(
     Raises
     ------
     ValueError
-        Runs that cannot be split or do not move.
+        Runs that cannot be split or do not move, or some that turn beside others that do not.
     """
+    one_motion(records)
     given = Given(
         records=list(records), device=device, holdout=holdout, progress=progress, delay=delay
     )
@@ -96,6 +98,7 @@ def diagnose_bench(
 def diagnosis_of(stands: Confirmed) -> Diagnosis:
     """What is said of a model that stands: findings, figures, what remains."""
     data, judge, final = stands.searched.data, stands.searched.judge, stands.fit.model
+    motion = data.whole[0].motion
     given = stands.searched.prepared.given
     baseline, extended = _accuracy(stands, stands.before.model), _accuracy(stands, final)
     floor = judge.noise_left(final)
@@ -110,7 +113,10 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
     missed = badly_missed(data, errors, floor)
     other = other_split(stands.searched.search, data, final, bool(missed))
     values = parameter_values(
-        stands.fit, given.device, stands.searched.prepared.baseline.values.get("delay", 0.0)
+        stands.fit,
+        given.device,
+        stands.searched.prepared.baseline.values.get("delay", 0.0),
+        motion,
     )
     same = exchanges(stands.searched.search, stands.fit, [link.effect for link in stands.chain])
     findings = [
@@ -136,13 +142,14 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         notes=[
             note
             for note in (
-                constants_in_words(stands.searched.prepared.constants),
-                missed_in_words(missed, extended.rmse),
+                constants_in_words(stands.searched.prepared.constants, motion),
+                missed_in_words(missed, extended.rmse, motion),
                 split_in_words(data, other),
             )
             if note
         ],
         curves=_curves(stands),
+        motion=motion,
         gain_interval=gain_interval(*squares),
         repeatability=again.rmse if again else None,
     )
@@ -168,6 +175,7 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
             ],
             seen_in_blocks=link.seen_in_blocks,
             gain_interval=link.interval,
+            motion=stands.searched.data.whole[0].motion,
         )
         findings.append(replace(finding, evidence=wording.evidence(finding)))
     return sorted(findings, key=lambda finding: -finding.gain)
@@ -236,6 +244,9 @@ def _curves(stands: Confirmed) -> list[RunCurves]:
             extended=predicted(stands.fit.model, i),
             holdout=data.full.holdout[i],
             inner=run.inner,
+            quantity=force_word(run.motion),
+            unit=unit(run.motion, "N"),
+            length=unit(run.motion, "m"),
         )
         for i, run in enumerate(data.whole)
     ]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.identify.information import TOO_MUCH, leverage
 from inerter.identify.runs import BenchRun, on_clocks
+from inerter.motion_units import TRANSLATION, Kind, words
 from inerter.records import Record
 
 Array = NDArray[np.float64]
@@ -83,14 +84,15 @@ def without_constants(records: Sequence[Record], found: Mapping[str, float]) -> 
     return [replace(r, force=r.force - found.get(r.name, 0.0)) for r in records]
 
 
-def constants_in_words(found: Mapping[str, float]) -> str:
+def constants_in_words(found: Mapping[str, float], motion: Kind = TRANSLATION) -> str:
     """A sentence about the constants of runs; empty where there are none."""
     if not found:
         return ""
-    each = ", ".join(f"{name} {value:+.3g} N" for name, value in found.items())
+    newton, cell = words(motion, "N"), "load" if motion == TRANSLATION else "torque"
+    each = ", ".join(f"{name} {value:+.3g} {newton}" for name, value in found.items())
     return (
-        f"The runs differ by constants, as of a load cell zeroed anew, which are no cause and were "
-        f"taken off: {each} about their mean."
+        f"The runs differ by constants, as of a {cell} cell zeroed anew, which are no cause and "
+        f"were taken off: {each} about their mean."
     )
 
 
@@ -110,9 +112,11 @@ def contradicting(runs: Sequence[BenchRun]) -> dict[str, str]:
     if alone or missed[worst] < CONTRADICTION or missed[worst] < TIMES * max(rest):
         return {}
     own, theirs = (_solved([rows[k] for k in chosen])[0] for chosen in ([worst], others))
+    kilogram = words(runs[worst].motion, "kg")
     text = (
         f"contradicts the other runs, which agree with each other: by itself its inertance would "
-        f"be {own:.4g} kg, in the others it is {theirs:.4g} kg; is it a run of the same device?"
+        f"be {own:.4g} {kilogram}, in the others it is {theirs:.4g} {kilogram}; is it a run of the "
+        "same device?"
     )
     return {runs[worst].name: text}
 

@@ -40,6 +40,7 @@ from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.estimation.variables import Variables
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
+from inerter.motion_units import Kind, one_motion
 from inerter.records import BenchTable
 from inerter.records.duplicates import repeats_another, without_copies
 from inerter.rig import quiet, simulate_along
@@ -97,11 +98,12 @@ def _first_state(device: Device, frequency: float, acceleration: float) -> Array
     return state
 
 
-def _engine(device: Device, frequency: float, acceleration: float) -> Array:
+def _engine(device: Device, frequency: float, acceleration: float, motion: Kind) -> Array:
     """The same force from MuJoCo."""
     periods, _ = _steady(device, frequency, acceleration)
     state = _first_state(device, frequency, acceleration)
-    return simulate_along(device, *_sine(frequency, acceleration, periods), state)["total"]
+    along = _sine(frequency, acceleration, periods)
+    return simulate_along(device, *along, state, motion)["total"]
 
 
 def _sine(frequency: float, acceleration: float, periods: int) -> tuple[float, Array, Array, Array]:
@@ -142,6 +144,7 @@ class Table:
             velocity=float(np.sqrt(np.mean((self.acceleration / omega) ** 2) / 2)),
             acceleration=float(np.sqrt(np.mean(self.acceleration**2) / 2)),
         )
+        self.motion: Kind = one_motion(tables)
         self.holdout = np.zeros(self.force.size, bool)
         self.holdout[HELD_OUT_EVERY // 2 :: HELD_OUT_EVERY] = True
 
@@ -354,7 +357,7 @@ def _findings(found: Searched, values: dict[str, ParameterValue]) -> list[Findin
             effect=step.effect, law=step.law, confidence=step.confidence,
             parameters={name: values[name] for name in names if name in values},
             rmse_before=rmse(before), rmse_after=rmse(step.fit.model), evidence="",
-            rivals=step.rivals,
+            rivals=step.rivals, motion=found.prepared.table.motion,
         )  # fmt: skip
         findings.append(replace(finding, evidence=wording.evidence(finding)))
     return sorted(findings, key=lambda finding: -finding.gain)
@@ -364,7 +367,7 @@ def diagnosis_of(found: Searched) -> Diagnosis:
     """What is said of it: findings, figures, what remains."""
     tables, table, before = found.prepared.tables, found.prepared.table, found.prepared.before
     fit = found.fit
-    values = parameter_values(fit, found.prepared.device)
+    values = parameter_values(fit, found.prepared.device, motion=table.motion)
     spread = float(np.sqrt(np.mean(table.force**2)))
 
     def accuracy(model: Model) -> Accuracy:
@@ -388,7 +391,7 @@ def diagnosis_of(found: Searched) -> Diagnosis:
     with quiet():
         engine = np.array(
             [
-                _fundamental(_engine(device, f, a))
+                _fundamental(_engine(device, f, a, table.motion))
                 for f, a in zip(table.frequency, table.acceleration, strict=True)
             ]
         )
@@ -400,6 +403,7 @@ def diagnosis_of(found: Searched) -> Diagnosis:
         baseline=table.predict(before.model),
         extended=table.predict(fit.model),
         holdout=table.holdout,
+        motion=table.motion,
     )
     held = ", ".join(f"{f:g}" for f in table.frequency[table.holdout])
     diagnosis = Diagnosis(
@@ -427,5 +431,6 @@ def diagnosis_of(found: Searched) -> Diagnosis:
         },
         curves=[],
         points=shown,
+        motion=table.motion,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))

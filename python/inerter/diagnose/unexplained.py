@@ -17,6 +17,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter import motion_units
 from inerter.diagnose.remainder.battery import ORDER, Remainder, Tested, battery, columns_of
 from inerter.diagnose.remainder.bursts import Bursts, bursts
 from inerter.diagnose.remainder.columns import sizes_of
@@ -141,6 +142,7 @@ def unexplained(
         excess,
         proposal["text"] if proposal else None,
         _usual(whole, whole_residual, split, runs, raw),
+        runs[0].motion,
     )
     return Unexplained(
         significant=significant,
@@ -183,6 +185,8 @@ def _depends(
     first = last = outcome = battery(remainder, columns)
     chosen: list[tuple[str, LearntPart]] = []
     details: dict[str, str] = {}
+    motion = remainder.runs[0].motion
+    small, newton = motion_units.words(motion, "mm"), motion_units.words(motion, "N")
     while len(chosen) < MOST:
         required = FURTHER_SHARE if chosen else FIRST_SHARE
         gains = {
@@ -206,10 +210,12 @@ def _depends(
             )
         )
         if name in outcome.periods:
-            details[name] = f"with a period of {1e3 * outcome.periods[name].length:.3g} mm"
+            details[name] = f"with a period of {1e3 * outcome.periods[name].length:.3g} {small}"
         if name == "frequency":
             line, last = outcome.lines, outcome
-            details[name] = f"{line.frequency:.3g} Hz with an amplitude of {line.amplitude:.2g} N"
+            details[name] = (
+                f"{line.frequency:.3g} Hz with an amplitude of {line.amplitude:.2g} {newton}"
+            )
         remainder = remainder.without(prediction.values)
         if remainder.data.power < FURTHER_SHARE * power:
             break

@@ -7,17 +7,24 @@ from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, parameters
 from inerter.diagnose.result import ParameterValue, StatedValue
 from inerter.identify.fit import Fit, parameter_errors
+from inerter.motion_units import TRANSLATION, Kind, parameter_unit, unit
+
+
+def parameter_units(motion: Kind) -> dict[str, str]:
+    """Units of every parameter of a device and of its channels."""
+    device = {n: parameter_unit(motion, n, entry.unit) for n, entry in parameters().items()}
+    return device | {name: unit(motion, each) for name, each in CHANNEL_UNITS.items()}
 
 
 def parameter_values(
-    fit: Fit, device: Device | None, delay: float = 0.0
+    fit: Fit, device: Device | None, delay: float = 0.0, motion: Kind = TRANSLATION
 ) -> dict[str, ParameterValue]:
     """Every parameter that a fit decided, by name.
 
     device: the user's own, if any; what it states stands beside what was found, and so does the
-    delay of the force channel that is stated with it [s].
+    delay of the force channel that is stated with it [s]; motion: what the device does.
     """
-    units = {name: entry.unit for name, entry in parameters().items()} | dict(CHANNEL_UNITS)
+    units = parameter_units(motion)
     found = parameter_errors(fit)
     if device is None:
         return {n: ParameterValue(value, error, units[n]) for n, (value, error) in found.items()}

@@ -18,6 +18,7 @@ from inerter.diagnose.result import (
     Rival,
     StatedValue,
 )
+from inerter.motion_units import force_word, words
 
 
 def quantity(value: ParameterValue) -> str:
@@ -112,9 +113,11 @@ def evidence(finding: Finding) -> str:
         if finding.seen_in_blocks
         else "held-out data"
     )
+    newton = words(finding.motion, "N")
     text = (
-        f"{values}: the rms force error on {where} falls from {finding.rmse_before:.3g} N to "
-        f"{finding.rmse_after:.3g} N ({100 * finding.gain:.0f} %)"
+        f"{values}: the rms {force_word(finding.motion)} error on {where} falls from "
+        f"{finding.rmse_before:.3g} {newton} to {finding.rmse_after:.3g} {newton} "
+        f"({100 * finding.gain:.0f} %)"
     )
     likely = [rival for rival in finding.rivals if rival.confidence >= CRITERIA.rival_told]
     if likely:
@@ -171,6 +174,7 @@ def _less(before: float, after: float) -> str:
 
 def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
+    force, newton = force_word(diagnosis.motion), words(diagnosis.motion, "N")
     if not diagnosis.findings and not is_right(diagnosis):
         warnings = [
             f"{record.name}: {warning['text']}".rstrip(".?!")
@@ -180,20 +184,20 @@ def _verdict(diagnosis: Diagnosis) -> str:
         ]
         hint = " Mind the warnings: " + "; ".join(warnings) + "." if warnings else ""
         return (
-            f"The simulation misses the force by {before.rmse:.3g} N rms "
+            f"The simulation misses the {force} by {before.rmse:.3g} {newton} rms "
             f"({100 * before.nrmse:.0f} % of its variation) on held-out data, and no effect tried "
             f"explains that. {diagnosis.unexplained.summary}{hint}"
         )
     if not diagnosis.findings:
         return (
-            f"The simulation is right as far as these data can tell: it misses the force by "
-            f"{before.rmse:.3g} N rms ({100 * before.nrmse:.1f} % of its variation) on held-out "
-            f"data, and no effect tried improves that. {diagnosis.unexplained.summary}"
+            f"The simulation is right as far as these data can tell: it misses the {force} by "
+            f"{before.rmse:.3g} {newton} rms ({100 * before.nrmse:.1f} % of its variation) on "
+            f"held-out data, and no effect tried improves that. {diagnosis.unexplained.summary}"
         )
     first, *rest = by_weight(diagnosis.findings)
     others = [effect_in_words(finding) for finding in rest]
     text = (
-        f"The simulation misses the measured force by {before.rmse:.3g} N rms "
+        f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
         f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause is "
         f"{effect_in_words(first)}"
     )
@@ -201,7 +205,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
         text += "; it also lacks " + ", ".join(others[:-1])
         text += (" and " if others[:-1] else "") + others[-1]
     text += (
-        f". With {'these' if others else 'this'} the error is {after.rmse:.3g} N rms"
+        f". With {'these' if others else 'this'} the error is {after.rmse:.3g} {newton} rms"
         f"{_less(before.rmse, after.rmse)}. {diagnosis.unexplained.summary}"
     )
     unseen = [effect_in_words(finding) for finding in diagnosis.findings if finding.seen_in_blocks]

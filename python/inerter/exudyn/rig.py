@@ -13,6 +13,7 @@ from inerter.exudyn import device as law
 from inerter.exudyn.create import CreateInerter
 from inerter.exudyn.engine import exudyn, quiet
 from inerter.exudyn.readings import FORCES
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 
 TABLE = 1e12
 """Mass of the rig's table [kg], beside which the device's force moves nothing."""
@@ -28,6 +29,7 @@ def simulate_along(
     a: ArrayLike,
     state: ArrayLike = 0.0,
     every: int = 1,
+    motion: Kind = TRANSLATION,
 ) -> dict[str, NDArray[np.float64]]:
     """Run a device in Exudyn along a sampled motion.
 
@@ -48,6 +50,8 @@ def simulate_along(
     every : int
         Forces and states are given at every so many samples, which divide n - 1; reading them costs
         more than a step.
+    motion : str
+        In rotation the table is a rotor: x is an angle [rad], forces are torques [N m].
 
     Returns
     -------
@@ -80,7 +84,10 @@ def simulate_along(
             referenceCoordinates=[0.0], initialCoordinates=[x[0]], initialVelocities=[v[0]]
         )
     )
-    mbs.AddObject(items.Mass1D(mass=TABLE, nodeNumber=table))
+    if motion == ROTATION:
+        mbs.AddObject(items.Rotor1D(inertia=TABLE, nodeNumber=table))
+    else:
+        mbs.AddObject(items.Mass1D(mass=TABLE, nodeNumber=table))
     marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=table, coordinate=0))
     mbs.AddLoad(
         items.LoadCoordinate(markerNumber=marker, load=1.0, loadUserFunction=_push(h, x, v, a))

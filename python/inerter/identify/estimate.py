@@ -32,6 +32,7 @@ from inerter.identify.result import Estimate, Figures, Identification, Identifie
 from inerter.identify.runs import BenchRun, thin, whole
 from inerter.identify.split import Split, blocks, split
 from inerter.identify.turns import needs_turns, with_turns
+from inerter.motion_units import one_motion, parameter_unit
 from inerter.records import Record
 from inerter.records.duplicates import without_copies
 from inerter.records.motion import Motion as BenchMotion
@@ -108,6 +109,7 @@ def identify(
         if name not in (*parameters(), *WORDS):
             # says what it may have meant
             Device(**{name: known[name]})
+    one_motion(records)
     given, records = records, without_copies(records, holdout)
     refuse_unusable(records)
     with threadpool_limits(limits=1, user_api="blas"):
@@ -274,7 +276,8 @@ class _Data:
             high: float | None = value + 1.96 * error
             if intervals == "profile" and error > 0:
                 low, high = _profile(problem, fit, name, value, error, typical)
-            unit = CHANNEL_UNITS.get(name) or parameters()[name].unit
+            known = CHANNEL_UNITS.get(name) or parameters()[name].unit
+            unit = parameter_unit(self.runs[0].motion, name, known)
             found[name] = Estimate(value, error, low, high, unit)
         return found, parameter_correlation(better, tuple(found))
 

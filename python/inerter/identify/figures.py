@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from inerter.identify.prediction import force_along
 from inerter.identify.result import Identification
+from inerter.motion_units import force_word, unit, words
 from inerter.pictures.palette import LIGHT
 from inerter.pictures.png import png
 
@@ -36,20 +37,20 @@ def picture(result: Identification) -> bytes:
     _errors(errors, result)
     run, part = _shown(result)
     predicted = force_along(result.best.model, run)
+    force = f"{force_word(run.motion)} [{words(run.motion, 'N')}]"
     time = run.time[part]
-    _lines(
-        over_time, time, run.force[part], predicted[part], f"{run.name}: force [N] over time [s]"
-    )
+    _lines(over_time, time, run.force[part], predicted[part], f"{run.name}: {force} over time [s]")
     over_time.plot(
         time, (run.force - predicted)[part], color=LIGHT["after"], lw=0.8, label="measured - model"
     )
     over_time.legend(frameon=False, fontsize=8, ncols=3, loc="upper right")
     _lines(loop, 1e3 * run.displacement[part], run.force[part], predicted[part],
-           "force [N] against displacement [mm]")  # fmt: skip
+           f"{force} against displacement [{unit(run.motion, 'mm')}]")  # fmt: skip
     rest = run.force - result.best.device.inertance * run.acceleration
     _lines(speed, run.velocity[part], rest[part],
            (predicted - result.best.device.inertance * run.acceleration)[part],
-           "force less b a [N] against velocity [m/s]")  # fmt: skip
+           f"{force_word(run.motion)} less b a [{words(run.motion, 'N')}] against velocity "
+           f"[{unit(run.motion, 'm')}/s]")  # fmt: skip
     return png(figure)
 
 
@@ -62,7 +63,8 @@ def _errors(axes: Axes, result: Identification) -> None:
     axes.set_yticks(range(len(result.results)), [each.law for each in result.results], fontsize=9)
     axes.invert_yaxis()
     axes.set_xscale("log")
-    _style(axes, "force error on held-out data [N, rms]")
+    motion = result.motion
+    _style(axes, f"{force_word(motion)} error on held-out data [{words(motion, 'N')}, rms]")
     low, high = axes.get_xlim()
     ticks = log_ticks(low, high)
     axes.set_xticks(ticks, [f"{tick:.6g}" for tick in ticks])

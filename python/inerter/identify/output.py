@@ -13,6 +13,7 @@ from inerter.folder import json_text as finite_json
 from inerter.folder import write_files
 from inerter.identify.figures import picture
 from inerter.identify.result import Estimate, Identification
+from inerter.motion_units import force_word, words
 from inerter.rig import device_mjcf
 
 
@@ -41,16 +42,19 @@ def write_identification(result: Identification, folder: Path) -> list[str]:
         {
             "identification.json": json_text(result),
             "identification.png": picture(result),
-            "device.toml": device_text(best.device, comments, best.delay, title),
-            "model.xml": device_mjcf(best.device, "identified_device"),
+            "device.toml": device_text(best.device, comments, best.delay, title, result.motion),
+            "model.xml": device_mjcf(best.device, "identified_device", motion=result.motion),
         },
     )
 
 
 def print_identification(result: Identification, out: Console) -> None:
     """Laws by their held-out error, then the parameters of the best one."""
-    laws = Table(title=f"force error on held-out data ({result.split.description})")
-    for column in ("law", "rms error [N]", "95 % interval", "on fitted data", "seconds"):
+    newton, metre = words(result.motion, "N"), words(result.motion, "m")
+    laws = Table(
+        title=f"{force_word(result.motion)} error on held-out data ({result.split.description})"
+    )
+    for column in ("law", f"rms error [{newton}]", "95 % interval", "on fitted data", "seconds"):
         left = column == "law"
         laws.add_column(column, justify="left" if left else "right", overflow="fold")
     for each in result.results:
@@ -66,8 +70,8 @@ def print_identification(result: Identification, out: Console) -> None:
     if best.motion:
         out.print(
             f"simulated from the measured force, the displacement is off by {best.motion.rmse:.3g} "
-            f"m rms on held-out data ({100 * best.motion.relative:.2g} % of its variation), "
-            f"{best.motion.fit_rmse:.3g} m on fitted data"
+            f"{metre} rms on held-out data ({100 * best.motion.relative:.2g} % of its variation), "
+            f"{best.motion.fit_rmse:.3g} {metre} on fitted data"
         )
     values = Table(title=f"parameters of {best.law}")
     for column in ("parameter", "value", "standard error", "95 % interval", "unit"):

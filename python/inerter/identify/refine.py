@@ -25,6 +25,7 @@ from inerter.identify.simulated import (
     fit_simulated,
     start_from,
 )
+from inerter.motion_units import words
 
 SHARE = 0.7
 """Of a single run, what is fitted."""
@@ -67,11 +68,12 @@ def simulated(result: Identification) -> Identification:
     rest = result.results[1:]
     if here.relative < EXPLAINED and here.rmse < there.rmse:
         return replace(result, results=(after, before, *rest))
-    missed = f"{here.rmse:.3g} m rms ({100 * here.relative:.2g} % of its variation)"
+    metre = words(result.motion, "m")
+    missed = f"{here.rmse:.3g} {metre} rms ({100 * here.relative:.2g} % of its variation)"
     if here.relative < EXPLAINED:
         note = (
             f"the simulation gave nothing better: its parameters miss the held-out displacement by "
-            f"{missed}, those found along the motion by {there.rmse:.3g} m, which are kept"
+            f"{missed}, those found along the motion by {there.rmse:.3g} {metre}, which are kept"
         )
     else:
         note = (

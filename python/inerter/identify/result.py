@@ -14,6 +14,7 @@ from inerter.identify.identifiability import Combination
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 from inerter.identify.split import Split
+from inerter.motion_units import Kind
 from inerter.records import Record
 from inerter.records.duplicates import repeats_another, without_copies
 from inerter.records.preparation import Preparation
@@ -174,6 +175,11 @@ class Identification:
     split: Split
 
     @property
+    def motion(self) -> Kind:
+        """What the device does."""
+        return self.records[0].motion
+
+    @property
     def used(self) -> list[Record]:
         """The records that were fitted or held out, in the order of `split`."""
         return without_copies(self.records)
@@ -188,6 +194,7 @@ class Identification:
         roles = map(self.split.role, range(len(self.used)))
         return {
             "schema": "inerter.identification/1",
+            "motion": self.motion,
             "records": [
                 {
                     "name": record.name,

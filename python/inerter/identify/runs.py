@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inerter.catalogue.scales import Scales
 from inerter.checked_motion import checked_motion
 from inerter.core import Device
+from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.motion import (
     Motion,
     Shaft,
@@ -64,6 +65,8 @@ class BenchRun:
         Resonance [Hz] and damping ratio of a series element, which amplifies the motion's noise.
     far : float
         Size [N] beyond which a residual counts little, see `weighted`.
+    motion : str
+        What the device does; in rotation read rad for m and N m for N.
     """
 
     name: str
@@ -83,6 +86,7 @@ class BenchRun:
     corner: float = np.inf
     shaft: Shaft | None = None
     far: float = np.inf
+    motion: Kind = TRANSLATION
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
         """Forces of a device at the measured rate [N], shape (m,) each.
@@ -202,6 +206,7 @@ def thin(motion: Motion, rate: float | None = None) -> BenchRun:
         thinned=step,
         first=first,
         clock=motion.start,
+        motion=motion.motion,
     )
 
 
@@ -253,6 +258,7 @@ def whole(motion: Motion) -> BenchRun:
         cutoff=np.inf,
         first=first,
         clock=motion.start,
+        motion=motion.motion,
     )
 
 

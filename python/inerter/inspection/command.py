@@ -80,7 +80,7 @@ def _print(facts: Any) -> None:
         table.add_row(*row)
     out.print(table)
     if facts.motion is not None:
-        out.print(f"motion: {motion_words(facts.motion)}", highlight=False)
+        out.print(f"motion: {motion_words(facts.motion, facts.record.motion)}", highlight=False)
     for tell in facts.tells:
         out.print(f"- {words(tell)}", highlight=False)
     for warning in record.warnings:

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from inerter import motion_units as units
 from inerter.inspection.channel import ChannelFacts, channel_facts
 from inerter.inspection.motion import MotionFacts, motion_facts
 from inerter.inspection.tells import Tell, tells, words
+from inerter.motion_units import TRANSLATION, Kind
 from inerter.records import AnyRecord, Record, TimeRecord
 from inerter.records.motion import Motion, smooth, uniform_channels
-from inerter.records.units import QUANTITIES
+from inerter.records.units import QUANTITIES, quantity_in
 
 SCHEMA = "inerter.inspection/1"
 MOST = 1_000_000  # samples that are looked at of a record
@@ -63,7 +65,7 @@ class Facts:
 def facts_of(record: AnyRecord) -> Facts:
     """The facts of a record; of a very long one of its beginning."""
     part = _beginning(record)
-    unit = {name: q.unit for name, q in QUANTITIES.items()}
+    unit = {name: quantity_in(record.motion, name).unit for name in QUANTITIES}
     if not isinstance(part, TimeRecord):
         plain = tuple(
             ChannelFacts(
@@ -118,11 +120,11 @@ def _smoothed(record: Record, channels: Sequence[ChannelFacts]) -> Motion | None
 
 def size(value: float, unit: str) -> str:
     """A value with a unit of its size."""
-    if unit == "m":
-        for factor, name in ((1.0, "m"), (1e3, "mm"), (1e6, "um")):
-            if abs(value) * factor >= 1 or name == "um":
+    if unit in ("m", "rad"):
+        for factor, name in ((1.0, unit), (1e3, f"m{unit}"), (1e6, f"u{unit}")):
+            if abs(value) * factor >= 1 or factor == 1e6:
                 return f"{value * factor:.3g} {name}"
-    return f"{value:.3g} {unit}"
+    return f"{value:.3g} {unit}".replace("*", " ")
 
 
 def short(facts: Facts) -> list[str]:
@@ -139,22 +141,24 @@ def short(facts: Facts) -> list[str]:
         f"{facts.duration:.4g} s; {', '.join(parts)}"
     ]
     if facts.motion is not None:
-        lines.append(f"  {motion_words(facts.motion)}")
+        lines.append(f"  {motion_words(facts.motion, record.motion)}")
     if facts.tells:
         lines.append("  a first look: " + "; ".join(words(tell) for tell in facts.tells))
     return lines
 
 
-def motion_words(motion: MotionFacts) -> str:
+def motion_words(motion: MotionFacts, kind: Kind = TRANSLATION) -> str:
     """Strokes and speeds in words."""
     text = f"{motion.strokes} strokes" if motion.strokes != 1 else "1 stroke"
     if motion.stroke is not None:
-        text += f" of {size(motion.stroke, 'm')}"
+        text += f" of {size(motion.stroke, units.unit(kind, 'm'))}"
     if motion.period is not None:
         text += f", a period of {motion.period:.3g} s"
-    text += f", up to {motion.speed:.3g} m/s and {motion.acceleration:.3g} m/s^2"
+    length = units.unit(kind, "m")
+    text += f", up to {motion.speed:.3g} {length}/s and {motion.acceleration:.3g} {length}/s^2"
     if motion.rest > 0.02:
         text += f", at rest {100 * motion.rest:.0f} % of the time"
     if motion.repeats is not None:
-        text += f"; the force repeats to {size(motion.repeats, 'N')} rms"
+        repeats = size(motion.repeats, units.unit(kind, "N"))
+        text += f"; the {units.force_word(kind)} repeats to {repeats} rms"
     return text

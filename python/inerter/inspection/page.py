@@ -58,7 +58,7 @@ def _record(facts: Facts) -> list[str]:
         parts.append(f"<p class='soft'>Read as: {_text(record.reading)}.</p>")
     parts.append(_table(CHANNEL_HEADER, channel_rows(facts)))
     if facts.motion is not None:
-        parts.append(f"<p>Motion: {_text(motion_words(facts.motion))}.</p>")
+        parts.append(f"<p>Motion: {_text(motion_words(facts.motion, facts.record.motion))}.</p>")
     if facts.tells:
         parts.append("<h3>What it could tell</h3>")
         parts.append(_table(TELL_HEADER, tell_rows(facts.tells)))

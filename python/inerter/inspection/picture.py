@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from inerter.inspection.channel import spectrum
 from inerter.inspection.facts import Facts, size
+from inerter.motion_units import force_word, unit, words
 from inerter.pictures.palette import LIGHT
 from inerter.pictures.png import png
 from inerter.pictures.thinning import extremes
@@ -49,7 +50,7 @@ def _over_time(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
         values = record.channels()[channel.name][: facts.looked_at]
         at = extremes(values, _THIN)
         axes.plot(time[at], values[at], color=LIGHT["measured"], lw=0.8)
-        _style(axes, f"{channel.name} [{channel.unit}]")
+        _style(axes, f"{channel.name} [{channel.unit.replace('*', ' ')}]")
         if k == 0:
             axes.set_title(
                 f"{record.name}: {record.samples} samples, {facts.rate:.5g} per second",
@@ -63,14 +64,16 @@ def _loops(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
     motion = facts.smoothed
     if motion is None:
         return
+    kind = motion.motion
     inner = np.flatnonzero(motion.inner)[:: max(1, int(motion.inner.sum()) // _LOOP)]
     pairs = (
-        (1e3 * motion.displacement, "displacement [mm]"), (motion.velocity, "velocity [m/s]"),
+        (1e3 * motion.displacement, f"displacement [{unit(kind, 'mm')}]"),
+        (motion.velocity, f"velocity [{unit(kind, 'm')}/s]"),
     )  # fmt: skip
     for k, (x, title) in enumerate(pairs):
         axes = figure.add_subplot(grid[row + k, 1])
         axes.plot(x[inner], motion.force[inner], color=LIGHT["measured"], lw=0.5)
-        _style(axes, "force [N]")
+        _style(axes, f"{force_word(kind)} [{words(kind, 'N')}]")
         axes.set_xlabel(title, fontsize=8, color=LIGHT["soft"])
 
 
@@ -83,7 +86,7 @@ def _spectra(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
         axes = figure.add_subplot(grid[row + k, 2])
         frequency, power = spectrum(even[channel.name], spacing)
         axes.loglog(frequency[1:], np.sqrt(power[1:]), color=LIGHT["measured"], lw=0.8)
-        _style(axes, f"{channel.name} [{channel.unit}/√Hz]")
+        _style(axes, f"{channel.name} [{channel.unit.replace('*', ' ')}/√Hz]")
         marks = [(channel.band, f"above its noise up to {channel.band:.3g} Hz")]
         if channel.corner is not None:
             marks.append((channel.corner, f"bends down at {channel.corner:.3g} Hz"))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.inspection.motion import MotionFacts
+from inerter.motion_units import words as in_words
 from inerter.records.motion import Motion, lowpass
 
 Array = NDArray[np.float64]
@@ -51,6 +52,7 @@ def tells(motion: Motion, facts: MotionFacts) -> list[Tell]:
         "stiffness": (motion.displacement[inner], "N/m"),
     }
     names = list(columns)
+    units = {name: in_words(motion.motion, unit) for name, (_, unit) in columns.items()}
     # one filter on both sides
     passed = np.column_stack(
         [lowpass(_whole(motion, inner, columns[n][0]), motion.spacing, motion.cutoff)[inner]
@@ -67,7 +69,7 @@ def tells(motion: Motion, facts: MotionFacts) -> list[Tell]:
     inverse = np.linalg.pinv(scaled.T @ scaled)
     stderrs = np.sqrt(np.maximum(np.diag(inverse) * variance, 0))
     return [
-        _tell(name, columns[name][1], weights[k] / scale[k], stderrs[k] / scale[k],
+        _tell(name, units[name], weights[k] / scale[k], stderrs[k] / scale[k],
               _own_share(scaled[:, :-1], k), facts, _closest(scaled[:, :-1], k, names))
         for k, name in enumerate(names)
     ]  # fmt: skip

@@ -12,18 +12,20 @@ from typing import Any
 
 import numpy as np
 
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
 from .header import bare_name, bench_unit, split_header
 from .raw_table import listed
 from .record import Array, RecordError
-from .units import _GRAVITY, QUANTITIES, si_factor
+from .turning import OWN_NAMES, UNITS, turns
+from .units import _GRAVITY, QUANTITIES, TURNING, motion_of_unit, si_factor
 
 ROLES = ("measured", "leave out")
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = rf"{_NUMBER}\s*[^\d\s()*][^()]*?|{_NUMBER}"
 _LEFT = re.compile(
-    rf"({_NUMBER})((?:\s+|(?<=\d))[A-Za-zµ%°][^()*]*?)?\s+\*\s+(.+)|({_NUMBER})\s*\*\s*(.+)"
+    rf"({_NUMBER})((?:\s+|(?<=\d))[A-Za-zµ%°](?:[^()*]|(?<=\S)\*(?=\S))*?)?\s+\*\s+(.+)|({_NUMBER})\s*\*\s*(.+)"
 )
 _RIGHT = re.compile(rf"(.+?)\s+/\s+({_NUMBER})\s*([A-Za-zµ%°][^()]*)?")
 _INNER = re.compile(rf"\(\s*(.+?)\s+([+-])\s+(start|{_NUMBER}\s*[A-Za-zµ%°/^*0-9]*)\s*\)")
@@ -38,7 +40,8 @@ class Statement:
     column: its header or name in the file; unit: of its values, None for what the file says;
     gain, offset: number and unit; from_start: less its first value; delay [s]: the channel is late
     by this; cutoff [Hz], order: of the low-pass (Butterworth) that the channel went through;
-    interval [s]: of a time that is counted; text: as the user wrote it.
+    interval [s]: of a time that is counted; turns: whether its quantity was called by the name that
+    it has in rotation; text: as the user wrote it.
     """
 
     column: str = ""
@@ -51,11 +54,19 @@ class Statement:
     order: int = 2
     interval: float | None = None
     role: str = "measured"
+    turns: bool = False
     text: str = ""
+
+
+def own_name(name: str) -> str:
+    """Our name of a quantity that a statement calls by the one that it has in rotation."""
+    return OWN_NAMES.get(name, name)
 
 
 def read_statement(name: str, given: Any, where: str) -> Statement:
     """A statement from a line or a table of keys; RecordError names what is wrong with it."""
+    if name in OWN_NAMES:
+        return replace(read_statement(OWN_NAMES[name], given, where), turns=True)
     if name not in QUANTITIES and name != "run":
         raise RecordError(
             f"{where}: {name!r} is no quantity of a record; take one of {', '.join(QUANTITIES)}"
@@ -208,8 +219,10 @@ def column_of(stated: Statement, header: tuple[str, ...], name: str, path: Any) 
     )
 
 
-def applied(stated: Statement, name: str, values: Array, header: str, where: str) -> Array:
-    """The values [SI] of a quantity from those of its column."""
+def applied(
+    stated: Statement, name: str, values: Array, header: str, where: str
+) -> tuple[Array, Kind | None]:
+    """The values [SI] of a quantity from those of its column; the motion that the units tell."""
     own = split_header(header)[1]
     # a unit in the statement's name of the column is one, too
     written = split_header(stated.column)[1] if stated.column else None
@@ -221,7 +234,8 @@ def applied(stated: Statement, name: str, values: Array, header: str, where: str
     if stated.from_start:
         finite = values[np.isfinite(values)]
         values = values - finite[0] if len(finite) else values
-    return values * _factor(stated, name, unit, where)
+    factor, motion = _factor(stated, name, unit, where)
+    return values * factor, ROTATION if stated.turns and motion is None else motion
 
 
 def _offset(offset: tuple[float, str], unit: str | None, where: str) -> float:
@@ -234,27 +248,39 @@ def _offset(offset: tuple[float, str], unit: str | None, where: str) -> float:
     return float(unit_registry().Quantity(value, given).to(into).magnitude)
 
 
-def _factor(stated: Statement, name: str, unit: str | None, where: str) -> float:
+def _factor(
+    stated: Statement, name: str, unit: str | None, where: str
+) -> tuple[float, Kind | None]:
     value, own = stated.gain or (1.0, "")
     if not own:
-        return value * si_factor(name, unit, where)
+        return value * si_factor(name, unit, where), motion_of_unit(name, unit)
     registry, target = unit_registry(), parse_unit(QUANTITIES[name].unit)
     gain = registry.Quantity(value, parse_unit(own))
     if unit is None:
-        left = (
-            registry.Quantity(1, target) / registry.Quantity(1, parse_unit(own))
-        ).to_base_units()
-        electric = (registry.Unit("V"), registry.Unit("A"), registry.Unit("dimensionless"))
-        if not any(left.dimensionality == each.dimensionality for each in electric):
-            raise RecordError(
-                f"{where}: no unit is known of the column; write it behind its name, such as "
-                f"'{stated.column} [mm]'"
-            )
-        return float(gain.to_base_units().magnitude)
+        if _electric(target, own):
+            return float(gain.to_base_units().magnitude), TRANSLATION
+        if name in UNITS and _electric(parse_unit(UNITS[name]), own):
+            return float(gain.to_base_units().magnitude), ROTATION
+        raise RecordError(
+            f"{where}: no unit is known of the column; write it behind its name, such as "
+            f"'{stated.column} [mm]'"
+        )
     total = gain * registry.Quantity(1, parse_unit(unit))
+    if turns(name, total.units):
+        return float(total.to_base_units().magnitude), ROTATION
     if total.dimensionality != target.dimensionality:
         raise RecordError(
             f"{where}: {own} times {unit} is not {QUANTITIES[name].meaning} "
-            f"[{QUANTITIES[name].unit}]; correct the scale"
+            f"[{QUANTITIES[name].unit}]"
+            + (f" nor {TURNING[name].meaning} [{TURNING[name].unit}]" if name in TURNING else "")
+            + "; correct the scale"
         )
-    return float(total.to(target).magnitude)
+    return float(total.to(target).magnitude), TRANSLATION if name in TURNING else None
+
+
+def _electric(target: Any, own: str) -> bool:
+    """Whether a scale in a unit makes a target of volts, amperes or bare numbers."""
+    registry = unit_registry()
+    left = (registry.Quantity(1, target) / registry.Quantity(1, parse_unit(own))).to_base_units()
+    electric = (registry.Unit("V"), registry.Unit("A"), registry.Unit("dimensionless"))
+    return any(left.dimensionality == each.dimensionality for each in electric)

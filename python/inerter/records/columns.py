@@ -11,7 +11,8 @@ from .calibration import Statement, column_of
 from .header import bare_name, guess
 from .raw_table import RawTable, listed
 from .record import AnyRecord, BenchTable, Record, RecordError, VehicleRecord
-from .units import QUANTITIES, split_header
+from .turning import OWN_NAMES
+from .units import QUANTITIES, motion_of_unit, split_header
 
 Kind = Literal["bench", "vehicle", "table"]
 
@@ -58,9 +59,14 @@ def recognise(table: RawTable, kind: Kind | None, stated: Mapping[str, Statement
             own[name] = column_of(statement, table.header, name, table.path)
             units[name] = statement.unit or split_header(table.header[own[name]])[1]
     taken = set(own.values())
+    turning = _names_of_turning(table.header, own)
     # formulas of one column may serve two quantities: such a column is none of the others
     for index, header in enumerate(table.header):
         name, unit = split_header(header)
+        if turning and name in turning.values():
+            # beside an angle and a torque, what is called a force is another channel
+            name = ""
+        name = turning.get(name, name)
         known = (name in QUANTITIES or name == "run") and _measured(name, stated)
         known = known and not (name in stated and stated[name].column)
         key = name if known else header.strip()
@@ -83,6 +89,25 @@ def recognise(table: RawTable, kind: Kind | None, stated: Mapping[str, Statement
     return found
 
 
+def _names_of_turning(header: tuple[str, ...], own: Mapping[str, int]) -> dict[str, str]:
+    """Which of our quantities the columns called `angle`, `torque` and so on are, by their name.
+
+    None where a file has a displacement and a force: there they are further channels.
+    """
+    names = {split_header(text)[0] for text in header if text.strip()} | set(own)
+    if {"displacement", "force"} <= names or "road" in names:
+        return {}
+    found = {name: quantity for name, quantity in OWN_NAMES.items() if name in names}
+    if {"angle", "torque"} <= set(found):
+        return found
+    return {name: quantity for name, quantity in found.items() if quantity not in names}
+
+
+def turns_by_name(header: str) -> bool:
+    """Whether the name of a column says that its device turns."""
+    return split_header(header)[0] in OWN_NAMES
+
+
 def _measured(name: str, stated: Mapping[str, Statement]) -> bool:
     return name not in stated or stated[name].role == "measured"
 
@@ -101,7 +126,7 @@ def _guess_others(table: RawTable, found: Columns) -> None:
         ]
         if quantity not in _REQUIRED:
             # a measured velocity counts: a unit has to say that it is one
-            ranked = [(r, i) for r, i in ranked if split_header(table.header[i])[1] is not None]
+            ranked = [(r, i) for r, i in ranked if _fits(quantity, table.header[i], found)]
         best = [index for rank, index in ranked if rank == max(r for r, _ in ranked)]
         if len(best) > 1 and quantity in _REQUIRED:
             _ask(table, quantity, best)
@@ -110,6 +135,14 @@ def _guess_others(table: RawTable, found: Columns) -> None:
             found.own[quantity] = best[0]
             found.units[quantity] = split_header(header)[1]
             del found.extra[header.strip()]
+
+
+def _fits(quantity: str, header: str, found: Columns) -> bool:
+    """Whether a column has a unit, and one of the motion that displacement and force have."""
+    unit = split_header(header)[1]
+    theirs = [motion_of_unit(name, found.units.get(name)) for name in ("displacement", "force")]
+    motion = motion_of_unit(quantity, unit)
+    return unit is not None and all(each in (None, motion) for each in theirs)
 
 
 def _ask(table: RawTable, quantity: str, candidates: list[int]) -> None:

@@ -84,9 +84,10 @@ def _content(record: Any, form: str) -> bytes:
     import inerter
     from inerter.printable import printable
     from inerter.records.parquet_table import NOTES
+    from inerter.records.turning import own_columns
 
     first = record.required[0]
-    columns = {first: getattr(record, first), **record.channels()}
+    columns = {first: getattr(record, first), **own_columns(record)}
     columns |= {n: v for n, v in record.extra.items() if n.strip() and n not in columns}
     frame = pl.DataFrame({name: pl.Series(values) for name, values in columns.items()})
     notes = [

@@ -13,6 +13,8 @@ from functools import cache
 
 from inerter.unit_text import parse_unit
 
+from .turning import OWN_NAMES, WORDS, turns
+
 # usual names, without accents; of a word within a name the unit has to agree
 _WORDS = {
     "time": "t time zeit prufzeit pruefzeit messzeit laufzeit testzeit uhrzeit temps tiempo tempo "
@@ -33,6 +35,8 @@ _NAMES = {word: quantity for quantity, words in _WORDS.items() for word in words
 _UNITS = {
     "time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2",
 }  # fmt: skip
+_TURNING = {word: quantity for quantity, words in WORDS.items() for word in words.split()}
+_NAMES |= _TURNING
 _PHRASES = {
     "load cell": "force", "date time": "time", "datum zeit": "time", "datum uhrzeit": "time",
     "fecha hora": "time", "date heure": "time", "elapsed time": "time", "time stamp": "time",
@@ -152,8 +156,10 @@ def agrees(quantity: str, unit: str | None) -> bool:
     if quantity == "force" and unit in ("kp",):
         return True
     parsed = parse_unit(unit)
-    return (
-        parsed is not None and parsed.dimensionality == parse_unit(_UNITS[quantity]).dimensionality
+    if parsed is None:
+        return False
+    return turns(quantity, parsed) or (
+        parsed.dimensionality == parse_unit(_UNITS[quantity]).dimensionality
     )
 
 
@@ -170,14 +176,22 @@ def quantity_of(header: str, only: str | None = None) -> int | None:
 
 @cache
 def guess(header: str) -> tuple[str, int] | None:
-    """The quantity that a header names and how well, see `quantity_of`; None for no one."""
+    """The quantity that a header names and how well, see `quantity_of`; None for no one.
+
+    Of names and units of a device that turns, 0: what moves along a line comes first.
+    """
     name, unit = split_header(header)
     if name in _UNITS:
         return name, 3
+    if name in OWN_NAMES:
+        return OWN_NAMES[name], 0
     quantity = _best_guess(bare_name(header))
     if quantity is None or (unit is not None and not agrees(quantity, unit)):
         return None
-    whole = len([w for w in _words(bare_name(header)) if not w.isdigit()]) == 1
+    words = [w for w in _words(bare_name(header)) if not w.isdigit()]
+    whole = len(words) == 1
+    if any(w in _TURNING for w in words) or (unit and turns(quantity, parse_unit(unit))):
+        return (quantity, 0) if whole or unit is not None else None
     if whole or " ".join(_words(bare_name(header))) in _PHRASES:
         # a time of day needs no unit; a date and a time of day neither
         return quantity, 2

@@ -12,6 +12,8 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.signal import welch
 
+from inerter.motion_units import TRANSLATION, Kind, unit
+
 from .motion import uniform_channels
 from .record import Array
 from .runs import Part
@@ -21,7 +23,9 @@ SHARE = 0.25  # of the slowest frequency: below it is drift
 MOST_COSINES = 200
 
 
-def with_displacement(columns: dict[str, Array], part: Part) -> tuple[dict[str, Array], list[str]]:
+def with_displacement(
+    columns: dict[str, Array], part: Part, motion: Kind = TRANSLATION
+) -> tuple[dict[str, Array], list[str]]:
     """Columns with a displacement and without what it was made of; what was done.
 
     Two accelerometers make one acceleration where there is a displacement.
@@ -42,11 +46,12 @@ def with_displacement(columns: dict[str, Array], part: Part) -> tuple[dict[str, 
     order = 1 if source == "velocity" else 2
     made, drift, slowest = integrated(columns["time"], values, order)
     columns["displacement"] = made
+    small = unit(motion, "mm")
     times = "once" if order == 1 else "twice"
     notes.append(
         f"displacement = {source}, integrated {times}; a drift of up to "
-        f"{1e3 * np.max(np.abs(drift)):.3g} mm was taken out, and with it whatever moves slower "
-        f"than {SHARE * slowest:.2g} Hz (the motion spans {1e3 * np.ptp(made):.3g} mm)"
+        f"{1e3 * np.max(np.abs(drift)):.3g} {small} was taken out, and with it whatever moves "
+        f"slower than {SHARE * slowest:.2g} Hz (the motion spans {1e3 * np.ptp(made):.3g} {small})"
     )
     ordered = {"time": columns["time"], "displacement": made}
     return ordered | columns, notes

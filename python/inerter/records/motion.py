@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 
+from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.record import Record
 
 Array = NDArray[np.float64]
@@ -56,6 +57,8 @@ class Motion:
         False near the ends, where the smoother has to guess.
     velocity_noise, acceleration_noise : float
         Rms noise [m/s, m/s^2] that white noise on the displacement leaves.
+    motion : str
+        What the device does; in rotation read rad for m and N m for N.
     """
 
     name: str
@@ -69,6 +72,7 @@ class Motion:
     inner: NDArray[np.bool_]
     velocity_noise: float
     acceleration_noise: float
+    motion: Kind = TRANSLATION
 
     @property
     def time(self) -> Array:
@@ -278,6 +282,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         inner=inner,
         velocity_noise=velocity_noise,
         acceleration_noise=acceleration_noise,
+        motion=record.motion,
     )
 
 

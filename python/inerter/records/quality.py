@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, label, median_filter
 
+from inerter.motion_units import ROTATION, words
+
 from .duplicates import find_duplicate_records
 from .record import Array, Columns, Record, TimeRecord
 
@@ -244,7 +246,8 @@ def find_unit_suspect(record: T) -> T:
 
     Fewer than 5 or more than a million samples per second; a displacement or a suspension travel
     over more than 5 m or faster than 30 m/s (95 % quantile); a force above 1e7 N; an
-    acceleration above 1e5 m/s^2 (99 % quantiles).
+    acceleration above 1e5 m/s^2 (99 % quantiles). Where a device turns: faster than 1e4 rad/s, a
+    torque above 1e7 N m, an acceleration above 1e7 rad/s^2.
     """
     rate = record.sample_rate
     if rate < 5.0:
@@ -255,7 +258,9 @@ def find_unit_suspect(record: T) -> T:
         record = record.warn("unit_suspect", text)
     for name, values in record.channels().items():
         text = ""
-        if name in ("displacement", "suspension_travel"):
+        if record.motion == ROTATION:
+            text = _strange_turn(name, values, record)
+        elif name in ("displacement", "suspension_travel"):
             span = np.ptp(np.quantile(values, (0.005, 0.995)))
             speed = np.quantile(np.abs(np.diff(values) / np.diff(record.time)), 0.95)
             if span > 5.0:
@@ -271,6 +276,20 @@ def find_unit_suspect(record: T) -> T:
         if text:
             record = record.warn("unit_suspect", text)
     return record
+
+
+def _strange_turn(name: str, values: Array, record: TimeRecord) -> str:
+    """What is strange about the size of a channel of a device that turns; empty for nothing."""
+    size = np.quantile(np.abs(values), 0.99)
+    if name == "displacement":
+        speed = np.quantile(np.abs(np.diff(values) / np.diff(record.time)), 0.95)
+        if speed > 1e4 and 5.0 <= record.sample_rate <= 1e6:
+            return f"{name!r} turns at {speed:.3g} rad/s: is it in deg? Then write {name}[deg]"
+    elif name == "force" and size > 1e7:
+        return f"{name!r} reaches {size:.3g} N m: check its unit"
+    elif name == "acceleration" and size > 1e7:
+        return f"{name!r} reaches {size:.3g} rad/s^2: check its unit"
+    return ""
 
 
 # --- channels against each other ---------------------------------------------------------------
@@ -389,7 +408,7 @@ def find_sign_flip(record: Record) -> Record:
     positive = any(weight > 0.0 for weight in weights)
     if (negative and loss < 0.1) or (loss < -0.3 and not positive):
         how = (
-            f"its best-fit inertance is {weights[0]:.3g} kg"
+            f"its best-fit inertance is {weights[0]:.3g} {words(record.motion, 'kg')}"
             if negative
             else f"it feeds energy into the bench (loss ratio {loss:.2f})"
         )

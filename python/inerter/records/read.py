@@ -11,12 +11,22 @@ from typing import Any, Literal, cast, overload
 
 import numpy as np
 
+from inerter.motion_units import ROTATION, TRANSLATION
+from inerter.motion_units import Kind as Motion
 from inerter.printable import text_of
 
 from .bounds import Wanted, everything
 from .calibration import Statement, applied, is_there
 from .channels import corrected
-from .columns import Columns, Kind, choose_kind, is_known, recognise, refuse_missing
+from .columns import (
+    Columns,
+    Kind,
+    choose_kind,
+    is_known,
+    recognise,
+    refuse_missing,
+    turns_by_name,
+)
 from .files import record_files
 from .integrate import with_displacement
 from .quality import check_records
@@ -26,7 +36,7 @@ from .runs import Part, split_runs
 from .stated import Stated, announce, current, stated_of
 from .table import read_table
 from .together import joined
-from .units import QUANTITIES, si_factor
+from .units import QUANTITIES, TURNING, motion_of_unit, quantity_in, si_factor
 
 
 @overload
@@ -125,16 +135,18 @@ def _read_file(path: Path, kind: Kind | None, others: bool, stated: Stated) -> l
     if stated.partner is not None:
         here, there = _by_file(table.header, stated.columns)
     found = recognise(table, kind, here)
-    values, notes = si_values(table, found)
+    values, notes, motions = si_values(table, found)
     both = slice(None)
     if stated.partner is not None:
-        partner = _partner(stated.partner, there)
-        others_values, both, note = joined(path, values, *partner, stated.lag)
+        other_path, other, theirs = _partner(stated.partner, there)
+        motions = theirs | motions
+        others_values, both, note = joined(path, values, other_path, other, stated.lag)
         for name in others_values:
             found.own.setdefault(name, -1)
         values, notes = values | others_values, [*notes, note]
     cls = choose_kind(table, found, kind)
     refuse_missing(table, found, cls)
+    motion = _motion(path, motions if cls is not VehicleRecord else {}, table, found)
     names = [name for name in (*cls.required, *cls.optional) if name in values]
     names += [n for n in ("acceleration_1", "acceleration_2") if cls is Record and n in values]
     extra = _further(table, found, {n: v for n, v in values.items() if n not in names})
@@ -152,11 +164,12 @@ def _read_file(path: Path, kind: Kind | None, others: bool, stated: Stated) -> l
         said = list(notes)
         if cls is Record:
             columns, rows, more = corrected(columns, rows, found.stated, part)
-            columns, motion = with_displacement(columns, part)
-            said += more + motion
+            columns, made = with_displacement(columns, part, motion)
+            said += more + made
         rest = {n: v[rows] for n, v in extra.items()}
         text = "; ".join(each for each in (table.told, *said) if each)
         fields: dict[str, Any] = {"extra": rest, "comments": table.comments, **columns}
+        fields["motion"] = motion
         record = cls(name=name, source=path, reading=text, **fields)
         for note in losses:
             record = record.warn("missing_samples", note)
@@ -176,24 +189,61 @@ def _by_file(
     return here, {name: each for name, each in stated.items() if name not in here}
 
 
-def _partner(path: Path, there: Mapping[str, Statement]) -> tuple[Path, dict[str, Array]]:
-    """The channels of a file of the same test that has a clock of its own."""
+def _partner(
+    path: Path, there: Mapping[str, Statement]
+) -> tuple[Path, dict[str, Array], dict[str, Motion]]:
+    """The channels of a file of the same test that has a clock of its own; motions they tell."""
     stated = stated_of(path)
     table = read_table(path, everything, stated)
     found = recognise(table, "bench", {**stated.columns, **there})
     current().read.append(path)
-    values = si_values(table, found)[0]
-    return path, values | _further(table, found, {})
+    values, _, motions = si_values(table, found)
+    return path, values | _further(table, found, {}), motions
 
 
-def si_values(table: RawTable, found: Columns) -> tuple[dict[str, Array], list[str]]:
-    """The values of our quantities in SI units, and what is to be told of them."""
+def _motion(path: Path, motions: dict[str, Motion], table: RawTable, found: Columns) -> Motion:
+    """The motion of a record; RecordError where some columns move along a line and others turn."""
+    names: dict[Motion, list[str]] = {}
+    for name, each in motions.items():
+        names.setdefault(each, []).append(name)
+    if len(names) == 2:
+        along, about = names[TRANSLATION], names[ROTATION]
+
+        def told(some: list[str], motion: Motion) -> str:
+            shown = [
+                f"{table.header[found.own[n]].strip()!r}" if found.own.get(n, -1) >= 0 else repr(n)
+                for n in some
+            ]
+            means = [quantity_in(motion, n).meaning for n in some]
+            return " and ".join(f"{s} is {m}" for s, m in zip(shown, means, strict=True))
+
+        fewer = min((along, about), key=len)
+        other = ROTATION if fewer is along else TRANSLATION
+        ways = " and ".join(f"{n}[{quantity_in(other, n).unit}]" for n in fewer)
+        raise RecordError(
+            f"{path}: {told(along, TRANSLATION)}, but {told(about, ROTATION)}: a device moves "
+            f"along a line or it turns; write {ways}, or state the column by --column, such as "
+            f"--column {fewer[0]}='NAME [{quantity_in(other, fewer[0]).unit}]'"
+        )
+    return next(iter(names), None) or TRANSLATION
+
+
+def si_values(
+    table: RawTable, found: Columns
+) -> tuple[dict[str, Array], list[str], dict[str, Motion]]:
+    """The values of our quantities in SI units, what is to be told of them, motions they tell."""
     # units first: a wrong unit is one error, a wrong cell one among many
     factors = {}
+    motions: dict[str, Motion] = {}
     for name, index in found.own.items():
         if name in QUANTITIES and name not in found.stated:
             where = f"{table.path}: column {table.header[index].strip()!r}"
             factors[name] = si_factor(name, found.units[name], where)
+            told = motion_of_unit(name, found.units[name])
+            if told is None and name in TURNING and turns_by_name(table.header[index]):
+                told = ROTATION
+            if told is not None:
+                motions[name] = told
     values: dict[str, Array] = {}
     notes: list[str] = []
     with np.errstate(over="ignore"):  # what overflows is refused with its row
@@ -205,17 +255,22 @@ def si_values(table: RawTable, found: Columns) -> tuple[dict[str, Array], list[s
                 values[name] = column if factors[name] == 1.0 else column * factors[name]
             else:
                 where = f"{table.path}: column {header!r}"
-                values[name] = applied(found.stated[name], name, column, header, where)
-            notes.append(_of_column(name, header, found))
+                values[name], told = applied(found.stated[name], name, column, header, where)
+                if told is not None:
+                    motions[name] = told
+    motion = next(iter(motions.values()), None) or TRANSLATION
+    for name, index in found.own.items():
+        if name in QUANTITIES:
+            notes.append(_of_column(name, table.header[index].strip(), found, motion))
     counted = found.stated.get("time")
     if counted is not None and counted.interval is not None:
         values["time"] = counted.interval * np.arange(table.rows, dtype=np.float64)
         notes.append(f"a sample every {counted.interval:g} s, as stated")
     text = ", ".join(note for note in notes if note)
-    return values, [text] if text else []
+    return values, [text] if text else [], motions
 
 
-def _of_column(name: str, header: str, found: Columns) -> str:
+def _of_column(name: str, header: str, found: Columns, motion: Motion) -> str:
     """What is told of a column that has not our name for it, or is calibrated."""
     statement = found.stated.get(name)
     if statement is not None and statement.text and statement.text != header:
@@ -224,7 +279,7 @@ def _of_column(name: str, header: str, found: Columns) -> str:
     if name == header.split("[")[0].split("(")[0].strip().casefold():
         return ""
     if unit is None and name != "time":
-        return f"{name} = {header!r} (no unit: taken as {QUANTITIES[name].unit})"
+        return f"{name} = {header!r} (no unit: taken as {quantity_in(motion, name).unit})"
     return f"{name} = {header!r}"
 
 

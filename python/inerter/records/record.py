@@ -18,6 +18,8 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.motion_units import TRANSLATION, Kind
+
 Array = NDArray[np.float64]
 
 WARNING_CODES = (
@@ -60,6 +62,7 @@ class Columns:
 
     name: file stem, or ``stem:run``. source: the file, None for data made in memory.
     extra: further numeric columns under the header they had, values as written (no conversion).
+    motion: what its device does; in rotation read rad for m, N m for N, kg m^2 for kg.
     comments: the lines that stood above the header, without a ``#``.
     reading: how the file was read, where anything of it is out of the ordinary.
     Raises ValueError when columns are not one-dimensional and equally long.
@@ -71,6 +74,7 @@ class Columns:
     comments: tuple[str, ...] = ()
     reading: str = ""
     warnings: tuple[RecordWarning, ...] = ()
+    motion: Kind = TRANSLATION
 
     kind: ClassVar[str] = ""
     required: ClassVar[tuple[str, ...]] = ()

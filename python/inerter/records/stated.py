@@ -29,7 +29,7 @@ from typing import Any
 from inerter.folder import write_files
 from inerter.input_file import read_toml
 
-from .calibration import Statement, read_statement
+from .calibration import Statement, own_name, read_statement
 from .record import RecordError
 from .text_layout import DECIMALS, SEPARATORS, Asked
 
@@ -194,10 +194,10 @@ def stated_of(path: Path) -> Stated:
     partner = place.parent / entry["with"] if "with" in entry else None
     if now.partner is not None:
         partner = now.partner
-    columns = {n: read_statement(n, g, where) for n, g in entry.get("columns", {}).items()}
+    columns = _statements(entry.get("columns", {}), where)
     # what is said of a partner's column is handed on by the file whose partner it is
     if now.partner is None or _real(path) != _real(now.partner):
-        columns |= {n: read_statement(n, g, "--column") for n, g in now.columns.items()}
+        columns |= _statements(now.columns, "--column")
     found = Stated(
         columns=columns,
         asked=Asked(
@@ -211,6 +211,11 @@ def stated_of(path: Path) -> Stated:
     # a file is no partner of itself
     same = partner is not None and _real(partner) == _real(path)
     return replace(found, partner=None) if same else found
+
+
+def _statements(given: Mapping[str, Any], where: str) -> dict[str, Statement]:
+    """Statements by our names of the quantities."""
+    return {own_name(name): read_statement(name, each, where) for name, each in given.items()}
 
 
 def _real(path: Path) -> str:

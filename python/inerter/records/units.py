@@ -6,12 +6,14 @@ import math
 import re
 from dataclasses import dataclass
 
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.unit_text import parse_unit, unit_registry
 
 from .header import split_header
 from .record import RecordError
+from .turning import UNITS, turns
 
-__all__ = ["QUANTITIES", "Quantity", "si_factor", "split_header"]
+__all__ = ["QUANTITIES", "Quantity", "motion_of_unit", "si_factor", "split_header"]
 
 _LENGTH = "m, mm, um, cm, in, ft"
 _FORCE = "N, kN, lbf, kgf"
@@ -52,12 +54,43 @@ QUANTITIES: dict[str, Quantity] = {
     "tyre_force": FORCE,
 }
 
+ANGLE = Quantity("an angle", "rad", "rad, mrad, deg, rev")
+TORQUE = Quantity("a torque", "N*m", "N*m, mN*m, kN*m, lbf*ft, lbf*in")
+ANGULAR_SPEED = Quantity("an angular velocity", "rad/s", "rad/s, deg/s, rpm, rev/s")
+ANGULAR_ACCELERATION = Quantity("an angular acceleration", "rad/s^2", "rad/s^2, deg/s^2, rev/s^2")
+
+_OF_UNIT = {q.unit: q for q in (ANGLE, TORQUE, ANGULAR_SPEED, ANGULAR_ACCELERATION)}
+TURNING: dict[str, Quantity] = {name: _OF_UNIT[unit] for name, unit in UNITS.items()}
+"""What the columns of a device that turns hold."""
+
 # what test benches call accelerations; pint reads g as a gram
 _GRAVITY = {"g": 1.0, "G": 1.0, "gn": 1.0, "g0": 1.0, "g_n": 1.0, "mg": 1e-3, "ug": 1e-6}
 
 
+def quantity_in(motion: Kind, name: str) -> Quantity:
+    """What a column of this name holds in a record of a motion."""
+    return TURNING[name] if motion == ROTATION and name in TURNING else QUANTITIES[name]
+
+
+def motion_of_unit(name: str, unit: str | None) -> Kind | None:
+    """The motion that the unit of a column tells; None where it tells none."""
+    if unit is None or name not in TURNING:
+        return None
+    if name.startswith("acceleration") and unit in _GRAVITY:
+        return TRANSLATION
+    parsed = parse_unit(unit)
+    if parsed is None:
+        return None
+    if turns(name, parsed):
+        return ROTATION
+    along = parsed.dimensionality == parse_unit(QUANTITIES[name].unit).dimensionality
+    return TRANSLATION if along else None
+
+
 def si_factor(name: str, unit: str | None, where: str) -> float:
     """Factor from `unit` to the SI unit of the quantity `name` (a key of `QUANTITIES`).
+
+    Of a device that turns, units of angles and torques are as good, see `TURNING`.
 
     where: file and column as they should stand in the error text.
     Raises RecordError for a unit that is unknown or belongs to another quantity.
@@ -78,10 +111,13 @@ def si_factor(name: str, unit: str | None, where: str) -> float:
             f"{where}: {name} is in {unit}; state its calibration, such as --column "
             f"{name}='200 {quantity.unit}/{unit} * NAME'"
         )
+    if turns(name, parsed):
+        return float((1 * parsed).to_base_units().magnitude)
     if parsed.dimensionality != parse_unit(quantity.unit).dimensionality:
         raise RecordError(
             f"{where}: unit {unit!r} is not {quantity.meaning}{_mass_hint(unit, quantity)}; "
             f"write for example one of: {quantity.allowed}, or leave it out for {quantity.unit}"
+            + (f"; of a device that turns: {TURNING[name].allowed}" if name in TURNING else "")
         )
     base = unit_registry().Quantity(1.0, parsed).to_base_units()
     factor = float(base.magnitude)

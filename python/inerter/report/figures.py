@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from inerter.diagnose.result import Diagnosis, RunCurves
 from inerter.folder import write_files
+from inerter.motion_units import unit
 from inerter.pictures import thinning
 from inerter.pictures.palette import LIGHT
 from inerter.report import text
@@ -61,9 +62,9 @@ def loop_figure(diagnosis: Diagnosis, path_png: Path) -> None:
         left.plot(time, forces[color][part], **style)
         right.plot(run.velocity[part], forces[color][part], **style)
     left.set_xlabel("time [s]")
-    left.set_ylabel("force [N]")
+    left.set_ylabel(f"{run.quantity} [{text.unit(run.unit)}]")
     left.margins(x=0.01)
-    right.set_xlabel("velocity [m/s]")
+    right.set_xlabel(f"velocity [{run.length}/s]")
     for axes in (left, right):
         _clean(axes)
     right.tick_params(labelleft=False)
@@ -77,9 +78,10 @@ def loop_figure(diagnosis: Diagnosis, path_png: Path) -> None:
         handlelength=1.6,
         borderaxespad=0.3,
     )
+    newton = text.unit(unit(diagnosis.motion, "N"))
     figure.suptitle(
-        f"rms error on held-out data: {text.number(diagnosis.baseline.rmse)} N"
-        f" → {text.number(diagnosis.extended.rmse)} N",
+        f"rms error on held-out data: {text.number(diagnosis.baseline.rmse)} {newton}"
+        f" → {text.number(diagnosis.extended.rmse)} {newton}",
         x=0.99,
         ha="right",
         fontsize=10.5,

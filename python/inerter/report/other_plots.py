@@ -9,8 +9,10 @@ import numpy as np
 import plotly.graph_objects as go
 
 from inerter.diagnose.result import TablePoints
+from inerter.motion_units import TRANSLATION, Kind, force_word, unit
 from inerter.pictures.palette import LIGHT
 from inerter.pictures.plotting import figure, line, log_axis, points, positive
+from inerter.report.text import unit as shown
 
 
 def table_plots(table: TablePoints) -> dict[str, go.Figure]:
@@ -20,11 +22,15 @@ def table_plots(table: TablePoints) -> dict[str, go.Figure]:
         with np.errstate(divide="ignore", invalid="ignore"):
             return force / table.acceleration
 
+    force, newton = force_word(table.motion), shown(unit(table.motion, "N"))
+    kilogram = shown(unit(table.motion, "kg"))
     return {
-        "table-force": _against_frequency(table, "force amplitude [N]", lambda force: force),
-        "table-ratio": _against_frequency(table, "force / acceleration [kg]", ratio),
+        "table-force": _against_frequency(
+            table, f"{force} amplitude [{newton}]", lambda force: force
+        ),
+        "table-ratio": _against_frequency(table, f"{force} / acceleration [{kilogram}]", ratio),
         "table-error": _against_frequency(
-            table, "error [N]", lambda force: table.force - force, measured=False
+            table, f"error [{newton}]", lambda force: table.force - force, measured=False
         ),
     }
 
@@ -66,13 +72,14 @@ def _against_frequency(
     return plot
 
 
-def cutoff_plot(method: dict[str, Any]) -> go.Figure | None:
+def cutoff_plot(method: dict[str, Any], motion: Kind = TRANSLATION) -> go.Figure | None:
     """Force error against the smoothing cut-offs tried, the chosen one marked; None without."""
     tried = np.asarray(method.get("cutoffs_tried") or [], float)
     errors = np.asarray(method.get("force_error_at_cutoffs") or [], float)
     if not len(tried) or len(tried) != len(errors):
         return None
-    plot = figure("smoothing cut-off [Hz]", "force error of the trial [N]")
+    error = f"{force_word(motion)} error of the trial [{shown(unit(motion, 'N'))}]"
+    plot = figure("smoothing cut-off [Hz]", error)
     plot.update_layout(xaxis=log_axis(tried), yaxis={"rangemode": "tozero"})
     x, y = positive(tried, errors)
     line(plot, x, y, "measured", "error", 1.5)

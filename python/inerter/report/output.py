@@ -37,8 +37,9 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         comments,
         diagnosis.extended.delay,
         f"identified by inerter diagnose from {names}",
+        diagnosis.motion,
     )
-    model = device_mjcf(device, "identified_device")
+    model = device_mjcf(device, "identified_device", motion=diagnosis.motion)
     write_files(
         folder,
         {

@@ -23,6 +23,7 @@ from inerter.diagnose.result import (
     TablePoints,
 )
 from inerter.diagnose.wording import departure, is_right
+from inerter.motion_units import force_word
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import to_script
 from inerter.printable import upright
@@ -60,7 +61,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
     runs = pictured(diagnosis.curves)
     table = _table(diagnosis)
     single = table_plots(table) if table else {}
-    cutoff = cutoff_plot(diagnosis.method)
+    cutoff = cutoff_plot(diagnosis.method, diagnosis.motion)
     if cutoff is not None:
         single["cutoff"] = cutoff
     plots = {"runs": [run_plots(run, len(runs)) for run in runs], "single": single}
@@ -96,6 +97,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         plots=Markup(to_script(plots)),
         plotly=Markup(plotly_script()),
         number=text.number,
+        unit=text.unit,
         tidy=text.tidy,
         count=text.count,
         percent=text.percent,
@@ -108,7 +110,8 @@ def headline(diagnosis: Diagnosis) -> str:
     if not diagnosis.findings and diagnosis.unexplained.significant:
         return "The simulation lacks something that no known effect explains"
     if not diagnosis.findings and not is_right(diagnosis):
-        return "The simulation misses the force, and no known effect explains it"
+        force = force_word(diagnosis.motion)
+        return f"The simulation misses the {force}, and no known effect explains it"
     if not diagnosis.findings:
         return "No lack of the simulation is to be seen in these data"
     names = [text.finding_name(finding) for finding in diagnosis.findings]
@@ -219,7 +222,7 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
         old = before.get(name, getattr(found, "stated", None))
         if name == "friction" or (name == "delay" and not (old or new or found)):
             continue
-        suffix = text.unit(found.unit if found else text.parameter_unit(name))
+        suffix = text.unit(found.unit if found else text.parameter_unit(name, diagnosis.motion))
         rows.append(
             {
                 "name": name,

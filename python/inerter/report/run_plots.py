@@ -14,6 +14,7 @@ from inerter.pictures.palette import LIGHT
 from inerter.pictures.plotting import figure, line, points, positive, two_over_time
 from inerter.pictures.thinning import Mask
 from inerter.report.runs import judged
+from inerter.report.text import unit as shown
 
 # samples per line when there are few runs
 TIME_SAMPLES = 3000
@@ -40,7 +41,7 @@ def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
 
 def _over_time(run: RunCurves, limit: int) -> go.Figure:
     """Force above, residual below, one time axis."""
-    plot = two_over_time(f"{run.quantity} [{run.unit}]", f"error [{run.unit}]")
+    plot = two_over_time(f"{run.quantity} [{shown(run.unit)}]", f"error [{shown(run.unit)}]")
     lines: list[tuple[str, np.ndarray, str, float, str]] = [
         ("measured", run.force, "measured", 3.0, "y"),
         (BEFORE, run.baseline, "before", 1.4, "y"),
@@ -83,10 +84,10 @@ def _loops(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
         keeps.append(first + thinning.evenly(length, limit // len(parts)))
     plots = {}
     for place, title, x in (
-        ("loop-displacement", "displacement [m]", run.displacement),
-        ("loop-velocity", "velocity [m/s]", run.velocity),
+        ("loop-displacement", f"displacement [{run.length}]", run.displacement),
+        ("loop-velocity", f"velocity [{run.length}/s]", run.velocity),
     ):
-        plot = figure(title, f"{run.quantity} [{run.unit}]")
+        plot = figure(title, f"{run.quantity} [{shown(run.unit)}]")
         _room(plot, np.concatenate([x[keep] for keep in keeps]))
         for name, force, width in (
             ("measured", run.force, 3.0),
@@ -114,11 +115,11 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
     some = samples[thinning.evenly(len(samples), limit)]
     plots = {}
     for place, title, x in (
-        ("error-displacement", "displacement [m]", run.displacement),
-        ("error-velocity", "velocity [m/s]", run.velocity),
-        ("error-acceleration", "acceleration [m/s²]", run.acceleration),
+        ("error-displacement", f"displacement [{run.length}]", run.displacement),
+        ("error-velocity", f"velocity [{run.length}/s]", run.velocity),
+        ("error-acceleration", f"acceleration [{run.length}/s²]", run.acceleration),
     ):
-        plot = figure(title, f"error [{run.unit}]")
+        plot = figure(title, f"error [{shown(run.unit)}]")
         for name, color, force in (
             (BEFORE, "before", run.baseline),
             (AFTER, "after", run.extended),
@@ -133,7 +134,7 @@ def _clouds(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:
 
 
 def _spectrum(run: RunCurves, mask: Mask) -> go.Figure:
-    plot = figure("frequency [Hz]", f"density [{run.unit}/√Hz]")
+    plot = figure("frequency [Hz]", f"density [{shown(run.unit)}/√Hz]")
     log: dict[str, Any] = {"type": "log", "dtick": 1, "tickformat": "~g"}
     plot.update_layout(xaxis=log, yaxis=log)
     part = thinning.longest_stretch(mask)

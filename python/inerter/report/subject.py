@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from inerter.diagnose.result import Diagnosis
 from inerter.diagnose.vehicle.outcome import SystemDiagnosis
+from inerter.motion_units import ROTATION, unit
 from inerter.report import text
 
 
@@ -14,7 +15,8 @@ class Subject:
     """The words of a page that differ between devices and models.
 
     kind: of page; error, noise: what the figures are; quantity: what is drawn; engines: about the
-    table of engines; glossary: meaning of the error; share: figures are shares of a spread.
+    table of engines; glossary: meaning of the error; share: figures are shares of a spread; newton:
+    unit of the error where they are not.
     """
 
     kind: str
@@ -24,11 +26,12 @@ class Subject:
     engines: str
     glossary: str
     share: bool
+    newton: str = "N"
 
     def figure(self, value: float | None, digits: int = 3) -> str:
         """An error with its unit."""
         if value is None or not self.share:
-            return f"{text.number(value, digits)} N"
+            return f"{text.number(value, digits)} {self.newton}"
         return f"{text.number(100 * value, digits)} %"
 
 
@@ -45,6 +48,10 @@ _BENCH = Subject(
     "simulation following the measured motion. For runs that were fitted, over their own samples.",
     share=False,
 )
+_TURNING = replace(
+    _BENCH, error="rms torque error", noise="expected of the noise of torque and motion",
+    quantity="Torque", newton=text.unit(unit(ROTATION, "N")),
+)  # fmt: skip
 _MODEL = Subject(
     kind="a model against records of the whole system",
     error="rms error of the channels, per their spread,",
@@ -61,4 +68,6 @@ _MODEL = Subject(
 
 def subject(diagnosis: Diagnosis) -> Subject:
     """The words for a diagnosis."""
-    return _MODEL if isinstance(diagnosis, SystemDiagnosis) else _BENCH
+    if isinstance(diagnosis, SystemDiagnosis):
+        return _MODEL
+    return _TURNING if diagnosis.motion == ROTATION else _BENCH

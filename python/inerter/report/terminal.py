@@ -49,7 +49,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
     table.add_column("effect", ratio=3)
     table.add_column("parameters", ratio=4)
     about = subject(diagnosis)
-    unit = "%" if about.share else "N"
+    unit = "%" if about.share else about.newton
     table.add_column(f"error [{unit}]", justify="right", no_wrap=True)
     table.add_column("gain", justify="right", no_wrap=True)
     table.add_column("confidence", justify="right", no_wrap=True)
@@ -67,7 +67,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
             effect,
             _plain(values),
             " → ".join(
-                about.figure(value).rsplit(" ", 1)[0]
+                about.figure(value).removesuffix(f" {unit}")
                 for value in (finding.rmse_before, finding.rmse_after)
             ),
             text.percent(finding.gain),

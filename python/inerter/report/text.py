@@ -10,6 +10,8 @@ from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.wording import effect_in_words
+from inerter.motion_units import TRANSLATION, Kind
+from inerter.motion_units import parameter_unit as unit_in
 
 _SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ")
 UNKNOWN = "–"
@@ -127,12 +129,12 @@ def parameter_meaning(name: str) -> str:
     return known.meaning if known else ""
 
 
-def parameter_unit(name: str) -> str:
-    """The core's unit of a parameter."""
+def parameter_unit(name: str, motion: Kind = TRANSLATION) -> str:
+    """The core's unit of a parameter, in rotation where the device turns."""
     if name == "delay":
         return "s"
     known = parameters().get(name)
-    return known.unit if known else ""
+    return unit_in(motion, name, known.unit) if known else ""
 
 
 def listed(items: list[str]) -> str:

@@ -17,6 +17,7 @@ import inerter
 from inerter.core import parameters
 from inerter.folder import file_names
 from inerter.printable import printable
+from inerter.records.turning import UNITS
 from inerter.simulate.run import SimulatedRun
 from inerter.simulate.sample import DeviceRun
 
@@ -42,7 +43,13 @@ def device_csv(run: SimulatedRun, device: DeviceRun) -> str:
     ]
     if _is_hinge(run.model, place.actuator):
         notes.insert(-1, "on a hinge: read rad for m, N*m for N, kg*m^2 for kg")
+        return _csv(notes, {_turning(name): each for name, each in device.columns.items()})
     return _csv(notes, device.columns)
+
+
+def _turning(name: str) -> str:
+    """The header of a column of a device on a hinge, with which it is read as one that turns."""
+    return f"{name}[{UNITS[name]}]" if name in UNITS else name
 
 
 def _is_hinge(model: mujoco.MjModel, actuator: int) -> bool:

@@ -12,6 +12,7 @@ from inerter.diagnose.budget.ceiling import Ceiling, ceiling
 from inerter.diagnose.data import Data
 from inerter.diagnose.result import Unexplained
 from inerter.identify.fit import rms
+from inerter.motion_units import Kind, words
 
 Array = NDArray[np.float64]
 
@@ -50,7 +51,7 @@ def with_ceiling(
         told,
         significant=True,
         structure=max(found.structure, best.takes),
-        summary=f"{_start(found.summary)} is not noise: {_predicted(best)}",
+        summary=f"{_start(found.summary)} is not noise: {_predicted(best, data.whole[0].motion)}",
     )
 
 
@@ -59,11 +60,11 @@ def _start(summary: str) -> str:
     return summary[: summary.index(")") + 1]
 
 
-def _predicted(best: Ceiling) -> str:
+def _predicted(best: Ceiling, motion: Kind) -> str:
     looked = [_LOOKS_AT[name] for name in best.looks_at if name in _LOOKS_AT]
     together = " and ".join(filter(None, [", ".join(looked[:-1]), looked[-1]]))
     return (
-        f"{best.takes:.3g} N rms can be predicted from the other data by {together}, taken "
-        "together, though by none of the quantities that were tested alone. No effect that is "
-        "known here explains it."
+        f"{best.takes:.3g} {words(motion, 'N')} rms can be predicted from the other data by "
+        f"{together}, taken together, though by none of the quantities that were tested alone. "
+        "No effect that is known here explains it."
     )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from inerter.motion_units import TRANSLATION, Kind, words
+
 # share of the error below which a part is not worth a word
 LEAST = 0.005
 
@@ -24,6 +26,8 @@ class Budget:
         What it leaves: not predicted by anything that was tried.
     repeatability : float, optional
         What differs between strokes that repeat, over all runs; None where too few repeat.
+    motion : str
+        What the device does; in rotation read N m for N.
     """
 
     baseline: float
@@ -31,6 +35,7 @@ class Budget:
     predictable: float
     rest: float
     repeatability: float | None = None
+    motion: Kind = TRANSLATION
 
     def parts(self) -> list[tuple[str, str, float]]:
         """Key, words and size [N] of each part."""
@@ -44,23 +49,31 @@ class Budget:
     def sentence(self) -> str:
         """The budget in a sentence."""
         whole = self.baseline or 1.0
-        named = f"{self.named:.3g} N is named" if self.named > LEAST * whole else "nothing is named"
+        newton = words(self.motion, "N")
+        named = "nothing is named"
+        if self.named > LEAST * whole:
+            named = f"{self.named:.3g} {newton} is named"
         more = (
-            f"{self.predictable:.3g} N more could be predicted from the motion but has no name"
-            if self.predictable > 0
+            f"{self.predictable:.3g} {newton} more could be predicted from the motion but has no "
+            "name"
+            if self.predictable > LEAST * whole
             else "nothing more was predictable"
         )
         text = (
-            f"Of {self.baseline:.3g} N rms, {named}, {more}, and {self.rest:.3g} N was not "
-            "predicted by anything tried."
+            f"Of {self.baseline:.3g} {newton} rms, {named}, {more}, and {self.rest:.3g} {newton} "
+            "was not predicted by anything tried."
         )
         if self.repeatability is not None:
-            text += f" Strokes that repeat differ by {self.repeatability:.3g} N."
+            text += f" Strokes that repeat differ by {self.repeatability:.3g} {newton}."
         return text
 
 
 def budget_of(
-    baseline: float, extended: float, ceiling: float, repeatability: float | None
+    baseline: float,
+    extended: float,
+    ceiling: float,
+    repeatability: float | None,
+    motion: Kind = TRANSLATION,
 ) -> Budget:
     """The budget of a held-out error [N] of the baseline, the extended model and the predictor."""
     least = min(ceiling, extended)
@@ -70,4 +83,5 @@ def budget_of(
         predictable=extended - least,
         rest=least,
         repeatability=repeatability,
+        motion=motion,
     )

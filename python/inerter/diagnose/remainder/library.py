@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
+from inerter.motion_units import unit, words
 
 from . import columns as c
 from .battery import Remainder
@@ -78,6 +80,7 @@ def library(remainder: Remainder, periods: dict[str, float]) -> list[Term]:
         return c.direction(run, sizes)
 
     sign = banded(way)
+    motion = remainder.runs[0].motion
     terms = [
         Term("1", "N", np.ones(x.size)),
         Term("x", unit_of(x=1), x),
@@ -128,14 +131,15 @@ def library(remainder: Remainder, periods: dict[str, float]) -> list[Term]:
         factor = sign if "direction" in name else np.ones(x.size)
         text = ("sign(v) " if "direction" in name else "") + f"sin(2 pi x/{length:.4g})"
         terms.append(Term(text, "N", factor * np.sin(phase), factor * np.cos(phase)))
-    return terms
+    return [replace(term, unit=unit(motion, term.unit)) for term in terms]
 
 
 def _clipped(remainder: Remainder) -> list[Term]:
     """The simulated force within a limit: what a dead band takes away."""
     force = remainder.flat(lambda run: run.force) - remainder.data.residual
     limits = [float(f"{share * remainder.sizes.force:.2g}") for share in CLIPS]
-    return [Term(f"clip(F, +-{d:g} N)", "1", np.clip(force, -d, d)) for d in limits]
+    newton = words(remainder.runs[0].motion, "N")
+    return [Term(f"clip(F, +-{d:g} {newton})", "1", np.clip(force, -d, d)) for d in limits]
 
 
 def _memory(remainder: Remainder) -> list[Term]:

@@ -17,6 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.motion_units import Kind, words
+
 from .battery import Remainder
 from .learning import FOLDS, Samples, chance, share
 from .library import Term, library
@@ -143,10 +145,10 @@ def propose(remainder: Remainder, periods: dict[str, float]) -> dict[str, Any] |
     best = min(regression.error(chosen) for chosen in found)
     near = [chosen for chosen in found if regression.error(chosen) <= best * (1 + 2 * WORTH)]
     chosen = min(near, key=lambda terms: (len(terms), regression.error(terms)))
-    return _judged(regression, chosen)
+    return _judged(regression, chosen, remainder.runs[0].motion)
 
 
-def _judged(regression: _Regression, chosen: frozenset[int]) -> dict[str, Any] | None:
+def _judged(regression: _Regression, chosen: frozenset[int], motion: Kind) -> dict[str, Any] | None:
     data = regression.data
     c = regression.columns(chosen)
     matrix = regression.matrix[:, c]
@@ -163,7 +165,7 @@ def _judged(regression: _Regression, chosen: frozenset[int]) -> dict[str, Any] |
     weights = regression.weights(chosen, range(1, FOLDS + 1))
     errors = _errors(matrix, data.residual - matrix @ weights, data)
     rows = _rows(regression, c, weights, errors)
-    text = "F += " + _joined([_shown(row) for row in rows]) + " N"
+    text = "F += " + _joined([_shown(row) for row in rows]) + f" {words(motion, 'N')}"
     return {"text": text, "terms": rows, "share": shares[1], "note": NOTE}
 
 

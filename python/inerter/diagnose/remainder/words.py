@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from inerter.motion_units import TRANSLATION, Kind, force_word, shown_as, words
+
 WORDS = {
     "displacement": "the position along the stroke",
     "velocity": "the velocity",
@@ -37,6 +39,7 @@ def summary(
     excess: bool,
     proposal: str | None,
     usual: float | None = None,
+    motion: Kind = TRANSLATION,
 ) -> str:
     """One paragraph.
 
@@ -54,13 +57,17 @@ def summary(
         A formula.
     usual
         What half of the errors are below [N], where few large ones make the rms.
+    motion
+        What the device does; in rotation read N m for N.
     """
-    blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} N"
-    start = f"What remains ({raw:.3g} N rms{blows}; noise of force and motion {floor:.3g} N)"
+    newton, force = words(motion, "N"), force_word(motion)
+    blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} {newton}"
+    noise = f"noise of {force} and motion {floor:.3g} {newton}"
+    start = f"What remains ({raw:.3g} {newton} rms{blows}; {noise})"
     if excess:
         return (
             f"{start} is far more than noise, but goes with nothing that was tested: position, "
-            "velocity, acceleration, force, time, frequency, amplitude, history, reversals."
+            f"velocity, acceleration, {force}, time, frequency, amplitude, history, reversals."
         )
     if not depends:
         more = "is more than this noise, but " if raw > MORE * floor else ""
@@ -71,13 +78,14 @@ def summary(
     parts = []
     for name in depends:
         detail = f", {details[name]}" if name in details else ""
+        named = shown_as(motion, WORDS[name])
         part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
-        parts.append(WORDS[name] + detail + part)
+        parts.append(named + detail + part)
     # of bursts it is known when they come, not what they are
     only = list(depends) == ["bursts"]
     told = "come and go as the other data tell" if only else "can be predicted from the other data"
     text = (
-        f"{start} is not noise: {structure:.3g} N rms {told}. It "
+        f"{start} is not noise: {structure:.3g} {newton} rms {told}. It "
         f"goes with {'; and with '.join(parts)}. No effect that is known here explains it."
     )
     if proposal:

@@ -16,12 +16,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import mujoco
+
 from inerter.diagnose.vehicle.build import read_model
 from inerter.diagnose.vehicle.mapping import MappingError, map_columns, read_options
 from inerter.diagnose.vehicle.outcome import SystemDiagnosis
+from inerter.engine_errors import COMPILE_ERRORS
+from inerter.plugin import load_plugin
 from inerter.records import VehicleRecord, read_records
 from inerter.records.free_form import column_names, read_free_form
 from inerter.records.read import RecordError
+from inerter.records.turning import OWN_NAMES
 
 __all__ = ["MappingError", "SystemDiagnosis", "SystemInput", "diagnose_model", "is_for_a_model"]
 
@@ -40,12 +45,23 @@ class SystemInput:
         return bool(self.inputs or self.sensors)
 
 
-def is_for_a_model(records: Sequence[str | Path], mapping: SystemInput) -> bool:
+def is_for_a_model(records: Sequence[str | Path], mapping: SystemInput, model: Path) -> bool:
     """Whether records are to be compared with a model in the loop rather than with a device."""
     if mapping:
         return True
-    columns = column_names(records)
+    columns = set(column_names(records))
+    if set(OWN_NAMES) & columns and not set(OWN_NAMES) & _actuators(model):
+        columns |= {OWN_NAMES[name] for name in columns if name in OWN_NAMES}
     return not (all(c in columns for c in _BENCH) or all(c in columns for c in _TABLE))
+
+
+def _actuators(model: Path) -> set[str]:
+    """Names of a model's actuators; none where it cannot be read, which is told later."""
+    load_plugin()
+    try:
+        return {each.name for each in mujoco.MjSpec.from_file(str(model.absolute())).actuators}
+    except COMPILE_ERRORS:
+        return set()
 
 
 def diagnose_model(

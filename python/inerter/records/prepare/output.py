@@ -18,6 +18,7 @@ from inerter.records.prepare.options import Options
 from inerter.records.prepare.picture import picture
 from inerter.records.prepare.pipeline import PreparedRecord
 from inerter.records.record import RecordError, TimeRecord
+from inerter.records.turning import own_columns
 
 SCHEMA = "inerter.preparation/1"
 FILE = "preparation.json"
@@ -72,7 +73,7 @@ def file_names(prepared: Sequence[PreparedRecord]) -> list[str]:
 
 def table(record: TimeRecord) -> pl.DataFrame:
     """The columns of a record: time, the channels in SI units, then further columns as read."""
-    columns = {"time": record.time, **record.channels(), **record.extra}
+    columns = {"time": record.time, **own_columns(record), **record.extra}
     return pl.DataFrame({name: pl.Series(values) for name, values in columns.items()})
 
 

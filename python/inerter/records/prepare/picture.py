@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.signal import welch
 
+from inerter.motion_units import Kind, words
 from inerter.pictures.palette import LIGHT
 from inerter.pictures.png import png
 from inerter.pictures.thinning import extremes
@@ -48,22 +49,30 @@ def picture(prepared: PreparedRecord) -> bytes:
     count = next(iter(prepared.before.values())).size
     clock = prepared.spacing * np.arange(count, dtype=np.float64)
     for name, d in denoised.items():
-        before = prepared.before[name]
+        before, unit = prepared.before[name], _unit(name, record.motion)
         close = _close(before)
-        _compare(figure.add_subplot(grid[row, :]), clock, before, d.values, name, slice(None))
+        _compare(
+            figure.add_subplot(grid[row, :]),
+            clock,
+            before,
+            d.values,
+            name,
+            record.motion,
+            slice(None),
+        )
         axes = figure.add_subplot(grid[row + 1, 0])
-        _compare(axes, clock, before, d.values, name, close)
+        _compare(axes, clock, before, d.values, name, unit, close)
         axes.set_title("a closer look", loc="left", fontsize=9, color=LIGHT["soft"])
         _below(axes, "time from the start [s]")
-        _spectra(figure.add_subplot(grid[row + 1, 1]), before, d, prepared.spacing, name)
+        _spectra(figure.add_subplot(grid[row + 1, 1]), before, d, prepared.spacing, name, unit)
         row += 2
         if d.modes is not None:
-            _rule(figure.add_subplot(grid[row, :]), d.modes, prepared.spacing, name)
-            row = _modes(figure, grid, row + 1, d.modes, clock, name)
+            _rule(figure.add_subplot(grid[row, :]), d.modes, prepared.spacing, name, unit)
+            row = _modes(figure, grid, row + 1, d.modes, clock, name, unit)
     for name in shown:
         axes = figure.add_subplot(grid[row, :])
         _line(axes, record.time - record.time[0], channels[name], "after")
-        _style(axes, f"{name} [{_unit(name)}]")
+        _style(axes, f"{name} [{_unit(name, record.motion)}]")
         _below(axes, "time from the start [s]")
         if name in derived:
             axes.set_title("from displacement", loc="left", fontsize=9, color=LIGHT["soft"])
@@ -76,20 +85,25 @@ def _title(prepared: PreparedRecord) -> str:
     found = prepared.found
     parts = [prepared.source.name]
     for name, said in found["denoised"].items():
-        parts.append(f"{name}: {said['method']}, noise {said['noise']:.3g} {_unit(name)} rms")
+        unit = _unit(name, prepared.source.motion)
+        parts.append(f"{name}: {said['method']}, noise {said['noise']:.3g} {unit} rms")
     if found["delay"]:
         parts.append(f"force moved by {-1e3 * found['delay']['applied']:.3g} ms")
     return "   |   ".join(parts)
 
 
-def _compare(axes: Any, clock: Array, before: Array, after: Array, name: str, part: slice) -> None:
+def _compare(
+    axes: Any, clock: Array, before: Array, after: Array, name: str, unit: str, part: slice
+) -> None:
     _line(axes, clock[part], before[part], "measured", "before", 1.0)
     _line(axes, clock[part], after[part], "after", "after", 1.3)
-    _style(axes, f"{name} [{_unit(name)}]")
+    _style(axes, f"{name} [{unit}]")
     axes.legend(fontsize=8, frameon=False, loc="lower right", bbox_to_anchor=(1, 0.97), ncols=2)
 
 
-def _spectra(axes: Any, before: Array, denoised: Denoised, spacing: float, name: str) -> None:
+def _spectra(
+    axes: Any, before: Array, denoised: Denoised, spacing: float, name: str, unit: str
+) -> None:
     """Power spectral densities before and after, and the noise that was assumed."""
     length = min(before.size, 4096)
     for values, color, label in (
@@ -106,13 +120,13 @@ def _spectra(axes: Any, before: Array, denoised: Denoised, spacing: float, name:
         axes.set_ylim(max(bottom, 1e-7 * level), top)
     if "cutoff" in denoised.strength:
         axes.axvline(denoised.strength["cutoff"], color=LIGHT["soft"], lw=0.8, ls=":")
-    _style(axes, f"density [{_unit(name)}²/Hz]")
+    _style(axes, f"density [{unit}²/Hz]")
     axes.set_title("spectrum", loc="left", fontsize=9, color=LIGHT["soft"])
     _below(axes, "frequency [Hz]")
     axes.legend(fontsize=8, frameon=False, loc="lower left")
 
 
-def _rule(axes: Any, modes: Modes, spacing: float, name: str) -> None:
+def _rule(axes: Any, modes: Modes, spacing: float, name: str, unit: str) -> None:
     """Energy of every mode over its period, beside the noise law and the limit."""
     shown = np.isfinite(modes.period)
     period, order = modes.period[shown] * spacing, np.argsort(modes.period[shown])
@@ -129,7 +143,7 @@ def _rule(axes: Any, modes: Modes, spacing: float, name: str) -> None:
         axes.loglog(
             period[part], modes.energy[shown][part], "o", color=LIGHT[color], ms=6, label=label
         )
-    _style(axes, f"energy [{_unit(name)}²]")
+    _style(axes, f"energy [{unit}²]")
     axes.margins(x=0.05)
     axes.set_title(
         "the rule: the first mode whose energy is above the limit and all slower ones are kept",
@@ -139,7 +153,9 @@ def _rule(axes: Any, modes: Modes, spacing: float, name: str) -> None:
     axes.legend(fontsize=8, frameon=False, loc="lower right", bbox_to_anchor=(1, 0.97), ncols=4)
 
 
-def _modes(figure: Figure, grid: Any, row: int, modes: Modes, clock: Array, name: str) -> int:
+def _modes(
+    figure: Figure, grid: Any, row: int, modes: Modes, clock: Array, name: str, unit: str
+) -> int:
     """One row each: left over time, right what the rule saw."""
     close = _close(modes.modes.sum(axis=0) + modes.residue)
     for i, mode in enumerate(modes.modes):
@@ -153,7 +169,7 @@ def _modes(figure: Figure, grid: Any, row: int, modes: Modes, clock: Array, name
         period = modes.period[i] * (clock[1] - clock[0])
         right.set_title(
             f"{'kept' if modes.kept[i] else 'dropped'}: {np.sqrt(modes.energy[i]):.3g} "
-            f"{_unit(name)} rms, noise would have {np.sqrt(modes.expected[i]):.3g}; "
+            f"{unit} rms, noise would have {np.sqrt(modes.expected[i]):.3g}; "
             f"energy {ratio:.3g} of the limit; period {period:.3g} s",
             loc="left", fontsize=8, color=LIGHT["soft"], pad=2,
         )  # fmt: skip
@@ -197,7 +213,6 @@ def _below(axes: Any, label: str) -> None:
     axes.set_xlabel(label, fontsize=8, color=LIGHT["soft"], labelpad=2)
 
 
-def _unit(name: str) -> str:
-    if name.endswith("force"):
-        return "N"
-    return _UNITS.get(name.rsplit("_", 1)[-1], "m")
+def _unit(name: str, motion: Kind) -> str:
+    own = "N" if name.endswith("force") else _UNITS.get(name.rsplit("_", 1)[-1], "m")
+    return words(motion, own)
