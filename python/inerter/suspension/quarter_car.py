@@ -27,6 +27,9 @@ from inerter.suspension.rational import (
     shift,
 )
 
+GRAVITY = 9.81
+"""[m/s^2]."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class QuarterCar:
@@ -64,6 +67,11 @@ class QuarterCar:
         wheel = polynomial(self.tyre_stiffness, 0.0, self.unsprung_mass)
         top = add(multiply(wheel, strut.denominator), strut.numerator)
         return Rational(top, self._denominator(strut))
+
+    @property
+    def static_load(self) -> float:
+        """Weight on the tyre [N]."""
+        return GRAVITY * (self.sprung_mass + self.unsprung_mass)
 
     def static_compliance(self, stiffness: float) -> float:
         """1/k + 1/kt [m/N]: zs/Fs at rest, whatever the layout."""

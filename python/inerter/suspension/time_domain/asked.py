@@ -12,6 +12,9 @@ from inerter.suspension.time_domain.device_case import NAME, read_case
 from inerter.suspension.time_domain.model import Car
 from inerter.suspension.vehicle.cars import half_car
 
+BEST = "best"
+"""What --inertance is where the inertance of a device's file is not to be kept."""
+
 _DEFAULT = "ideal,friction,elastic,both"
 
 
@@ -66,26 +69,30 @@ def cases_asked(
 
 def given_struts(
     damping: str | None, inertance: str | None, own: float | None, car: str
-) -> tuple[tuple[float, float], ...]:
-    """(c, b) of every strut; empty where c and b are to be optimal.
+) -> tuple[tuple[float | None, float | None], ...]:
+    """(c, b) of every strut, None for what is sought; empty where both are to be optimal.
 
-    `own` is the inertance of the device's file [kg].
+    `own` is the inertance of the device's file [kg]: it is kept unless --inertance says otherwise,
+    a number or "best".
 
     Raises
     ------
     ValueError
-        One of the two is missing, or they are not numbers.
+        They are not numbers, or the file states no inertance.
     """
-    if damping is None:
-        if inertance is not None:
-            raise ValueError("--inertance is given without --damping: give both for one design")
-        return ()
-    if inertance is None:
-        if own is None:
-            raise ValueError("--damping is given without --inertance: give both for one design")
+    if inertance is None and own is not None:
+        if not own > 0.0:
+            raise ValueError(
+                "the file of --device states no inertance: give it there, or --inertance here "
+                "(best: the best one for each layout)"
+            )
         inertance = repr(own)
-    dampings = _struts(damping, "damping", car)
-    inertances = _struts(inertance, "inertance", car)
+    if inertance == BEST:
+        inertance = None
+    if damping is None and inertance is None:
+        return ()
+    dampings = (None,) if damping is None else _struts(damping, "damping", car)
+    inertances = (None,) if inertance is None else _struts(inertance, "inertance", car)
     count = max(len(dampings), len(inertances))
     dampings, inertances = (x * (count // len(x)) for x in (dampings, inertances))
     return tuple(zip(dampings, inertances, strict=True))

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.model_parameters import FULL_CAR, HALF_CAR, AxleParameters
-from inerter.suspension.quarter_car import QuarterCar, positive
+from inerter.suspension.quarter_car import GRAVITY, QuarterCar, positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,6 +130,15 @@ class HalfCar:
             (self.front.tyre_stiffness, self.rear.tyre_stiffness),
             weight,
         )
+
+    @property
+    def static_loads(self) -> tuple[float, float]:
+        """Weight on the tyre in front and at the rear [N]."""
+        front, rear = (
+            GRAVITY * (self.body_mass * float(share) + axle.wheel_mass)
+            for share, axle in zip(self.lever, (self.front, self.rear), strict=True)
+        )
+        return front, rear
 
     def corners(self) -> tuple[QuarterCar, QuarterCar]:
         """The quarter-cars that the axles would be if the body were free between them."""
