@@ -66,12 +66,7 @@ def test_no_other_design_is_better(
 ) -> None:
     problem, found, point = solved(layout, index, k, pair)
     if problem.massless:
-        problem, point = (
-            SuspensionProblem(
-                car=CAR, road=ROAD, layout=layout, index=index, stiffness=k, pair=pair
-            ),
-            np.insert(point, 1, -9.0),
-        )
+        problem, point = replace(problem, massless=False), np.insert(point, 1, -9.0)
     low, high = problem.bounds.T
     draw = np.random.default_rng(11)
     close = [

@@ -26,10 +26,11 @@ _ROAD = Road()
 @app.command("optimize")
 def optimize_command(
     layout: Annotated[
-        str, typer.Option(help="Layouts S1 ... S6, with commas between.")
+        str, typer.Option(help="Layouts S1 ... S6, SR, SW1 ... SW8, with commas between.")
     ] = "S1,S2,S3",
     index: Annotated[
-        str, typer.Option(help="J1 comfort, J3 tyre load, J5 load carrying; with commas.")
+        str,
+        typer.Option(help="J1 comfort, J1w as felt, J3 tyre load, J5 load carrying; with commas."),
     ] = "J1,J3,J5",
     stiffness: Annotated[
         str | None,
@@ -44,7 +45,11 @@ def optimize_command(
         typer.Option(help="none (ideal), soft, hard or KS/CS [N/m, N s/m]; with commas."),
     ] = "none",
     car: Annotated[
-        str, typer.Option(help="quarter (Wang and Su's), half or full (a published passenger car).")
+        str,
+        typer.Option(
+            help="quarter (Wang and Su's), half or full (a published passenger car), or a file "
+            "car.toml of your own."
+        ),
     ] = "quarter",
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
@@ -79,7 +84,7 @@ def optimize_command(
     as_json: AsJson = False,
 ) -> None:
     """Damping and inertance that minimise an index of a car, globally and exactly."""
-    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses
+    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses, own_stiffness
     from inerter.suspension.output import rows_json, write_sweep
     from inerter.suspension.study import Study, read_indices, read_layouts, read_series
     from inerter.suspension.sweep import sweep
@@ -96,7 +101,7 @@ def optimize_command(
         study = Study(
             layouts=read_layouts(layout),
             indices=read_indices(index),
-            stiffnesses=chosen_stiffnesses(stiffness, which),
+            stiffnesses=chosen_stiffnesses(stiffness, which, own_stiffness(car)),
             series=read_series(series),
             car=which,
             road=Road(velocity=velocity, roughness=roughness),

@@ -144,9 +144,9 @@ def read_stiffnesses(text: str) -> tuple[float, ...]:
     for word in _words(text, "stiffness"):
         parts = word.split(":")
         if len(parts) == 1:
-            values.append(_positive(word, "stiffness"))
+            values.append(stiffness_of(word))
         elif len(parts) == 3:
-            first, last = (_positive(part, "stiffness") for part in parts[:2])
+            first, last = (stiffness_of(part) for part in parts[:2])
             if not (parts[2].strip().isdigit() and 2 <= int(parts[2]) <= 100_000):
                 raise StudyError(
                     f"stiffness range {word!r}: the count {parts[2]!r} is not a whole number "
@@ -179,7 +179,7 @@ def read_axle_stiffnesses(text: str | None, car: Vehicle) -> tuple[tuple[float, 
     for word in _words(text, "stiffness"):
         parts = word.split("/")
         if len(parts) == 2:
-            front, rear = (_positive(part, "stiffness") for part in parts)
+            front, rear = (stiffness_of(part) for part in parts)
             values.append((front, rear))
         elif len(parts) == 1:
             values += [(k, k * ratio) for k in read_stiffnesses(word)]
@@ -219,6 +219,27 @@ def _words(text: str, what: str) -> list[str]:
     if not words:
         raise StudyError(f"{what} is empty: give one or more, with commas between")
     return words
+
+
+SOFTEST = 1e3
+"""Stiffness [N/m] below which no car stands: the unit most likely is another."""
+
+
+def stiffness_of(text: str) -> float:
+    """A stiffness [N/m] that a car can have.
+
+    Raises
+    ------
+    StudyError
+        Not a positive number, or so small that it most likely is in kN/m.
+    """
+    value = _positive(text, "stiffness")
+    if value < SOFTEST:
+        raise StudyError(
+            f"stiffness is {value:g} N/m, on which no car stands: give N/m; did you mean "
+            f"{value:g}e3, {value:g} kN/m?"
+        )
+    return value
 
 
 def _positive(text: str, what: str) -> float:

@@ -22,6 +22,8 @@ from xml.sax.saxutils import escape
 import mujoco
 import numpy as np
 
+from inerter.cars.read import CarError
+from inerter.cars.spec import model_spec
 from inerter.catalogue.coordinates import parameters_of
 from inerter.catalogue.friction import FRICTION, LAW_COORDINATES, law_coordinates
 from inerter.core import Device, DeviceError, parameters
@@ -269,9 +271,10 @@ def read_model(path: Path) -> UserModel:
     if not path.is_file():
         raise DeviceError(f"{path}: no such file; check the path")
     try:
-        # the engine looks up attached models wrongly where the path is relative
-        spec = mujoco.MjSpec.from_file(str(path.absolute()))
+        spec = model_spec(path)
         model = spec.copy().compile()
+    except CarError as error:
+        raise DeviceError(str(error)) from None
     except COMPILE_ERRORS as error:
         raise DeviceError(f"{path}: {engine_text(error)}") from None
     if fault := timestep_fault(model.opt.timestep):

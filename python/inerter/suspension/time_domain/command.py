@@ -12,9 +12,12 @@ from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
 
 def evaluate_command(
     layout: Annotated[str, typer.Option(help="S1, S2, S3, with commas.")] = "S1,S2,S3",
-    car: Annotated[str, typer.Option(help="quarter, or half: heave and pitch, two struts.")] = (
-        "quarter"
-    ),
+    car: Annotated[
+        str,
+        typer.Option(
+            help="quarter, or half: heave and pitch, two struts; or a file car.toml of either."
+        ),
+    ] = "quarter",
     stiffness: Annotated[
         str | None,
         typer.Option(
@@ -108,6 +111,7 @@ def evaluate_command(
     from inerter.suspension.time_domain.plan import Plan
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
+    from inerter.suspension.vehicle.cars import HalfCar
 
     with refusing(out_dir, "evaluation.json", "evaluation.csv"):
         asked = car_named(car)
@@ -124,7 +128,9 @@ def evaluate_command(
             seeds=seeds,
             search_seeds=search_seeds,
             reoptimise=reoptimise,
-            given=given_struts(damping, inertance, own, car),
+            given=given_struts(
+                damping, inertance, own, "half" if isinstance(asked.car, HalfCar) else "quarter"
+            ),
             one_sided=not pulling_tyre,
             keep_settle=settle is not None,
             amplitude=asked.amplitude if amplitude is None else amplitude,

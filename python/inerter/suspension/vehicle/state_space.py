@@ -13,7 +13,7 @@ the road alone, p' = wr' - wf', and stays where it is. So every state is strictl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -60,6 +60,12 @@ class System:
 def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
     """The matrices of a plane with the struts of its two axles."""
     body = len(plane.inertia)
+    front_bar, rear_bar = plane.bars
+    if front_bar or rear_bar:
+        branches = (
+            replace(branches[0], stiffness=branches[0].stiffness + front_bar),
+            replace(branches[1], stiffness=branches[1].stiffness + rear_bar),
+        )
     orders = [branch.order for branch in branches]
     # places of the states: body and wheel velocities, then lengths, then the struts' own
     speeds = body + 2
