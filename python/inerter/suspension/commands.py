@@ -51,6 +51,14 @@ def optimize_command(
             "car.toml of your own."
         ),
     ] = "quarter",
+    limit: Annotated[
+        str | None,
+        typer.Option(help="Not above: INDEX=VALUE in SI, as in travel=0.02,J3=900; also J5, J1w."),
+    ] = None,
+    hold: Annotated[
+        str | None,
+        typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
+    ] = None,
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
     ] = False,
@@ -85,8 +93,9 @@ def optimize_command(
 ) -> None:
     """Damping and inertance that minimise an index of a car, globally and exactly."""
     from inerter.suspension.car_options import chosen_car, chosen_stiffnesses, own_stiffness
+    from inerter.suspension.indices import INDICES
     from inerter.suspension.output import rows_json, write_sweep
-    from inerter.suspension.study import Study, read_indices, read_layouts, read_series
+    from inerter.suspension.study import Study, read_indices, read_layouts, read_pairs, read_series
     from inerter.suspension.sweep import sweep
     from inerter.suspension.table import print_rows
 
@@ -106,6 +115,8 @@ def optimize_command(
             car=which,
             road=Road(velocity=velocity, roughness=roughness),
             equal=equal,
+            fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
+            limits=read_pairs(limit, INDICES, "limit"),
         )
         with progress_bar("optimising", as_json) as progress:
             rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)

@@ -3,6 +3,7 @@
 - J1, ride comfort: 2 pi sqrt(V kappa) || s zs/zr ||_2, the rms body acceleration [m/s^2]
 - J1w, the same as felt by a seated person, || Wk s zs/zr ||_2 (`comfort_weighting`); this
   project's addition
+- travel: 2 pi sqrt(V kappa) || (zs - zu)/(s zr) ||_2, the rms travel of the strut [m]
 - J3, tyre load: 2 pi sqrt(V kappa) || (1/s) Fr/zr ||_2, the rms dynamic tyre force [N]
 - J5, load carrying: || zs/Fs ||_inf, the largest displacement per load on the body [m/N]
 
@@ -61,6 +62,17 @@ def weighted_comfort(car: QuarterCar, road: Road, strut: Rational) -> NDArray[An
     return _times(road.slope, h2_norm(Rational(top, below)))
 
 
+def travel_function(car: QuarterCar, strut: Rational) -> Rational:
+    """Travel of the strut per velocity of the road."""
+    function = car.travel_per_road(strut)
+    return Rational(function.numerator[..., 1:], function.denominator)
+
+
+def rms_travel(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
+    """Rms travel [m] of each design; infinite where it is not stable."""
+    return _times(road.slope, h2_norm(travel_function(car, strut)))
+
+
 def tyre_load(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
     """J3 [N] of each design; infinite where it is not stable."""
     return _times(road.slope, h2_norm(tyre_function(car, strut)))
@@ -82,5 +94,6 @@ INDICES: Mapping[str, Index] = {
     "J3": Index("J3", "N", "tyre load: rms dynamic tyre force", tyre_load, True),
     "J5": Index("J5", "m/N", "load carrying: largest displacement per load", load_carrying, False),
     "J1w": Index("J1w", "m/s^2", "ride comfort weighted by ISO 2631's Wk", weighted_comfort, True),
+    "travel": Index("travel", "m", "rms travel of the strut", rms_travel, True),
 }
 """Every index by its name."""

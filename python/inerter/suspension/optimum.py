@@ -81,10 +81,12 @@ class Optimum:
 
 def optimise(problem: SuspensionProblem) -> Optimum:
     """Minimise an index over all designs of a layout."""
-    best, value, point = problem, *_best(problem)
+    if problem.limits:
+        return _limited(problem)
+    best, value, point = problem, *best_point(problem)
     # without inertance, or another part, counts as a design where the strut still is one
     for other in problem.variants()[1:]:
-        without, there = _best(other)
+        without, there = best_point(other)
         if without <= value * (1.0 + 1e-12):
             best, value, point = other, without, there
     notes = []
@@ -94,6 +96,26 @@ def optimise(problem: SuspensionProblem) -> Optimum:
             "J5 is 1/k + 1/kt, which no strut can lower; of the designs that reach it the one "
             "with the smallest J1 is given"
         )
+    return _described(problem, best, value, point, notes)
+
+
+def _limited(problem: SuspensionProblem) -> Optimum:
+    from inerter.suspension.limited import best_within
+
+    found = best_within(problem)
+    notes = [f"held back by the limit of {name}" for name in found.reached]
+    best = replace(found.problem, limits=())
+    assert isinstance(best, SuspensionProblem)
+    return _described(problem, best, found.value, found.point, notes)
+
+
+def _described(
+    problem: SuspensionProblem,
+    best: SuspensionProblem,
+    value: float,
+    point: Array,
+    notes: list[str],
+) -> Optimum:
     design = best.held | dict(zip(best.variables, map(_rounded, np.exp(point)), strict=True))
     if best.massless and not problem.massless:
         notes.append("best without inertance")
@@ -115,14 +137,15 @@ def optimise(problem: SuspensionProblem) -> Optimum:
 
 
 @lru_cache(maxsize=256)
-def _best(problem: SuspensionProblem) -> tuple[float, Array]:
+def best_point(problem: SuspensionProblem) -> tuple[float, Array]:
+    """Value and point of the global minimum, every variable of the layout in play."""
     polish = polish_smooth if problem.objective.smooth else polish_peaks
     best, at = np.inf, np.empty(0)
     starts = [*starting_points(problem)]
     # what a layout contains is a design of it: so it is never worse
     for inner in problem.inner():
         values = inner.held | dict(
-            zip(inner.variables, np.exp(_best(inner)[1]).tolist(), strict=True)
+            zip(inner.variables, np.exp(best_point(inner)[1]).tolist(), strict=True)
         )
         starts.append(problem.embedded(inner.layout, values))
     for start in starts:

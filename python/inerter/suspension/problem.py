@@ -50,6 +50,8 @@ class SuspensionProblem:
         Only designs without inertance.
     fixed
         Variables that are not free, with their values [SI].
+    limits
+        Indices that may not be higher than a value, see `limited`.
     """
 
     car: QuarterCar
@@ -60,6 +62,7 @@ class SuspensionProblem:
     pair: SeriesPair | None = None
     massless: bool = False
     fixed: tuple[tuple[str, float], ...] = ()
+    limits: tuple[tuple[str, float], ...] = ()
 
     @property
     def network(self) -> Layout:

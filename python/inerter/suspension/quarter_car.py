@@ -5,6 +5,7 @@ strut's dynamic stiffness D = N / P. Eliminating zu,
 
     A     = ms s^2 (mu s^2 + kt) P + ((ms + mu) s^2 + kt) N
     zs/zr = kt N / A
+    (zs - zu)/zr = -kt ms s^2 P / A
     Fr/zr = -kt s^2 (ms mu s^2 P + (ms + mu) N) / A
     zs/Fs = ((mu s^2 + kt) P + N) / A
 
@@ -61,6 +62,11 @@ class QuarterCar:
             both * strut.numerator,
         )
         return Rational(shift(self.tyre_stiffness * top, 2), self._denominator(strut))
+
+    def travel_per_road(self, strut: Rational) -> Rational:
+        """(zs - zu)/zr."""
+        top = -self.tyre_stiffness * self.sprung_mass * shift(strut.denominator, 2)
+        return Rational(top, self._denominator(strut))
 
     def body_per_load(self, strut: Rational) -> Rational:
         """zs/Fs [m/N]."""

@@ -42,8 +42,8 @@ class Case:
 class Study:
     """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
 
-    A half- or full car has `stiffnesses` of front and rear, and struts that may be `equal` but for
-    those.
+    `fixed` variables have a value, `limits` of indices are kept. A half- or full car has
+    `stiffnesses` of front and rear, and struts that may be `equal` but for those.
     """
 
     layouts: tuple[str, ...]
@@ -53,6 +53,8 @@ class Study:
     car: QuarterCar | Vehicle = field(default_factory=QuarterCar)
     road: Road = field(default_factory=Road)
     equal: bool = False
+    fixed: tuple[tuple[str, float], ...] = ()
+    limits: tuple[tuple[str, float], ...] = ()
 
     def cases(self) -> Iterator[Case]:
         """The combinations in order. S1 has no inerter: its problem is the same in each series."""
@@ -81,6 +83,8 @@ class Study:
                 index=index,
                 stiffness=stiffness,
                 pair=pair,
+                fixed=self.fixed,
+                limits=self.limits,
             )
             return Case(
                 layout=layout, index=index, stiffness=stiffness, series=name, problem=problem
@@ -95,6 +99,8 @@ class Study:
             stiffnesses=stiffness,
             pair=pair,
             equal=self.equal,
+            fixed=(self.fixed, self.fixed),
+            limits=self.limits,
         )
         return Case(
             layout=layout,
@@ -212,6 +218,24 @@ def read_series(text: str) -> dict[str, SeriesPair | None]:
         stiffness = _positive(parts[0], "series stiffness")
         pairs[word] = SeriesPair(stiffness, _positive(parts[1], "series damping"))
     return pairs
+
+
+def read_pairs(text: str | None, known: Iterable[str], what: str) -> tuple[tuple[str, float], ...]:
+    """NAME=VALUE with commas between, values positive and in SI units.
+
+    Raises
+    ------
+    StudyError
+        A name that is not known, or not of this form.
+    """
+    pairs: dict[str, float] = {}
+    for word in _words(text, what) if text else []:
+        name, sign, value = word.partition("=")
+        if not sign:
+            raise StudyError(f"{what} {word!r}: write NAME=VALUE, as in {next(iter(known))}=1")
+        (found,) = read_names(name, known, what)
+        pairs[found] = _positive(value, f"{what} of {found}")
+    return tuple(pairs.items())
 
 
 def _words(text: str, what: str) -> list[str]:

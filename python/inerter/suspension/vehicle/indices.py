@@ -5,6 +5,7 @@ half-car indices. Each becomes theirs where the car is two or four equal quarter
   vertical acceleration [m/s^2]
 - J1w: the same, weighted by ISO 2631's Wk
 - J3: root of the mean over the 2 (4) wheels of the mean square of the dynamic tyre force [N]
+- travel: root of the mean over the 2 (4) struts of the mean square of the travel [m]
 - J5: largest displacement of the centre of mass per vertical load on it [m/N] over all frequencies
 
 The rear wheels feel the road of their own side later by wheelbase / V. The density of the road is

@@ -7,7 +7,7 @@ smallest J1 is given.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -92,6 +92,8 @@ def vehicle_optimum(
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
     """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
+    if problem.limits:
+        return _limited(problem)
     notes = []
     best, value, point = problem, *start_point(problem, more)
     # without inertance counts as a design where the strut still is one
@@ -130,6 +132,21 @@ def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
         struts=best.struts(point),
         peaks=_peaks(best, point) if problem.index == "J5" else (),
         notes=tuple(notes),
+    )
+
+
+def _limited(problem: VehicleProblem) -> VehicleOptimum:
+    from inerter.suspension.limited import best_within
+
+    found = best_within(problem)
+    best = replace(found.problem, limits=())
+    assert isinstance(best, VehicleProblem)
+    notes = [f"held back by the limit of {name}" for name in found.reached]
+    return VehicleOptimum(
+        value=found.value,
+        struts=best.struts(found.point),
+        peaks=_peaks(best, found.point) if problem.index == "J5" else (),
+        notes=(*notes, *_at_bounds(best, found.point)),
     )
 
 

@@ -47,6 +47,8 @@ class VehicleProblem:
         Front, rear: only designs without inertance there.
     fixed
         Front, rear: variables that are not free, with their values [SI].
+    limits
+        Indices that may not be higher than a value, see `limited`.
     """
 
     car: Vehicle
@@ -58,6 +60,7 @@ class VehicleProblem:
     equal: bool = False
     massless: tuple[bool, bool] = (False, False)
     fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ())
+    limits: tuple[tuple[str, float], ...] = ()
 
     @property
     def network(self) -> Layout:

@@ -42,6 +42,8 @@ class System:
         Tyre forces [N]: rows (2, n); the warp is not in them but through the states.
     load
         Input column (..., n) of a force on the body's coordinates, for each of them: (..., n, q).
+    travel, travel_warp
+        Elongations of the struts [m]: rows (2, n), per p (2,).
     height
         Displacement of the body above the axles on a flat road: rows (2, n).
     """
@@ -55,6 +57,8 @@ class System:
     tyre: NDArray[np.float64]
     load: Matrix
     height: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    travel_warp: NDArray[np.float64]
 
 
 def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
@@ -137,6 +141,8 @@ def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
         tyre=tyre,
         load=load,
         height=elongation + deflection,
+        travel=elongation,
+        travel_warp=by_warp,
     )
 
 

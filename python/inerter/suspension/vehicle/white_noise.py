@@ -39,8 +39,8 @@ def mean_square(
         One design, or along the first axis the design and then one with an imaginary `step` in
         each variable.
     index
-        "J1", acceleration of the body above the axles, "J1w", the same weighted by Wk, or "J3",
-        tyre forces.
+        "J1", acceleration of the body above the axles, "J1w", the same weighted by Wk, "J3",
+        tyre forces, or "travel", elongations of the struts.
     delay
         tau [s].
     step
@@ -147,6 +147,10 @@ def _signals(system: System, index: str) -> tuple[Array, Array | None]:
     if index in ("J1", "J1w"):
         return system.acceleration, system.acceleration_warp
     shape = system.matrix.shape[:-2]
+    if index == "travel":
+        rows = np.broadcast_to(system.travel, (*shape, *system.travel.shape))
+        warped = np.broadcast_to(system.travel_warp, (*shape, 2))
+        return rows, None if system.warp is None else warped
     rows = np.broadcast_to(system.tyre, (*shape, *system.tyre.shape))
     return rows, None if system.warp is None else np.zeros((*shape, 2))
 
