@@ -30,6 +30,7 @@ def build(
     inputs: Mapping[str, Callable[[float], float]] | None = None,
     initial_velocities: Mapping[str, float] | None = None,
     symbolic: bool | None = None,
+    static_loads: Mapping[str, float] | None = None,
 ) -> Model:
     """Add the full car to an empty system.
 
@@ -48,6 +49,9 @@ def build(
         "heave", "wheel_front_left" and so on [m/s], "pitch", "roll" [rad/s].
     symbolic
         As in `CreateInerter`: None compiles the laws of the inerters where that is possible.
+    static_loads
+        Weight on the tyre of each wheel [N], "front" ..., by which it may pull on the road; a
+        tyre without one pulls by any force.
 
     Raises
     ------
@@ -104,6 +108,7 @@ def build(
             road=drives.get(f"road_{name}"),
             velocity=start[f"wheel_{name}"],
             symbolic=symbolic,
+            static_load=(static_loads or {}).get(name),
         )
         coordinates[f"wheel_{name}"] = (wheel, 2)
         inerters |= inerter

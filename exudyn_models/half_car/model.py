@@ -29,6 +29,7 @@ def build(
     inputs: Mapping[str, Callable[[float], float]] | None = None,
     initial_velocities: Mapping[str, float] | None = None,
     symbolic: bool | None = None,
+    static_loads: Mapping[str, float] | None = None,
 ) -> Model:
     """Add the half-car to an empty system.
 
@@ -47,6 +48,9 @@ def build(
         "heave", "wheel_front", "wheel_rear" [m/s], "pitch" [rad/s].
     symbolic
         As in `CreateInerter`: None compiles the laws of the inerters where that is possible.
+    static_loads
+        Weight on the tyre of each wheel [N], "front" ..., by which it may pull on the road; a
+        tyre without one pulls by any force.
 
     Raises
     ------
@@ -99,6 +103,7 @@ def build(
             road=drives.get(f"road_{name}"),
             velocity=start[f"wheel_{name}"],
             symbolic=symbolic,
+            static_load=(static_loads or {}).get(name),
         )
         coordinates[f"wheel_{name}"] = (node, 2)
         inerters |= inerter

@@ -18,12 +18,12 @@ from inerter.exudyn import CreateInerter
 from inerter.exudyn.model_parts import (
     Model,
     device_parameters,
-    drive_coordinate,
     flywheel_at_rest,
     named,
     save_picture,
     simulate,
     spring_damper,
+    tyre,
 )
 from inerter.model_parameters import QUARTER_CAR
 
@@ -39,6 +39,7 @@ def build(
     inputs: Mapping[str, Callable[[float], float]] | None = None,
     initial_velocities: Mapping[str, float] | None = None,
     symbolic: bool | None = None,
+    static_load: float | None = None,
 ) -> Model:
     """Add the quarter-car to an empty system.
 
@@ -57,6 +58,8 @@ def build(
         "body", "wheel" [m/s]; in S3 the inerter starts at rest, its node with the wheel.
     symbolic
         As in `CreateInerter`: None compiles the laws of the inerter where that is possible.
+    static_load
+        Weight on the tyre [N], by which it may pull on the road; None: by any force.
 
     Raises
     ------
@@ -83,8 +86,7 @@ def build(
     mbs.AddObject(Mass1D(name="wheel", mass=car.unsprung_mass, nodeNumber=wheel))
 
     # tyre: k_t (zr - zu), the road's part is a load
-    spring_damper(mbs, "tyre", (None, wheel), stiffness=car.tyre_stiffness)
-    drive_coordinate(mbs, "road", wheel, drives.get("road"), car.tyre_stiffness)
+    tyre(mbs, "", wheel, car.tyre_stiffness, drives.get("road"), 0, static_load)
 
     # strut; the damper's upper end is the body, its lower end the wheel or the inerter
     spring_damper(mbs, "spring", (wheel, body), stiffness=car.stiffness)

@@ -427,3 +427,57 @@ def test_gravity_is_not_an_acceleration_of_the_vehicle(tmp_path: Path) -> None:
     run = run_model(written(tmp_path, xml), 0.1)
     assert np.allclose(run.vehicle["body_acceleration"], -9.81)
     assert run.devices == []
+
+
+def test_every_car_writes_its_channels(tmp_path: Path) -> None:
+    """Of a half- and a full car: each wheel's road, force and length, and the body's motions."""
+    wheels = {"half_car": ("front", "rear"),
+              "full_car": ("front_left", "front_right", "rear_left", "rear_right")}  # fmt: skip
+    for name, places in wheels.items():
+        run = run_model(model_path(name, "model.xml"), 0.05)
+        expected = {"time", "heave", "pitch", "body_acceleration", "pitch_acceleration"}
+        expected |= {f"{kind}_{place}" for kind in ("road", "tyre_force", "strut_length")
+                     for place in places}  # fmt: skip
+        if name == "full_car":
+            expected |= {"roll", "roll_acceleration"}
+        assert set(run.vehicle) == expected
+        write_run(run, tmp_path / name)
+        assert "tyre_force_" in (tmp_path / name / "vehicle/record.csv").read_text()
+        assert set(summary(run)["vehicle"]) == expected - {"time"}
+
+
+def test_the_half_cars_channels_are_one_motion(tmp_path: Path) -> None:
+    """Newton and Euler from the channels alone: m z'' and I theta'' of the forces on the wheels."""
+    time = np.arange(0, 1.0, 1e-3)
+    bump = 0.01 * np.exp(-(((time - 0.3) / 0.05) ** 2))
+    path = tmp_path / "road.csv"
+    rows = {"time": time, "road_front": bump, "road_rear": np.roll(bump, 150)}
+    pl.DataFrame(rows).write_csv(path)
+    run = run_model(model_path("half_car", "model.xml"), control=path)
+    found = run.vehicle
+    dt = float(run.time[1] - run.time[0])
+    for name, kind in (("heave", "body_acceleration"), ("pitch", "pitch_acceleration")):
+        x = found[name]
+        second = (x[2:] - 2 * x[1:-1] + x[:-2]) / dt**2
+        assert found[kind][1:-1] == pytest.approx(second, abs=2e-3 * np.abs(second).max())
+    assert np.abs(found["pitch"]).max() > 1e-3
+    assert not run.warnings
+
+
+def test_a_tyre_that_pulls_on_the_road_is_said(tmp_path: Path) -> None:
+    """50 mm by half a metre at 30 km/h: more pull than the 2028 N that press the tyre at rest."""
+    time = np.arange(0, 0.6, 1e-3)
+    x = 30 / 3.6 * (time - 0.1)
+    bump = np.where((x >= 0) & (x <= 0.5), 0.025 * (1 - np.cos(4 * np.pi * x)), 0.0)
+    path = tmp_path / "road.csv"
+    pl.DataFrame({"time": time, "road": bump}).write_csv(path)
+    run = run_model(model_path("quarter_car", "model.xml"), control=path)
+    assert run.vehicle["tyre_force"].min() < -3000.0
+    (warning,) = run.warnings
+    assert "2028 N press that tyre at rest" in warning
+    text = model_path("quarter_car", "model.xml").read_text()
+    limited = text.replace('kp="120e3"', 'kp="120e3" forcerange="-2028.2175 1e9"')
+    (tmp_path / "model.xml").write_text(limited)
+    run = run_model(tmp_path / "model.xml", control=path)
+    assert run.vehicle["tyre_force"].min() == pytest.approx(-2028.2175)
+    assert not run.warnings

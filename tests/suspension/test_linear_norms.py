@@ -26,7 +26,7 @@ def struts(count: int) -> list[tuple[str, Rational]]:
     draw = np.random.default_rng(5)
     found = []
     for n in range(count):
-        name = list(LAYOUTS)[n % len(LAYOUTS)]
+        name = f"S{1 + n % 6}"
         c, b, kb = 10.0 ** draw.uniform([2.0, 0.5, 4.0], [5.0, 3.5, 7.0])
         k = 10.0 ** draw.uniform(4.0, 5.5)
         found.append((name, LAYOUTS[name].stiffness(k, c, b, kb, pair=PAIRS[n // 6 % 3])))

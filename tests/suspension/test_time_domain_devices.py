@@ -45,9 +45,10 @@ def test_no_play_is_the_elastic_case(layout: str) -> None:
     road = iso_road("B")
     expected = road_indices(elastic, [DESIGNS[layout]], road, [1], SHORT)
     found = road_indices(loose, [tight, DESIGNS[layout]], road, [1], SHORT)
-    for name, value in expected.items():
-        assert found[name][0] == pytest.approx(value[0], rel=2e-4)
-        assert abs(found[name][1] / value[0] - 1.0) > 5e-4
+    for name in ("J1", "J3"):
+        value = expected[name][0]
+        assert found[name][0] == pytest.approx(value, rel=2e-4)
+        assert abs(found[name][1] / value - 1.0) > 5e-4
 
 
 @pytest.mark.parametrize("case", NONLINEAR)
@@ -59,7 +60,7 @@ def test_up_and_down_are_alike(case: str) -> None:
     other = road_indices(car, [DESIGNS["S2"]], mirrored, [3], SHORT)
     # rounding decides when a gap closes
     tolerance = 2e-4 if "backlash" in CASES[case].parameters else 1e-6
-    for name in plain:
+    for name in ("J1", "J3"):
         assert other[name] == pytest.approx(plain[name], rel=tolerance)
 
 

@@ -45,7 +45,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
 
 def test_rows_of_a_plan() -> None:
     cases = tuple(CASES[name] for name in ("ideal", "friction100", "elastic"))
-    plan = Plan(cases=cases, indices=("J1",), seeds=4, settings=RunSettings(jobs=2))
+    plan = Plan(
+        cases=cases, indices=("J1",), seeds=4, one_sided=False, settings=RunSettings(jobs=2)
+    )
     rows = {(row.layout, row.case): row for row in evaluate(plan)}
     # layout S1 has no device
     assert len(rows) == 1 + 2 * 3

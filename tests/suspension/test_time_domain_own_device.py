@@ -12,6 +12,10 @@ import pytest
 import typer
 from inerter.core import Device
 from inerter.reference import QuarterCar, ReferenceDevice
+from inerter.suspension.indices import ride_comfort
+from inerter.suspension.layouts import LAYOUTS
+from inerter.suspension.quarter_car import QuarterCar as LinearCar
+from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.cases import CASES, TRANSITION_VELOCITY
 from inerter.suspension.time_domain.command import evaluate_command
 from inerter.suspension.time_domain.device_case import case_of
@@ -105,7 +109,8 @@ def test_a_file_is_the_case_that_it_describes(tmp_path: Path) -> None:
     (tmp_path / "device.toml").write_text(TEXT)
     common = ["--layout", "S2,S3", "--index", "J1", "--seeds", "2", "--step", "0.002", "--json"]
     rows = []
-    for asked in (["--case", "both"], ["--device", str(tmp_path / "device.toml")]):
+    device = ["--device", str(tmp_path / "device.toml"), "--inertance", "best"]
+    for asked in (["--case", "both"], device):
         run = CliRunner().invoke(app, [*asked, *common, "--out", str(tmp_path / "out")])
         assert run.exit_code == 0, run.output
         rows.append([row for row in json.loads(run.stdout)["rows"] if row["case"] != "ideal"])
@@ -136,6 +141,35 @@ def test_a_given_design_is_evaluated_as_it_is(tmp_path: Path) -> None:
     assert all(row["change"] > 0.0 for row in rows)
     exact = {row["layout"]: row["exact"] for row in rows if row["case"] == "ideal"}
     assert [exact[name] for name in ("S1", "S2", "S3")] > [2.9882, 2.5773, 2.4281]
+
+
+def test_the_inertance_of_the_file_is_kept(tmp_path: Path) -> None:
+    """60 kg stay 60 kg in every layout, with the c that is best for them."""
+    path = tmp_path / "device.toml"
+    path.write_text(TEXT.replace('"113 kg"', '"60 kg"'))
+    common = "--index J1 --seeds 2 --step 0.002 --json --out"
+    run = CliRunner().invoke(app, [f"--device={path}", *common.split(), str(tmp_path)])
+    assert run.exit_code == 0, run.output
+    rows = [row for row in json.loads(run.stdout)["rows"] if row["layout"] != "S1"]
+    assert {row["inertance"] for row in rows} == {60.0}
+    run = CliRunner().invoke(
+        app, ["--inertance=60", "--case=ideal", *common.split(), str(tmp_path)]
+    )
+    assert run.exit_code == 0, run.output
+    car, best = LinearCar(), {row["layout"]: row for row in json.loads(run.stdout)["rows"]}
+    for name in ("S2", "S3"):
+        c, value = best[name]["damping"], best[name]["exact"]
+        for other in (0.98 * c, 1.02 * c):
+            strut = LAYOUTS[name].stiffness(120e3, other, 60.0)
+            assert ride_comfort(car, Road(), strut) > value * (1.0 + 1e-6)
+
+
+def test_a_file_without_inertance_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "device.toml"
+    path.write_text('[device]\nfriction = "coulomb"\ncoulomb_force = "10 N"\n')
+    run = CliRunner().invoke(app, ["--device", str(path), "--out", str(tmp_path / "out")])
+    assert run.exit_code == 2
+    assert "the file of --device states no inertance" in run.stderr
 
 
 def test_widths_and_zeros() -> None:
@@ -174,8 +208,7 @@ def test_what_cannot_be_carried_is_named(values: dict, said: str) -> None:
     [
         ("--device nowhere.toml", "nowhere.toml: cannot be opened"),
         ("--case device", "give it with --device device.toml"),
-        ("--damping 3000", "--damping is given without --inertance"),
-        ("--inertance 30", "--inertance is given without --damping"),
+        ("--inertance 0 --layout S3", "S3: inertance is 0"),
         ("--damping 3000/2000 --inertance 30", "give one number for the quarter-car's strut"),
         ("--damping 3000 --inertance x", "--inertance is 'x': give a number"),
         ("--damping 3000 --inertance -1", "inertance is -1 kg"),

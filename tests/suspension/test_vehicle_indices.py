@@ -72,7 +72,7 @@ def quarter(
 
 
 @pytest.mark.parametrize("velocity", [0.5, 25.0, 1e4])
-@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("layout", STRUTS)
 def test_a_dynamic_index_of_1_is_two_quarter_cars(layout: str, velocity: float) -> None:
     draw, car, road = np.random.default_rng(3), free(HALF), Road(velocity=velocity)
     for pair in (None, SOFT, HARD):
@@ -89,7 +89,7 @@ def test_a_dynamic_index_of_1_is_two_quarter_cars(layout: str, velocity: float) 
 
 
 @pytest.mark.parametrize("pair", PAIRS)
-@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("layout", STRUTS)
 @pytest.mark.parametrize("index", ["J1", "J3"])
 def test_a_coupled_car_is_the_integral_over_frequency(
     index: str, layout: str, pair: SeriesPair | None
@@ -142,7 +142,7 @@ def test_no_delay_and_a_long_one(index: str) -> None:
 @pytest.mark.parametrize("car", [COUPLED, full_car()])
 def test_j5_is_reached_and_never_exceeded(car: HalfCar | FullCar) -> None:
     dense = np.geomspace(1e-3, 1e4, 200_000)
-    for layout in LAYOUTS:
+    for layout in STRUTS:
         for pair in PAIRS:
             found = vehicle_index("J5", car, layout, STRUTS[layout], pair)
             gain = np.abs(responses(car, layout, STRUTS[layout], pair, dense)[2])
@@ -212,7 +212,7 @@ def test_gradients_are_difference_quotients(car: HalfCar | FullCar, layout: str)
 
 def test_the_quick_route_agrees() -> None:
     for car in (COUPLED, full_car()):
-        for layout in LAYOUTS:
+        for layout in STRUTS:
             for index in ("J1", "J3"):
                 problem = VehicleProblem(
                     car=car,

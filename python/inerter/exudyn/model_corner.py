@@ -20,7 +20,7 @@ from exudyn import graphics
 from exudyn.itemInterface import ObjectGenericODE2, VObjectGenericODE2
 
 from inerter.exudyn import CreateInerter
-from inerter.exudyn.model_parts import Drive, drive_coordinate, flywheel_at_rest, spring_damper
+from inerter.exudyn.model_parts import Drive, flywheel_at_rest, tyre
 from inerter.model_parameters import AxleParameters, FullCarParameters, HalfCarParameters
 
 Z = 2
@@ -54,11 +54,13 @@ def add_corner(
     road: Drive | None,
     velocity: float,
     symbolic: bool | None,
+    static_load: float | None = None,
 ) -> tuple[Any, dict[str, Any]]:
     """Add wheel, tyre and strut at `place` (x, y) [m] below a body whose centre is over (0, 0).
 
     Layouts: "S1" spring and damper; "S2" an inerter beside them; "S3" the spring, beside it the
     device with the damper as its `series_damping`. `velocity` [m/s] of the wheel at the start.
+    With a `static_load` [N] the tyre leaves the road where it would have to pull by more.
     Returns the wheel's node and the inerter by name, none in S1.
 
     Raises
@@ -87,8 +89,7 @@ def add_corner(
 
     # tyre: k_t (zr - w), the road's part is a load
     node, stiffness = wheel["nodeNumber"], axle.tyre_stiffness
-    spring_damper(mbs, f"tyre_{name}", (None, node), (0, Z), stiffness=stiffness)
-    drive_coordinate(mbs, f"road_{name}", node, road, stiffness, Z)
+    tyre(mbs, f"_{name}", node, stiffness, road, Z, static_load)
 
     # strut: terminal 1 is the wheel, terminal 2 the body above it
     top = [x, y, car.wheel_height + car.strut_length - car.centre_height]

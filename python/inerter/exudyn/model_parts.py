@@ -135,6 +135,52 @@ def drive_coordinate(
     mbs.AddLoad(LoadCoordinate(name=name, markerNumber=marker, load=gain, loadUserFunction=push))
 
 
+def tyre(
+    mbs: Any,
+    name: str,
+    node: Any,
+    stiffness: float,
+    drive: Drive | None,
+    coordinate: int = 0,
+    static_load: float | None = None,
+) -> None:
+    """Tyre k (zr - w) between a wheel's coordinate and the road `drive`(time [s]) [m].
+
+    With a `static_load` [N] it leaves the road where it would have to pull by more.
+    """
+    if static_load is None:
+        spring_damper(mbs, f"tyre{name}", (None, node), (0, coordinate), stiffness=stiffness)
+        drive_coordinate(mbs, f"road{name}", node, drive, stiffness, coordinate)
+        return
+    load, road = float(static_load), drive or _flat
+
+    def pull(
+        mbs: Any,
+        t: float,
+        itemNumber: int,
+        displacement: float,
+        velocity: float,
+        stiffness: float,
+        damping: float,
+        offset: float,
+    ) -> float:
+        return min(stiffness * (displacement - float(road(t))), load)
+
+    markers = [coordinate_marker(mbs, None), coordinate_marker(mbs, node, coordinate)]
+    mbs.AddObject(
+        CoordinateSpringDamper(
+            name=f"tyre{name}",
+            markerNumbers=markers,
+            stiffness=stiffness,
+            springForceUserFunction=pull,
+        )
+    )
+
+
+def _flat(_: float) -> float:
+    return 0.0
+
+
 def simulation_settings(end_time: float, step: float, write_period: float) -> Any:
     """Settings for a run with a fixed step, sensors every `write_period` [s], no files written.
 

@@ -8,7 +8,8 @@ k_t [N/m]; F_s a force on the body [N].
 Sign: u is tension positive: an extended strut pulls the body down and the wheel up.
 Range: small motions about equilibrium.
 Source: Wang and Su, "Inerter nonlinearities and the impact on suspension control", ACC 2008.
-Not modelled: gravity, tyre damping and lift-off.
+With a `static_load` the tyre leaves the road where it would have to pull by more: F_t <= load.
+Not modelled: gravity, tyre damping; lift-off without `static_load`.
 
 The device's force depends on the acceleration it causes; that is solved exactly, see
 `structure.py`.
@@ -63,7 +64,8 @@ class QuarterCarResult:
 class QuarterCar:
     """Quarter-car of Wang and Su: the defaults are `QUARTER_CAR` with the damper of its S2.
 
-    `device` stands in the strut as `layout` says; the default one does nothing.
+    `device` stands in the strut as `layout` says; the default one does nothing. `static_load` [N]
+    on the tyre; without end it pulls on the road, as in the paper.
 
     The state is (zs, zu, zs', zu'), for S3 then (y, y') (y alone if the device has a series
     element), then the device's states.
@@ -71,7 +73,8 @@ class QuarterCar:
     Raises
     ------
     ValueError
-        Unknown layout; a mass, tyre stiffness or (S3) damping or inertance that is not positive.
+        Unknown layout; a mass, tyre stiffness, static load or (S3) damping or inertance that is not
+        positive.
     """
 
     layout: str = "S2"
@@ -81,10 +84,11 @@ class QuarterCar:
     sprung_mass: float = QUARTER_CAR.sprung_mass
     unsprung_mass: float = QUARTER_CAR.unsprung_mass
     tyre_stiffness: float = QUARTER_CAR.tyre_stiffness
+    static_load: float = np.inf
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
-        for name in ("sprung_mass", "unsprung_mass", "tyre_stiffness"):
+        for name in ("sprung_mass", "unsprung_mass", "tyre_stiffness", "static_load"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name}: {getattr(self, name)} must be above 0")
         _ = self.structure
@@ -101,6 +105,7 @@ class QuarterCar:
             stiffness=np.diag([0.0, self.tyre_stiffness]),
             directions=np.array([[1.0], [-1.0]]),
             struts=(strut,),
+            pull=None if np.isinf(self.static_load) else np.array([np.inf, self.static_load]),
         )
 
     @property
@@ -163,7 +168,9 @@ class QuarterCar:
             wheel_acceleration=run.acceleration[:, 1],
             suspension_travel=run.position[:, 0] - run.position[:, 1],
             strut_force=run.strut_force[:, 0],
-            tyre_force=self.tyre_stiffness * (run.position[:, 1] - roads),
+            tyre_force=np.minimum(
+                self.tyre_stiffness * (run.position[:, 1] - roads), self.static_load
+            ),
             device_displacement=run.device_displacement[:, 0],
             device_velocity=run.device_velocity[:, 0],
             device_force=run.device_force[:, 0],

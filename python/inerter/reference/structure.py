@@ -65,6 +65,9 @@ class StructureRun:
 class Structure:
     """Matrices of shape (nq, nq), `directions` of shape (nq, struts); see the module.
 
+    `pull` (nq,): how far the ground may pull a coordinate down through its stiffness and damping
+    and the load on it [N], as a tyre by its static load; without limit if not given.
+
     The state is (q, q', own states of each strut in turn).
     """
 
@@ -73,6 +76,7 @@ class Structure:
     stiffness: Array
     directions: Array
     struts: tuple[Strut, ...]
+    pull: Array | None = None
 
     @cached_property
     def mobility(self) -> Array:
@@ -120,7 +124,8 @@ class Structure:
         nq = len(self.mass)
         known = np.array([p.known for p in points])
         inner = self.damping @ state[nq : 2 * nq] + self.stiffness @ state[:nq]
-        free = self.mobility @ (forces - inner - self.directions @ known)
+        outer = forces - inner if self.pull is None else np.maximum(forces - inner, -self.pull)
+        free = self.mobility @ (outer - self.directions @ known)
         carried = joint_branch_forces(
             np.array([p.mass for p in points]),
             np.array([p.rest for p in points]),

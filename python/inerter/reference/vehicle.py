@@ -9,7 +9,9 @@ displacement, u_i strut force (tension positive, see `strut.py`), x_i, y_i posit
 Sign: x forward, y to the left, z up, rotations right-handed: positive pitch is nose down,
 positive roll lifts the left side.
 Range: small angles about equilibrium, linear geometry.
-Not modelled: gravity, tyre damping and lift-off, anti-roll bars, steering and drive forces.
+A tyre with a `static_load` leaves the road where it would have to pull by more.
+Not modelled: gravity, tyre damping, lift-off without `static_load`, anti-roll bars, steering and
+drive forces.
 """
 
 from __future__ import annotations
@@ -35,17 +37,19 @@ Road = Callable[[float], float]
 class Corner:
     """One wheel: `distance` [m] of its axle from the centre of mass, always positive.
 
-    `wheel_mass` [kg] and `tyre_stiffness` [N/m] have to be above 0, else ValueError.
+    `wheel_mass` [kg], `tyre_stiffness` [N/m] and `static_load` [N] have to be above 0, else
+    ValueError.
     """
 
     distance: float
     wheel_mass: float
     tyre_stiffness: float
     strut: Strut
+    static_load: float = np.inf
 
     def __post_init__(self) -> None:
         """Check what was given."""
-        require_positive(self, "distance", "wheel_mass", "tyre_stiffness")
+        require_positive(self, "distance", "wheel_mass", "tyre_stiffness", "static_load")
 
 
 def corner_of(
@@ -100,12 +104,14 @@ def assemble(body: Sequence[float], rows: ArrayLike, corners: Sequence[Corner]) 
     """
     parts, wheels = len(body), len(corners)
     tyres = [corner.tyre_stiffness for corner in corners]
+    pull = np.array([np.inf] * parts + [corner.static_load for corner in corners])
     return Structure(
         mass=np.diag([*body, *(corner.wheel_mass for corner in corners)]),
         damping=np.zeros((parts + wheels, parts + wheels)),
         stiffness=np.diag([0.0] * parts + tyres),
         directions=np.vstack((np.asarray(rows, dtype=np.float64).T, -np.eye(wheels))),
         struts=tuple(corner.strut for corner in corners),
+        pull=None if np.isinf(pull).all() else pull,
     )
 
 
@@ -149,7 +155,10 @@ def drive(
         "wheel_acceleration": run.acceleration[:, parts:],
         "suspension_travel": run.position @ structure.directions,
         "strut_force": run.strut_force,
-        "tyre_force": tyres * (wheels - np.array([surface(float(t)) for t in run.time])),
+        "tyre_force": np.minimum(
+            tyres * (wheels - np.array([surface(float(t)) for t in run.time])),
+            [corner.static_load for corner in corners],
+        ),
         "device_displacement": run.device_displacement,
         "device_velocity": run.device_velocity,
         "device_force": run.device_force,

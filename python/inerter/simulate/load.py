@@ -7,6 +7,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+from inerter.cars.spec import model_spec
 from inerter.device_in_model import PLUGIN, devices_of
 from inerter.engine_errors import (
     COMPILE_ERRORS,
@@ -104,11 +105,11 @@ def readable_spec(path: Path) -> mujoco.MjSpec:
     refuse_unbounded(path)
     # of a relative one the engine looks for attached models in the wrong place
     path = path.absolute()
-    model = mujoco.MjSpec.from_file(str(path)).compile()
+    model = model_spec(path).compile()
     unread = {found.actuator for found in devices_of(model) if not found.sensor}
 
     # a specification that was compiled cannot be read back: start anew
-    spec = mujoco.MjSpec.from_file(str(path))
+    spec = model_spec(path)
     unnamed = [plugin for plugin in spec.plugins if not plugin.name]
     for index, actuator in enumerate(spec.actuators):
         # only a plugin actuator has a name of a plugin

@@ -16,6 +16,7 @@ from inerter.simulate.checks import engine_warnings, refuse_divergence, warnings
 from inerter.simulate.inputs import Inputs, read_inputs
 from inerter.simulate.load import integrator_name, load_model, start
 from inerter.simulate.sample import DeviceRun, Sampler
+from inerter.simulate.tyres import pulling
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -175,18 +176,19 @@ def _march(path: Path, plan: _Plan, frame_rate: float, progress: Progress) -> Si
     # the engine adds up its time with rounding errors
     instants = np.asarray([round(t0 + h * every * k, 12) for k in range(steps // every + 1)])
     devices = sampler.devices(instants)
+    vehicle = sampler.vehicle.columns(instants)
     return SimulatedRun(
         path=path,
         model=model,
         time=instants,
         every=every,
         devices=devices,
-        vehicle=sampler.vehicle.columns(instants),
+        vehicle=vehicle,
         joints=sampler.joints(),
         frames=frames,
         wall=time.perf_counter() - began,
         inputs=inputs,
-        warnings=warnings_of(model, data, devices, inputs),
+        warnings=[*warnings_of(model, data, devices, inputs), *pulling(model, vehicle)],
     )
 
 

@@ -4,6 +4,10 @@
 `body_acceleration`, `wheel_acceleration` [m/s^2], `suspension_travel` [m], `tyre_force` [N]:
 sensors with one value, or `framelinacc`, whose vertical part is taken and from which the engine's
 share of gravity is removed.
+
+A vehicle of several axles has them with what tells its wheels apart, `road_front`,
+`tyre_force_rear_left`; beside them `heave` [m], `pitch`, `roll` [rad], `strut_length_...` [m] and,
+of a sensor `body_angular_acceleration`, `roll_acceleration` and `pitch_acceleration` [rad/s^2].
 """
 
 from __future__ import annotations
@@ -18,16 +22,24 @@ from inerter.records.record import VehicleRecord
 from inerter.simulate.load import scalar_joints
 
 _Reader = Callable[[mujoco.MjData], float]
+_ROAD = "road"
+_BODY = ("heave", "pitch", "roll", "strut_length")
+_TURNING = "body_angular_acceleration"
 
 
 class VehicleSensors:
     """Samples those columns; nothing where there is no road or none of the others."""
 
     def __init__(self, model: mujoco.MjModel, samples: int) -> None:
-        readers = {"road": _road(model)}
-        readers |= {name: _sensor(model, name) for name in VehicleRecord.optional}
-        found = {name: reader for name, reader in readers.items() if reader is not None}
-        self.readers = found if "road" in found and len(found) > 1 else {}
+        roads = _roads(model)
+        others = {
+            name: reader
+            for name in _wanted(model, len(roads) > 1)
+            if (reader := _sensor(model, name)) is not None
+        }
+        if len(roads) > 1:
+            others |= _turning(model)
+        self.readers = roads | others if roads and others else {}
         self.values = {name: np.empty(samples) for name in self.readers}
         self.count = 0
 
@@ -42,17 +54,56 @@ class VehicleSensors:
         return {"time": time, **self.values} if self.readers else {}
 
 
+def _roads(model: mujoco.MjModel) -> dict[str, _Reader]:
+    """The road, or one for each wheel."""
+    one = _road(model)
+    if one is not None:
+        return {_ROAD: one}
+    return {
+        model.actuator(i).name: _control(int(model.actuator_ctrladr[i]))
+        for i in range(model.nactuator)
+        if model.actuator(i).name.startswith(f"{_ROAD}_") and model.actuator_ctrlnum[i] == 1
+    }
+
+
+def _control(address: int) -> _Reader:
+    return lambda data: data.ctrl[address]
+
+
+def _wanted(model: mujoco.MjModel, several: bool) -> list[str]:
+    """Names of sensors; of a vehicle with several wheels those that begin like them too."""
+    kinds = (*VehicleRecord.optional, *_BODY)
+    if not several:
+        return list(VehicleRecord.optional)
+    names = [model.sensor(i).name for i in range(model.nsensor)]
+    return [n for n in names if n in kinds or any(n.startswith(f"{kind}_") for kind in kinds)]
+
+
+def _turning(model: mujoco.MjModel) -> dict[str, _Reader]:
+    """Angular accelerations of the body about x and y."""
+    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, _TURNING)
+    if index < 0 or model.sensor_dim[index] != 3:
+        return {}
+    address = int(model.sensor_adr[index])
+    joints = {model.joint(i).name for i in range(model.njnt)}
+    axes = [(name, axis) for axis, name in enumerate(("roll", "pitch")) if name in joints]
+    return {f"{name}_acceleration": _value(address + axis) for name, axis in axes}
+
+
+def _value(address: int) -> _Reader:
+    return lambda data: data.sensordata[address]
+
+
 def _road(model: mujoco.MjModel) -> _Reader | None:
     objects = mujoco.mjtObj
-    actuator = mujoco.mj_name2id(model, objects.mjOBJ_ACTUATOR, "road")
+    actuator = mujoco.mj_name2id(model, objects.mjOBJ_ACTUATOR, _ROAD)
     if actuator >= 0 and model.actuator_ctrlnum[actuator] == 1:
-        control = int(model.actuator_ctrladr[actuator])
-        return lambda data: data.ctrl[control]
-    joint = mujoco.mj_name2id(model, objects.mjOBJ_JOINT, "road")
+        return _control(int(model.actuator_ctrladr[actuator]))
+    joint = mujoco.mj_name2id(model, objects.mjOBJ_JOINT, _ROAD)
     if joint in scalar_joints(model):
         position = int(model.jnt_qposadr[joint])
         return lambda data: data.qpos[position]
-    body = mujoco.mj_name2id(model, objects.mjOBJ_BODY, "road")
+    body = mujoco.mj_name2id(model, objects.mjOBJ_BODY, _ROAD)
     if body >= 0 and model.body_mocapid[body] >= 0:
         mocap = int(model.body_mocapid[body])
         return lambda data: data.mocap_pos[mocap, 2]
@@ -65,7 +116,7 @@ def _sensor(model: mujoco.MjModel, name: str) -> _Reader | None:
         return None
     address = int(model.sensor_adr[index])
     if model.sensor_dim[index] == 1:
-        return lambda data: data.sensordata[address]
+        return _value(address)
     if model.sensor_type[index] == mujoco.mjtSensor.mjSENS_FRAMELINACC:
         return lambda data: data.sensordata[address + 2] + model.opt.gravity[2]
     return None

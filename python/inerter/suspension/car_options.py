@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from inerter.cars.parts import AxleParts, CarParts
+from inerter.cars.read import read_car
 from inerter.model_parameters import QUARTER_CAR
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.study import (
@@ -12,7 +14,7 @@ from inerter.suspension.study import (
     read_names,
     read_stiffnesses,
 )
-from inerter.suspension.vehicle.cars import Vehicle, full_car, half_car
+from inerter.suspension.vehicle.cars import Axle, FullCar, HalfCar, Vehicle, full_car, half_car
 
 CARS = ("quarter", "half", "full")
 
@@ -42,10 +44,12 @@ def chosen_car(
     ValueError
         A value is out of its range.
     """
+    given = {key: value for key, value in quarter.items() if value is not None}
+    if name.lower().endswith(".toml"):
+        return _own_car(name, given, equal=equal, correlation=correlation)
     names = read_names(name, CARS, "car")
     if len(names) != 1:
-        raise StudyError(f"car {name!r}: choose one of {', '.join(CARS)}")
-    given = {key: value for key, value in quarter.items() if value is not None}
+        raise StudyError(f"car {name!r}: choose one of {', '.join(CARS)}, or a file car.toml")
     if names[0] == "quarter":
         if equal:
             raise StudyError("--equal is of cars with two axles: give --car half or --car full")
@@ -54,8 +58,8 @@ def chosen_car(
     if given:
         options = ", ".join("--" + key.replace("_", "-") for key in given)
         raise StudyError(
-            f"{options}: of the quarter-car; --car {names[0]} is a published set, and another "
-            "car is given in Python, see inerter.suspension.vehicle"
+            f"{options}: of the quarter-car; --car {names[0]} is a published set; write another "
+            "car into a file, --car car.toml"
         )
     if names[0] == "half":
         _only_full(correlation)
@@ -63,17 +67,74 @@ def chosen_car(
     return full_car() if correlation is None else full_car(correlation)
 
 
+def linear_car(parts: CarParts) -> QuarterCar | Vehicle:
+    """The car of a file as the linear study has it; springs and dampers count at the wheel."""
+    if parts.rear is None:
+        return QuarterCar(
+            sprung_mass=parts.body_mass,
+            unsprung_mass=parts.front.wheel_mass,
+            tyre_stiffness=parts.front.tyre_stiffness,
+        )
+    front, rear = _axle(parts.front), _axle(parts.rear)
+    if parts.kind == "half":
+        return HalfCar(
+            body_mass=parts.body_mass, pitch_inertia=parts.pitch_inertia, front=front, rear=rear
+        )
+    return FullCar(
+        body_mass=parts.body_mass,
+        pitch_inertia=parts.pitch_inertia,
+        roll_inertia=parts.roll_inertia,
+        track=parts.track,
+        front=front,
+        rear=rear,
+        correlation=parts.correlation,
+    )
+
+
+def _axle(axle: AxleParts) -> Axle:
+    return Axle(
+        distance=axle.distance,
+        wheel_mass=axle.wheel_mass,
+        tyre_stiffness=axle.tyre_stiffness,
+        stiffness=axle.strut.wheel_rate,
+        anti_roll_stiffness=axle.anti_roll_stiffness,
+    )
+
+
+def _own_car(
+    name: str, given: Mapping[str, float], *, equal: bool, correlation: float | None
+) -> QuarterCar | Vehicle:
+    """The car of a file; what the file states is no option."""
+    if given:
+        options = ", ".join("--" + key.replace("_", "-") for key in given)
+        raise StudyError(f"{options}: {name} states it; change it there")
+    parts = read_car(name)
+    if correlation is not None:
+        if parts.kind != "full":
+            _only_full(correlation)
+        raise StudyError(f"--correlation: {name} states it; change it there")
+    if equal and parts.rear is None:
+        raise StudyError("--equal is of cars with two axles")
+    return linear_car(parts)
+
+
+def own_stiffness(name: str) -> float | None:
+    """Stiffness at the wheel [N/m] of a quarter-car's file; None of a car by name."""
+    return read_car(name).front.strut.wheel_rate if name.lower().endswith(".toml") else None
+
+
 def chosen_stiffnesses(
-    text: str | None, car: QuarterCar | Vehicle
+    text: str | None, car: QuarterCar | Vehicle, own: float | None = None
 ) -> tuple[float, ...] | tuple[tuple[float, float], ...]:
-    """Stiffnesses [N/m] of a car from the option, or its own."""
+    """Stiffnesses [N/m] of a car from the option, or its own (`own` of a quarter-car's file)."""
     if not isinstance(car, QuarterCar):
         return read_axle_stiffnesses(text, car)
     if text is not None and "/" in text:
         raise StudyError(
             f"stiffness {text!r}: KF/KR, front and rear, are of --car half and --car full"
         )
-    return read_stiffnesses(f"{QUARTER_CAR.stiffness:g}" if text is None else text)
+    usual = QUARTER_CAR.stiffness if own is None else own
+    return read_stiffnesses(repr(usual) if text is None else text)
 
 
 def _only_full(correlation: float | None) -> None:

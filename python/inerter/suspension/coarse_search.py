@@ -23,7 +23,7 @@ from scipy.ndimage import minimum_filter
 from inerter.suspension.h_infinity_norm import squared_polynomials
 from inerter.suspension.problem import Array, SuspensionProblem
 
-_PER_DECADE = {1: 24, 2: 7, 3: 3}
+_PER_DECADE = {1: 24, 2: 7, 3: 3, 4: 1.5, 5: 0.8}
 _SLICE = 0.5
 _WORTH_POLISHING = 1.01
 _MOST = {True: 6, False: 3}
@@ -83,7 +83,8 @@ def _closer(problem: SuspensionProblem, points: Array, axes: list[Array]) -> Arr
     """Each point moved to the best of finer and finer grids around it."""
     size = np.array([axis[1] - axis[0] for axis in axes])
     low, high = problem.bounds.T
-    stencil = np.array(list(itertools.product(np.linspace(-1.0, 1.0, 7), repeat=len(axes))))
+    number = 7 if len(axes) < 4 else 3
+    stencil = np.array(list(itertools.product(np.linspace(-1.0, 1.0, number), repeat=len(axes))))
     for _ in range(5):
         around = np.clip(points[:, None, :] + stencil * size, low, high)
         values = coarse_values(problem, around.reshape(-1, len(axes)))

@@ -9,6 +9,7 @@ import typer
 
 from inerter.console import AsJson, Jobs, number, out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
+from inerter.suspension.pareto_command import pareto_command
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
 
@@ -19,6 +20,7 @@ app = typer.Typer(
 )
 
 app.command("evaluate")(evaluate_command)
+app.command("pareto")(pareto_command)
 
 _ROAD = Road()
 
@@ -26,10 +28,11 @@ _ROAD = Road()
 @app.command("optimize")
 def optimize_command(
     layout: Annotated[
-        str, typer.Option(help="Layouts S1 ... S6, with commas between.")
+        str, typer.Option(help="Layouts S1 ... S6, SR, SW1 ... SW8, with commas between.")
     ] = "S1,S2,S3",
     index: Annotated[
-        str, typer.Option(help="J1 comfort, J3 tyre load, J5 load carrying; with commas.")
+        str,
+        typer.Option(help="J1 comfort, J1w as felt, J3 tyre load, J5 load carrying; with commas."),
     ] = "J1,J3,J5",
     stiffness: Annotated[
         str | None,
@@ -44,8 +47,20 @@ def optimize_command(
         typer.Option(help="none (ideal), soft, hard or KS/CS [N/m, N s/m]; with commas."),
     ] = "none",
     car: Annotated[
-        str, typer.Option(help="quarter (Wang and Su's), half or full (a published passenger car).")
+        str,
+        typer.Option(
+            help="quarter (Wang and Su's), half or full (a published passenger car), or a file "
+            "car.toml of your own."
+        ),
     ] = "quarter",
+    limit: Annotated[
+        str | None,
+        typer.Option(help="Not above: INDEX=VALUE in SI, as in travel=0.02,J3=900; also J5, J1w."),
+    ] = None,
+    hold: Annotated[
+        str | None,
+        typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
+    ] = None,
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
     ] = False,
@@ -79,9 +94,10 @@ def optimize_command(
     as_json: AsJson = False,
 ) -> None:
     """Damping and inertance that minimise an index of a car, globally and exactly."""
-    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses
+    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses, own_stiffness
+    from inerter.suspension.indices import INDICES
     from inerter.suspension.output import rows_json, write_sweep
-    from inerter.suspension.study import Study, read_indices, read_layouts, read_series
+    from inerter.suspension.study import Study, read_indices, read_layouts, read_pairs, read_series
     from inerter.suspension.sweep import sweep
     from inerter.suspension.table import print_rows
 
@@ -96,11 +112,13 @@ def optimize_command(
         study = Study(
             layouts=read_layouts(layout),
             indices=read_indices(index),
-            stiffnesses=chosen_stiffnesses(stiffness, which),
+            stiffnesses=chosen_stiffnesses(stiffness, which, own_stiffness(car)),
             series=read_series(series),
             car=which,
             road=Road(velocity=velocity, roughness=roughness),
             equal=equal,
+            fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
+            limits=read_pairs(limit, INDICES, "limit"),
         )
         with progress_bar("optimising", as_json) as progress:
             rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)

@@ -17,6 +17,7 @@ from inerter.pictures.palette import LIGHT
 from inerter.pictures.plotting import FONT
 from inerter.pictures.png import png
 from inerter.suspension.indices import INDICES
+from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.results import Curve, curves, improvements
 from inerter.suspension.sweep import SweepRow
 
@@ -28,6 +29,9 @@ _COLOURS = {
     "S4": "#a63d73",
     "S5": "#3f8f4f",
     "S6": "#7a5cc0",
+    "SR": "#8a8a8a",
+    "SW7": "#c98a1b",
+    "SW8": "#2f8fa3",
 }
 _DASHES: dict[str, tuple[str, Any]] = {
     "none": ("solid", "-"),
@@ -54,7 +58,7 @@ def picture(rows: list[SweepRow]) -> bytes:
         ):
             for (layout, series), (k, values) in lines.items():
                 axes.plot(
-                    [x / 1e3 for x in k], values, color=_COLOURS[layout],
+                    [x / 1e3 for x in k], values, color=colour(layout),
                     ls=_dashes(series)[1], lw=1.6, label=_label(layout, series),
                 )  # fmt: skip
             axes.set_title(title, fontsize=10, loc="left", color=LIGHT["text"])
@@ -96,7 +100,7 @@ def page(rows: list[SweepRow]) -> str:
                         name=html.escape(_label(layout, series)),
                         legendgroup=html.escape(_label(layout, series)),
                         showlegend=row == 1 and column == 1,
-                        line={"color": _COLOURS[layout], "dash": _dashes(series)[0], "width": 1.8},
+                        line={"color": colour(layout), "dash": _dashes(series)[0], "width": 1.8},
                         hovertemplate="k = %{x:.4g} kN/m: %{y:.5g}",
                     ),
                     row, column,
@@ -111,6 +115,11 @@ def page(rows: list[SweepRow]) -> str:
     plot.update_yaxes(gridcolor=LIGHT["grid"], zerolinecolor=LIGHT["line"])
     plot.update_xaxes(title=_abscissa(rows), row=len(indices))
     return plot.to_html(include_plotlyjs=True, full_html=True)
+
+
+def colour(layout: str) -> str:
+    """Of a layout, whichever name it goes by."""
+    return _COLOURS[LAYOUTS[layout].own]
 
 
 def _abscissa(rows: list[SweepRow]) -> str:

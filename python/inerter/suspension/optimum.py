@@ -11,18 +11,35 @@ J1 is given, to about a thousandth.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from inerter.suspension.coarse_search import starting_points
+from inerter.suspension.layouts import springs_of
 from inerter.suspension.polish_peaks import local_peaks, polish_peaks
 from inerter.suspension.polish_smooth import polish_smooth
 from inerter.suspension.problem import Array, SuspensionProblem
 
 # relative: what counts as equal to the lower bound of J5
 _EQUAL = 1e-9
+_GOES = 6
+
+LIMITS = {
+    ("relaxation_stiffness", 0.0): "without the relaxation spring",
+    ("relaxation_stiffness", math.inf): "with the relaxation spring rigid",
+    ("centring_share", 0.0): "without centring springs",
+}
+"""What a variable at its limit means, in words."""
+
+
+def finite(design: Mapping[str, float]) -> dict[str, float | None]:
+    """A design for JSON: None for a spring that is rigid."""
+    return {name: value if math.isfinite(value) else None for name, value in design.items()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +53,10 @@ class Optimum:
     damping, inertance
         c [N s/m], b [kg]; 0 without inerter.
     relaxation_stiffness
-        k_b [N/m]; None where the layout has none.
+        k_b [N/m], inf if it is best rigid; None where the layout has none.
+    springs
+        k_1, k_2 [N/m] beside damper and inerter and k of what stands beside them all, by name:
+        "damper_stiffness", "inerter_stiffness", "parallel_stiffness". Empty where there are none.
     peaks
         Of J5: (frequency [Hz], gain [m/N]) of every local maximum of the gain, the static one too.
     notes
@@ -49,22 +69,24 @@ class Optimum:
     relaxation_stiffness: float | None
     peaks: tuple[tuple[float, float], ...]
     notes: tuple[str, ...]
+    springs: Mapping[str, float] = field(default_factory=dict)
 
     def design(self) -> dict[str, Any]:
         """Its part in a row of the command's JSON."""
         design = {"damping": self.damping, "inertance": self.inertance}
         if self.relaxation_stiffness is not None:
             design["relaxation_stiffness"] = self.relaxation_stiffness
-        return design
+        return finite({**design, **self.springs})
 
 
 def optimise(problem: SuspensionProblem) -> Optimum:
     """Minimise an index over all designs of a layout."""
-    best, value, point = problem, *_best(problem)
-    # without inertance counts as a design where the strut still is one
-    if problem.network.may_vanish and not problem.massless:
-        other = problem.without()
-        without, there = _best(other)
+    if problem.limits:
+        return _limited(problem)
+    best, value, point = problem, *best_point(problem)
+    # without inertance, or another part, counts as a design where the strut still is one
+    for other in problem.variants()[1:]:
+        without, there = best_point(other)
         if without <= value * (1.0 + 1e-12):
             best, value, point = other, without, there
     notes = []
@@ -74,9 +96,34 @@ def optimise(problem: SuspensionProblem) -> Optimum:
             "J5 is 1/k + 1/kt, which no strut can lower; of the designs that reach it the one "
             "with the smallest J1 is given"
         )
-    design = dict(zip(best.variables, map(_rounded, np.exp(point)), strict=True))
-    if best is not problem:
+    return _described(problem, best, value, point, notes)
+
+
+def _limited(problem: SuspensionProblem) -> Optimum:
+    from inerter.suspension.limited import best_within
+
+    found = best_within(problem)
+    notes = [f"held back by the limit of {name}" for name in found.reached]
+    best = replace(found.problem, limits=())
+    assert isinstance(best, SuspensionProblem)
+    return _described(problem, best, found.value, found.point, notes)
+
+
+def _described(
+    problem: SuspensionProblem,
+    best: SuspensionProblem,
+    value: float,
+    point: Array,
+    notes: list[str],
+) -> Optimum:
+    design = best.held | dict(zip(best.variables, map(_rounded, np.exp(point)), strict=True))
+    if best.massless and not problem.massless:
         notes.append("best without inertance")
+    notes += [
+        f"best {LIMITS[limit]}"
+        for limit in problem.network.limits
+        if limit[0] in problem.variables and limit[0] not in best.variables
+    ]
     notes += _at_bounds(best, point)
     return Optimum(
         value=value,
@@ -85,13 +132,23 @@ def optimise(problem: SuspensionProblem) -> Optimum:
         relaxation_stiffness=design.get("relaxation_stiffness"),
         peaks=_peaks(best, point) if problem.index == "J5" else (),
         notes=tuple(notes),
+        springs=springs_of(problem.stiffness, design),
     )
 
 
-def _best(problem: SuspensionProblem) -> tuple[float, Array]:
+@lru_cache(maxsize=256)
+def best_point(problem: SuspensionProblem) -> tuple[float, Array]:
+    """Value and point of the global minimum, every variable of the layout in play."""
     polish = polish_smooth if problem.objective.smooth else polish_peaks
     best, at = np.inf, np.empty(0)
-    for start in starting_points(problem):
+    starts = [*starting_points(problem)]
+    # what a layout contains is a design of it: so it is never worse
+    for inner in problem.inner():
+        values = inner.held | dict(
+            zip(inner.variables, np.exp(best_point(inner)[1]).tolist(), strict=True)
+        )
+        starts.append(problem.embedded(inner.layout, values))
+    for start in starts:
         value, point = polish(problem, start, best)
         # of equal ones the first, which alone was followed to its last digits
         if value < best * (1.0 - 1e-8):
@@ -99,6 +156,12 @@ def _best(problem: SuspensionProblem) -> tuple[float, Array]:
         # nothing is below the lower bound
         if problem.index == "J5" and best <= _static(problem) * (1.0 + _EQUAL):
             break
+    # valleys of four and five variables are walked in more than one go
+    for _ in range(_GOES if len(at) > 3 else 0):
+        value, point = polish(problem, at, np.inf)
+        if not value < best * (1.0 - 1e-11):
+            break
+        best, at = value, point
     return best, at
 
 
@@ -117,7 +180,8 @@ def _softest(problem: SuspensionProblem, start: Array) -> Array:
     limit = _static(problem) * (1.0 + _EQUAL)
     low, high = problem.bounds.T
     count = len(start)
-    stencil = np.array(list(itertools.product(np.linspace(-1.0, 1.0, 7), repeat=count)))
+    number = 7 if count < 4 else 3
+    stencil = np.array(list(itertools.product(np.linspace(-1.0, 1.0, number), repeat=count)))
     point, size = start, np.full(count, 1.0)
     # the box shrinks only when its middle is best, so the region can be walked along
     for _ in range(60):
@@ -143,7 +207,12 @@ def _at_bounds(problem: SuspensionProblem, point: Array) -> list[str]:
     notes = []
     for name, at, (low, high) in zip(problem.variables, point, problem.bounds, strict=True):
         word = name.replace("_", " ")
-        if at <= low + 1e-6:
+        if name.startswith("centring"):
+            if not low + 1e-6 < at < high - 1e-6:
+                notes.append(
+                    f"{word} at the end of its range: a centring spring is as good as absent"
+                )
+        elif at <= low + 1e-6:
             notes.append(f"{word} at the lower end of its range: the layout is best without it")
         elif at >= high - 1e-6:
             notes.append(f"{word} at the upper end of its range: the layout is best with it rigid")

@@ -1,13 +1,15 @@
 """One optimisation: a car, a layout and an index; designs as logarithms of what is free.
 
 Bounds are relative to the car, with m = ms + mu: damping 1e-3 ... 1e3 times sqrt(kt m), inertance
-1e-3 ... 1e6 times m, relaxation stiffness 1e-3 ... 1e5 times kt. Outside lies nothing but limits
+1e-3 ... 1e6 times m, relaxation stiffness 1e-3 ... 1e5 times kt, share of the centring springs
+1e-6 ... 1, their ratio 1e-6 ... 1e6. Outside lies nothing but limits
 (an inertance that is not felt or that holds still, a relaxation spring that is rigid).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,6 +24,12 @@ from inerter.suspension.rational import Rational
 Array = NDArray[np.float64]
 
 _COMPLEX_STEP = 1e-30
+
+
+def in_limit(name: str, value: float) -> tuple[tuple[str, float], ...]:
+    """What is fixed where a variable is 0 or without limit: itself, and what then means nothing."""
+    more = (("centring_ratio", 1.0),) if name == "centring_share" else ()
+    return ((name, value), *more)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +48,10 @@ class SuspensionProblem:
         Series pair of the inerter; ideal without.
     massless
         Only designs without inertance.
+    fixed
+        Variables that are not free, with their values [SI].
+    limits
+        Indices that may not be higher than a value, see `limited`.
     """
 
     car: QuarterCar
@@ -49,6 +61,8 @@ class SuspensionProblem:
     stiffness: float
     pair: SeriesPair | None = None
     massless: bool = False
+    fixed: tuple[tuple[str, float], ...] = ()
+    limits: tuple[tuple[str, float], ...] = ()
 
     @property
     def network(self) -> Layout:
@@ -63,8 +77,18 @@ class SuspensionProblem:
     @property
     def variables(self) -> tuple[str, ...]:
         """What is free."""
-        names = self.network.variables
-        return tuple(name for name in names if not (self.massless and name == "inertance"))
+        taken = {name for name, _ in self.fixed} | ({"inertance"} if self.massless else set())
+        return tuple(name for name in self.network.variables if name not in taken)
+
+    @property
+    def held(self) -> dict[str, float]:
+        """The fixed variables that the layout has, by name."""
+        return {name: value for name, value in self.fixed if name in self.network.variables}
+
+    @property
+    def may_vanish(self) -> bool:
+        """Without inertance the layout still is a strut, and the inertance is free."""
+        return self.network.may_vanish and "inertance" in self.variables
 
     @property
     def bounds(self) -> Array:
@@ -74,6 +98,8 @@ class SuspensionProblem:
             "damping": (math.sqrt(self.car.tyre_stiffness * mass), 1e-3, 1e3),
             "inertance": (mass, 1e-3, 1e6),
             "relaxation_stiffness": (self.car.tyre_stiffness, 1e-3, 1e5),
+            "centring_share": (1.0, 1e-6, 1.0),
+            "centring_ratio": (1.0, 1e-6, 1e6),
         }
         chosen = (ranges[name] for name in self.variables)
         return np.log([[unit * low, unit * high] for unit, low, high in chosen])
@@ -82,10 +108,49 @@ class SuspensionProblem:
         """The same without inertance."""
         return replace(self, massless=True)
 
+    def variants(self) -> list[SuspensionProblem]:
+        """The problem, then those in which what may be absent is."""
+        found: list[SuspensionProblem] = [self, *([self.without()] if self.may_vanish else [])]
+        return found + [
+            replace(one, fixed=(*one.fixed, *in_limit(name, value)))
+            for name, value in self.network.limits
+            if name in self.variables
+            for one in found
+        ]
+
+    def inner(self) -> list[SuspensionProblem]:
+        """The problems of the layouts that this one contains."""
+        found = []
+        for name in self.network.inner:
+            names = LAYOUTS[name].variables
+            fixed = tuple((n, value) for n, value in self.fixed if n in names)
+            massless = self.massless and LAYOUTS[name].may_vanish
+            found.append(replace(self, layout=name, fixed=fixed, massless=massless))
+        return found
+
+    def embedded(self, layout: str, values: Mapping[str, float]) -> Array:
+        """The point that is most like a design of a layout that this one contains."""
+        values = dict(values)
+        if self.network.centred and not LAYOUTS[layout].centred:
+            values["centring_share"] = 0.0
+            spring = values.get("relaxation_stiffness")
+            if LAYOUTS[layout].own == "S6" and spring:
+                # k_1 is the relaxation spring of S6
+                values["centring_ratio"] = 1e6 * spring / self.stiffness
+            else:
+                values["centring_ratio"] = 1.0
+        low, high = np.exp(self.bounds.T)
+        # an inertance beside the damper fades, one behind it holds still; a spring is rigid
+        small = {"inertance"} if self.network.own in ("S2", "S4") else set()
+        small |= {"relaxation_stiffness"} if self.network.own == "S6" else set()
+        ends = [0.0 if name in small else math.inf for name in self.variables]
+        chosen = [values.get(name, end) for name, end in zip(self.variables, ends, strict=True)]
+        return np.log(np.clip(chosen, low, high))
+
     def strut(self, points: NDArray[Any]) -> Rational:
         """Dynamic stiffness of the strut of each point."""
         values = dict(zip(self.variables, np.moveaxis(np.exp(points), -1, 0), strict=True))
-        return self.network.stiffness(self.stiffness, pair=self.pair, **values)
+        return self.network.stiffness(self.stiffness, pair=self.pair, **self.held, **values)
 
     def value(self, points: NDArray[Any]) -> NDArray[Any]:
         """The index of each point."""

@@ -5,6 +5,7 @@ strut's dynamic stiffness D = N / P. Eliminating zu,
 
     A     = ms s^2 (mu s^2 + kt) P + ((ms + mu) s^2 + kt) N
     zs/zr = kt N / A
+    (zs - zu)/zr = -kt ms s^2 P / A
     Fr/zr = -kt s^2 (ms mu s^2 P + (ms + mu) N) / A
     zs/Fs = ((mu s^2 + kt) P + N) / A
 
@@ -26,6 +27,9 @@ from inerter.suspension.rational import (
     polynomial,
     shift,
 )
+
+GRAVITY = 9.81
+"""[m/s^2]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +63,21 @@ class QuarterCar:
         )
         return Rational(shift(self.tyre_stiffness * top, 2), self._denominator(strut))
 
+    def travel_per_road(self, strut: Rational) -> Rational:
+        """(zs - zu)/zr."""
+        top = -self.tyre_stiffness * self.sprung_mass * shift(strut.denominator, 2)
+        return Rational(top, self._denominator(strut))
+
     def body_per_load(self, strut: Rational) -> Rational:
         """zs/Fs [m/N]."""
         wheel = polynomial(self.tyre_stiffness, 0.0, self.unsprung_mass)
         top = add(multiply(wheel, strut.denominator), strut.numerator)
         return Rational(top, self._denominator(strut))
+
+    @property
+    def static_load(self) -> float:
+        """Weight on the tyre [N]."""
+        return GRAVITY * (self.sprung_mass + self.unsprung_mass)
 
     def static_compliance(self, stiffness: float) -> float:
         """1/k + 1/kt [m/N]: zs/Fs at rest, whatever the layout."""

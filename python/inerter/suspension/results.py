@@ -23,7 +23,7 @@ def curves(rows: Iterable[SweepRow], index: str) -> dict[tuple[str, str], Curve]
 def improvements(rows: Iterable[SweepRow], index: str) -> dict[tuple[str, str], Curve]:
     """Stiffness and improvement over S1 in per cent of each other (layout, series)."""
     lines = curves(rows, index)
-    base = lines.pop(("S1", "none"), None)
+    base = lines.pop(("S1", "none"), None) or lines.pop(("SW1", "none"), None)
     if base is None:
         return {}
     return {
@@ -38,13 +38,13 @@ def improvement(rows: Iterable[SweepRow]) -> dict[int, float]:
     base = {
         (row.case.index, row.case.stiffness, row.case.rear): row.optimum.value
         for row in listed
-        if row.case.layout == "S1"
+        if row.case.problem.network.own == "S1"
     }
     keys = [(row.case.index, row.case.stiffness, row.case.rear) for row in listed]
     return {
         n: 100.0 * (1.0 - row.optimum.value / base[key])
         for n, (row, key) in enumerate(zip(listed, keys, strict=True))
-        if key in base and row.case.layout != "S1"
+        if key in base and row.case.problem.network.own != "S1"
     }
 
 

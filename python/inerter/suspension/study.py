@@ -42,8 +42,8 @@ class Case:
 class Study:
     """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
 
-    A half- or full car has `stiffnesses` of front and rear, and struts that may be `equal` but for
-    those.
+    `fixed` variables have a value, `limits` of indices are kept. A half- or full car has
+    `stiffnesses` of front and rear, and struts that may be `equal` but for those.
     """
 
     layouts: tuple[str, ...]
@@ -53,6 +53,8 @@ class Study:
     car: QuarterCar | Vehicle = field(default_factory=QuarterCar)
     road: Road = field(default_factory=Road)
     equal: bool = False
+    fixed: tuple[tuple[str, float], ...] = ()
+    limits: tuple[tuple[str, float], ...] = ()
 
     def cases(self) -> Iterator[Case]:
         """The combinations in order. S1 has no inerter: its problem is the same in each series."""
@@ -81,6 +83,8 @@ class Study:
                 index=index,
                 stiffness=stiffness,
                 pair=pair,
+                fixed=self.fixed,
+                limits=self.limits,
             )
             return Case(
                 layout=layout, index=index, stiffness=stiffness, series=name, problem=problem
@@ -95,6 +99,8 @@ class Study:
             stiffnesses=stiffness,
             pair=pair,
             equal=self.equal,
+            fixed=(self.fixed, self.fixed),
+            limits=self.limits,
         )
         return Case(
             layout=layout,
@@ -144,9 +150,9 @@ def read_stiffnesses(text: str) -> tuple[float, ...]:
     for word in _words(text, "stiffness"):
         parts = word.split(":")
         if len(parts) == 1:
-            values.append(_positive(word, "stiffness"))
+            values.append(stiffness_of(word))
         elif len(parts) == 3:
-            first, last = (_positive(part, "stiffness") for part in parts[:2])
+            first, last = (stiffness_of(part) for part in parts[:2])
             if not (parts[2].strip().isdigit() and 2 <= int(parts[2]) <= 100_000):
                 raise StudyError(
                     f"stiffness range {word!r}: the count {parts[2]!r} is not a whole number "
@@ -179,7 +185,7 @@ def read_axle_stiffnesses(text: str | None, car: Vehicle) -> tuple[tuple[float, 
     for word in _words(text, "stiffness"):
         parts = word.split("/")
         if len(parts) == 2:
-            front, rear = (_positive(part, "stiffness") for part in parts)
+            front, rear = (stiffness_of(part) for part in parts)
             values.append((front, rear))
         elif len(parts) == 1:
             values += [(k, k * ratio) for k in read_stiffnesses(word)]
@@ -214,11 +220,50 @@ def read_series(text: str) -> dict[str, SeriesPair | None]:
     return pairs
 
 
+def read_pairs(text: str | None, known: Iterable[str], what: str) -> tuple[tuple[str, float], ...]:
+    """NAME=VALUE with commas between, values positive and in SI units.
+
+    Raises
+    ------
+    StudyError
+        A name that is not known, or not of this form.
+    """
+    pairs: dict[str, float] = {}
+    for word in _words(text, what) if text else []:
+        name, sign, value = word.partition("=")
+        if not sign:
+            raise StudyError(f"{what} {word!r}: write NAME=VALUE, as in {next(iter(known))}=1")
+        (found,) = read_names(name, known, what)
+        pairs[found] = _positive(value, f"{what} of {found}")
+    return tuple(pairs.items())
+
+
 def _words(text: str, what: str) -> list[str]:
     words = [word.strip() for word in text.split(",") if word.strip()]
     if not words:
         raise StudyError(f"{what} is empty: give one or more, with commas between")
     return words
+
+
+SOFTEST = 1e3
+"""Stiffness [N/m] below which no car stands: the unit most likely is another."""
+
+
+def stiffness_of(text: str) -> float:
+    """A stiffness [N/m] that a car can have.
+
+    Raises
+    ------
+    StudyError
+        Not a positive number, or so small that it most likely is in kN/m.
+    """
+    value = _positive(text, "stiffness")
+    if value < SOFTEST:
+        raise StudyError(
+            f"stiffness is {value:g} N/m, on which no car stands: give N/m; did you mean "
+            f"{value:g}e3, {value:g} kN/m?"
+        )
+    return value
 
 
 def _positive(text: str, what: str) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -75,7 +77,8 @@ def _names(row: SweepRow) -> tuple[str, ...]:
 
 
 def _lines(springs: list[float | None]) -> str:
-    return "\n".join("" if spring is None else f"{spring / 1e3:.5g}" for spring in springs)
+    texts = ("" if x is None else "rigid" if math.isinf(x) else f"{x / 1e3:.5g}" for x in springs)
+    return "\n".join(texts)
 
 
 def _peaks(row: SweepRow) -> str:

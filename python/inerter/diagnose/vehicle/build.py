@@ -22,6 +22,8 @@ from xml.sax.saxutils import escape
 import mujoco
 import numpy as np
 
+from inerter.cars.read import CarError
+from inerter.cars.spec import model_spec
 from inerter.catalogue.coordinates import parameters_of
 from inerter.catalogue.friction import FRICTION, LAW_COORDINATES, law_coordinates
 from inerter.core import Device, DeviceError, parameters
@@ -274,10 +276,11 @@ def read_model(path: Path) -> UserModel:
     load_plugin()
     try:
         refuse_unbounded(path)
-        # the engine looks up attached models wrongly where the path is relative
-        spec = mujoco.MjSpec.from_file(str(path.absolute()))
+        spec = model_spec(path)
         model = spec.copy().compile()
         refuse_not_a_number(model)
+    except CarError as error:
+        raise DeviceError(str(error)) from None
     except OSError as error:
         raise DeviceError(cannot_be_opened(path, error)) from None
     except COMPILE_ERRORS as error:

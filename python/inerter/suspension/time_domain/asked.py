@@ -5,12 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from inerter.cars.read import read_car
 from inerter.model_parameters import QUARTER_CAR
+from inerter.suspension.car_options import linear_car
 from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.study import stiffness_of
 from inerter.suspension.time_domain.cases import CASES, NUMBERED, Case, case_named
 from inerter.suspension.time_domain.device_case import NAME, read_case
 from inerter.suspension.time_domain.model import Car
-from inerter.suspension.vehicle.cars import half_car
+from inerter.suspension.vehicle.cars import FullCar, half_car
+
+BEST = "best"
+"""What --inertance is where the inertance of a device's file is not to be kept."""
 
 _DEFAULT = "ideal,friction,elastic,both"
 
@@ -38,7 +44,21 @@ def car_named(name: str) -> Asked:
     if name == "half":
         car = half_car()
         return Asked(car, car.front.stiffness, 2000.0, 10.0)
-    raise ValueError(f"car {name!r} has no MuJoCo model here: take quarter or half")
+    if name.lower().endswith(".toml"):
+        return _own(name)
+    raise ValueError(
+        f"car {name!r} has no MuJoCo model here: take quarter or half, or a file car.toml"
+    )
+
+
+def _own(name: str) -> Asked:
+    parts = read_car(name)
+    car = linear_car(parts)
+    stiffness = parts.front.strut.wheel_rate
+    if isinstance(car, FullCar):
+        raise ValueError(f"{name}: a full car is not evaluated over roads; give one side, a half")
+    quarter = isinstance(car, QuarterCar)
+    return Asked(car, stiffness, *((1000.0, 4.0) if quarter else (2000.0, 10.0)))
 
 
 def cases_asked(
@@ -66,26 +86,30 @@ def cases_asked(
 
 def given_struts(
     damping: str | None, inertance: str | None, own: float | None, car: str
-) -> tuple[tuple[float, float], ...]:
-    """(c, b) of every strut; empty where c and b are to be optimal.
+) -> tuple[tuple[float | None, float | None], ...]:
+    """(c, b) of every strut, None for what is sought; empty where both are to be optimal.
 
-    `own` is the inertance of the device's file [kg].
+    `own` is the inertance of the device's file [kg]: it is kept unless --inertance says otherwise,
+    a number or "best".
 
     Raises
     ------
     ValueError
-        One of the two is missing, or they are not numbers.
+        They are not numbers, or the file states no inertance.
     """
-    if damping is None:
-        if inertance is not None:
-            raise ValueError("--inertance is given without --damping: give both for one design")
-        return ()
-    if inertance is None:
-        if own is None:
-            raise ValueError("--damping is given without --inertance: give both for one design")
+    if inertance is None and own is not None:
+        if not own > 0.0:
+            raise ValueError(
+                "the file of --device states no inertance: give it there, or --inertance here "
+                "(best: the best one for each layout)"
+            )
         inertance = repr(own)
-    dampings = _struts(damping, "damping", car)
-    inertances = _struts(inertance, "inertance", car)
+    if inertance == BEST:
+        inertance = None
+    if damping is None and inertance is None:
+        return ()
+    dampings = (None,) if damping is None else _struts(damping, "damping", car)
+    inertances = (None,) if inertance is None else _struts(inertance, "inertance", car)
     count = max(len(dampings), len(inertances))
     dampings, inertances = (x * (count // len(x)) for x in (dampings, inertances))
     return tuple(zip(dampings, inertances, strict=True))
@@ -114,11 +138,14 @@ def numbers(text: str, option: str) -> tuple[float, ...]:
         One of them is none.
     """
     try:
-        return tuple(float(name) for name in words(text, option))
+        values = tuple(float(name) for name in words(text, option))
     except ValueError:
         raise ValueError(
             f"--{option} is {text!r}: give numbers, such as 120e3, with commas between them"
         ) from None
+    if option == "stiffness":
+        values = tuple(stiffness_of(repr(value)) for value in values)
+    return values
 
 
 def _struts(text: str, option: str, car: str) -> tuple[float, ...]:

@@ -14,6 +14,9 @@ Keys = tuple[str, ...]
 Laws = tuple[str, Keys]
 """Friction law and keys of the parameters: what a compiled model depends on."""
 
+# a force that no tyre reaches [N]
+_NO_LIMIT = 1e9
+
 _SENSORS = {
     "joint": (mujoco.mjtSensor.mjSENS_JOINTPOS, mujoco.mjtObj.mjOBJ_JOINT),
     "tendon": (mujoco.mjtSensor.mjSENS_TENDONPOS, mujoco.mjtObj.mjOBJ_TENDON),
@@ -75,6 +78,14 @@ def add_load(spec: Any, target: str, transmission: Any) -> None:
         name="load", target=target, trntype=transmission, gear=[1, 0, 0, 0, 0, 0]
     )
     load.set_to_motor()
+
+
+def set_tyre(road: Any, stiffness: float, static_load: float | None) -> None:
+    """Stiffness [N/m] of a tyre; with its static load [N] it cannot pull by more than that."""
+    road.gainprm[0], road.biasprm[1] = stiffness, -stiffness
+    if static_load is not None:
+        road.forcelimited = True
+        road.forcerange = [-static_load, _NO_LIMIT]
 
 
 def control_of(model: mujoco.MjModel, actuator: str) -> int:

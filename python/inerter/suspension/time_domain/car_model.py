@@ -11,6 +11,7 @@ All of them are fields that `mujoco.batch` expands.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,12 +40,17 @@ class StrutPlace:
 
 @dataclass(frozen=True)
 class WheelPlace:
-    """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m]."""
+    """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m].
+
+    `travel` sensor of the strut above; `static_load` [N] of a tyre that cannot pull by more.
+    """
 
     road: int
     height: int
     tyre_stiffness: float
     behind: float = 0.0
+    travel: int = 0
+    static_load: float = math.inf
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

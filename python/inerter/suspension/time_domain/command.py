@@ -12,9 +12,12 @@ from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
 
 def evaluate_command(
     layout: Annotated[str, typer.Option(help="S1, S2, S3, with commas.")] = "S1,S2,S3",
-    car: Annotated[str, typer.Option(help="quarter, or half: heave and pitch, two struts.")] = (
-        "quarter"
-    ),
+    car: Annotated[
+        str,
+        typer.Option(
+            help="quarter, or half: heave and pitch, two struts; or a file car.toml of either."
+        ),
+    ] = "quarter",
     stiffness: Annotated[
         str | None,
         typer.Option(
@@ -35,7 +38,7 @@ def evaluate_command(
         typer.Option(help="device.toml of a measured device: the case named device."),
     ] = None,
     index: Annotated[str, typer.Option(help="J1, J3, J5, with commas.")] = "J1,J3,J5",
-    road: Annotated[str, typer.Option(help="paper, or iso:A to iso:E.")] = "paper",
+    road: Annotated[str, typer.Option(help="paper, or iso:A to iso:H.")] = "paper",
     speed: Annotated[float, number("m/s", "Speed [m/s].")] = 25.0,
     seeds: Annotated[int, typer.Option(help="Number of roads, each with its own phases.")] = 20,
     reoptimise: Annotated[
@@ -47,17 +50,21 @@ def evaluate_command(
     damping: Annotated[
         str | None,
         typer.Option(
-            help="c [N s/m] of one given design in place of an optimum; of a half-car also "
-            "FRONT/REAR."
+            help="c [N s/m] of one given design in place of an optimum; alone: b is sought. Of a "
+            "half-car also FRONT/REAR."
         ),
     ] = None,
     inertance: Annotated[
         str | None,
         typer.Option(
-            help="b [kg] of the given design; default: that of --device. Of a half-car also "
-            "FRONT/REAR."
+            help="b [kg] of the given design; alone: c is sought. Default: that of --device; best: "
+            "the best one, whatever the file of --device says. Of a half-car also FRONT/REAR."
         ),
     ] = None,
+    pulling_tyre: Annotated[
+        bool,
+        typer.Option("--pulling-tyre", help="Tyres that pull on the road, as in the linear study."),
+    ] = False,
     amplitude: Annotated[
         float | None,
         number("newtons", "Sinusoidal load for J5 [N]; default 1000, of a half-car 2000."),
@@ -65,7 +72,11 @@ def evaluate_command(
     step: Annotated[float, number("seconds", "Largest time step [s].")] = 1e-3,
     settle: Annotated[
         float | None,
-        number("seconds", "Seconds before the means begin; default 4, of a half-car 10."),
+        number(
+            "seconds",
+            "Seconds before the means begin; default 4, of a half-car 10, longer where the modes "
+            "of the car take longer to settle.",
+        ),
     ] = None,
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Threads; default: one per processor.")
@@ -100,6 +111,7 @@ def evaluate_command(
     from inerter.suspension.time_domain.plan import Plan
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
+    from inerter.suspension.vehicle.cars import HalfCar
 
     with refusing(out_dir, "evaluation.json", "evaluation.csv"):
         asked = car_named(car)
@@ -116,7 +128,11 @@ def evaluate_command(
             seeds=seeds,
             search_seeds=search_seeds,
             reoptimise=reoptimise,
-            given=given_struts(damping, inertance, own, car),
+            given=given_struts(
+                damping, inertance, own, "half" if isinstance(asked.car, HalfCar) else "quarter"
+            ),
+            one_sided=not pulling_tyre,
+            keep_settle=settle is not None,
             amplitude=asked.amplitude if amplitude is None else amplitude,
             car=asked.car,
             settings=settings,

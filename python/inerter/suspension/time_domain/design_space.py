@@ -16,24 +16,31 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Space:
-    """What is free of a design: logarithms of c, and of b where there is an inerter, per strut."""
+    """What is free of a design: logarithms of c, and of b where there is an inerter, per strut.
+
+    `held`: "damping" or "inertance" that stay as they are at the start.
+    """
 
     start: Design
     layout: str
+    held: tuple[str, ...] = ()
+
+    @property
+    def _free(self) -> list[int]:
+        names = ("damping",) if self.layout == "S1" else ("damping", "inertance")
+        return [n for n, name in enumerate(names) if name not in self.held]
 
     @property
     def origin(self) -> Array:
         struts = self.start.struts
-        if self.layout == "S1":
-            return np.log([strut.damping for strut in struts])
-        each = [(s.damping, max(s.inertance, SMALLEST_INERTANCE)) for s in struts]
-        return np.log(np.ravel(each))
+        each = np.array([(s.damping, max(s.inertance, SMALLEST_INERTANCE)) for s in struts])
+        return np.log(each[:, self._free].ravel())
 
     def values(self, points: Array) -> Array:
         """Values of c and b, shape (designs, struts, 2)."""
-        each = np.exp(points).reshape(len(points), len(self.start.struts), -1)
-        if each.shape[2] == 1:
-            each = np.concatenate([each, np.zeros_like(each)], axis=2)
+        own = [(s.damping, 0.0 if self.layout == "S1" else s.inertance) for s in self.start.struts]
+        each = np.tile(np.array(own), (len(points), 1, 1))
+        each[:, :, self._free] = np.exp(points).reshape(len(points), len(own), -1)
         return each
 
     def design(self, point: Array) -> Design:

@@ -1,7 +1,8 @@
 """Indices of nonlinear cases with confidence intervals, c and b kept or sought anew.
 
-J1 and J3 are means over roads of random phases, with the 95 % interval of Student's t. J5 has no
-road in it and no interval. What a case costs against the ideal inerter is compared road by road,
+J1 and J3 are means over roads of random phases, with the 95 % interval of Student's t, widened by
+what the sinusoids of a finite road miss of its density (`resolution.py`). J5 has no road in it and
+no interval. What a case costs against the ideal inerter is compared road by road,
 which takes most of the chance out; its interval is that of the differences.
 
 c and b are those of the linear optimum with the case's own inerter, ideal or elastic, without
@@ -11,15 +12,24 @@ compared at its own optimum in every case.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
+
+import numpy as np
 
 from inerter.parallel import run_all
 from inerter.suspension.time_domain.cases import CASES, numbers_of
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.linear import exact_index, spectrum
-from inerter.suspension.time_domain.piece import Found, Piece, work
+from inerter.suspension.time_domain.piece import Found, Piece, linear_design, work
 from inerter.suspension.time_domain.plan import Plan
+from inerter.suspension.time_domain.resolution import (
+    LONGEST,
+    exact_on_road,
+    on_sinusoids,
+    resolution_of,
+)
 from inerter.suspension.time_domain.samples import interval
 
 Progress = Callable[[float, str], None]
@@ -66,6 +76,7 @@ def evaluate(
         )
         for p in rows
     ]
+    rows, ideals = zip(*_resolved(rows, ideals), strict=True)
     # what several rows need is done once
     pieces = {piece.key: piece for piece in [*ideals, *rows]}
 
@@ -81,15 +92,78 @@ def evaluate(
     ]
 
 
+def _resolved(rows: list[Piece], ideals: list[Piece]) -> list[tuple[Piece, Piece]]:
+    """Both on the road, and settling for as long, as the slowest of all that are compared needs.
+
+    Rows of one layout, index and stiffness share their roads: losses are taken road by road.
+    """
+    groups: dict[tuple[float, str, str], list[Piece]] = {}
+    for piece in [*rows, *ideals]:
+        groups.setdefault((piece.stiffness, piece.index, piece.layout), []).append(piece)
+    plans = {key: _plan_of(pieces) for key, pieces in groups.items()}
+    answer = []
+    for row, ideal in zip(rows, ideals, strict=True):
+        plan, notes = plans[row.stiffness, row.index, row.layout]
+        row, ideal = (replace(piece, plan=plan, notes=notes) for piece in (row, ideal))
+        answer.append((row, ideal))
+    return answer
+
+
+def _plan_of(pieces: list[Piece]) -> tuple[Plan, tuple[str, ...]]:
+    """The plan with a road and a settling time for all of them, and what there is to say of it."""
+    plan = pieces[0].plan
+    found = {
+        resolution_of(p.index, p.layout, linear_design(p), p.case.pair, plan.car, plan.road)
+        for p in pieces
+    }
+    settle = max(each.settle for each in found)
+    notes = []
+    if not all(each.enough for each in found):
+        notes.append(
+            f"{pieces[0].index} of {pieces[0].layout}: the slowest mode rings for more than "
+            f"{LONGEST:g} s, the longest road and settling here"
+        )
+    if plan.keep_settle and plan.settings.settle < settle:
+        notes.append(
+            f"--settle {plan.settings.settle:g}: the slowest mode needs {settle:.3g} s; "
+            "what is left of the start is in the means"
+        )
+    settings = plan.settings
+    if not plan.keep_settle and settings.settle < settle:
+        settings = replace(settings, settle=settle)
+    road = plan.road.refined(max(each.refined for each in found))
+    return replace(plan, road=road, settings=settings), tuple(notes)
+
+
+def _lift_off(piece: Piece, found: Found, missed: float) -> list[str]:
+    """What is to be said of a tyre that leaves the road."""
+    if found.pulling is None:
+        return []
+    value, low, high = interval(found.pulling.values)
+    half = 0.5 * (high - low) + abs(missed) * value
+    share = 100.0 * found.samples.beside["lift_off"]
+    return [
+        f"{piece.layout} {piece.case.name}, {piece.index}: a tyre is off the road {share:.2g} % "
+        f"of the time; with tyres that pull, as in exact, it would be {value:.5g} ± {half:.1g}"
+    ]
+
+
 def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
     plan, case, index = piece.plan, piece.case, piece.index
     design, values = found.design, found.samples.values
     value, low, high = interval(values)
     change, change_low, change_high = interval(values / ideal.samples.values - 1.0)
-    exact = None
-    if case.linear and (index == "J5" or plan.road.name == "paper"):
-        road = spectrum(plan.road)
-        exact = exact_index(index, piece.layout, design, case.pair, plan.car, road)
+    asked = (index, piece.layout, design, case.pair, plan.car)
+    if index == "J5" or plan.road.name == "paper":
+        linear = exact_index(*asked, spectrum(plan.road))
+    else:
+        linear = exact_on_road(*asked, plan.road)
+    missed = 0.0
+    if index != "J5":
+        # what the sinusoids miss of the density they stand for
+        missed = on_sinusoids(*asked, plan.road) / exact_on_road(*asked, plan.road) - 1.0
+        low, high = low - abs(missed) * value, high + abs(missed) * value
+    exact = linear if case.linear else None
     rear = design.rear
     return Evaluation(
         car=plan.car_name,
@@ -108,10 +182,16 @@ def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
         low=low,
         high=high,
         exact=exact,
+        linear=linear if math.isfinite(linear) else None,
         change=change,
         change_low=change_low,
         change_high=change_high,
         roads=0 if index == "J5" else plan.seeds,
         reoptimised=found.reoptimised or (plan.reoptimise and case.linear),
+        road_period=None if index == "J5" else plan.road.period,
+        settle=plan.settings.settle,
         peaks=found.samples.peaks,
+        pulling=None if found.pulling is None else float(np.mean(found.pulling.values)),
+        notes=(*piece.notes, *_lift_off(piece, found, missed)),
+        **found.samples.beside,
     )

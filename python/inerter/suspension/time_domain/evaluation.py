@@ -23,11 +23,25 @@ class Evaluation:
     value, low, high
         The index and its 95 % interval; equal for J5.
     exact
-        The norm of the transfer function, where the case is linear.
+        Exact where the case is linear: on the paper's road the norm of the transfer function, on
+        another the integral over its band.
+    linear
+        The exact value of the same design without friction and play, on the same road.
     change, change_low, change_high
         Relative to the same layout with an ideal inerter at its linear optimum.
     roads
         How many; 0 for J5.
+    road_period
+        After how many seconds the road repeats; None for J5.
+    settle
+        Seconds before the means began.
+    travel_rms, travel_peak, lift_off, tyre_peak
+        On the roads, None for J5: rms and largest travel of a strut [m], share of time that a tyre
+        is off the road (mean of the wheels), largest dynamic force that presses a tyre [N].
+    pulling
+        The index with tyres that pull on the road, where they would be off it.
+    notes
+        Sentences on what a reader should know.
     reoptimised
         Whether c and b are the best for this case.
     peaks
@@ -50,12 +64,21 @@ class Evaluation:
     low: float
     high: float
     exact: float | None
+    linear: float | None
     change: float
     change_low: float
     change_high: float
     roads: int
     reoptimised: bool
+    road_period: float | None = None
+    settle: float = 0.0
+    travel_rms: float | None = None
+    travel_peak: float | None = None
+    lift_off: float | None = None
+    tyre_peak: float | None = None
+    pulling: float | None = None
     peaks: tuple[tuple[float, float], ...] = ()
+    notes: tuple[str, ...] = ()
 
     def json(self) -> dict[str, Any]:
         """Plain data: of a half-car the struts as "front" and "rear"."""

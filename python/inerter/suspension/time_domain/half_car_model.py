@@ -8,6 +8,7 @@ node without mass, as the quarter-car's does; its joint is the device's own disp
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any
 
@@ -31,7 +32,7 @@ def _lever(car: HalfCar, axle: str) -> float:
 
 
 @lru_cache(maxsize=32)
-def _compiled(layout: str, laws: build.Laws, car: HalfCar) -> Any:
+def _compiled(layout: str, laws: build.Laws, car: HalfCar, one_sided: bool) -> Any:
     """The model with every parameter live; the values are overwritten by the designs."""
     load_plugin()
     spec: Any = mujoco.MjSpec.from_file(str(model_path("half_car", "vehicle.xml")))
@@ -42,22 +43,23 @@ def _compiled(layout: str, laws: build.Laws, car: HalfCar) -> Any:
     if layout != "S1":
         spec.activate_plugin(PLUGIN)
     for axle in AXLES:
-        _set_wheel(spec, axle, car)
+        _set_wheel(spec, axle, car, one_sided)
         _add_strut(spec, layout, laws, axle, _lever(car, axle))
     build.add_load(spec, "heave", mujoco.mjtTrn.mjTRN_JOINT)
     build.keep_sensors(
         spec,
         ["heave", "body_acceleration", "body_angular_acceleration"],
-        [(f"wheel_{axle}", "joint", f"wheel_{axle}") for axle in AXLES],
+        [(f"wheel_{axle}", "joint", f"wheel_{axle}") for axle in AXLES]
+        + [(f"travel_{axle}", "tendon", f"spring_{axle}") for axle in AXLES],
     )
     return spec.compile()
 
 
-def _set_wheel(spec: Any, axle: str, car: HalfCar) -> None:
+def _set_wheel(spec: Any, axle: str, car: HalfCar, one_sided: bool) -> None:
     values = car.front if axle == "front" else car.rear
     spec.body(f"wheel_{axle}").mass = values.wheel_mass
-    road, kt = spec.actuator(f"road_{axle}"), values.tyre_stiffness
-    road.gainprm[0], road.biasprm[1] = kt, -kt
+    load = car.static_loads[AXLES.index(axle)] if one_sided else None
+    build.set_tyre(spec.actuator(f"road_{axle}"), values.tyre_stiffness, load)
 
 
 def _add_strut(spec: Any, layout: str, laws: build.Laws, axle: str, lever: float) -> None:
@@ -106,9 +108,9 @@ def _add_tendon(spec: Any, name: str, joints: dict[str, float]) -> Any:
     return tendon
 
 
-def half_car_model(layout: str, case: Case, car: HalfCar) -> CarModel:
-    """The model of a layout with the law of a case."""
-    model = _compiled(layout, build.laws_of(case), car)
+def half_car_model(layout: str, case: Case, car: HalfCar, one_sided: bool = False) -> CarModel:
+    """The model of a layout with the law of a case; `one_sided` as for `compiled`."""
+    model = _compiled(layout, build.laws_of(case), car, one_sided)
     levers = np.array([_lever(car, axle) for axle in AXLES])
     wheelbase = float(levers[1] - levers[0])
     upward = int(model.sensor("body_acceleration").adr[0]) + 2
@@ -141,8 +143,10 @@ def half_car_model(layout: str, case: Case, car: HalfCar) -> CarModel:
                 int(model.sensor(f"wheel_{axle}").adr[0]),
                 parts[axle].tyre_stiffness,
                 0.0 if axle == "front" else wheelbase,
+                int(model.sensor(f"travel_{axle}").adr[0]),
+                load if one_sided else math.inf,
             )
-            for axle in AXLES
+            for axle, load in zip(AXLES, car.static_loads, strict=True)
         ),
         load=build.control_of(model, "load"),
         body=int(model.sensor("heave").adr[0]),

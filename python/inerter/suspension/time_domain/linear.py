@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.indices import INDICES
+from inerter.suspension.indices import INDICES, comfort_function, tyre_function
 from inerter.suspension.layouts import LAYOUTS, SeriesPair
 from inerter.suspension.optimum import optimise
 from inerter.suspension.problem import SuspensionProblem
@@ -55,18 +55,46 @@ def exact_index(
 
 @lru_cache(maxsize=1024)
 def linear_optimum(
-    index: str, layout: str, stiffness: float, pair: SeriesPair | None, car: Car, road: Road
+    index: str,
+    layout: str,
+    stiffness: float,
+    pair: SeriesPair | None,
+    car: Car,
+    road: Road,
+    given: tuple[tuple[float | None, float | None], ...] = (),
 ) -> Design:
-    """The c and b of the smallest index, with an ideal or elastic inerter."""
+    """The c and b of the smallest index, with an ideal or elastic inerter.
+
+    `given`: (c, b) of every strut that are not free, None where they are.
+    """
+    fixed = tuple(
+        tuple(
+            (name, x)
+            for name, x in zip(("damping", "inertance"), pair_given, strict=True)
+            if x is not None and (layout != "S1" or name == "damping")
+        )
+        for pair_given in given
+    )
 
     def inertance(found: float) -> float:
         return 0.0 if layout == "S1" else max(found, SMALLEST_INERTANCE)
 
     if not isinstance(car, QuarterCar):
-        from inerter.suspension.vehicle import vehicle_optimum
+        from inerter.suspension.vehicle.optimum import optimise_vehicle
+        from inerter.suspension.vehicle.problem import VehicleProblem
 
         springs = (stiffness, stiffnesses_of(car, stiffness)[1])
-        best = vehicle_optimum(index, car, layout, springs, pair, road)
+        best = optimise_vehicle(
+            VehicleProblem(
+                car=car,
+                road=road,
+                layout=layout,
+                index=index,
+                stiffnesses=springs,
+                pair=pair,
+                fixed=(fixed[0], fixed[-1]) if fixed else ((), ()),
+            )
+        )
         front, rear = best.struts
         return Design(
             front.stiffness,
@@ -76,7 +104,13 @@ def linear_optimum(
         )
     found = optimise(
         SuspensionProblem(
-            car=car, road=road, layout=layout, index=index, stiffness=stiffness, pair=pair
+            car=car,
+            road=road,
+            layout=layout,
+            index=index,
+            stiffness=stiffness,
+            pair=pair,
+            fixed=fixed[0] if fixed else (),
         )
     )
     return Design(stiffness, found.damping, inertance(found.inertance))
@@ -123,6 +157,42 @@ def linear_gains(
         start.stiffness, values[:, None, 0, 0], values[:, None, 0, 1], pair=pair
     )
     return np.abs(car.body_per_load(network)(2j * np.pi * f))
+
+
+def road_density(
+    index: str,
+    layout: str,
+    design: Design,
+    pair: SeriesPair | None,
+    car: Car,
+    speed: float,
+    f: Array,
+) -> Array:
+    """Squared gain of J1's or J3's signal per velocity of the road, at frequencies [Hz], (n,).
+
+    Of a half-car the mean over both axles, the rear one on the same road later.
+    """
+    s = 2j * np.pi * f
+    if isinstance(car, QuarterCar):
+        network = LAYOUTS[layout].stiffness(
+            design.stiffness, design.damping, design.inertance, pair=pair
+        )
+        signal = comfort_function if index == "J1" else tyre_function
+        return np.abs(signal(car, network)(s)) ** 2
+    from inerter.suspension.vehicle.state_space import system
+
+    front, rear = (
+        branch(LAYOUTS[layout], x.stiffness, x.damping, x.inertance, pair=pair)
+        for x in design.struts
+    )
+    (plane,) = car.planes
+    matrices = system(plane, (front, rear))
+    rows = matrices.acceleration if index == "J1" else matrices.tyre
+    later = np.exp(-s * car.wheelbase / speed)
+    drive = matrices.front + later[:, None] * matrices.rear
+    inverse = s[:, None, None] * np.eye(len(matrices.front)) - matrices.matrix
+    states = np.linalg.solve(inverse, drive[:, :, None])
+    return np.mean(np.abs(rows @ states)[:, :, 0] ** 2, axis=1)
 
 
 def _branches(layout: str, start: Design, values: Array, pair: SeriesPair | None) -> list:

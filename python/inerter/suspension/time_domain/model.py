@@ -18,8 +18,13 @@ LAYOUTS = ("S1", "S2", "S3")
 """Layouts of which there is a MuJoCo model."""
 
 
-def compiled(layout: str, case: Case, car: Car | None = None) -> CarModel:
+def compiled(
+    layout: str, case: Case, car: Car | None = None, *, one_sided: bool = False
+) -> CarModel:
     """The model of a layout with the law of a case, the quarter-car if not told; compiled once.
+
+    `one_sided`: a tyre leaves the road where it would have to pull by more than its static load;
+    else it pulls, as in the linear study.
 
     Raises
     ------
@@ -32,5 +37,5 @@ def compiled(layout: str, case: Case, car: Car | None = None) -> CarModel:
         raise ValueError(f"layout S1 has no inerter, so case {case.name!r} is not one of it")
     car = car or QuarterCar()
     if isinstance(car, HalfCar):
-        return half_car_model(layout, case, car)
-    return quarter_car_model(layout, case, car)
+        return half_car_model(layout, case, car, one_sided)
+    return quarter_car_model(layout, case, car, one_sided)

@@ -21,7 +21,7 @@ from inerter.suspension.time_domain.samples import CONFIDENCE
 SCHEMA = "inerter.suspension.evaluation/1"
 
 _SCALE = {"J1": (1.0, "m/s^2"), "J3": (1.0, "N"), "J5": (1e5, "1e-5 m/N")}
-_FLAT = [f.name for f in fields(Evaluation) if f.name != "peaks"]
+_FLAT = [f.name for f in fields(Evaluation) if f.name not in ("peaks", "notes")]
 
 
 def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
@@ -84,7 +84,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
                 row.case,
                 *([row.numbers] if quarter else []),
                 _with_error(scale * row.value, 0.5 * scale * (row.high - row.low)),
-                "" if row.exact is None else f"{scale * row.exact:.5g}",
+                _exact(row, scale),
                 "" if ideal else _change(row),
                 _both(f"{row.damping:.0f}", row.rear_damping, ".0f"),
                 _both(f"{row.inertance:{digits}}", row.rear_inertance, digits)
@@ -94,11 +94,20 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
         console.print(table, "", sep="\n")
     console.print(
         ("paper: table.case of Wang and Su. " if plan.car_name == "quarter" else "")
-        + "exact: norm of the transfer function, where the case is "
-        "linear. loss: against the ideal inerter at its own optimum, road by road. c [N s/m], b "
-        "[kg]" + ("; front/rear." if plan.car_name == "half" else "."),
+        + "exact: norm of the transfer function; in brackets, that of the same design without "
+        "friction and play. loss: against the ideal inerter at its own optimum, road by road. "
+        "c [N s/m], b [kg]" + ("; front/rear." if plan.car_name == "half" else "."),
         markup=False,
     )
+    for note in dict.fromkeys(note for row in rows for note in row.notes):
+        console.print(note, markup=False, soft_wrap=True)
+
+
+def _exact(row: Evaluation, scale: float) -> str:
+    """The exact value, in brackets where it is that of the design without friction and play."""
+    if row.exact is not None:
+        return f"{scale * row.exact:.5g}"
+    return "" if row.linear is None else f"({scale * row.linear:.5g})"
 
 
 def _both(front: str, rear: float | None, form: str) -> str:

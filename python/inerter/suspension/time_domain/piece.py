@@ -5,7 +5,7 @@ A piece knows everything that it needs and gives the same digits wherever it is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from inerter.suspension.time_domain.cases import Case
 from inerter.suspension.time_domain.design import Design
@@ -15,10 +15,16 @@ from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.samples import Samples, samples
 from inerter.suspension.time_domain.search import reoptimised
 
+NOTED = 1e-3
+"""Share of time off the road above which a reader is told."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """`case` of a layout; `own`: at its own linear optimum, whatever the plan says of designs."""
+    """`case` of a layout; `own`: at its own linear optimum, whatever the plan says of designs.
+
+    `notes` on the road and the settling of its plan.
+    """
 
     plan: Plan
     stiffness: float
@@ -26,6 +32,7 @@ class Piece:
     layout: str
     case: Case
     own: bool = False
+    notes: tuple[str, ...] = ()
 
     @property
     def key(self) -> tuple[float, str, str, str, bool]:
@@ -36,11 +43,15 @@ class Piece:
 
 @dataclass(frozen=True)
 class Found:
-    """The design of a piece, and what it did."""
+    """The design of a piece, and what it did; `pulling`: with tyres that pull on the road.
+
+    The latter where a tyre was off the road for more than `NOTED` of the time.
+    """
 
     design: Design
     samples: Samples
     reoptimised: bool
+    pulling: Samples | None = None
 
 
 def work(piece: Piece) -> Found:
@@ -52,17 +63,37 @@ def work(piece: Piece) -> Found:
         A design that cannot be simulated with the step of the settings.
     """
     plan, index, layout, case = piece.plan, piece.index, piece.layout, piece.case
-    model = compiled(layout, case, plan.car)
+    model = compiled(layout, case, plan.car, one_sided=plan.one_sided and index != "J5")
     searched = plan.reoptimise and not case.linear and not piece.own
-    if plan.given and not piece.own:
-        design = _given(plan, layout, piece.stiffness)
-    else:
-        design = linear_optimum(
-            index, layout, piece.stiffness, case.pair, plan.car, spectrum(plan.road)
-        )
+    design = linear_design(piece)
     if searched:
         design = reoptimised(plan, model, index, design)
-    return Found(design, samples(plan, model, index, design, plan.seeds), searched)
+    found = samples(plan, model, index, design, plan.seeds)
+    pulling = None
+    if found.beside.get("lift_off", 0.0) > NOTED:
+        pulling = samples(plan, compiled(layout, case, plan.car), index, design, plan.seeds)
+    return Found(design, found, searched, pulling)
+
+
+def linear_design(piece: Piece) -> Design:
+    """The design of a piece as far as the linear study chooses it.
+
+    Raises
+    ------
+    ValueError
+        A layout cannot have the inertance that is given.
+    """
+    plan = piece.plan
+    given = () if piece.own else plan.given
+    if given and None not in [x for pair in given for x in pair]:
+        return _given(plan, piece.layout, piece.stiffness)
+    if piece.layout == "S1" and any(c is not None for c, _ in given):
+        pairs = tuple((c, 0.0) for c, _ in given)
+        return _given(replace(plan, given=pairs), piece.layout, piece.stiffness)
+    if piece.layout == "S3" and any(b == 0.0 for _, b in given):
+        raise ValueError("S3: inertance is 0; give one, or take layout S1")
+    road, pair = spectrum(plan.road), piece.case.pair
+    return linear_optimum(piece.index, piece.layout, piece.stiffness, pair, plan.car, road, given)
 
 
 def _given(plan: Plan, layout: str, stiffness: float) -> Design:
@@ -70,7 +101,8 @@ def _given(plan: Plan, layout: str, stiffness: float) -> Design:
     springs = stiffnesses_of(plan.car, stiffness)
     pairs = plan.given * (len(springs) if len(plan.given) == 1 else 1)
     struts = [
-        Design(k, c, 0.0 if layout == "S1" else b) for k, (c, b) in zip(springs, pairs, strict=True)
+        Design(k, c or 0.0, 0.0 if layout == "S1" else b or 0.0)
+        for k, (c, b) in zip(springs, pairs, strict=True)
     ]
     rear = struts[1] if len(struts) == 2 else None
     return Design(struts[0].stiffness, struts[0].damping, struts[0].inertance, rear=rear)

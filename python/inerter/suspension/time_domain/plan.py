@@ -28,7 +28,11 @@ class Plan:
         Seek c and b for every case that is not linear.
     given
         (c [N s/m], b [kg]) of every strut, front first, in place of an optimum; one pair counts
-        for both struts of a half-car.
+        for both struts of a half-car. None for the one that is sought.
+    one_sided
+        On roads a tyre leaves the ground where it would have to pull by more than its static load.
+    keep_settle
+        The settling time of the settings, even where the modes of the car ask for a longer one.
     amplitude
         [N] of the load for J5.
     car, settings
@@ -48,7 +52,9 @@ class Plan:
     seeds: int = 20
     search_seeds: int = 4
     reoptimise: bool = False
-    given: tuple[tuple[float, float], ...] = ()
+    given: tuple[tuple[float | None, float | None], ...] = ()
+    one_sided: bool = True
+    keep_settle: bool = False
     amplitude: float = 1000.0
     car: Car = field(default_factory=QuarterCar)
     settings: RunSettings = field(default_factory=RunSettings)
@@ -67,14 +73,14 @@ class Plan:
             raise ValueError(f"search_seeds is {self.search_seeds}: give 1 or more")
         if not 0.0 < self.amplitude < math.inf:
             raise ValueError(f"amplitude is {self.amplitude:g} N: give a positive number")
-        if self.given and self.reoptimise:
+        if self.reoptimise and any(None not in pair for pair in self.given):
             raise ValueError("a given damping and inertance cannot be sought anew: take one of two")
         if len(self.given) not in (0, 1, 1 if self.car_name == "quarter" else 2):
             raise ValueError(f"{len(self.given)} struts given, but the car is a {self.car_name}")
         for damping, inertance in self.given:
-            if not 0.0 < damping < math.inf:
+            if damping is not None and not 0.0 < damping < math.inf:
                 raise ValueError(f"damping is {damping:g} N s/m: give a positive number")
-            if not 0.0 <= inertance < math.inf:
+            if inertance is not None and not 0.0 <= inertance < math.inf:
                 raise ValueError(f"inertance is {inertance:g} kg: give a number that is 0 or above")
         for layout in self.layouts:
             compiled(layout, CASES["ideal"], self.car)
@@ -85,6 +91,14 @@ class Plan:
     def car_name(self) -> str:
         """Name of the car, quarter or half."""
         return "quarter" if isinstance(self.car, QuarterCar) else "half"
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """What is given of every strut while the rest is sought: "damping", "inertance"."""
+        names = ("damping", "inertance")
+        return tuple(
+            name for n, name in enumerate(names) if any(pair[n] is not None for pair in self.given)
+        )
 
     @property
     def rows(self) -> list[tuple[float, str, str, Case]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any
 
@@ -21,15 +22,16 @@ _TENDONS = {"S1": ("strut", "strut"), "S2": ("strut", "strut"), "S3": ("spring",
 
 
 @lru_cache(maxsize=32)
-def _compiled(layout: str, laws: build.Laws, car: QuarterCar) -> Any:
+def _compiled(layout: str, laws: build.Laws, car: QuarterCar, one_sided: bool) -> Any:
     """The model with every parameter live; the values are overwritten by the designs."""
     load_plugin()
     file = f"model_{layout.lower()}.xml"
     spec: Any = mujoco.MjSpec.from_file(str(model_path("quarter_car", file)))
     build.switch_off_contacts(spec)
     spec.geom("body").mass, spec.geom("wheel").mass = car.sprung_mass, car.unsprung_mass
-    road, kt = spec.actuator("road"), car.tyre_stiffness
-    road.gainprm[0], road.biasprm[1] = kt, -kt
+    build.set_tyre(
+        spec.actuator("road"), car.tyre_stiffness, car.static_load if one_sided else None
+    )
 
     # spring and damper belong to the tendons in every layout, the device has the rest
     length = QUARTER_CAR.strut_length
@@ -58,14 +60,18 @@ def _compiled(layout: str, laws: build.Laws, car: QuarterCar) -> Any:
     heave.wrap_joint("travel", 1.0)
     build.add_load(spec, "heave", mujoco.mjtTrn.mjTRN_TENDON)
     build.keep_sensors(
-        spec, ["body_acceleration"], [("wheel", "joint", "wheel"), ("body", "tendon", "heave")]
+        spec,
+        ["body_acceleration"],
+        [("wheel", "joint", "wheel"), ("body", "tendon", "heave"), ("travel", "joint", "travel")],
     )
     return spec.compile()
 
 
-def quarter_car_model(layout: str, case: Case, car: QuarterCar) -> CarModel:
-    """The model of a layout with the law of a case."""
-    model = _compiled(layout, build.laws_of(case), car)
+def quarter_car_model(
+    layout: str, case: Case, car: QuarterCar, one_sided: bool = False
+) -> CarModel:
+    """The model of a layout with the law of a case; `one_sided` as for `compiled`."""
+    model = _compiled(layout, build.laws_of(case), car, one_sided)
     spring, damper = (model.tendon(name).id for name in _TENDONS[layout])
     by_sensors = np.zeros((1, model.nsensordata))
     by_sensors[0, int(model.sensor("body_acceleration").adr[0]) + 2] = 1.0
@@ -84,6 +90,8 @@ def quarter_car_model(layout: str, case: Case, car: QuarterCar) -> CarModel:
                 build.control_of(model, "road"),
                 int(model.sensor("wheel").adr[0]),
                 car.tyre_stiffness,
+                travel=int(model.sensor("travel").adr[0]),
+                static_load=car.static_load if one_sided else math.inf,
             ),
         ),
         load=build.control_of(model, "load"),

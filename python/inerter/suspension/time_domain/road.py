@@ -2,8 +2,10 @@
 
     zr(t) = sum_i A_i sin(w_i t + phase_i),   A_i^2 / 2 = S(f_i) df,   S(f) = strength / f^2
 
-Symbols: zr [m], f = w / 2 pi [Hz], df = 0.1 Hz the spacing (the road repeats every 1/df = 10 s),
-S(f) [m^2/Hz] the one-sided density, `strength` [m^2 Hz], phases uniform in 0..2 pi.
+Symbols: zr [m], f = w / 2 pi [Hz], df the spacing, 0.1 Hz or finer (the road repeats every 1/df),
+S(f) [m^2/Hz] the one-sided density, `strength` [m^2 Hz], phases uniform in 0..2 pi. A mode that is
+narrower than the spacing falls between two sinusoids: `refined` has closer ones, `resolution.py`
+says how close.
 
 Paper: A_i = sqrt(8 pi kappa V dw) / w_i at 0.1, 0.2 ... 1000 Hz, which is strength = 2 kappa V:
 its kappa V / f^2 is a two-sided density. Source: Wang and Su, ACC 2008, eq. (10).
@@ -22,7 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -42,16 +44,17 @@ ISO_RANGE = (0.01, 10.0)
 """Spatial frequencies of ISO roads [cycles/m]: the limits that ISO 8608 names for on-road use."""
 
 ISO_CLASSES: Mapping[str, float] = MappingProxyType(
-    {name: 16e-6 * 4.0**i for i, name in enumerate("ABCDE")}
+    {name: 16e-6 * 4.0**i for i, name in enumerate("ABCDEFGH")}
 )
-"""G(n0) [m^3] of classes A to E: the geometric means of ISO 8608."""
+"""G(n0) [m^3] of classes A to H: the geometric means of ISO 8608."""
 
 
 @dataclass(frozen=True)
 class PeriodicRoad:
-    """Sinusoids `first` to `last` times `SPACING`, of density strength / f^2.
+    """Sinusoids `first` to `last` times `spacing` [Hz], of density strength / f^2.
 
     `name` to be shown, `strength` [m^2 Hz] one-sided, `speed` V [m/s] at which later axles follow.
+    `band` [Hz] that the sinusoids stand for, however close; from 0 to the last one if not given.
 
     Raises
     ------
@@ -64,9 +67,13 @@ class PeriodicRoad:
     first: int = 1
     last: int = 10_000
     speed: float = 25.0
+    spacing: float = SPACING
+    band: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
+        if not 0.0 < self.spacing <= SPACING:
+            raise ValueError(f"spacing is {self.spacing:g} Hz: give one above 0, up to {SPACING}")
         if not (math.isfinite(self.speed) and self.speed > 0.0):
             raise ValueError(f"speed is {self.speed:g} m/s: give a positive number")
         if not (math.isfinite(self.strength) and self.strength > 0.0):
@@ -79,17 +86,44 @@ class PeriodicRoad:
     @property
     def period(self) -> float:
         """[s]."""
-        return 1.0 / SPACING
+        return 1.0 / self.spacing
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Lowest and highest frequency [Hz] that the sinusoids stand for."""
+        return self.band or (0.0, self.last * self.spacing)
+
+    def refined(self, times: int) -> PeriodicRoad:
+        """The same density with sinusoids `times` as close; the road repeats that much later.
+
+        Raises
+        ------
+        ValueError
+            `times` is not a whole number from 1.
+        """
+        if times < 1:
+            raise ValueError(f"times is {times}: give a whole number from 1")
+        if times == 1:
+            return self
+        low, high = self.limits
+        spacing = self.spacing / times
+        return replace(
+            self,
+            first=max(1, math.ceil(low / spacing - 1e-9)),
+            last=math.floor(high / spacing + 1e-9),
+            spacing=spacing,
+            band=(low, high),
+        )
 
     @property
     def frequencies(self) -> Array:
         """[Hz], shape (sinusoids,)."""
-        return np.asarray(SPACING * np.arange(self.first, self.last + 1), dtype=np.float64)
+        return np.asarray(self.spacing * np.arange(self.first, self.last + 1), dtype=np.float64)
 
     @property
     def amplitudes(self) -> Array:
         """[m], shape (sinusoids,)."""
-        return math.sqrt(2.0 * self.strength * SPACING) / self.frequencies
+        return math.sqrt(2.0 * self.strength * self.spacing) / self.frequencies
 
     @property
     def rms(self) -> float:
@@ -152,7 +186,7 @@ def paper_road(roughness: Roughness | None = None) -> PeriodicRoad:
 
 
 def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
-    """The road of an ISO 8608 class, "A" to "E", at `speed` [m/s].
+    """The road of an ISO 8608 class, "A" to "H", at `speed` [m/s].
 
     Raises
     ------
@@ -167,11 +201,12 @@ def iso_road(name: str, speed: float = 25.0) -> PeriodicRoad:
     # a hair of slack, so that a limit that is a multiple of the spacing counts
     first = max(1, math.ceil(ISO_RANGE[0] * speed / SPACING - 1e-9))
     last = max(first, math.floor(ISO_RANGE[1] * speed / SPACING + 1e-9))
-    return PeriodicRoad(f"iso:{name}", strength, first, last, speed)
+    band = (ISO_RANGE[0] * speed, max(ISO_RANGE[1] * speed, first * SPACING))
+    return PeriodicRoad(f"iso:{name}", strength, first, last, speed, band=band)
 
 
 def road_named(name: str, speed: float = 25.0) -> PeriodicRoad:
-    """A road by its name: "paper", or "iso:A" to "iso:E".
+    """A road by its name: "paper", or "iso:A" to "iso:H".
 
     Raises
     ------
@@ -183,4 +218,4 @@ def road_named(name: str, speed: float = 25.0) -> PeriodicRoad:
     kind, colon, letter = name.partition(":")
     if kind == "iso" and colon and letter.upper() in ISO_CLASSES:
         return iso_road(letter.upper(), speed)
-    raise ValueError(f"road {name!r}: give paper or iso:A, iso:B ... iso:E")
+    raise ValueError(f"road {name!r}: give paper or iso:A, iso:B ... iso:H")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +23,14 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True)
 class Samples:
-    """An index of one design: `values` on every road, shape (roads,), one for J5 with its peaks."""
+    """An index of one design: `values` on every road, shape (roads,), one for J5 with its peaks.
+
+    `beside`: of a road what else `road_indices` gives, means over the roads, peaks the largest.
+    """
 
     values: Array
     peaks: tuple[tuple[float, float], ...] = ()
+    beside: Mapping[str, float] = field(default_factory=dict)
 
 
 def samples(plan: Plan, model: CarModel, index: str, design: Design, seeds: int) -> Samples:
@@ -39,7 +44,13 @@ def samples(plan: Plan, model: CarModel, index: str, design: Design, seeds: int)
     if index == "J5":
         (found,) = load_peaks(model, [design], plan.amplitude, plan.settings)
         return Samples(np.array([found.value]), found.peaks)
-    return Samples(road_indices(model, [design], plan.road, range(seeds), plan.settings)[index][0])
+    found = road_indices(model, [design], plan.road, range(seeds), plan.settings)
+    beside = {
+        name: float(values.max() if name.endswith("_peak") else values.mean())
+        for name, values in found.items()
+        if name not in ("J1", "J3")
+    }
+    return Samples(found[index][0], beside=beside)
 
 
 def interval(values: Array) -> tuple[float, float, float]:

@@ -64,7 +64,7 @@ def reoptimised(
         Series pair of the linear study that is corrected: the case's own unless `like_case` is
         false.
     """
-    space = Space(start, model.layout)
+    space = Space(start, model.layout, plan.held)
     base = model.case.pair if like_case else pair
     search = (
         LoadSearch(plan=plan, model=model, space=space, base=base)

@@ -17,6 +17,9 @@ there. Frequencies beyond half the sampling rate (500 Hz at 1 ms) are not simula
 move by less than 1e-3 of their height. What they do at once is added to the mean squares in closed
 form, so that the indices do not depend on the step.
 
+A tyre that is one-sided (`compiled`) presses by at most its static load less than at rest: beyond
+that it is off the road, and Fr is the static load.
+
 RK4 needs nothing more at its default step. discrete (S3 with an elastic shaft, whose node has
 no mass) is of first order: mean squares from steps h and h/2 are extrapolated, 2 S(h/2) - S(h),
 with h half the step of RK4, a quarter of it for the half-car, whose struts are softer against
@@ -45,6 +48,9 @@ FADE = 1.0
 """Seconds over which an input is faded in."""
 
 _LOAD_BLOCK = 16
+
+# what a simulation of a road gives; the first three as mean squares
+_ROWS = ("J1", "J3", "travel_rms", "lift_off", "tyre_peak", "travel_peak")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +107,9 @@ def road_indices(
     Returns
     -------
     dict of ndarray (designs, seeds)
-        "J1" and "J3".
+        "J1" and "J3"; "travel_rms", "travel_peak" [m] of the struts; "lift_off", the share of time
+        that a tyre is off the road, mean of the wheels; "tyre_peak" [N], the largest dynamic force
+        that presses a tyre.
 
     Raises
     ------
@@ -111,7 +119,7 @@ def road_indices(
     settings = settings or RunSettings()
     tell = progress or (lambda share: None)
     pairs = [(d, s) for s in range(len(seeds)) for d in range(len(designs))]
-    squares = np.empty((2, len(designs), len(seeds)))
+    squares = np.empty((len(_ROWS), len(designs), len(seeds)))
     for design in designs:
         car.refuse(design, settings.step)
     for start in range(0, len(pairs), settings.block):
@@ -124,7 +132,9 @@ def road_indices(
         d, s = np.array(part).T
         squares[:, d, s] = _extrapolated(car, settings.step, at)
         tell((start + len(part)) / len(pairs))
-    return dict(zip(("J1", "J3"), np.sqrt(squares), strict=True))
+    found = dict(zip(_ROWS, squares, strict=True))
+    roots = {name: np.sqrt(found[name]) for name in ("J1", "J3", "travel_rms")}
+    return {**found, **roots, "lift_off": np.clip(found["lift_off"], 0.0, 1.0)}
 
 
 def load_gains(
@@ -196,7 +206,7 @@ def _road_squares(
     step: float,
     settings: RunSettings,
 ) -> Array:
-    """Mean squares of zs'' and Fr over time and axles, shape (2, simulations)."""
+    """Means of `_ROWS` over time and axles, shape (6, simulations)."""
     # a whole number of steps makes the period
     count = math.ceil(road.period / step - 1e-9)
     step = road.period / count
@@ -217,7 +227,9 @@ def _road_squares(
         steps = np.arange(first, first + number)
         return driven[:, (steps - settle) % count][which] * _fade(steps * step)[:, None]
 
-    sums = np.zeros((2, len(designs)))
+    loads = np.array([wheel.static_load for wheel in car.wheels])
+    sums = np.zeros((4, len(designs)))
+    peaks = np.zeros((2, len(designs)))
     steps = np.full(len(designs), step)
     roads = [wheel.road for wheel in car.wheels]
     for chunk in step_all(car, designs, steps, settle + count, roads, control, settings.jobs):
@@ -227,9 +239,18 @@ def _road_squares(
             continue
         height = shown[:, now][which]
         sudden = height - chunk.control[:, skip:]
-        corrected = chunk.accelerations[:, skip:] + sudden @ at_once.transpose(0, 2, 1)
+        # tension positive, as in the paper
+        force = kt * (chunk.wheels[:, skip:] - height)
+        off = force >= loads
+        corrected = chunk.accelerations[:, skip:]
+        corrected = corrected + np.where(off, 0.0, sudden) @ at_once.transpose(0, 2, 1)
+        force = np.minimum(force, loads)
         sums[0] += _squares(corrected)
-        sums[1] += _squares(kt * (chunk.wheels[:, skip:] - height))
+        sums[1] += _squares(force)
+        sums[2] += _squares(chunk.travels[:, skip:])
+        sums[3] += off.sum(axis=(1, 2))
+        highest = [-force.min(axis=(1, 2)), np.abs(chunk.travels[:, skip:]).max(axis=(1, 2))]
+        peaks = np.maximum(peaks, highest)
     # sinusoids too quick for the step move nothing; they press the tyres
     rest = road.left_out(count, behind)
     quick = np.einsum("spw,wv,spv->s", at_once, rest, at_once)
@@ -238,6 +259,9 @@ def _road_squares(
         [
             (sums[0] / count + quick) / points,
             (sums[1] / count + float(np.sum(kt**2 * np.diag(rest)))) / wheels,
+            sums[2] / count / wheels,
+            sums[3] / count / wheels,
+            *peaks,
         ]
     )
 

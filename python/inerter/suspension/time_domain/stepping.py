@@ -35,7 +35,8 @@ CHUNK = 500
 class Chunk:
     """Steps `first` to `first + n`, arrays (simulations, n, ...): at the beginning of each step.
 
-    `body` displacement under the load [m], `wheels` displacements [m] (..., wheels),
+    `body` displacement under the load [m], `wheels` displacements and `travels` of the struts [m]
+    (..., wheels),
     `accelerations` of the body's points [m/s^2] (..., points) under the held control, `control` as
     given.
     """
@@ -45,6 +46,7 @@ class Chunk:
     wheels: Array
     accelerations: Array
     control: Array
+    travels: Array
 
 
 class StepError(ValueError):
@@ -88,6 +90,7 @@ def step_all(
     model = car.model
     worlds = _worlds(car, designs, steps, threads)
     heights = [wheel.height for wheel in car.wheels]
+    travels = [wheel.travel for wheel in car.wheels]
     before = np.zeros((len(designs), 1, model.nv))
     for first in range(0, count, CHUNK):
         number = min(CHUNK, count - first)
@@ -108,7 +111,8 @@ def step_all(
             before = after[:, -1:].copy()
         else:
             accelerations = sensors @ car.by_sensors.T
-        yield Chunk(first, sensors[:, :, car.body], sensors[:, :, heights], accelerations, held)
+        body, wheels, moves = (sensors[:, :, at] for at in (car.body, heights, travels))
+        yield Chunk(first, body, wheels, accelerations, held, moves)
     _refuse_divergence(car, worlds, designs, count * steps)
 
 

@@ -13,7 +13,7 @@ A full car that is alike on both sides splits exactly into the half-car of one s
 mean of the left and the right road, and a roll plane, driven by half their difference: a body with
 one displacement x = phi track / 2 of mass 2 I_roll / track^2 on the same two axles.
 
-Not modelled: anti-roll bars, tyre damping, loss of contact, large angles.
+Not modelled: tyre damping, loss of contact, large angles.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.model_parameters import FULL_CAR, HALF_CAR, AxleParameters
-from inerter.suspension.quarter_car import QuarterCar, positive
+from inerter.suspension.quarter_car import GRAVITY, QuarterCar, positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +33,7 @@ class Axle:
 
     `distance` [m] from the centre of mass to the axle, `wheel_mass` [kg], `tyre_stiffness` [N/m],
     `stiffness` [N/m] of the strut's spring as published; optima take their own.
+    `anti_roll_stiffness` [N/m] on each wheel of the axle as the car rolls, of a full car.
 
     Raises
     ------
@@ -44,6 +45,7 @@ class Axle:
     wheel_mass: float
     tyre_stiffness: float
     stiffness: float
+    anti_roll_stiffness: float = 0.0
 
     def __post_init__(self) -> None:
         positive(self, ("distance", "wheel_mass", "tyre_stiffness", "stiffness"))
@@ -62,12 +64,15 @@ class Plane:
         [kg], [N/m], front and rear.
     weight
         Its share in mean squares over the wheels.
+    bars
+        Stiffness beside the struts, front and rear [N/m]: anti-roll bars.
     """
 
     inertia: tuple[tuple[float, ...], ...]
     wheel_masses: tuple[float, float]
     tyre_stiffnesses: tuple[float, float]
     weight: float = 1.0
+    bars: tuple[float, float] = (0.0, 0.0)
 
     @property
     def shape(self) -> NDArray[np.float64]:
@@ -130,6 +135,15 @@ class HalfCar:
             (self.front.tyre_stiffness, self.rear.tyre_stiffness),
             weight,
         )
+
+    @property
+    def static_loads(self) -> tuple[float, float]:
+        """Weight on the tyre in front and at the rear [N]."""
+        front, rear = (
+            GRAVITY * (self.body_mass * float(share) + axle.wheel_mass)
+            for share, axle in zip(self.lever, (self.front, self.rear), strict=True)
+        )
+        return front, rear
 
     def corners(self) -> tuple[QuarterCar, QuarterCar]:
         """The quarter-cars that the axles would be if the body were free between them."""
@@ -212,6 +226,7 @@ class FullCar:
             side.wheel_masses,
             side.tyre_stiffnesses,
             apart,
+            (self.front.anti_roll_stiffness, self.rear.anti_roll_stiffness),
         )
         return (side, roll) if apart > 0.0 else (side,)
 

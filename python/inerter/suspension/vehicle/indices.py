@@ -3,7 +3,9 @@ half-car indices. Each becomes theirs where the car is two or four equal quarter
 
 - J1: root of the mean over the points of the body above its 2 (4) wheels of the mean square of the
   vertical acceleration [m/s^2]
+- J1w: the same, weighted by ISO 2631's Wk
 - J3: root of the mean over the 2 (4) wheels of the mean square of the dynamic tyre force [N]
+- travel: root of the mean over the 2 (4) struts of the mean square of the travel [m]
 - J5: largest displacement of the centre of mass per vertical load on it [m/N] over all frequencies
 
 The rear wheels feel the road of their own side later by wheelbase / V. The density of the road is
@@ -70,9 +72,7 @@ def vehicle_index(
         branch(
             network,
             strut.stiffness,
-            strut.damping,
-            strut.inertance,
-            1.0 if strut.relaxation_stiffness is None else strut.relaxation_stiffness,
+            **strut.layout_values(),
             pair=pair,
         )
         for strut in struts

@@ -58,7 +58,9 @@ def in_the_limit(problem: VehicleProblem) -> tuple[float, Array] | None:
     """
     if problem.index != "J5" or not problem.network.has_inerter or problem.network.may_vanish:
         return None
-    plain = replace(problem, layout="S1", pair=None, massless=(False, False))
+    if any(name in ("damping", "inertance") for own in problem.fixed for name, _ in own):
+        return None
+    plain = replace(problem, layout="S1", pair=None, massless=(False, False), fixed=((), ()))
     value, point = best_point(plain)
     if not at_bound(plain, value):
         return None
@@ -73,12 +75,23 @@ def in_the_limit(problem: VehicleProblem) -> tuple[float, Array] | None:
     return (value, point) if value <= problem.static_compliance() * (1.0 + _CLOSE) else None
 
 
+def start_point(problem: VehicleProblem, more: int = 1) -> tuple[float, Array]:
+    """Value and point of the best design, in the limit or found by search."""
+    limit = in_the_limit(problem)
+    if limit is not None and limit[0] <= problem.static_compliance() * (1.0 + _CLOSE):
+        return limit
+    found = best_point(problem, more)
+    return found if limit is None or found[0] < limit[0] else limit
+
+
 def _like(problem: VehicleProblem, struts: tuple[VehicleStrut, VehicleStrut]) -> Array:
     """The design that is most like one of springs and dampers alone."""
     # S4 is without inerter where it is small, the others where it is rigid
     ends = {
-        "inertance": 0 if problem.layout == "S4" else 1,
-        "relaxation_stiffness": 0 if problem.layout == "S6" else 1,
+        "inertance": 0 if problem.network.own == "S4" else 1,
+        "relaxation_stiffness": 0 if problem.network.own == "S6" else 1,
+        "centring_share": 0,
+        "centring_ratio": 0,
     }
     return np.array(
         [

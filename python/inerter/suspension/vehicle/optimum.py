@@ -7,19 +7,20 @@ smallest J1 is given.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from inerter.suspension.layouts import SeriesPair
+from inerter.suspension.layouts import SeriesPair, springs_of
+from inerter.suspension.optimum import LIMITS, finite
 from inerter.suspension.problem import Array
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.vehicle.cars import Vehicle
-from inerter.suspension.vehicle.load_bound import NEAR, in_the_limit, softest_at_bound
+from inerter.suspension.vehicle.load_bound import NEAR, softest_at_bound, start_point
 from inerter.suspension.vehicle.load_peaks import peaks
 from inerter.suspension.vehicle.problem import VehicleProblem
-from inerter.suspension.vehicle.search import at_bound, best_point
+from inerter.suspension.vehicle.search import at_bound
 from inerter.suspension.vehicle.strut import VehicleStrut
 
 
@@ -47,7 +48,11 @@ class VehicleOptimum:
     def design(self) -> dict[str, Any]:
         """Its part in a row of the command's JSON."""
         return {
-            axle: {name: value for name, value in vars(strut).items() if value is not None}
+            axle: {
+                "stiffness": strut.stiffness,
+                **finite(strut.layout_values()),
+                **springs_of(strut.stiffness, strut.layout_values()),
+            }
             for axle, strut in zip(("front", "rear"), self.struts, strict=True)
         }
 
@@ -87,14 +92,16 @@ def vehicle_optimum(
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
     """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
+    if problem.limits:
+        return _limited(problem)
     notes = []
-    best, value, point = problem, *(in_the_limit(problem) or best_point(problem, more))
+    best, value, point = problem, *start_point(problem, more)
     # without inertance counts as a design where the strut still is one
-    variants = [problem, *(problem.without(massless) for massless in _less(problem))]
+    variants = problem.variants()
     for other in variants[1:]:
         if at_bound(problem, value):
             break
-        without, there = best_point(other, more)
+        without, there = start_point(other, more)
         if without <= value * (1.0 + 1e-12):
             best, value, point = other, without, there
     if at_bound(problem, value):
@@ -116,6 +123,9 @@ def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
         )
         if now and not before
     ]
+    for limit in problem.network.limits:
+        free = [any(limit[0] == n for _, n in one.variables) for one in (problem, best)]
+        notes += [f"best {LIMITS[limit]}"] if free == [True, False] else []
     notes += _at_bounds(best, point)
     return VehicleOptimum(
         value=value,
@@ -125,12 +135,19 @@ def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
     )
 
 
-def _less(problem: VehicleProblem) -> list[tuple[bool, bool]]:
-    """Which axles may go without inertance."""
-    if not problem.network.may_vanish:
-        return []
-    ways = [(True, True)] if problem.equal else [(True, False), (False, True), (True, True)]
-    return [way for way in ways if way != problem.massless]
+def _limited(problem: VehicleProblem) -> VehicleOptimum:
+    from inerter.suspension.limited import best_within
+
+    found = best_within(problem)
+    best = replace(found.problem, limits=())
+    assert isinstance(best, VehicleProblem)
+    notes = [f"held back by the limit of {name}" for name in found.reached]
+    return VehicleOptimum(
+        value=found.value,
+        struts=best.struts(found.point),
+        peaks=_peaks(best, found.point) if problem.index == "J5" else (),
+        notes=(*notes, *_at_bounds(best, found.point)),
+    )
 
 
 def _peaks(problem: VehicleProblem, point: Array) -> tuple[tuple[float, float], ...]:
@@ -148,7 +165,12 @@ def _at_bounds(problem: VehicleProblem, point: Array) -> list[str]:
     for (axle, name), at, (low, high) in zip(problem.variables, point, problem.bounds, strict=True):
         where = "" if problem.equal else ("front ", "rear ")[axle]
         word = where + name.replace("_", " ")
-        if at <= low + 1e-6:
+        if name.startswith("centring"):
+            if not low + 1e-6 < at < high - 1e-6:
+                notes.append(
+                    f"{word} at the end of its range: a centring spring is as good as absent"
+                )
+        elif at <= low + 1e-6:
             notes.append(f"{word} at the lower end of its range: the layout is best without it")
         elif at >= high - 1e-6:
             notes.append(f"{word} at the upper end of its range: the layout is best with it rigid")

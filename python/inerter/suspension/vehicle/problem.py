@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
-from inerter.suspension.problem import Array, SuspensionProblem
+from inerter.suspension.problem import Array, SuspensionProblem, in_limit
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
@@ -45,6 +45,10 @@ class VehicleProblem:
         The same damping, inertance and relaxation spring at both axles.
     massless
         Front, rear: only designs without inertance there.
+    fixed
+        Front, rear: variables that are not free, with their values [SI].
+    limits
+        Indices that may not be higher than a value, see `limited`.
     """
 
     car: Vehicle
@@ -55,6 +59,8 @@ class VehicleProblem:
     pair: SeriesPair | None = None
     equal: bool = False
     massless: tuple[bool, bool] = (False, False)
+    fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ())
+    limits: tuple[tuple[str, float], ...] = ()
 
     @property
     def network(self) -> Layout:
@@ -75,7 +81,19 @@ class VehicleProblem:
             for axle in axles
             for name in self.network.variables
             if not (self.massless[axle] and name == "inertance")
+            and name not in dict(self.fixed[axle])
         )
+
+    @property
+    def may_vanish(self) -> bool:
+        """Without inertance the layout still is a strut, and the inertance is free."""
+        return self.network.may_vanish and any(name == "inertance" for _, name in self.variables)
+
+    def _held(self) -> tuple[dict[str, float], dict[str, float]]:
+        """The fixed variables that the layout has, by axle."""
+        names = self.network.variables
+        front, rear = ({n: x for n, x in own if n in names} for own in self.fixed)
+        return front, rear
 
     @property
     def bounds(self) -> Array:
@@ -99,8 +117,11 @@ class VehicleProblem:
                 stiffness=k,
                 pair=self.pair,
                 massless=no_inerter,
+                fixed=held,
             )
-            for car, k, no_inerter in zip(cars, self.stiffnesses, self.massless, strict=True)
+            for car, k, no_inerter, held in zip(
+                cars, self.stiffnesses, self.massless, self.fixed, strict=True
+            )
         )
         return front, rear
 
@@ -108,13 +129,51 @@ class VehicleProblem:
         """The same without inertance in front, at the rear or at both."""
         return replace(self, massless=massless)
 
+    def variants(self) -> list[VehicleProblem]:
+        """The problem, then those in which what may be absent at an axle or both is."""
+        found: list[VehicleProblem] = [self]
+        if self.may_vanish:
+            axles = [(True, True)] if self.equal else [(True, False), (False, True), (True, True)]
+            held = ["inertance" in dict(own) for own in self.fixed]
+            found += [
+                self.without(way)
+                for way in axles
+                if way != self.massless and not any(w and h for w, h in zip(way, held, strict=True))
+            ]
+        for name, value in self.network.limits:
+            if any(name == free for _, free in self.variables):
+                front, rear = (own + in_limit(name, value) for own in self.fixed)
+                found.append(replace(self, fixed=(front, rear)))
+        return found
+
+    def inner(self) -> list[VehicleProblem]:
+        """The problems of the layouts that this one contains."""
+        found = []
+        for name in self.network.inner:
+            names = LAYOUTS[name].variables
+            front, rear = (
+                tuple((n, value) for n, value in own if n in names) for own in self.fixed
+            )
+            massless = self.massless if LAYOUTS[name].may_vanish else (False, False)
+            found.append(replace(self, layout=name, fixed=(front, rear), massless=massless))
+        return found
+
+    def embedded(self, struts: tuple[VehicleStrut, VehicleStrut], layout: str) -> Array:
+        """The point that is most like a design of a layout that this one contains."""
+        low, high = self.bounds.T
+        parts = [
+            dict(zip(corner.variables, corner.embedded(layout, strut.layout_values()), strict=True))
+            for corner, strut in zip(self.corners(), struts, strict=True)
+        ]
+        return np.clip([parts[axle][name] for axle, name in self.variables], low, high)
+
     def static_compliance(self) -> float:
         """What no strut can take J5 below [m/N]."""
         return self.car.side.static_compliance(self.stiffnesses) / self.car.sides
 
     def branches(self, points: NDArray[Any]) -> Branches:
         """The struts of each point."""
-        values: tuple[dict[str, Any], dict[str, Any]] = {}, {}
+        values: tuple[dict[str, Any], dict[str, Any]] = self._held()
         for (axle, name), value in zip(
             self.variables, np.moveaxis(np.exp(points), -1, 0), strict=True
         ):
@@ -129,7 +188,7 @@ class VehicleProblem:
 
     def struts(self, point: Array) -> tuple[VehicleStrut, VehicleStrut]:
         """The design of a point."""
-        own: tuple[dict[str, float], dict[str, float]] = {}, {}
+        own = self._held()
         for (axle, name), value in zip(self.variables, np.exp(point).tolist(), strict=True):
             # without what a logarithm and back leave in the last digits
             own[axle][name] = float(f"{value:.13g}")

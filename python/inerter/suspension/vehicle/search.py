@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from inerter.suspension.polish_smooth import polish_smooth
@@ -14,11 +16,17 @@ from inerter.suspension.vehicle.starts import starting_points
 EQUAL = 1e-9
 
 
+@lru_cache(maxsize=256)
 def best_point(problem: VehicleProblem, more: int = 1) -> tuple[float, Array]:
     """Value and point of the global minimum; `more` as in `starting_points`."""
     polish = polish_peaks if problem.index == "J5" else polish_smooth
     best, at = np.inf, np.empty(0)
-    for start in starting_points(problem, more):
+    # what a layout contains is a design of it: so it is never worse
+    starts = [
+        problem.embedded(inner.struts(best_point(inner)[1]), inner.layout)
+        for inner in problem.inner()
+    ]
+    for start in [*starting_points(problem, more), *starts]:
         value, point = polish(problem, start, best)
         # of equal ones the first, which alone was followed to its last digits
         if value < best * (1.0 - 1e-8):

@@ -13,7 +13,7 @@ the road alone, p' = wr' - wf', and stays where it is. So every state is strictl
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,8 @@ class System:
         Tyre forces [N]: rows (2, n); the warp is not in them but through the states.
     load
         Input column (..., n) of a force on the body's coordinates, for each of them: (..., n, q).
+    travel, travel_warp
+        Elongations of the struts [m]: rows (2, n), per p (2,).
     height
         Displacement of the body above the axles on a flat road: rows (2, n).
     """
@@ -55,11 +57,19 @@ class System:
     tyre: NDArray[np.float64]
     load: Matrix
     height: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    travel_warp: NDArray[np.float64]
 
 
 def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
     """The matrices of a plane with the struts of its two axles."""
     body = len(plane.inertia)
+    front_bar, rear_bar = plane.bars
+    if front_bar or rear_bar:
+        branches = (
+            replace(branches[0], stiffness=branches[0].stiffness + front_bar),
+            replace(branches[1], stiffness=branches[1].stiffness + rear_bar),
+        )
     orders = [branch.order for branch in branches]
     # places of the states: body and wheel velocities, then lengths, then the struts' own
     speeds = body + 2
@@ -131,6 +141,8 @@ def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
         tyre=tyre,
         load=load,
         height=elongation + deflection,
+        travel=elongation,
+        travel_warp=by_warp,
     )
 
 

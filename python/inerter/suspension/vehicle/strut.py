@@ -21,13 +21,20 @@ from inerter.suspension.rational import Coefficients, Rational, add, evaluate
 class VehicleStrut:
     """`stiffness` k [N/m], `damping` c [N s/m], `inertance` b [kg] of the struts of one axle.
 
-    `relaxation_stiffness` k_b [N/m] where the layout has one.
+    `relaxation_stiffness` k_b [N/m] (inf: rigid), `centring_share`, `centring_ratio` where the
+    layout has them.
     """
 
     stiffness: float
     damping: float
     inertance: float = 0.0
     relaxation_stiffness: float | None = None
+    centring_share: float | None = None
+    centring_ratio: float | None = None
+
+    def layout_values(self) -> dict[str, float]:
+        """What `branch` takes beside stiffness, by name."""
+        return {name: x for name, x in vars(self).items() if x is not None and name != "stiffness"}
 
 
 @dataclass(frozen=True)
@@ -88,14 +95,25 @@ def branch(
     inertance: ArrayLike = 0.0,
     relaxation_stiffness: ArrayLike = 1.0,
     *,
+    centring_share: ArrayLike = 0.0,
+    centring_ratio: ArrayLike = 1.0,
     pair: SeriesPair | None = None,
 ) -> Branch:
     """The struts of a layout, divided; parameters as in `Layout.stiffness`."""
-    network = layout.stiffness(0.0, damping, inertance, relaxation_stiffness, pair=pair)
+    network = layout.stiffness(
+        0.0,
+        damping,
+        inertance,
+        relaxation_stiffness,
+        centring_share=centring_share,
+        centring_ratio=centring_ratio,
+        total_stiffness=stiffness,
+        pair=pair,
+    )
     top, below = _trimmed(network.numerator), _trimmed(network.denominator)
     # what of the network is a spring at rest; none of the layouts has any
     static = top[..., :1] / below[..., :1]
-    if static.any():
+    if static.any() and not layout.centred:
         top = add(top, -static * below)
     shape = np.broadcast_shapes(top.shape[:-1], below.shape[:-1], np.shape(stiffness))
     below, top = below / below[..., -1:], (top / below[..., -1:])[..., 1:]
@@ -111,7 +129,7 @@ def branch(
     damping_left = rest[..., order]
     remainder = rest[..., :order] - damping_left[..., None] * below[..., :order]
     return Branch(
-        np.broadcast_to(np.asarray(stiffness) + static[..., 0], shape),
+        np.broadcast_to(np.asarray(stiffness) + (0.0 if layout.centred else static[..., 0]), shape),
         np.broadcast_to(mass, shape),
         np.broadcast_to(damping_left, shape),
         Rational(

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm, get_lapack_funcs, schur
 
 from inerter.suspension.vehicle.state_space import System, balanced
+from inerter.suspension.vehicle.weighting import weighted
 
 Array = NDArray[Any]
 
@@ -38,7 +39,8 @@ def mean_square(
         One design, or along the first axis the design and then one with an imaginary `step` in
         each variable.
     index
-        "J1", acceleration of the body above the axles, or "J3", tyre forces.
+        "J1", acceleration of the body above the axles, "J1w", the same weighted by Wk, "J3",
+        tyre forces, or "travel", elongations of the struts.
     delay
         tau [s].
     step
@@ -50,6 +52,8 @@ def mean_square(
         Infinite and zero where the design is not stable, or its least damped pole has a damping
         ratio below 1e-10, which leaves the covariance no digits.
     """
+    if index == "J1w":
+        system = weighted(system)
     rows, by_warp = _signals(system, index)
     # states of like size
     a, scale = balanced(_now(system.matrix, step))
@@ -110,6 +114,8 @@ def mean_square(
 
 def quick_mean_square(system: System, index: str, delay: float) -> Array:
     """The value of `mean_square` for arrays of real designs, to about 1e-6."""
+    if index == "J1w":
+        system = weighted(system)
     c, c_warp = _signals(system, index)
     a = system.matrix
     eigen: Any = np.linalg.eig(a)
@@ -138,9 +144,13 @@ def quick_mean_square(system: System, index: str, delay: float) -> Array:
 
 def _signals(system: System, index: str) -> tuple[Array, Array | None]:
     """Output rows (..., 2, n) and outputs per warp (..., 2)."""
-    if index == "J1":
+    if index in ("J1", "J1w"):
         return system.acceleration, system.acceleration_warp
     shape = system.matrix.shape[:-2]
+    if index == "travel":
+        rows = np.broadcast_to(system.travel, (*shape, *system.travel.shape))
+        warped = np.broadcast_to(system.travel_warp, (*shape, 2))
+        return rows, None if system.warp is None else warped
     rows = np.broadcast_to(system.tyre, (*shape, *system.tyre.shape))
     return rows, None if system.warp is None else np.zeros((*shape, 2))
 

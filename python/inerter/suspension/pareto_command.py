@@ -1,0 +1,106 @@
+"""`inerter suspension pareto`: the front of two indices, by layouts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
+from inerter.suspension.quarter_car import Road
+
+_ROAD = Road()
+
+
+def pareto_command(
+    layout: Annotated[str, typer.Option(help="Layouts, with commas.")] = "S1,S2,S3",
+    index: Annotated[
+        str, typer.Option(help="Two of J1, J1w, J3, J5, travel: FIRST,SECOND.")
+    ] = "J1w,J3",
+    stiffness: Annotated[
+        str | None,
+        typer.Option(help="k [N/m]; KF/KR of a half- or full car.", show_default="the car's own"),
+    ] = None,
+    series: Annotated[str, typer.Option(help="none, soft, hard or KS/CS.")] = "none",
+    car: Annotated[
+        str, typer.Option(help="quarter, half, full, or a file car.toml of your own.")
+    ] = "quarter",
+    limit: Annotated[
+        str | None, typer.Option(help="Along the front not above: INDEX=VALUE, with commas.")
+    ] = None,
+    hold: Annotated[
+        str | None,
+        typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
+    ] = None,
+    equal: Annotated[
+        bool, typer.Option("--equal", help="Half, full: the same struts at both axles.")
+    ] = False,
+    points: Annotated[int, typer.Option(min=2, help="Designs of each layout.")] = 9,
+    velocity: Annotated[float, number("m/s", "V [m/s].")] = _ROAD.velocity,
+    roughness: Annotated[float, number("m^3/cycle", "kappa [m^3/cycle].")] = _ROAD.roughness,
+    out_dir: Folder = Path("out/suspension"),
+    as_json: AsJson = False,
+) -> None:
+    """Compromises of two indices: for each layout the designs none of which is better in both.
+
+    Writes pareto.json, pareto.csv and pareto.png. Run again with the same words and --out, it goes
+    on where it was interrupted.
+    """
+    from rich.table import Table
+
+    from inerter.folder import json_text, write_files
+    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses, own_stiffness
+    from inerter.suspension.indices import INDICES
+    from inerter.suspension.pareto import front, front_csv
+    from inerter.suspension.pareto_picture import front_picture
+    from inerter.suspension.study import (
+        Study,
+        StudyError,
+        read_indices,
+        read_layouts,
+        read_pairs,
+        read_series,
+    )
+
+    with refusing(out_dir, "pareto.json", "pareto.csv", "pareto.png"):
+        indices = read_indices(index)
+        if len(indices) != 2:
+            raise StudyError(f"index {index!r}: a front is of two, as in J1w,J3")
+        which = chosen_car(car, {}, equal=equal)
+        study = Study(
+            layouts=read_layouts(layout),
+            indices=indices[:1],
+            stiffnesses=chosen_stiffnesses(stiffness, which, own_stiffness(car)),
+            series=read_series(series),
+            car=which,
+            road=Road(velocity=velocity, roughness=roughness),
+            equal=equal,
+            fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
+            limits=read_pairs(limit, INDICES, "limit"),
+        )
+        with progress_bar("front", as_json) as progress:
+            found = front(study, indices[1], points, out_dir, progress)
+        title = f"{Path(car).stem}, {indices[0]} against {indices[1]}" + (
+            f", {limit}" if limit else ""
+        )
+        files = write_files(
+            out_dir,
+            {
+                "pareto.csv": front_csv(found, study.layouts),
+                "pareto.png": front_picture(found, study.layouts, title),
+            },
+        )
+    rows = [row for name in study.layouts for row in found.of(name)]
+    if as_json:
+        print(json_text([row.json() for row in rows]), end="")
+        return
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    for name in ("layout", *INDICES):
+        table.add_column(name, justify="left" if name == "layout" else "right", no_wrap=True)
+    for row in rows:
+        table.add_row(row.layout, *(f"{row.values[name]:.5g}" for name in INDICES))
+    out.print(table)
+    for told in found.told:
+        out.print(told, markup=False)
+    out.print(f"Written to {out_dir}: pareto.json, {', '.join(files)}")
