@@ -55,7 +55,12 @@ def refuse_unbounded(path: Path) -> None:
     size = refuse_special(path)
     state = (os.path.abspath(path), size, path.stat().st_mtime_ns)
     # a car file is bounded by its reader
-    if path.suffix.lower() == ".toml" or state in _known or _is_shipped(path) or _is_plain(path, size):
+    if (
+        path.suffix.lower() == ".toml"
+        or state in _known
+        or _is_shipped(path)
+        or _is_plain(path, size)
+    ):
         return
     _refuse_special_parts(path)
     _compile_apart(path)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from inerter import Device, DeviceError
 from inerter.core import friction_laws, parameters
-from inerter.models import model_names, model_path
 from inerter.engine_errors import SimulationError
+from inerter.models import model_names, model_path
 from inerter.view.loop import Loop
 from inerter.view.session import Session
 from inerter.view.shake import Shake, read_shake, usual_shake
