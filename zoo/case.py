@@ -121,7 +121,14 @@ def _changed(case: Case, change: Callable[[dict[str, Any]], dict[str, Any]]) -> 
 
 def _without_springs(spec: mujoco.MjSpec, case: Case) -> mujoco.MjModel:
     """The model whose devices only have inertance, damping and friction."""
-    still = _changed(case, lambda keys: {k: v for k, v in keys.items() if k not in SPRINGS})
+
+    def changed(keys: dict[str, Any]) -> dict[str, Any]:
+        still = {k: v for k, v in keys.items() if k not in SPRINGS}
+        if keys.get("control") == "stiffness":
+            still = {k: v for k, v in still.items() if not k.startswith("control")}
+        return still
+
+    still = _changed(case, changed)
     model = added(spec, still).compile()
     _set_options(model, case)
     return model

@@ -72,6 +72,7 @@ class Forces:
         self.figures: Figures = {}
         self._by_forward: dict[str, float] = {}
         self._by_step: dict[str, float] = {}
+        self._inertance: dict[str, float] = {}
 
     def step(self, data: mujoco.MjData) -> None:
         """Take a step and compare it."""
@@ -86,6 +87,9 @@ class Forces:
             side.history[:] = data.history[: bare.nhistory]
         side.qfrc_applied[:] = 0
         heat = [place.read(data.sensordata)["dissipated_energy"] for place in self.places]
+        self._inertance = {
+            each.name: inertance(self.model, data, each) for each in self.case.devices
+        }
         shown = data
         if self.model.opt.integrator == RK4:
             # what stays in data after the step belongs to its last stage
@@ -112,7 +116,7 @@ class Forces:
 
     def _compare(self, each: Drawn, row, values, qacc, stepped) -> float:
         """Note how well the inertance's force fits; what the step's own acceleration adds to it."""
-        b = inertance_of(each)
+        b = self._inertance[each.name]
         found = float(values["inertance"])
         for acceleration, noted in ((qacc, self._by_forward), (stepped, self._by_step)):
             a = float(row.J @ acceleration) + row.bias
@@ -182,10 +186,14 @@ def weighted_alike(model: mujoco.MjModel, other: mujoco.MjModel) -> mujoco.MjMod
     return twin
 
 
-def inertance_of(each: Drawn) -> float:
-    """As stated, or as a control of 0 commands, which follows at once (see `draw`)."""
-    commanded = each.keys.get("control") == "inertance"
-    return float(each.keys["control_lower" if commanded else "inertance"])
+def inertance(model: mujoco.MjModel, data: mujoco.MjData, each: Drawn) -> float:
+    """Inertance of a device at present, which a control may set."""
+    if each.keys.get("control") != "inertance":
+        return float(each.keys["inertance"])
+    place = device_of(model, each.name)
+    command = data.ctrl[model.actuator_ctrladr[place.actuator]]
+    states = [data.act[address] for address in place.act.values()]
+    return place.device.commanded(float(command), states or 0.0).inertance
 
 
 def rigid(each: Drawn) -> bool:
@@ -223,6 +231,7 @@ def dense(bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel, cas
     mujoco.mj_copyData(side, bare, start)
     mujoco.mj_forward(bare, side)
     rows = [row_of(bare, side, each) for each in case.devices]
+    b = np.array([inertance(model, data, each) for each in case.devices])
     mujoco.mj_step(model, data)
     if model.opt.integrator == RK4:
         found = model_acceleration(bare, start, model)
@@ -230,7 +239,6 @@ def dense(bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel, cas
         found = (data.qvel - before) / h
     read = [device_of(model, each.name).read(data.sensordata) for each in case.devices]
     rest = np.array([float(values["total"] - values["inertance"]) for values in read])
-    b = np.array([inertance_of(each) for each in case.devices])
     J = np.array([row.J for row in rows])
     response = np.array([answer(row.J) - free for row in rows])
     W = J @ response.T

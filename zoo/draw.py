@@ -198,13 +198,10 @@ def parameters(rng: np.random.Generator, mass: float, h: float) -> dict[str, flo
 def _control(
     rng: np.random.Generator, keys: dict[str, float | str], heavy: float, h: float
 ) -> dict[str, float | str]:
-    """A control that sets damping, inertance or stiffness, some with a lag of a few steps.
-
-    An inertance follows at once, so that the checks know it.
-    """
+    """A control that sets damping, inertance or stiffness, some with a lag of a few steps."""
     name = str(rng.choice(["viscous", "inertance", "stiffness"]))
     stated = keys.get(name, heavy * (1e-3 / h if name == "viscous" else (0.02 / h) ** 2))
-    lag = h * 10.0 ** rng.uniform(0, 2) * rng.integers(0, 2) * (name != "inertance")
+    lag = h * 10.0 ** rng.uniform(0, 2) * rng.integers(0, 2)
     bounds = {"control_lower": 0.5 * float(stated), "control_upper": 2.0 * float(stated)}
     return {name: stated, "control": name, "control_lag": float(lag), **bounds}
 

@@ -19,6 +19,7 @@
 #include "friction.h"
 
 static const double kLeast = 1e-3;
+static const double kYoungest = -300;  // of z; its rate stays a number
 
 // what the logarithms make of the level
 static double factor(const InerterDevice* p, double v, double z) {
@@ -28,7 +29,7 @@ static double factor(const InerterDevice* p, double v, double z) {
 
 static double rate(const InerterDevice* p, double x, double v, double z) {
   (void)x;
-  return (p->rate_velocity * exp(-z) - fabs(v)) / p->age_distance;
+  return (p->rate_velocity * exp(-fmax(kYoungest, z)) - fabs(v)) / p->age_distance;
 }
 
 // exact at constant v: theta decays towards L / |v|, or grows with the time

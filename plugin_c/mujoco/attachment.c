@@ -130,12 +130,14 @@ static int check_sleep(const mjModel* m, int actuator, char message[INERTER_MESS
   return 0;
 }
 
+enum { STATES_TEXT = 320 };
+
 // the states a device needs, in words
-static void states_text(const InerterDevice* device, char text[160]) {
+static void states_text(const InerterDevice* device, char text[STATES_TEXT]) {
   int length = 0;
   text[0] = 0;
-  for (int i = 0; i < inerter_nstate(device); i++) {
-    length += snprintf(text + length, 160 - length, "%s%s", i ? ", " : ": ",
+  for (int i = 0; i < inerter_nstate(device) && length < STATES_TEXT; i++) {
+    length += snprintf(text + length, (size_t)(STATES_TEXT - length), "%s%s", i ? ", " : ": ",
                        inerter_state_name(device, i));
   }
 }
@@ -149,7 +151,7 @@ int attachment_check(const mjModel* m, int actuator, const InerterDevice* device
   }
   int nstate = inerter_nstate(device);
   if (m->actuator_actnum[actuator] != nstate) {
-    char states[160];
+    char states[STATES_TEXT];
     states_text(device, states);
     snprintf(message, INERTER_MESSAGE_SIZE,
              "actdim is %d, but the device (friction \"%s\"%s) has %d state%s%s; %s actdim=\"%d\" "

@@ -268,6 +268,23 @@ def test_a_ctrlrange_beyond_the_bounds_is_refused(stated: tuple[float, float], s
         spec.compile()
 
 
+def test_all_states_that_there_can_be_are_named() -> None:
+    device: dict[str, Any] = {"friction": "maxwell_slip", "backlash": 1e-4, **DAMPER}
+    device |= {"series_stiffness": 1e4, "series_damping": 10.0}
+    device |= {f"slip_stiffness_{i}": 1e4 for i in range(1, 9)}
+    device |= {f"slip_force_{i}": 2.0 for i in range(1, 9)}
+    device |= {f"branch_stiffness_{i}": 1e3 for i in range(1, 4)}
+    device |= {f"branch_damping_{i}": 10.0 for i in range(1, 4)}
+    spec, model, data, _ = built("IMPLICITFAST", device)
+    assert model.na == len(Device(**device).state_names) == 15
+    started(data)
+    run(model, data, 0.05)
+    assert np.isfinite(data.act).all()
+    spec.actuator("d").actdim = 0
+    with pytest.raises(ValueError, match=r'friction_state_1, .*control_change; write actdim="15"'):
+        spec.compile()
+
+
 def test_a_narrower_ctrlrange_counts() -> None:
     spec, _, _, _ = built("EULER", {**DAMPER, "control_lag": 0.0})
     spec.actuator("d").ctrlrange, spec.actuator("d").ctrllimited = (20, 60), True

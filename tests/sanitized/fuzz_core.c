@@ -118,7 +118,9 @@ static int random_device(Input* input) {
                                       "gas_pressure gas_area gas_volume",
                                       "piston_area channel_area channel_length"};
   char message[INERTER_MESSAGE_SIZE];
-  int law = (int)byte(input) % INERTER_NFRICTION;
+  // the law with the most states more often
+  int law = (int)byte(input) % (INERTER_NFRICTION + 5);
+  law = law < INERTER_NFRICTION ? law : INERTER_FRICTION_maxwell_slip;
   inerter_default(&device);
   REQUIRE(!inerter_set(&device, "friction", inerter_friction_name(law), message));
   if (law == INERTER_FRICTION_bouc_wen) {
@@ -141,7 +143,16 @@ static int random_device(Input* input) {
   unsigned control = byte(input) % (2 * INERTER_NCONTROL);
   if (control && control < INERTER_NCONTROL) {
     REQUIRE(!inerter_set(&device, "control", inerter_control_name((int)control), message));
-    set_each(input, "control_lower control_upper control_lag");
+    // around the value that there is, or anywhere
+    double value = *(const double*)((const char*)&device +
+                                    inerter_parameter(inerter_controlled(&device))->offset);
+    double around = isnan(value) ? 1 : value;
+    char text[64];
+    snprintf(text, sizeof(text), "%.17g", around - 0.5 * fabs(around));
+    inerter_set(&device, "control_lower", text, message);
+    snprintf(text, sizeof(text), "%.17g", around + fabs(around) + 1);
+    inerter_set(&device, "control_upper", text, message);
+    set_each(input, byte(input) % 4 ? "control_lag" : "control_lower control_upper control_lag");
   }
   for (unsigned count = byte(input) % 8; count; count--) {
     set(input, inerter_parameter((int)byte(input) % INERTER_NPARAMETER));

@@ -198,6 +198,10 @@ def maxwell_slip(f: Functions, p: Parameters, x: Value, v: Value, z: Any) -> Fri
     return Friction(total, 0.0, tuple(rates))
 
 
+YOUNGEST = -300.0
+"""Least logarithm of an age, so that its rate is a number."""
+
+
 def rate_state(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = (v0 exp(-z) - |v|) / L; F = f_c level (1 + A ln(V / v0) + B z) tanh(v / v_t).
 
@@ -206,7 +210,7 @@ def rate_state(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Fri
     width = p.transition_velocity
     speed = 0.5 * f.log((v * v + width * width) / (p.rate_velocity * p.rate_velocity))
     bracket = f.greatest(LEAST_LEVEL, 1.0 + p.rate_effect * speed + p.age_effect * z)
-    rate = (p.rate_velocity * f.exp(-z) - f.abs(v)) / p.age_distance
+    rate = (p.rate_velocity * f.exp(-f.greatest(YOUNGEST, z)) - f.abs(v)) / p.age_distance
     size = p.coulomb_force * level(f, p, x, v)
     return Friction(size * bracket * f.tanh(v / width), 0.0, rate)
 

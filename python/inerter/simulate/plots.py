@@ -41,7 +41,10 @@ def device_plots(run: SimulatedRun, device: DeviceRun) -> dict[str, go.Figure]:
         "energy": _energy(run, device),
     }
     for name in device.place.act:
-        plot = figure("time [s]", f"{name.replace('_', ' ')} [{STATE_UNITS[name]}]")
+        # an age, as its logarithm
+        aging = name == "friction_state" and device.place.device.friction == "rate_state"
+        unit = "1" if aging else STATE_UNITS[name]
+        plot = figure("time [s]", f"{name.replace('_', ' ')} [{unit}]")
         _over_time(plot, run.time, columns[name], "after", name)
         plots[f"state-{name}"] = plot
     return plots

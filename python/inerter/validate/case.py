@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.reference import ReferenceDevice
 from inerter.validate.inputs import Signal, signal
-from inerter.validate.laws import LAWS, Kind, exponents, in_units
+from inerter.validate.laws import LAWS, Kind, exponents, in_units, state_exponents
 from inerter.validate.models import ValidationModel, models
 
 PUBLISHED = "published"
@@ -64,19 +64,15 @@ class Case:
     def command(self, length: float = 1.0) -> float:
         """What the device's control is told, NaN for a device without one."""
         told = LAWS[self.law].command if self.law in LAWS else math.nan
-        return told * self._control_unit(length, self.setup.mass)
+        if math.isnan(told):
+            return told
+        of_mass, of_length = exponents("control_upper", LAWS[self.law].device)
+        return told * self.setup.mass**of_mass * length**of_length
 
     def state_size(self, name: str, length: float) -> float:
         """Size of a state of the device for motions `length` times as large."""
-        return self._control_unit(length) if name == "control_change" else length
-
-    def _control_unit(self, length: float, mass: float = 1.0) -> float:
-        """Size of what the control sets in other units."""
         device = LAWS[self.law].device if self.law in LAWS else {}
-        if "control" not in device:
-            return 1.0
-        of_mass, of_length = exponents("control_upper", device)
-        return mass**of_mass * length**of_length
+        return length ** state_exponents(name, device)[1]
 
     def reference_device(self) -> ReferenceDevice | None:
         """The device in the reference."""

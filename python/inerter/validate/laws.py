@@ -107,6 +107,14 @@ def exponents(name: str, device: dict[str, float | str] | None = None) -> tuple[
     return _powers(parameters()[name].unit, power)
 
 
+def state_exponents(name: str, device: dict[str, float | str]) -> tuple[float, float]:
+    """Powers of mass and length in the unit of a state: most are lengths or velocities."""
+    if name == "control_change":
+        return exponents("control_upper", device)
+    aging = name == "friction_state" and device.get("friction") == "rate_state"
+    return (0.0, 0.0) if aging else (0.0, 1.0)
+
+
 def _powers(unit: str, power: float = 1.0) -> tuple[float, float]:
     mass = length = 0.0
     sign = 1

@@ -32,7 +32,8 @@ def rate(
     parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
 ) -> Quantity:
     """Rate of the logarithm of the age z' [1/s]; arguments [m, m/s, -] broadcast together."""
-    aging = parameters.rate_velocity * np.exp(-np.asarray(state)) - abs(velocity)
+    # an age of exp(-300) is none
+    aging = parameters.rate_velocity * np.exp(-np.maximum(state, -300.0)) - abs(velocity)
     return aging / parameters.age_distance
 
 
