@@ -88,7 +88,9 @@ def _rival_in_words(rival: Rival) -> str:
 
 
 def _law(name: str | None) -> str:
-    """A friction law in brackets, where it is one."""
+    """A friction law in brackets, or of which channel and kind a filter is, where it is one."""
+    if name and " order " in name:
+        return f" ({name})"
     return f" ({FRICTION[name].words})" if name and name in FRICTION else ""
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from .bench_channel import Channel, Situation, answers
+from .bench_channel import Channel, Situation, answers, draw_filter
 from .bench_effects import FRICTION_LAWS, LEVEL_CHANGES
 from .bench_motions import Drive, highest_frequency, is_free_of
 from .device import ReferenceDevice
@@ -371,6 +371,10 @@ def _delay(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Draw
     return Drawn({}, {"delay": rounded(draw.uniform(1e-3, 6e-3))}, ("delay",))
 
 
+def _filter(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
+    return Drawn({}, draw_filter(draw, highest_frequency(drives)), ("force_filter",))
+
+
 def _stated(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
     error = draw.uniform(0.03, 0.20) * draw.choice([-1.0, 1.0])
     stated = {"inertance": rounded(ideal.inertance * (1.0 + error))}
@@ -419,6 +423,7 @@ def _shaft_share(frequency: float, ratio: float, drives: list[Drive]) -> float:
 _UNSIZED: dict[str, Callable[[Generator, ReferenceDevice, list[Drive]], Drawn]] = {
     "none": _nothing,
     "sensor_delay": _delay,
+    "sensor_filter": _filter,
     "inertance_error": _stated,
     "series_elasticity": _shaft,
     "backlash": _backlash,
