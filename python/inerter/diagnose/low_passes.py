@@ -13,10 +13,10 @@ import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.decision import CRITERIA, loss
+from inerter.diagnose.decision import CRITERIA, loss, visible
 from inerter.diagnose.parallel import parallel
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
-from inerter.identify.fit import Fit
+from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
 if TYPE_CHECKING:
@@ -100,7 +100,10 @@ def other_filter(search: Search, current: Scored) -> Scored | None:
     if not has_filter(current.model):
         return None
     delayed = search.score("exchange", None, search.problem.fit(as_delay(current.model)))
-    if loss(delayed, current) < CRITERIA.gain:
+    masks, force = search.problem.masks, search.problem.scales.force
+    errors = rms(delayed.errors, masks), rms(current.errors, masks)
+    # also where the two differ by no more than what interpolation between samples leaves
+    if loss(delayed, current) < CRITERIA.gain or not visible(*errors, 0.0, force):
         return delayed
     for _, fit in _best(search, current.fit):
         scored = search.score("exchange", None, fit)

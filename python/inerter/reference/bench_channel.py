@@ -103,7 +103,8 @@ def _grid(channel: Channel, drive: Drive) -> tuple[Array, int, int]:
     every = max(1, int(np.ceil(STEPS_PER_PERIOD * channel.force_filter * step)))
     lead = every * int(np.ceil(MEMORY / channel.force_filter / step))
     count = (drive.time.size - 1) * every + 1
-    return float(drive.time[0]) + step / every * np.arange(-lead, count), every, lead
+    times = np.asarray(drive.time[0] + step / every * np.arange(-lead, count), dtype=np.float64)
+    return times, every, lead
 
 
 def draw_filter(draw: np.random.Generator, highest: float) -> dict[str, float]:
