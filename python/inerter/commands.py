@@ -104,6 +104,15 @@ def diagnose_command(
     holdout: Annotated[
         list[str] | None, typer.Option(help="Name of a run to hold out; may be given again.")
     ] = None,
+    filters: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--filter",
+            metavar="CHANNEL=KIND:HZ",
+            help="A low-pass that the force or the displacement went through: force=bessel:50, "
+            "displacement=butterworth:60:2 (order; 4 where it is left out). May be given again.",
+        ),
+    ] = None,
     out_dir: Folder = Path("out/diagnosis"),
     as_json: AsJson = False,
     dry_run: Annotated[
@@ -126,7 +135,7 @@ def diagnose_command(
     mapping = (inputs or [], sensors or [])
     # --quick: the name of --dry-run before
     folder = None if dry_run or quick else out_dir
-    _diagnose(record, device, model, holdout or [], folder, as_json, mapping, stated)
+    _diagnose(record, device, model, holdout or [], folder, as_json, mapping, stated, filters or [])
 
 
 def _diagnose(
@@ -138,6 +147,7 @@ def _diagnose(
     as_json: bool,
     mapping: tuple[list[str], list[str]] = ([], []),
     stated: dict[str, Any] | None = None,
+    filters: Sequence[str] = (),
 ) -> Diagnosis:
     """Without a folder nothing is written."""
     from warnings import catch_warnings, simplefilter
@@ -155,7 +165,7 @@ def _diagnose(
         simplefilter("ignore", RuntimeWarning)
         with status(as_json) as progress, told_reading(**(stated or {})) as tell:
             with heard(lambda records: _first_look(records, as_json, tell)):
-                result = diagnose(record, device, model, holdout, progress, *mapping)
+                result = diagnose(record, device, model, holdout, progress, *mapping, filters)
             tell()
         if folder:
             write_outputs(result, folder)

@@ -168,6 +168,27 @@ def read_delay(path: Path) -> float:
     return float(delay)
 
 
+def read_filters(path: Path) -> dict[str, str]:
+    """Low-passes that the channels of a record went through, as stated, by the channel's name.
+
+    Raises
+    ------
+    DeviceError
+        One that is no text.
+    """
+    channels = _content(path).get("channels", {})
+    found = {}
+    for name in ("force", "displacement"):
+        key = f"{name}_filter"
+        if isinstance(channels, dict) and key in channels:
+            if not isinstance(channels[key], str):
+                raise DeviceError(
+                    f'{path}: {key} is {_shown(channels[key])}; give a text, such as "bessel:50:4"'
+                )
+            found[name] = channels[key]
+    return found
+
+
 def _numbers(path: Path, key: str, value: Any) -> Any:
     """A list of numbers, perhaps in threes; or a text with blanks, as MJCF has it."""
     flat: list[Any] = []
@@ -235,6 +256,7 @@ def device_text(
     delay: float = 0.0,
     title: str = "",
     motion: Kind = TRANSLATION,
+    filters: Mapping[str, str] | None = None,
 ) -> str:
     """The text of a device.toml.
 
@@ -250,6 +272,8 @@ def device_text(
         Comment for the first line.
     motion : str
         What the device does.
+    filters : mapping, optional
+        Low-passes of the record's channels, as they are stated; not part of the device.
     """
     comments = comments or {}
     # names of records may hold what TOML does not allow
@@ -267,11 +291,9 @@ def device_text(
         own = "" if name in WORDS else parameter_unit(motion, name, parameters()[name].unit)
         note = comments.get(name, own)
         lines.append(f"{name} = {text}" + (f"  # {note}" if note and note != "1" else ""))
-    if delay:
-        lines += [
-            "",
-            "# of the measurement, not of the device: the force channel is late by this time",
-            "[channels]",
-            f"force_delay = {delay!r}  # s",
-        ]
+    if delay or filters:
+        what = "what its channels do" if filters else "the force channel is late by this time"
+        lines += ["", f"# of the measurement, not of the device: {what}", "[channels]"]
+        lines += [f"force_delay = {delay!r}  # s"] if delay else []
+        lines += [f'{name}_filter = "{each}"' for name, each in (filters or {}).items()]
     return "\n".join(lines) + "\n"

@@ -67,8 +67,8 @@ CASES = {
         ["line 2", "no header", "remove its '#'", HEADER],
     ),
     "missing column": (
-        "\n".join(["time,displacement,torque", *rows()]),
-        ["no column 'force'", "found: time, displacement, torque", "needs the columns"],
+        "\n".join(["time,displacement,pull", *rows()]),
+        ["no column 'force'", "found: time, displacement, pull", "needs the columns"],
     ),
     "misspelt column": (
         "\n".join(["time,displacment[mm],force", *rows()]),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from inerter.diagnose import diagnose
+from inerter.diagnose import diagnose, diagnose_bench
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import thin
@@ -50,3 +51,20 @@ def test_emps_is_explained_better_than_by_four_terms(measured_data: Path) -> Non
     assert "viscous_friction" in named
     assert named & {"coulomb_friction", "asymmetric_friction", "hysteretic_friction"}
     assert result.extended.nrmse < 0.05
+
+
+@pytest.mark.long
+def test_robot_joint(measured_data: Path) -> None:
+    """A joint that turns, at middle speed: viscous and Coulomb friction leave 0.357 N m."""
+    (record,) = read_records([measured_data / "robot_joint" / "franka_q2_middle.csv"], "bench")
+    assert record.motion == "rotation"
+    # means of five samples: five times as fast
+    count = record.samples // 5 * 5
+    names = ("time", "displacement", "force", "velocity")
+    means = {n: getattr(record, n)[:count].reshape(-1, 5).mean(axis=1) for n in names}
+    result = diagnose_bench([replace(record, extra={}, warnings=(), **means)])
+    assert result.motion == "rotation"
+    assert result.extended.rmse < 0.13
+    assert "N m rms" in result.verdict
+    assert result.parameters["coulomb_force"].unit == "N*m"
+    assert {"asymmetric_friction"} <= {finding.effect for finding in result.findings}

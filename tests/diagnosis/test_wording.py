@@ -11,8 +11,8 @@ from bench_runs import measured
 from inerter import Device
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import by_weight
-from inerter.diagnose.result import Diagnosis, Finding, Rival, StatedValue
-from inerter.diagnose.wording import departure, effect_in_words, verdict
+from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival, StatedValue
+from inerter.diagnose.wording import departure, effect_in_words, evidence, verdict
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, sum_of_sines
 
@@ -45,6 +45,30 @@ def test_what_is_stated_and_other_is_called_so() -> None:
     assert effect_in_words(finding) == "viscous friction other than stated"
     unstated = replace(finding, parameters={"viscous": replace(value, stated=None)})
     assert effect_in_words(unstated) == "viscous friction"
+
+
+@pytest.mark.parametrize(
+    ("frequency", "text"),
+    [
+        (50.05, "this is the frequency of the mains (50 Hz): hum"),
+        (60.0, "this is the frequency of the mains (60 Hz): hum"),
+        (150.2, "this is 3 times the frequency of the mains (50 Hz): hum"),
+        (50.6, ""),
+        (75.0, ""),
+        (12.0, ""),
+    ],
+)
+def test_a_tone_of_the_mains_is_called_hum(frequency: float, text: str) -> None:
+    values = {
+        "disturbance_amplitude": ParameterValue(3.0, 0.1, "N"),
+        "disturbance_frequency": ParameterValue(frequency, 0.01, "Hz"),
+    }
+    finding = Finding(
+        effect="periodic_disturbance", law=None, confidence=1.0, parameters=values,
+        rmse_before=5.0, rmse_after=1.0, evidence="", rivals=[],
+    )  # fmt: skip
+    assert ("mains" in evidence(finding)) == bool(text)
+    assert text in evidence(finding)
 
 
 def slow_sampled(device: ReferenceDevice) -> list[Record]:

@@ -2,6 +2,7 @@
 
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from inerter.reference import (
 from inerter.reference.bench_devices import draw_limits
 from inerter.reference.bench_motions import draw_drives, highest_frequency
 from inerter.reference.sizes import rms
-from scipy.signal import lsim
+from scipy.signal import bessel, butter, freqs, lsim
 
 QUIET = NoiseLevels(force=0.0, displacement=0.0)
 # forces that act at once along the motion, or late
@@ -86,6 +87,28 @@ def test_delay_shifts_the_force_behind_the_displacement() -> None:
         inner = slice(50, -50)
         error = np.sqrt(np.mean((late - run.force)[inner] ** 2))
         assert error < 0.02 * np.sqrt(np.mean(run.force[inner] ** 2))
+
+
+def test_a_low_pass_is_in_the_force_and_not_in_the_displacement() -> None:
+    """As its transfer function says, which the case's force is not made by."""
+    case = hide_effect(5, "sensor_filter", noise=QUIET)
+    channel = case.channel
+    kind: Any = bessel if channel.force_filter_bessel else butter
+    more: dict[str, Any] = {"norm": "mag"} if channel.force_filter_bessel else {}
+    above, below = kind(
+        int(channel.force_filter_order), 2 * np.pi * channel.force_filter, analog=True, **more
+    )
+    for run in case.runs:
+        assert run.force.shape == run.displacement.shape == run.time.shape
+        bare = case.device.inertance * run.truth.acceleration
+        spacing = run.time[1] - run.time[0]
+        frequency = np.fft.rfftfreq(bare.size, spacing)
+        gain = freqs(above, below, 2 * np.pi * frequency)[1]
+        # whatever comes round from the end is forgotten after some periods
+        late = np.fft.irfft(np.fft.rfft(bare) * gain, bare.size)[bare.size // 4 :]
+        error = late - run.force[bare.size // 4 :]
+        assert rms(error) < 0.01 * rms(late)
+        assert rms(run.force - bare) > 0.05 * rms(bare)
 
 
 def test_reproducible_from_the_seed() -> None:

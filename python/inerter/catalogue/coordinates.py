@@ -133,6 +133,20 @@ def _reach(s: Scales) -> float:
     return 1.05 * max(-low, least) if np.isfinite(low) else least
 
 
+def _low_pass(channel: str) -> tuple[Coordinate, ...]:
+    """The cut-off of a channel's low-pass; its order and kind (1 for Bessel), which are held."""
+    name = f"{channel}_filter"
+    return (
+        Coordinate(
+            name=name, unit="Hz", words={name: f"cut-off of the {channel} channel"},
+            belongs_to="channel", logarithmic=True, none=None, size=lambda s: s.frequency,
+            lower=lambda s: 0.3 * s.frequency, upper=lambda s: 20 * s.highest_frequency,
+        ),
+        Coordinate(name=f"{name}_order", unit="1", belongs_to="channel", none=None),
+        Coordinate(name=f"{name}_bessel", unit="1", belongs_to="channel", none=None),
+    )  # fmt: skip
+
+
 # --- every coordinate --------------------------------------------------------------------------
 
 _ALL = (
@@ -348,6 +362,8 @@ _ALL = (
         name="delay", unit="s", words={"delay": "delay"}, belongs_to="channel",
         size=lambda s: 1e-3, lower=lambda s: -LARGEST_DELAY, upper=lambda s: LARGEST_DELAY,
     ),
+    *_low_pass("force"),
+    *_low_pass("displacement"),
     Coordinate(
         name="force_drift", unit="N/s", words={"force_drift": "drift"}, belongs_to="channel",
         size=lambda s: s.force / s.elapsed, column=lambda x, v, a, t: t,

@@ -238,6 +238,19 @@ _ALL = (
         rivals=("series_elasticity", "viscous_friction"),
     ),
     Effect(
+        name="sensor_filter", rank=8, telling=(), far=True, unlike_friction=True, of_channel=True,
+        coordinates=(
+            "force_filter", "force_filter_order", "force_filter_bessel",
+            "displacement_filter", "displacement_filter_order", "displacement_filter_bessel",
+        ),
+        plain="a low-pass filter of one channel that the other has not",
+        meaning="one channel is late, and what is fast in it is smaller",
+        cause="a filter of the amplifier or the card in one of the channels",
+        taken_for="a delay, series elasticity and viscous friction",
+        experiment="state the filter (--filter), or record once without it",
+        rivals=("sensor_delay", "series_elasticity"),
+    ),
+    Effect(
         name="quadratic_damping", rank=7, coordinates=("quadratic_damping",), on_table=True,
         plain="quadratic damping", meaning="c2 v |v|",
         cause="turbulent flow, windage of the flywheel", taken_for="viscous friction",

@@ -10,6 +10,7 @@ from inerter.core import Device
 from inerter.device_file import (
     read_bench_device,
     read_delay,
+    read_filters,
     read_motion,
     refuse_other_motion,
 )
@@ -17,6 +18,7 @@ from inerter.diagnose.result import Diagnosis, Finding
 from inerter.diagnose.rig import diagnose_bench
 from inerter.diagnose.table import diagnose_table
 from inerter.diagnose.vehicle import SystemInput, diagnose_model, is_for_a_model
+from inerter.identify.channel_filter import CHANNELS, Filter, read_filter
 from inerter.mjcf import device_of_model, motion_of_model
 from inerter.records import BenchTable, Record, RecordError, read_records
 
@@ -31,6 +33,7 @@ def diagnose(
     progress: Callable[[str], None] = lambda text: None,
     inputs: Sequence[str] = (),
     sensors: Sequence[str] = (),
+    filters: Sequence[str] = (),
 ) -> Diagnosis:
     """Diagnose records from files.
 
@@ -50,6 +53,9 @@ def diagnose(
         Told what is being done.
     inputs, sensors : sequence of str
         COLUMN=ACTUATOR and COLUMN=SENSOR, where the names in `model` are others than the columns'.
+    filters : sequence of str
+        CHANNEL=KIND:CUTOFF[:ORDER] of low-passes that a channel of bench records went through, such
+        as "force=bessel:50".
 
     Raises
     ------
@@ -73,6 +79,7 @@ def diagnose(
     rest_length = baseline.rest_length if baseline else 0.0
     if baseline and rest_length:
         baseline = Device(**{k: v for k, v in baseline.given.items() if k != "rest_length"})
+    known = _filters(device, filters)
     progress("reading the records")
     read = read_records(records, others=False)
     if where := model or (device if isinstance(device, Path) else None):
@@ -80,12 +87,14 @@ def diagnose(
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):
-        found = diagnose_bench(bench, baseline, holdout, progress, delay)
+        found = diagnose_bench(bench, baseline, holdout, progress, delay, known)
         return replace(found, rest_length=rest_length)
     if len(tables) == len(read):
         if holdout:
             raise ValueError("--holdout names runs, and a table has none; leave it out")
         return replace(diagnose_table(tables, baseline, progress), rest_length=rest_length)
+    if known:
+        raise ValueError("--filter is of a channel of bench records over time; leave it out")
     kinds = ", ".join(f"{record.name} ({record.kind})" for record in read)
     if tables and bench:
         raise RecordError(f"records of different kinds: {kinds}; give one kind at a time")
@@ -93,3 +102,20 @@ def diagnose(
         f"vehicle records are judged against a model of the vehicle: {kinds}; give its MJCF with "
         "--model, or bench records (time, displacement, force)"
     )
+
+
+def _filters(device: Path | Device | None, given: Sequence[str]) -> dict[str, Filter]:
+    """Low-passes that the channels went through, as a device's file and the options state them."""
+    found = {}
+    if isinstance(device, Path):
+        for channel, text in read_filters(device).items():
+            found[channel] = read_filter(text, f"{device}: {channel}_filter")
+    for text in given:
+        channel, sign, stated = text.partition("=")
+        if not sign or channel.strip() not in CHANNELS:
+            raise ValueError(
+                f"--filter {text[:60]!r}: give CHANNEL=KIND:CUTOFF of the channel "
+                f"{' or '.join(CHANNELS)}, such as --filter force=bessel:50"
+            )
+        found[channel.strip()] = read_filter(stated, f"--filter {channel.strip()}")
+    return found

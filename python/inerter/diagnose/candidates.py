@@ -227,7 +227,13 @@ def _tone(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     return iter(())
 
 
+def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    # tried where a delay shows, see `low_passes`
+    return iter(())
+
+
 _SPECIAL: dict[str, Build] = {
+    "sensor_filter": _filter,
     "inertance_error": _inertance,
     "parallel_stiffness": _stiffness,
     "variable_inertance": _variable_inertance,

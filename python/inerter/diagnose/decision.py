@@ -52,6 +52,12 @@ class Criteria:
         "standard error per value",
         "of a bristle's stiffness: beyond, it may have no end, and friction no memory",
     )
+    late_enough: float = _bound(
+        1.2,
+        "the least error of a candidate",
+        "that of a delay from which low-passes are tried, too",
+    )
+    filters_kept: int = _bound(2, "filters", "the best low-passes, which are checked further")
     local_gain: float = _bound(
         0.5,
         SHARE,

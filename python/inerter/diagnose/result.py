@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
+from inerter.identify.channel_filter import CHANNELS, filter_of
 from inerter.motion_units import TRANSLATION, Kind
 
 Array = NDArray[np.float64]
@@ -111,6 +112,12 @@ class Accuracy:
     def delay(self) -> float:
         """Time by which the force channel is late [s]."""
         return self.channels.get("delay", 0.0)
+
+    @property
+    def filters(self) -> dict[str, str]:
+        """Low-passes of the channels as they are stated, by the channel's name."""
+        found = {channel: filter_of(self.channels, channel) for channel in CHANNELS}
+        return {channel: each.text for channel, each in found.items() if each}
 
     def json(self) -> dict[str, Any]:
         """As in the contract."""

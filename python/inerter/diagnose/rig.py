@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -46,6 +46,7 @@ from inerter.diagnose.statistics import gain_interval
 from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.channel import channel_values
+from inerter.identify.channel_filter import CHANNELS, Filter, filter_of, named
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.prediction import settled as without_nuisances
@@ -63,6 +64,7 @@ def diagnose_bench(
     holdout: Sequence[str] = (),
     progress: Progress = lambda text: None,
     delay: float = 0.0,
+    filters: Mapping[str, Filter] | None = None,
 ) -> Diagnosis:
     """What a simulation of the device lacks, on data it has not seen.
 
@@ -79,6 +81,8 @@ def diagnose_bench(
         Told what is being done, a line each.
     delay : float
         Time by which the force channel is known to be late [s].
+    filters : mapping, optional
+        Low-passes that the channels "force" and "displacement" are known to have gone through.
 
     Raises
     ------
@@ -86,8 +90,11 @@ def diagnose_bench(
         Runs that cannot be split or do not move, or some that turn beside others that do not.
     """
     one_motion(records)
+    channel = {"delay": delay}
+    for name, known in (filters or {}).items():
+        channel |= named(name, known)
     given = Given(
-        records=list(records), device=device, holdout=holdout, progress=progress, delay=delay
+        records=list(records), device=device, holdout=holdout, progress=progress, channel=channel
     )
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
@@ -162,7 +169,7 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
         known = stands.standings.get(link.effect)
         finding = Finding(
             effect=link.effect,
-            law=link.law,
+            law=link.law or _filter(link.effect, stands.fit.model),
             confidence=known.confidence if known else 0.5,
             parameters={n: values[n] for n in EFFECTS[link.effect].parameters if n in values},
             rmse_before=link.rmse_before,
@@ -179,6 +186,16 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
         )
         findings.append(replace(finding, evidence=wording.evidence(finding)))
     return sorted(findings, key=lambda finding: -finding.gain)
+
+
+def _filter(effect: str, model: Model) -> str | None:
+    """Channel, kind and order of the low-pass that a finding is about; None for another effect."""
+    if effect != "sensor_filter":
+        return None
+    for channel in CHANNELS:
+        if f"{channel}_filter" in model.free and (found := filter_of(model.values, channel)):
+            return f"{channel}, {found.words}"
+    return None
 
 
 def _accuracy(stands: Confirmed, model: Model) -> Accuracy:

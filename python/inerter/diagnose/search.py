@@ -28,6 +28,7 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
+from inerter.diagnose.low_passes import other_filter, where_late
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import (
     Array,
@@ -242,6 +243,9 @@ class Search:
         fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None
+        fitted = sorted(
+            [*fitted, *where_late(self, current, fitted)], key=lambda p: p[1].rmse(masks)
+        )
         floor = fitted[0][1].rmse(masks)
         worth = (1 - CRITERIA.gain) * current.fit.rmse(masks)
         worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
@@ -363,6 +367,8 @@ class Search:
         The law that is best on its own need not be the one that is best beside the effects found
         since: a rich law stands in for a simple one with, say, viscous friction.
         """
+        if low_passed := other_filter(self, current):
+            return self._exchange(low_passed)
         masks, free = self.problem.masks, current.model.free
         trials = [Candidate("exchange", None, (model,)) for model in as_spring(current.model)]
         for model in simpler_laws(current.model):

@@ -64,15 +64,16 @@ class Given:
         Names of runs to hold out.
     progress
         Told what is being done, a line each.
-    delay
-        Time by which the force channel is known to be late [s].
+    channel
+        What is known of the force channel, as coordinates: its `delay` [s], low-passes (see
+        `identify.channel_filter`).
     """
 
     records: Sequence[Record]
     device: Device | None = None
     holdout: Sequence[str] = ()
     progress: Progress = lambda text: None
-    delay: float = 0.0
+    channel: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,8 +167,7 @@ def prepared(given: Given) -> Prepared:
     # and is smoothed as the force that it makes tells
     plain = prepare(records, data.full.fit)
     baseline = baseline_of(given.device, data.band.scales)
-    if given.delay:
-        baseline = replace(baseline, values={**baseline.values, "delay": given.delay})
+    baseline = baseline.holding(**{name: v for name, v in given.channel.items() if v})
     return Prepared(
         given=given, data=data, plain=plain, baseline=baseline,
         weighed=weighed(records, plain, data.full.fit),

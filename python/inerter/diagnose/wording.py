@@ -20,6 +20,12 @@ from inerter.diagnose.result import (
 )
 from inerter.motion_units import force_word, words
 
+MAINS = (50.0, 60.0)
+"""Frequencies of the mains [Hz]."""
+MAINS_DRIFT = 0.2
+"""By how much the mains stray from it [Hz]."""
+MOST_HARMONICS = 7
+
 
 def quantity(value: ParameterValue) -> str:
     """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells."""
@@ -88,7 +94,9 @@ def _rival_in_words(rival: Rival) -> str:
 
 
 def _law(name: str | None) -> str:
-    """A friction law in brackets, where it is one."""
+    """A friction law in brackets, or of which channel and kind a filter is, where it is one."""
+    if name and " order " in name:
+        return f" ({name})"
     return f" ({FRICTION[name].words})" if name and name in FRICTION else ""
 
 
@@ -123,7 +131,20 @@ def evidence(finding: Finding) -> str:
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
-    return text + "."
+    return text + f"{_of_the_mains(finding)}."
+
+
+def _of_the_mains(finding: Finding) -> str:
+    """That a tone is hum, where it lies at a multiple of the frequency of the mains."""
+    tone = finding.parameters.get("disturbance_frequency")
+    if tone is None:
+        return ""
+    for mains in MAINS:
+        times = round(tone.value / mains)
+        if 1 <= times <= MOST_HARMONICS and abs(tone.value - times * mains) < times * MAINS_DRIFT:
+            what = "the frequency" if times == 1 else f"{times} times the frequency"
+            return f"; this is {what} of the mains ({mains:g} Hz): hum, and no part of the device"
+    return ""
 
 
 def is_right(diagnosis: Diagnosis) -> bool:

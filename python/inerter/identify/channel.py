@@ -1,6 +1,9 @@
 """What stands between a device's force and the record: a late, drifting, limited force channel.
 
     delay                    the channel is late by this time                              [s]
+    force_filter             cut-off of a low-pass that it went through, with its order
+                             and kind, see `channel_filter`                               [Hz]
+    displacement_filter      the same of the displacement channel, taken out of the motion [Hz]
     force_drift              force per elapsed time                                        [N/s]
     force_maximum, _minimum  where the channel clips                                       [N]
     disturbance_amplitude, disturbance_frequency   a tone from outside                     [N], [Hz]
@@ -20,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.catalogue.coordinates import CHANNEL_UNITS
+from inerter.identify.channel_filter import filter_of, filtered
 
 Array = NDArray[np.float64]
 
@@ -57,6 +61,8 @@ def through_channel(
     """
     if drift := values.get("force_drift", 0.0):
         force = force + drift * elapsed
+    if (low_pass := filter_of(values, "force")) is not None:
+        force = filtered(force, spacing, low_pass)
     force = delayed(force, values.get("delay", 0.0), spacing)
     if clips(values):
         low, high = (values.get(name) for name in reversed(LIMITS))

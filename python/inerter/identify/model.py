@@ -101,6 +101,10 @@ class Model:
         names = tuple(name for name in values if name not in self.free)
         return Model(law, {**self.values, **values}, _useful(self.free + names, law), self.texts)
 
+    def holding(self, **values: float) -> Model:
+        """The model with further coordinates that a fit leaves as they are."""
+        return Model(self.friction, {**self.values, **values}, self.free, self.texts)
+
     def without(self, names: Sequence[str], friction: str | None = None) -> Model:
         """The model without some coordinates."""
         law = friction or self.friction

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.core import Device
 from inerter.identify.channel import delayed, through_channel, without_limits, without_tone
+from inerter.identify.channel_filter import Filter, filter_of, filtered, without_start
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.transient import without_transient
@@ -113,10 +114,14 @@ def _states_of(part: Device, device: Device, state: float | Array) -> float | Ar
 def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, float]]:
     """A run and coordinates whose delay is in the motion, where it has to be; else as they are.
 
+    A filter of the displacement channel is taken out of the motion.
+
     A flywheel that lands has a force between samples that none of them shows: a delayed force would
     be read off those. The motion is smooth.
     """
     values = dict(model.values)
+    if (low_pass := filter_of(values, "displacement")) is not None:
+        run = unfiltered(run, low_pass)
     if not (values.get("delay") and "backlash" in values and np.isinf(run.cutoff)):
         return run, values
     delay, h = values.pop("delay"), run.spacing
@@ -136,6 +141,20 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     return replace(
         run, displacement=late(x, v, a), velocity=late(v, a), acceleration=late(a)
     ), values
+
+
+def unfiltered(run: BenchRun, low_pass: Filter) -> BenchRun:
+    """A run whose displacement channel went through a filter, with the motion before that."""
+
+    def before(channels: Sequence[Array], spacing: float) -> list[Array]:
+        return [filtered(channel, spacing, low_pass, inverse=True) for channel in channels]
+
+    x, v, a = before((run.displacement, run.velocity, run.acceleration), run.spacing)
+    measured = run.measured
+    if measured is not None:
+        fine = before(measured, run.spacing / run.thinned)
+        measured = (fine[0], fine[1], fine[2])
+    return replace(run, displacement=x, velocity=v, acceleration=a, measured=measured)
 
 
 def with_friction_drift(
@@ -161,7 +180,8 @@ def _without_load(device: Device) -> Device:
 def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_]) -> Array:
     """A residual without what only the record itself can tell, read off its masked samples.
 
-    That is how the flywheel turned as the record began, and the phase of a tone. Of a run left out
+    That is how the flywheel turned as the record began, what a low-pass held then, and the phase of
+    a tone. Of a run left out
     of a fit (nothing masked) everything is read off the run.
     """
     mask = mask if mask.any() else run.inner
@@ -170,6 +190,8 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
         return residual
     if device.series_stiffness and not device.backlash:
         residual = without_transient(device, residual, run.spacing, mask)
+    if (low_pass := filter_of(values, "force")) is not None:
+        residual = without_start(residual, run.spacing, mask & run.inner, low_pass, run.first)
     if amplitude := values.get("disturbance_amplitude", 0.0):
         frequency = values["disturbance_frequency"]
         seen = amplitude * run.gain(frequency)

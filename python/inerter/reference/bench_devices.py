@@ -6,9 +6,9 @@ With the law's shape fixed such an effect is linear in one size p, so p solves
     p^2 <e e> (1 - s^2) - 2 s^2 p <i e> - s^2 <i i> = 0,   i = b a, e the effect at p = 1.
 
 Sized otherwise: a stated inertance that is 3 to 20 % off; a half gap of 0.5 to 10 % of the
-smallest stroke; a shaft whose resonance lies at 1.5 to 6 times the highest frequency of the
-motion; a variable inertance whose factor stays within 0.3 .. 1.7 (so its share may stay lower); a
-force channel that clips 2 to 15 % of the samples.
+smallest stroke; a shaft whose resonance lies at 1.5 to 6 times, a low-pass whose cut-off at 1.5 to
+4 times the highest frequency of the motion; a variable inertance whose factor stays within 0.3 ..
+1.7 (so its share may stay lower); a force channel that clips 2 to 15 % of the samples.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from .bench_channel import Channel, Situation, answers
+from .bench_channel import Channel, Situation, answers, draw_filter
 from .bench_effects import FRICTION_LAWS, LEVEL_CHANGES
 from .bench_motions import Drive, highest_frequency, is_free_of
 from .device import ReferenceDevice
@@ -65,8 +65,8 @@ def draw_effect(
     if effect in _UNITS:
         unit = _UNITS[effect](draw, ideal, runs)
     elif effect == "hysteretic_friction":
-        travels = [float(np.max(abs(drive.displacement))) for drive in drives]
-        device, scaling, names = _unit_hysteresis(draw, str(law), ideal, min(travels))
+        travel = min(float(np.max(abs(drive.displacement))) for drive in drives)
+        device, scaling, names = _unit_hysteresis(draw, str(law), ideal, travel)
         unit = _Unit(device=device, channel=Channel(), scaling=scaling, names=names)
     else:
         unit = _plain(draw, effect, ideal)
@@ -363,12 +363,12 @@ def _unit_hysteresis(
 # effects whose size is not a share of the force
 
 
-def _nothing(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
-    return Drawn()
-
-
 def _delay(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
     return Drawn({}, {"delay": rounded(draw.uniform(1e-3, 6e-3))}, ("delay",))
+
+
+def _filter(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
+    return Drawn({}, draw_filter(draw, highest_frequency(drives)), ("force_filter",))
 
 
 def _stated(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
@@ -417,8 +417,9 @@ def _shaft_share(frequency: float, ratio: float, drives: list[Drive]) -> float:
 
 
 _UNSIZED: dict[str, Callable[[Generator, ReferenceDevice, list[Drive]], Drawn]] = {
-    "none": _nothing,
+    "none": lambda draw, ideal, drives: Drawn(),
     "sensor_delay": _delay,
+    "sensor_filter": _filter,
     "inertance_error": _stated,
     "series_elasticity": _shaft,
     "backlash": _backlash,

@@ -27,6 +27,7 @@ EFFECTS = (
     "force_drift",
     "sensor_saturation",
     "periodic_disturbance",
+    "sensor_filter",
 )
 """Every effect that a bench record can hide."""
 

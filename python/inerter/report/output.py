@@ -38,6 +38,7 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         diagnosis.extended.delay,
         f"identified by inerter diagnose from {names}",
         diagnosis.motion,
+        diagnosis.extended.filters,
     )
     model = device_mjcf(device, "identified_device", motion=diagnosis.motion)
     write_files(

@@ -125,6 +125,8 @@ def parameter_meaning(name: str) -> str:
     """The core's one-line meaning of a parameter."""
     if name == "delay":
         return "lateness of the force channel"
+    if name in ("force_filter", "displacement_filter"):
+        return f"cut-off of the {name.split('_')[0]} channel's low-pass, -3 dB"
     known = parameters().get(name)
     return known.meaning if known else ""
 

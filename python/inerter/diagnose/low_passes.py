@@ -1,0 +1,113 @@
+"""Low-passes of a channel in a search: tried where a delay shows, each order and kind.
+
+A filter is first of all late, so that where no delay shows nothing is tried, and no time is lost.
+What order it has shows better once the other effects are known: it is asked again after each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.decision import CRITERIA, loss, visible
+from inerter.diagnose.parallel import parallel
+from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
+from inerter.identify.fit import Fit, rms
+from inerter.identify.model import Model
+
+if TYPE_CHECKING:
+    from inerter.diagnose.search import Scored, Search
+
+Fitted = Sequence[tuple[Candidate, Fit]]
+
+
+def has_filter(model: Model) -> bool:
+    """Whether a fit of a model may change the low-pass of a channel."""
+    return any(f"{channel}_filter" in model.free for channel in CHANNELS)
+
+
+def filters(model: Model, delay: float = 0.0) -> Iterator[Candidate]:
+    """Low-passes of every order and kind in the place of a delay of the force channel [s].
+
+    The displacement's, where the force seems to come too early. A low-pass that is free in a model
+    is replaced by the others, and a free delay with it; one that is stated stays alone.
+    """
+    stated = any(f"{each}_filter" in model.values for each in CHANNELS)
+    if stated and not has_filter(model):
+        return
+    late, channel = delay, "force" if delay > 0 else "displacement"
+    for each in CHANNELS:
+        if (there := filter_of(model.values, each)) is not None:
+            sign = 1.0 if each == "force" else -1.0
+            late = sign * there.lateness + (model.delay if "delay" in model.free else 0.0)
+            channel = each
+    if not late:
+        return
+    dropped = EFFECTS["sensor_filter"].coordinates
+    bare = model.without((*dropped, "delay") if "delay" in model.free else dropped)
+    shapes = [(kind, order) for order in ORDERS for kind in KINDS if order > 1 or kind == KINDS[0]]
+    for kind, order in shapes:
+        found = named(channel, Filter(kind, order, Filter(kind, order, 1.0).lateness / abs(late)))
+        cutoff = {f"{channel}_filter": found.pop(f"{channel}_filter")}
+        law = f"{channel} {kind} {order}"
+        yield Candidate("sensor_filter", law, (bare.adding(None, **cutoff).holding(**found),))
+
+
+def where_late(search: Search, current: Scored, fitted: Fitted) -> list[tuple[Candidate, Fit]]:
+    """The best low-passes where a delay helps nearly as much as anything else, or has been found.
+
+    fitted: the other candidates, the best first.
+    """
+    masks, here = search.problem.masks, current.fit
+    if has_filter(here.model):
+        return []
+    delay = here.model.delay if "delay" in here.model.free else 0.0
+    late = next((fit for trial, fit in fitted if trial.effect == "sensor_delay"), None)
+    if late is not None and not delay:
+        near = late.rmse(masks) < CRITERIA.late_enough * fitted[0][1].rmse(masks)
+        gains = late.rmse(masks) < (1 - CRITERIA.gain) * here.rmse(masks)
+        delay = late.model.delay if near and gains else 0.0
+    return _best(search, here, delay)
+
+
+def as_delay(model: Model) -> Model:
+    """The model with a delay in the place of its low-pass, as late as that is."""
+    late = model.delay
+    for channel, sign in (("force", 1.0), ("displacement", -1.0)):
+        if (there := filter_of(model.values, channel)) is not None:
+            late += sign * there.lateness
+    return model.without(EFFECTS["sensor_filter"].coordinates).adding(None, delay=late)
+
+
+def _best(search: Search, here: Fit, delay: float = 0.0) -> list[tuple[Candidate, Fit]]:
+    masks = search.problem.masks
+    trials = list(filters(here.model, delay))
+    limit = (here.rmse(masks), np.inf)
+    fits = parallel(lambda trial: search.trials.fit(trial, limit), trials)
+    pairs = sorted(zip(trials, fits, strict=True), key=lambda pair: pair[1].rmse(masks))
+    return pairs[: CRITERIA.filters_kept]
+
+
+def other_filter(search: Search, current: Scored) -> Scored | None:
+    """A delay in the place of the low-pass found, where that does as well; else a better low-pass.
+
+    Of another order or kind. A delay beside it is tried without.
+    """
+    if not has_filter(current.model):
+        return None
+    delayed = search.score("exchange", None, search.problem.fit(as_delay(current.model)))
+    masks, force = search.problem.masks, search.problem.scales.force
+    errors = rms(delayed.errors, masks), rms(current.errors, masks)
+    # also where the two differ by no more than what interpolation between samples leaves
+    if loss(delayed, current) < CRITERIA.gain or not visible(*errors, 0.0, force):
+        return delayed
+    for _, fit in _best(search, current.fit):
+        scored = search.score("exchange", None, fit)
+        least = CRITERIA.gain if scored.complexity == current.complexity else 0.0
+        if loss(current, scored) > least:
+            return scored
+    return None

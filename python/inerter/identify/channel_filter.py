@@ -1,0 +1,171 @@
+"""A low-pass in one of the record's channels: the force's, or the displacement's.
+
+    H(s) = 1 / D(s / w),  w = 2 pi f_c,  |H| = 1 / sqrt(2) at the cut-off f_c
+
+D is the polynomial of Butterworth (no ripple) or of Bessel (all that passes is equally late), of
+order one to four. Well below f_c a filter is a delay, and nothing else; what tells it from one is
+the amplitude that it takes away nearer to f_c.
+
+A filter of the force channel acts on the force that a model predicts. One of the displacement
+channel is taken out of the motion, as far as that is known: where the filter leaves less than
+`LEAST` of an amplitude, no more than that is put back.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.fft import irfft, rfft, rfftfreq
+from numpy.typing import NDArray
+from scipy.fft import next_fast_len
+from scipy.signal import bessel, butter
+
+Array = NDArray[np.float64]
+
+CHANNELS = ("force", "displacement")
+KINDS = ("butterworth", "bessel")
+ORDERS = (1, 2, 3, 4)
+USUAL_ORDER = 4
+START = 8.0
+"""Time constants of a filter's slowest response for which it remembers."""
+LEAST = 0.1
+"""Share of an amplitude that a filter leaves, below which it is not put back."""
+
+
+@dataclass(frozen=True)
+class Filter:
+    """A low-pass: kind, order and cut-off [Hz] (-3 dB)."""
+
+    kind: str
+    order: int
+    cutoff: float
+
+    @property
+    def text(self) -> str:
+        """As it is stated: "bessel:50:4"."""
+        return f"{self.kind}:{self.cutoff!r}:{self.order}"
+
+    @property
+    def words(self) -> str:
+        """Such as "Bessel, order 4"; of order 1 they are all alike."""
+        kind = f"{self.kind.capitalize()}, " if self.order > 1 else ""
+        return f"{kind}order {self.order}"
+
+    @property
+    def lateness(self) -> float:
+        """Time by which it makes what is slow late [s]."""
+        d = denominator(self.kind, self.order)
+        return d[-2] / d[-1] / (2 * math.pi * self.cutoff)
+
+    def response(self, frequency: NDArray[np.floating]) -> NDArray[np.complex128]:
+        """H at frequencies [Hz]."""
+        d = np.array(denominator(self.kind, self.order))
+        return d[-1] / np.polyval(d, 1j * frequency / self.cutoff)
+
+
+@functools.cache
+def denominator(kind: str, order: int) -> tuple[float, ...]:
+    """Coefficients of D, the highest power first, for a cut-off of 1 rad/s."""
+    found: Any = bessel(order, 1.0, analog=True, norm="mag") if kind == "bessel" else None
+    found = found or butter(order, 1.0, analog=True)
+    return tuple(float(value) for value in found[1])
+
+
+def named(channel: str, found: Filter) -> dict[str, float]:
+    """A filter as coordinates: its cut-off [Hz], order, and 1 for Bessel."""
+    return {
+        f"{channel}_filter": found.cutoff,
+        f"{channel}_filter_order": float(found.order),
+        f"{channel}_filter_bessel": float(found.kind == "bessel"),
+    }
+
+
+def filter_of(values: Mapping[str, float], channel: str) -> Filter | None:
+    """The filter of a channel that some coordinates have, if any."""
+    cutoff = values.get(f"{channel}_filter")
+    if not cutoff:
+        return None
+    kind = "bessel" if values.get(f"{channel}_filter_bessel") else "butterworth"
+    return Filter(kind, int(values.get(f"{channel}_filter_order", USUAL_ORDER)), float(cutoff))
+
+
+def read_filter(text: str, where: str) -> Filter:
+    """A filter as it is stated: "bessel:50", "butterworth:60 Hz:2".
+
+    Raises
+    ------
+    ValueError
+        It cannot be read; the message says what is allowed.
+    """
+    kind, _, rest = text.strip().partition(":")
+    cutoff, _, order = rest.partition(":")
+    names = [
+        name
+        for name in KINDS
+        if kind.strip().casefold() and name.startswith(kind.strip().casefold())
+    ]
+    try:
+        value = float(cutoff.strip().removesuffix("Hz").strip())
+        degree = int(order) if order.strip() else USUAL_ORDER
+    except ValueError:
+        value, degree = math.nan, 0
+    if len(names) != 1 or not 0 < value < math.inf or degree not in ORDERS:
+        raise ValueError(
+            f"{where} is {text[:60]!r}; give the kind ({' or '.join(KINDS)}), the cut-off in Hz at "
+            f"-3 dB and the order (1 to 4, {USUAL_ORDER} where it is left out), such as bessel:50 "
+            "or butterworth:60:2"
+        )
+    return Filter(names[0], degree, value)
+
+
+def filtered(values: Array, spacing: float, by: Filter, inverse: bool = False) -> Array:
+    """A channel (n,) through a filter, or before it; samples `spacing` apart [s].
+
+    Before its first sample the channel is taken to have been odd about it.
+    """
+    n = values.size
+    half = int(next_fast_len(n - 1, real=True) or n - 1)
+    response = by.response(rfftfreq(2 * half, spacing))
+    lateness = by.lateness
+    if inverse:
+        response, lateness = _inverted(response), -lateness
+    # the line through both ends passes as it is, only later
+    slope = (values[-1] - values[0]) / (n - 1)
+    line = values[0] + slope * np.arange(n)
+    wave = np.zeros(2 * half)
+    np.subtract(values, line, out=wave[:n])
+    np.negative(wave[n - 2 : 0 : -1], out=wave[wave.size - n + 2 :])
+    return line - slope * lateness / spacing + irfft(rfft(wave) * response, wave.size)[:n]
+
+
+def without_start(
+    residual: Array, spacing: float, mask: NDArray[np.bool_], by: Filter, first: int
+) -> Array:
+    """A residual (n,) without what a filter still holds of the time before the sample `first`.
+
+    That is a sum of the filter's free responses, read off the masked samples that follow.
+    """
+    poles = np.roots(denominator(by.kind, by.order)) * 2 * math.pi * by.cutoff
+    count = min(int(START / abs(float(np.max(poles.real))) / spacing) + 1, residual.size - first)
+    part = slice(first, first + count)
+    known = mask[part]
+    if known.sum() < 2 * by.order:
+        return residual
+    times = spacing * np.arange(count)
+    waves = [np.exp(pole * times) for pole in poles if pole.imag > -1e-9 * abs(pole)]
+    # of a pair of poles the real and the imaginary part, of a real one the real part alone
+    columns = np.array([each for wave in waves for each in (wave.real, wave.imag) if each.any()]).T
+    found = np.linalg.lstsq(columns[known], residual[part][known], rcond=1e-6)[0]
+    left = residual.copy()
+    left[part] -= columns @ found
+    return left
+
+
+def _inverted(response: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    size = np.abs(response)
+    return np.asarray(np.conj(response) / (size * np.maximum(size, LEAST)), dtype=np.complex128)

@@ -1,0 +1,125 @@
+"""A low-pass of one channel: found by its amplitude, told from a delay, or stated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inerter import Device
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.scales import Scales
+from inerter.device_file import DeviceError, device_text, read_delay, read_device, read_filters
+from inerter.diagnose import diagnose, diagnose_bench
+from inerter.diagnose.baseline import baseline_of
+from inerter.diagnose.composition import effects_of, stripped
+from inerter.diagnose.low_passes import filters
+from inerter.identify.channel_filter import Filter
+from inerter.records import Record
+from inerter.reference.bench_channel import Channel, low_passed
+
+SIZES = Scales(force=10.0, displacement=0.01, velocity=0.1, acceleration=1.0, cutoff=30.0)
+RATE, FINE = 500.0, 10
+BESSEL = Filter("bessel", 4, 50.0)
+
+
+def run(seed: int, channel: str | None, delay: float = 0.0) -> Record:
+    """8 s of 60 kg with 80 N s/m and 12 N of friction behind a Bessel filter or a delay."""
+    random = np.random.default_rng(seed)
+    time = np.arange(-500 * FINE, 4000 * FINE) / (RATE * FINE)
+    x, v, a = np.zeros((3, time.size))
+    for frequency, size in ((0.8, 0.02), (2.1, 0.008), (4.7, 0.002), (9.0, 6e-4)):
+        w, phase = 2 * np.pi * frequency, 2 * np.pi * frequency * time + random.uniform(0, 6)
+        x += size * np.sin(phase)
+        v += size * w * np.cos(phase)
+        a -= size * w**2 * np.sin(phase)
+    force = 60 * a + 80 * v + 12 * np.tanh(v / 1e-3)
+    low_pass = Channel(force_filter=50.0, force_filter_order=4.0, force_filter_bessel=1.0)
+    if channel == "force":
+        force = low_passed(low_pass, time, force)
+    if channel == "displacement":
+        x = low_passed(low_pass, time, x)
+    if delay:
+        force = np.interp(time - delay, time, force)
+    rows = slice(500 * FINE, None, FINE)
+    count = time[rows].size
+    return Record(
+        name=f"run {seed}",
+        time=time[rows] + 20 * seed,
+        displacement=x[rows] + 1e-6 * random.normal(size=count),
+        force=force[rows] + 0.4 * random.normal(size=count),
+    )
+
+
+def test_every_order_and_kind_is_tried_as_late_as_the_delay() -> None:
+    model = baseline_of(None, SIZES).adding(None, delay=6e-3)
+    tried = list(filters(model, model.delay))
+    assert len(tried) == 7
+    for each in tried:
+        (start,) = each.starts
+        channel, kind, order = (each.law or "").split()
+        assert channel == "force"
+        assert "delay" not in start.values
+        assert "force_filter" in start.free
+        assert not {"force_filter_order", "force_filter_bessel"} & set(start.free)
+        found = Filter(kind, int(order), start.values["force_filter"])
+        assert found.lateness == pytest.approx(6e-3)
+        # read off the model, and taken out of it again
+        assert effects_of(start, baseline_of(None, SIZES)) == [("sensor_filter", None)]
+        bare = stripped(start, "sensor_filter", baseline_of(None, SIZES))
+        assert not set(EFFECTS["sensor_filter"].coordinates) & set(bare.values)
+
+
+def test_a_force_that_comes_early_is_a_displacement_that_is_filtered() -> None:
+    model = baseline_of(None, SIZES)
+    assert not list(filters(model))
+    tried = list(filters(model, -4e-3))
+    assert all((each.law or "").startswith("displacement") for each in tried)
+    # one that is stated stays alone
+    assert not list(filters(model.holding(force_filter=50.0), 6e-3))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("channel", ["force", "displacement"])
+def test_a_bessel_filter_is_found_and_no_shaft(channel: str) -> None:
+    found = diagnose_bench([run(0, channel), run(1, channel)])
+    named = {finding.effect: finding for finding in found.findings}
+    assert set(named) == {"sensor_filter", "coulomb_friction", "viscous_friction"}
+    cutoff = named["sensor_filter"].parameters[f"{channel}_filter"]
+    assert abs(cutoff.value - 50.0) < max(1.0, 4 * cutoff.stderr)
+    assert named["sensor_filter"].law == f"{channel}, {BESSEL.words}"
+    assert abs(named["viscous_friction"].parameters["viscous"].value - 80) < 1.5
+    assert found.extended.filters.keys() == {channel}
+    assert found.engines["mujoco"] == pytest.approx(found.extended.rmse, rel=1e-3)
+
+
+@pytest.mark.long
+def test_a_delay_stays_a_delay() -> None:
+    found = diagnose_bench([run(0, None, 6.7e-3), run(1, None, 6.7e-3)])
+    assert "sensor_delay" in {finding.effect for finding in found.findings}
+    assert "sensor_filter" not in {finding.effect for finding in found.findings}
+
+
+@pytest.mark.long
+def test_a_stated_filter_is_no_finding() -> None:
+    runs = [run(0, "force"), run(1, "force")]
+    found = diagnose_bench(runs, filters={"force": BESSEL})
+    assert {f.effect for f in found.findings} == {"coulomb_friction", "viscous_friction"}
+    assert found.baseline.filters == {"force": BESSEL.text}
+
+
+def test_a_device_file_keeps_the_filter(tmp_path: Path) -> None:
+    path = tmp_path / "device.toml"
+    device = Device(inertance=60.0)
+    path.write_text(device_text(device, delay=1e-3, filters={"force": BESSEL.text}))
+    assert read_filters(path) == {"force": "bessel:50.0:4"}
+    assert (read_delay(path), read_device(path).given) == (1e-3, device.given)
+    path.write_text("[device]\ninertance = 60.0\n[channels]\nforce_filter = 50\n")
+    with pytest.raises(DeviceError, match=r"force_filter is 50; give a text"):
+        read_filters(path)
+
+
+@pytest.mark.parametrize("given", ["bessel:50", "torque=bessel:50", "force=50"])
+def test_what_is_no_filter_of_a_channel_is_refused(given: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"--filter .* such as .*bessel:50"):
+        diagnose([tmp_path / "none.csv"], filters=[given])
