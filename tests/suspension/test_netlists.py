@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
+from inerter.suspension.commands import app
 from inerter.suspension.indices import ride_comfort
 from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.netlist import NetlistError, is_positive_real, read_netlist
+from inerter.suspension.optimum import optimise
+from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.rational import Rational
+from typer.testing import CliRunner
 
 S = 1j * np.geomspace(0.3, 400.0, 30)
 TEXT = {
@@ -110,3 +117,37 @@ def test_what_they_cannot_make_is_not() -> None:
 def test_what_is_no_strut_is_refused(text: str, said: str) -> None:
     with pytest.raises(NetlistError, match=said):
         read_netlist(text.splitlines())
+
+
+def test_the_best_values_of_a_network_are_those_of_the_layout(tmp_path: Path) -> None:
+    text = TEXT["S6"].replace("8e4", "?").replace("1500", "?").replace("40", "?")
+    (tmp_path / "strut.net").write_text(text)
+    run = CliRunner().invoke(app, ["network", str(tmp_path / "strut.net"), "--json"])
+    assert run.exit_code == 0, run.output
+    row = json.loads(run.stdout)
+    best = optimise(
+        SuspensionProblem(car=QuarterCar(), road=Road(), layout="S6", index="J1", stiffness=3e4)
+    )
+    assert row["value"] == pytest.approx(best.value, rel=1e-9)
+    assert row["design"]["b"] == pytest.approx(best.inertance, rel=1e-4)
+    words = ["network", str(tmp_path / "strut.net"), "--limit", "J3=340"]
+    run = CliRunner().invoke(app, words)
+    assert run.exit_code == 0, run.output
+    assert "held back by the limit of J3" in run.output
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "said"),
+    [
+        (TEXT["S1"], [], "0 values are sought: write ?"),
+        (TEXT["S1"].replace("1500", "?"), ["--index", "J5"], "J5 is of the layouts"),
+        (TEXT["S1"].replace("1500", "?"), ["--car", "half"], "is sought for a quarter-car"),
+    ],
+)
+def test_networks_that_cannot_be_sought(
+    text: str, words: list[str], said: str, tmp_path: Path
+) -> None:
+    (tmp_path / "strut.net").write_text(text)
+    run = CliRunner().invoke(app, ["network", str(tmp_path / "strut.net"), *words])
+    assert run.exit_code == 2
+    assert said in run.stderr

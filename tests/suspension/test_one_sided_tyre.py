@@ -105,7 +105,7 @@ def test_evaluate_leaves_the_road_as_equations_by_hand_do(layout: str) -> None:
     models = [compiled(layout, CASES["ideal"], one_sided=way) for way in (True, False)]
     found, pulled = (road_indices(car, [design], road, [3], settings) for car in models)
     assert found["lift_off"][0, 0] > 0.02
-    assert pulled["lift_off"][0, 0] == 0.0
+    assert pulled["lift_off"][0, 0] > 0.0
     assert found["J3"][0, 0] < 0.99 * pulled["J3"][0, 0]
 
     force, travel = by_hand(layout, strut.damping, strut.inertance, road)

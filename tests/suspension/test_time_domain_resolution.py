@@ -83,7 +83,7 @@ def test_the_interval_holds_the_exact_value() -> None:
     assert row.high - row.low < 0.05
     assert row.road_period is not None
     assert row.road_period > 40.0
-    assert not row.notes
+    assert "--tyre one-sided has it leave the road" in row.notes[0]
 
 
 def test_a_settling_that_is_too_short_is_said_and_every_road_has_its_exact_value() -> None:

@@ -9,6 +9,8 @@ import typer
 
 from inerter.console import AsJson, Jobs, number, out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
+from inerter.suspension.model_command import model_command
+from inerter.suspension.network_command import network_command
 from inerter.suspension.pareto_command import pareto_command
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
@@ -21,6 +23,8 @@ app = typer.Typer(
 
 app.command("evaluate")(evaluate_command)
 app.command("pareto")(pareto_command)
+app.command("model")(model_command)
+app.command("network")(network_command)
 
 _ROAD = Road()
 

@@ -38,12 +38,16 @@ class NetlistError(ValueError):
 
 @dataclass(frozen=True)
 class Element:
-    """`kind` "spring" [N/m], "damper" [N s/m] or "inerter" [kg] between `nodes`, by its `name`."""
+    """`kind` "spring" [N/m], "damper" [N s/m] or "inerter" [kg] between `nodes`, by its `name`.
+
+    `sought`: its value is to be found; `value` stands in its place until then.
+    """
 
     kind: str
     name: str
     nodes: tuple[str, str]
     value: float
+    sought: bool = False
 
 
 @dataclass(frozen=True)
@@ -126,7 +130,8 @@ class Netlist:
 
 
 def read_netlist(lines: Iterable[str]) -> Netlist:
-    """A netlist from lines "kind name node node value"; "#" begins a remark.
+    """A netlist from lines "kind name node node value", "?" for a value that is sought; "#" begins
+    a remark.
 
     Raises
     ------
@@ -144,6 +149,9 @@ def read_netlist(lines: Iterable[str]) -> Netlist:
                 "damper c body n1 1500"
             )
         kind, name, first, second, text = words
+        if text == "?":
+            found.append(Element(kind, name, (first, second), 1.0, sought=True))
+            continue
         try:
             value = float(text)
         except ValueError:

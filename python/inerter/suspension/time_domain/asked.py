@@ -115,6 +115,20 @@ def given_struts(
     return tuple(zip(dampings, inertances, strict=True))
 
 
+def tyre_named(name: str | None) -> bool | None:
+    """Whether tyres leave the road; None where that is not said.
+
+    Raises
+    ------
+    ValueError
+        Neither "one-sided" nor "pulling".
+    """
+    known = {None: None, "one-sided": True, "pulling": False}
+    if name not in known:
+        raise ValueError(f"--tyre is {name!r}: give one-sided or pulling")
+    return known[name]
+
+
 def words(text: str, option: str) -> tuple[str, ...]:
     """Names separated by commas, each once.
 
@@ -144,7 +158,9 @@ def numbers(text: str, option: str) -> tuple[float, ...]:
             f"--{option} is {text!r}: give numbers, such as 120e3, with commas between them"
         ) from None
     if option == "stiffness":
-        values = tuple(stiffness_of(repr(value)) for value in values)
+        for value in values:
+            if value > 0.0:
+                stiffness_of(repr(value))
     return values
 
 

@@ -42,7 +42,7 @@ class StrutPlace:
 class WheelPlace:
     """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m].
 
-    `travel` sensor of the strut above; `static_load` [N] of a tyre that cannot pull by more.
+    `travel` sensor of the strut above; `static_load` [N] on the tyre.
     """
 
     road: int
@@ -61,6 +61,8 @@ class CarModel:
     ----------
     model, layout, case, car
         What it is.
+    one_sided
+        Tyres pull by at most their static load.
     implicit
         Stepped by discrete, because a node between damper and elastic shaft has no mass or the
         case is stiff; RK4 otherwise.
@@ -81,6 +83,7 @@ class CarModel:
     """
 
     model: mujoco.MjModel
+    one_sided: bool
     layout: str
     case: Case
     car: Any

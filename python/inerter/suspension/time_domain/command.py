@@ -61,10 +61,13 @@ def evaluate_command(
             "the best one, whatever the file of --device says. Of a half-car also FRONT/REAR."
         ),
     ] = None,
-    pulling_tyre: Annotated[
-        bool,
-        typer.Option("--pulling-tyre", help="Tyres that pull on the road, as in the linear study."),
-    ] = False,
+    tyre: Annotated[
+        str | None,
+        typer.Option(
+            help="one-sided: leaves the road where it would pull by more than its static load; "
+            "pulling: never. Default: one-sided, but on the paper's road pulling, as there."
+        ),
+    ] = None,
     amplitude: Annotated[
         float | None,
         number("newtons", "Sinusoidal load for J5 [N]; default 1000, of a half-car 2000."),
@@ -100,6 +103,7 @@ def evaluate_command(
         cases_asked,
         given_struts,
         numbers,
+        tyre_named,
         words,
     )
     from inerter.suspension.time_domain.evaluate import evaluate
@@ -131,7 +135,7 @@ def evaluate_command(
             given=given_struts(
                 damping, inertance, own, "half" if isinstance(asked.car, HalfCar) else "quarter"
             ),
-            one_sided=not pulling_tyre,
+            one_sided=tyre_named(tyre),
             keep_settle=settle is not None,
             amplitude=asked.amplitude if amplitude is None else amplitude,
             car=asked.car,

@@ -19,10 +19,11 @@ from dataclasses import replace
 import numpy as np
 
 from inerter.parallel import run_all
+from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.cases import CASES, numbers_of
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.linear import exact_index, spectrum
-from inerter.suspension.time_domain.piece import Found, Piece, linear_design, work
+from inerter.suspension.time_domain.piece import NOTED, Found, Piece, linear_design, work
 from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.resolution import (
     LONGEST,
@@ -137,14 +138,20 @@ def _plan_of(pieces: list[Piece]) -> tuple[Plan, tuple[str, ...]]:
 
 def _lift_off(piece: Piece, found: Found, missed: float) -> list[str]:
     """What is to be said of a tyre that leaves the road."""
+    off = 100.0 * found.samples.beside.get("lift_off", 0.0)
+    row = f"{piece.layout} {piece.case.name}, {piece.index}"
+    if found.pulling is None and off > 100.0 * NOTED:
+        return [
+            f"{row}: for {off:.2g} % of the time a tyre pulls on the road by more than its static "
+            "load; --tyre one-sided has it leave the road"
+        ]
     if found.pulling is None:
         return []
     value, low, high = interval(found.pulling.values)
     half = 0.5 * (high - low) + abs(missed) * value
-    share = 100.0 * found.samples.beside["lift_off"]
     return [
-        f"{piece.layout} {piece.case.name}, {piece.index}: a tyre is off the road {share:.2g} % "
-        f"of the time; with tyres that pull, as in exact, it would be {value:.5g} ± {half:.1g}"
+        f"{row}: a tyre is off the road {off:.2g} % of the time; with tyres that pull, as in "
+        f"exact, it would be {value:.5g} ± {half:.1g}"
     ]
 
 
@@ -177,7 +184,7 @@ def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
         rear_stiffness=None if rear is None else rear.stiffness,
         rear_damping=None if rear is None else rear.damping,
         rear_inertance=None if rear is None else rear.inertance,
-        numbers=numbers_of(piece.layout, case.name) if plan.car_name == "quarter" else "",
+        numbers=numbers_of(piece.layout, case.name) if plan.car == QuarterCar() else "",
         value=value,
         low=low,
         high=high,

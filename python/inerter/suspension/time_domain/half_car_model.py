@@ -8,7 +8,6 @@ node without mass, as the quarter-car's does; its joint is the device's own disp
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 from typing import Any
 
@@ -124,6 +123,7 @@ def half_car_model(layout: str, case: Case, car: HalfCar, one_sided: bool = Fals
     parts = {"front": car.front, "rear": car.rear}
     return CarModel(
         model=model,
+        one_sided=one_sided,
         layout=layout,
         case=case,
         car=car,
@@ -144,7 +144,7 @@ def half_car_model(layout: str, case: Case, car: HalfCar, one_sided: bool = Fals
                 parts[axle].tyre_stiffness,
                 0.0 if axle == "front" else wheelbase,
                 int(model.sensor(f"travel_{axle}").adr[0]),
-                load if one_sided else math.inf,
+                load,
             )
             for axle, load in zip(AXLES, car.static_loads, strict=True)
         ),

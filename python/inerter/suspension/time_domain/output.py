@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from inerter.folder import write_files
+from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.samples import CONFIDENCE
@@ -69,7 +70,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             show_edge=False,
             padding=(0, 1, 0, 0),
         )
-        quarter = plan.car_name == "quarter"
+        quarter = plan.car == QuarterCar()
         for name in ("strut", "case", *(["paper"] if quarter else [])):
             table.add_column(name, no_wrap=True)
         for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
@@ -93,7 +94,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             )
         console.print(table, "", sep="\n")
     console.print(
-        ("paper: table.case of Wang and Su. " if plan.car_name == "quarter" else "")
+        ("paper: table.case of Wang and Su. " if plan.car == QuarterCar() else "")
         + "exact: norm of the transfer function; in brackets, that of the same design without "
         "friction and play. loss: against the ideal inerter at its own optimum, road by road. "
         "c [N s/m], b [kg]" + ("; front/rear." if plan.car_name == "half" else "."),

@@ -63,14 +63,14 @@ def work(piece: Piece) -> Found:
         A design that cannot be simulated with the step of the settings.
     """
     plan, index, layout, case = piece.plan, piece.index, piece.layout, piece.case
-    model = compiled(layout, case, plan.car, one_sided=plan.one_sided and index != "J5")
+    model = compiled(layout, case, plan.car, one_sided=plan.leaves and index != "J5")
     searched = plan.reoptimise and not case.linear and not piece.own
     design = linear_design(piece)
     if searched:
         design = reoptimised(plan, model, index, design)
     found = samples(plan, model, index, design, plan.seeds)
     pulling = None
-    if found.beside.get("lift_off", 0.0) > NOTED:
+    if plan.leaves and found.beside.get("lift_off", 0.0) > NOTED:
         pulling = samples(plan, compiled(layout, case, plan.car), index, design, plan.seeds)
     return Found(design, found, searched, pulling)
 

@@ -30,7 +30,8 @@ class Plan:
         (c [N s/m], b [kg]) of every strut, front first, in place of an optimum; one pair counts
         for both struts of a half-car. None for the one that is sought.
     one_sided
-        On roads a tyre leaves the ground where it would have to pull by more than its static load.
+        A tyre leaves the road where it would have to pull by more than its static load. If not
+        told: everywhere but on the paper's road, whose study has tyres that pull.
     keep_settle
         The settling time of the settings, even where the modes of the car ask for a longer one.
     amplitude
@@ -53,7 +54,7 @@ class Plan:
     search_seeds: int = 4
     reoptimise: bool = False
     given: tuple[tuple[float | None, float | None], ...] = ()
-    one_sided: bool = True
+    one_sided: bool | None = None
     keep_settle: bool = False
     amplitude: float = 1000.0
     car: Car = field(default_factory=QuarterCar)
@@ -91,6 +92,11 @@ class Plan:
     def car_name(self) -> str:
         """Name of the car, quarter or half."""
         return "quarter" if isinstance(self.car, QuarterCar) else "half"
+
+    @property
+    def leaves(self) -> bool:
+        """Whether tyres leave the road."""
+        return self.road.name != "paper" if self.one_sided is None else self.one_sided
 
     @property
     def held(self) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 from typing import Any
 
@@ -79,6 +78,7 @@ def quarter_car_model(
     by_rates[0, [int(model.joint(name).dofadr[0]) for name in ("wheel", "travel")]] = 1.0
     return CarModel(
         model=model,
+        one_sided=one_sided,
         layout=layout,
         case=case,
         car=car,
@@ -91,7 +91,7 @@ def quarter_car_model(
                 int(model.sensor("wheel").adr[0]),
                 car.tyre_stiffness,
                 travel=int(model.sensor("travel").adr[0]),
-                static_load=car.static_load if one_sided else math.inf,
+                static_load=car.static_load,
             ),
         ),
         load=build.control_of(model, "load"),

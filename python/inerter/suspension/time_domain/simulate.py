@@ -108,8 +108,8 @@ def road_indices(
     -------
     dict of ndarray (designs, seeds)
         "J1" and "J3"; "travel_rms", "travel_peak" [m] of the struts; "lift_off", the share of time
-        that a tyre is off the road, mean of the wheels; "tyre_peak" [N], the largest dynamic force
-        that presses a tyre.
+        that a tyre is off the road, or would have to pull, mean of the wheels; "tyre_peak"
+        [N], the largest dynamic force that presses a tyre.
 
     Raises
     ------
@@ -243,8 +243,9 @@ def _road_squares(
         force = kt * (chunk.wheels[:, skip:] - height)
         off = force >= loads
         corrected = chunk.accelerations[:, skip:]
-        corrected = corrected + np.where(off, 0.0, sudden) @ at_once.transpose(0, 2, 1)
-        force = np.minimum(force, loads)
+        if car.one_sided:
+            sudden, force = np.where(off, 0.0, sudden), np.minimum(force, loads)
+        corrected = corrected + sudden @ at_once.transpose(0, 2, 1)
         sums[0] += _squares(corrected)
         sums[1] += _squares(force)
         sums[2] += _squares(chunk.travels[:, skip:])

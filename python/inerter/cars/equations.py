@@ -1,0 +1,166 @@
+"""A car's equations of motion, readable: M q'' = f(q, q', roads).
+
+Coordinates q: heave, roll and pitch of the body as far as it has them, the wheels, and in layouts
+with a node between damper and inerter the displacement y of each inerter. With the rows e of the
+struts' elongations x = e . q,
+
+    M = diag(masses) + sum b e_b e_b^T
+    f = - sum e_k k x_k - sum e_c F(x_c') - stops + sum e_w max(kt (road - w), -static load)
+
+Sign: upward positive, positive roll lifts the left side, positive pitch lowers the front.
+Not modelled: tyre damping, geometry that bends, a damper behind a relaxation spring (SR, S5, SW8),
+which has a state of its own: `inerter.cars.mjcf` has those.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.cars.parts import AxleParts, CarParts, Table
+
+Array = NDArray[np.float64]
+Road = Callable[[float], float]
+
+
+@dataclass
+class CarEquations:
+    """`names` of the coordinates, `mass` matrix (n, n), and the forces.
+
+    `roads`: names of the inputs, "road" or "road_front" ..., in the order of the wheels.
+    """
+
+    names: tuple[str, ...]
+    mass: Array
+    roads: tuple[str, ...]
+    springs: list[tuple[Array, float]] = field(default_factory=list)
+    dampers: list[tuple[Array, float, Table, Table]] = field(default_factory=list)
+    stops: list[tuple[Array, float, float]] = field(default_factory=list)
+    tyres: list[tuple[int, float, float]] = field(default_factory=list)
+
+    def forces(self, q: Array, v: Array, heights: Array) -> Array:
+        """Generalised forces (n,) at positions, velocities and heights of the road [m]."""
+        total = np.zeros(len(q))
+        for row, k in self.springs:
+            total -= row * (k * float(row @ q))
+        for row, c, bump, rebound in self.dampers:
+            speed = float(row @ v)
+            table = rebound if speed > 0.0 else bump
+            force = np.sign(speed) * _along(table, abs(speed)) if table else c * speed
+            total -= row * force
+        for row, gap, k in self.stops:
+            # gap < 0: a bump stop, felt below it
+            beyond = min(float(row @ q) - gap, 0.0) if gap < 0.0 else max(float(row @ q) - gap, 0.0)
+            total -= row * (k * beyond)
+        for (place, kt, load), height in zip(self.tyres, heights, strict=True):
+            total[place] += max(kt * (height - q[place]), -load)
+        return total
+
+    def tyre_forces(self, q: Array, heights: Array) -> Array:
+        """Dynamic forces that press the tyres [N], (wheels,)."""
+        pressed = [
+            max(kt * (height - q[place]), -load)
+            for (place, kt, load), height in zip(self.tyres, heights, strict=True)
+        ]
+        return np.array(pressed)
+
+
+def _along(table: Table, speed: float) -> float:
+    """Straight between the points, beyond the last with its last slope."""
+    points = np.array([(0.0, 0.0), *table])
+    if speed <= points[-1, 0]:
+        return float(np.interp(speed, points[:, 0], points[:, 1]))
+    (v0, f0), (v1, f1) = points[-2:]
+    return float(f1 + (speed - v1) * (f1 - f0) / (v1 - v0))
+
+
+def car_equations(car: CarParts) -> CarEquations:
+    """The equations of a car.
+
+    Raises
+    ------
+    ValueError
+        A layout whose damper is behind a relaxation spring.
+    """
+    corners = _corners(car)
+    body = {"heave": car.body_mass}
+    if car.kind == "full":
+        body["roll"] = car.roll_inertia
+    if car.kind != "quarter":
+        body["pitch"] = car.pitch_inertia
+    wheels = [f"wheel{place}" for place, *_ in corners]
+    nodes = [f"device{place}" for place, axle, *_ in corners
+             if axle.strut.layout in ("S3", "S4", "S6", "SW7")]  # fmt: skip
+    names = (*body, *wheels, *nodes)
+    unit = {name: np.eye(len(names))[n] for n, name in enumerate(names)}
+    diagonal = [
+        *body.values(),
+        *(axle.wheel_mass for _, axle, *_ in corners),
+        *(0.0 for _ in nodes),
+    ]
+    roads = tuple(f"road{place}" for place, *_ in corners)
+    found = CarEquations(names, np.diag(diagonal), roads)
+    travels: dict[str, Array] = {}
+    for place, axle, x, y in corners:
+        travel = unit["heave"] - unit[f"wheel{place}"]
+        travel = travel - x * unit["pitch"] if "pitch" in unit else travel
+        travel = travel + y * unit["roll"] if "roll" in unit else travel
+        travels[place] = travel
+        _add_strut(found, axle, axle.strut.motion_ratio * travel, unit.get(f"device{place}"))
+        load = car.static_loads["rear" if "rear" in place else "front"]
+        found.tyres.append((names.index(f"wheel{place}"), axle.tyre_stiffness, load))
+    for name, axle in car.axles.items():
+        if axle.anti_roll_stiffness:
+            row = travels[f"_{name}_left"] - travels[f"_{name}_right"]
+            found.springs.append((row, axle.anti_roll_stiffness / 2.0))
+    return found
+
+
+def _corners(car: CarParts) -> list[tuple[str, AxleParts, float, float]]:
+    """Place with a leading "_", axle, position forward and to the left [m]."""
+    if car.kind == "quarter":
+        return [("", car.front, 0.0, 0.0)]
+    found = []
+    for name, axle in car.axles.items():
+        x = axle.distance if name == "front" else -axle.distance
+        sides = {"_left": 0.5, "_right": -0.5} if car.kind == "full" else {"": 0.0}
+        found += [(f"_{name}{side}", axle, x, share * car.track) for side, share in sides.items()]
+    return found
+
+
+def _add_strut(found: CarEquations, axle: AxleParts, x: Array, y: Array | None) -> None:
+    s = axle.strut
+    tables = (s.damper_bump, s.damper_rebound)
+    if s.layout in ("SR", "S5", "SW8"):
+        raise ValueError(
+            f"layout {s.layout}: its damper is behind a relaxation spring and has a state of its "
+            "own; take the MuJoCo model"
+        )
+    damped = x
+    if y is None:
+        found.springs.append((x, s.stiffness))
+        found.mass += s.inertance * np.outer(x, x)
+    else:
+        found.mass += s.inertance * np.outer(y, y)
+        beside = s.stiffness
+        damped = y if s.layout == "S4" else x - y
+        if s.layout in ("S4", "S6"):
+            found.springs.append((x - y, s.relaxation_stiffness))
+        if s.layout == "SW7":
+            k1, k2 = s.damper_stiffness, s.inerter_stiffness
+            found.springs += [(x - y, k1), (y, k2)]
+            beside -= k1 * k2 / (k1 + k2)
+        found.springs.append((x, beside))
+    found.dampers.append((damped, s.damping, *tables))
+    if s.bump_stop_stiffness:
+        found.stops.append((x, -max(s.bump_stop_gap, 1e-300), s.bump_stop_stiffness))
+    if s.rebound_stop_stiffness:
+        found.stops.append((x, s.rebound_stop_gap, s.rebound_stop_stiffness))
+
+
+def heights(roads: Mapping[str, Road], names: tuple[str, ...], t: float) -> Array:
+    """Heights of the roads at an instant [m]; flat where there is none."""
+    return np.array([float(roads[name](t)) if name in roads else 0.0 for name in names])
