@@ -64,7 +64,8 @@ def test_a_ramp_is_only_late() -> None:
 @pytest.mark.parametrize(("kind", "order"), SHAPES)
 def test_it_is_the_differential_equation_of_the_reference(kind: str, order: int) -> None:
     random = np.random.default_rng(2)
-    force = sum(a * np.sin(2 * np.pi * f * TIME + p) for f, a, p in random.uniform(0.3, 9, (5, 3)))
+    tones = [a * np.sin(2 * np.pi * f * TIME + p) for f, a, p in random.uniform(0.3, 9, (5, 3))]
+    force = np.sum(tones, axis=0)
     channel = Channel(
         force_filter=12.0, force_filter_order=order, force_filter_bessel=float(kind == "bessel")
     )
