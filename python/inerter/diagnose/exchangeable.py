@@ -114,7 +114,8 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
         members=(finding.effect, exchange.counterpart),
         parameters=_with_error(finding.parameters, name, error),
         rivals=[Rival(exchange.counterpart, share), *rivals],
-        evidence=f"{finding.evidence} This motion cannot tell {names[0]} from {names[1]}.",
+        evidence=f"{finding.evidence} This motion cannot tell {names[0]} from "
+        f"{names[1]}; one at a second frequency would.",
     )
 
 
