@@ -239,3 +239,11 @@ def test_designs_of_a_device_may_differ_in_its_parameters() -> None:
     f = [[2.0], [2.0]]
     both = load_gains(car, [design, rough], f, 1000.0, SHORT)[:, 0]
     assert abs(both[1] / both[0] - 1.0) > 0.01
+
+
+def test_the_literatures_names_are_taken(tmp_path: Path) -> None:
+    run = CliRunner().invoke(
+        app, f"--layout SW5 --case ideal --index J1 --seeds 2 --step 0.002 --json --out {tmp_path}"
+    )
+    assert run.exit_code == 0, run.output
+    assert [row["layout"] for row in json.loads(run.stdout)["rows"]] == ["S3"]

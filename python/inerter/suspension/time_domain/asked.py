@@ -8,6 +8,7 @@ from pathlib import Path
 from inerter.cars.read import read_car
 from inerter.model_parameters import QUARTER_CAR
 from inerter.suspension.car_options import linear_car
+from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.study import stiffness_of
 from inerter.suspension.time_domain.cases import CASES, NUMBERED, Case, case_named
@@ -113,6 +114,12 @@ def given_struts(
     count = max(len(dampings), len(inertances))
     dampings, inertances = (x * (count // len(x)) for x in (dampings, inertances))
     return tuple(zip(dampings, inertances, strict=True))
+
+
+def layouts_asked(text: str) -> tuple[str, ...]:
+    """Layouts by the names that they have here, whichever they are asked for by."""
+    asked = words(text, "layout")
+    return tuple(dict.fromkeys(LAYOUTS[n].own if n in LAYOUTS else n for n in asked))
 
 
 def tyre_named(name: str | None) -> bool | None:

@@ -11,7 +11,9 @@ from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
 
 
 def evaluate_command(
-    layout: Annotated[str, typer.Option(help="S1, S2, S3, with commas.")] = "S1,S2,S3",
+    layout: Annotated[
+        str, typer.Option(help="S1, S2, S3 (SW1, SW3, SW5), with commas.")
+    ] = "S1,S2,S3",
     car: Annotated[
         str,
         typer.Option(
@@ -102,6 +104,7 @@ def evaluate_command(
         car_named,
         cases_asked,
         given_struts,
+        layouts_asked,
         numbers,
         tyre_named,
         words,
@@ -122,7 +125,7 @@ def evaluate_command(
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
         cases, own = cases_asked(case, device, step)
         plan = Plan(
-            layouts=words(layout, "layout"),
+            layouts=layouts_asked(layout),
             cases=cases,
             indices=words(index, "index"),
             stiffnesses=(
