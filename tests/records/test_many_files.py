@@ -130,7 +130,7 @@ def test_formulas(text: str, value: float, tmp_path: Path) -> None:
         ("[[files]]\n[files.columns]\nforce = {polarity = 2}", "polarity of force is 2"),
         ("[[files]]\n[files.columns]\ncolour = 'x'", "'colour' is no quantity of a record"),
         ("[[files]]\n[files.columns]\nforce = 'nobody'", "column 'nobody', which is not there"),
-        ("[[files]]\n[files.columns]\nforce = '2 m * F'", "m times N is not a force"),
+        ("[[files]]\n[files.columns]\nforce = '2 kg * F'", "kg times N is not a force"),
         ("[[files]]\ndecimal = 'x'", "decimal is 'x'; take one of point, comma"),
         ("files = 3", "'files' is no list of entries"),
         ("[[files]]\nwith = 3", "are not all texts"),
