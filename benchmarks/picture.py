@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from inerter.benchmark.laws import LAWS
 from inerter.pictures.palette import LIGHT
 from matplotlib import colormaps
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -12,7 +14,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 COLOURS: dict[str, Any] = LIGHT | {
-    "laws": [to_hex(colormaps["viridis"](0.9 * i / 7)) for i in range(8)],
+    "laws": [to_hex(shade) for shade in colormaps["viridis"](np.linspace(0, 0.9, len(LAWS)))],
     "set": ["#0a6fa0", "#d4641c", "#3a8f4d", "#8a4fa3", "#b8860b", "#c23b5a", "#5b6571", "#17a2a2"],
 }
 """The report's colours, and those of things that stand beside one another."""

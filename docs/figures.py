@@ -6,6 +6,7 @@ The page builder runs this; `python docs/figures.py` does it by hand.
 from __future__ import annotations
 
 import re
+import runpy
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
@@ -331,13 +332,13 @@ def semi_active() -> None:
     """The ride of the how-to page, with its own code."""
     page = (Path(__file__).parent / "how_to" / "semi_active.md").read_text(encoding="utf-8")
     (car,) = re.findall(r"^```xml\n(.*?)^```", page, re.S | re.M)
-    names: dict[str, Any] = {}
     code = re.findall(r"^```python\n(.*?)^```", page, re.S | re.M)[0]
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "car.xml"
         place.write_text(car, encoding="utf-8")
-        code = code.replace('"car.xml"', repr(str(place)))
-        exec(compile(code, "semi_active.md", "exec"), names)
+        program = Path(folder) / "ride.py"
+        program.write_text(code.replace('"car.xml"', repr(str(place))), encoding="utf-8")
+        names = runpy.run_path(str(program))
     figure = Figure(figsize=(9, 4.5), layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     ride, shown = names["ride"], slice(2000, 5000)
