@@ -251,6 +251,7 @@ def cost(arguments: list[str], limit: int = 4 << 30, patience: float = 600) -> C
 def made(hostile: Hostile, folder: Path) -> Path:
     """Make a file in a process of its own: what that takes would count as a command's."""
     path = folder / hostile.name
+    folder.mkdir(parents=True, exist_ok=True)
     path.unlink(missing_ok=True)
     child = os.fork()
     if not child:
