@@ -85,3 +85,19 @@ def test_rk4_stays_finite_where_the_age_is_too_quick_for_it(
     assert np.isfinite(data.qvel).all()
     assert np.isfinite(data.act).all()
     assert 0.0 < data.qvel[0] < 0.5 - 0.2 * 0.5 * 20.0 / 50.0
+
+
+def test_under_rk4_an_age_that_a_step_does_not_resolve_is_slowed_and_said(
+    capfd: pytest.CaptureFixture,
+) -> None:
+    """20 m/s renew contacts of 10 um in half a microsecond; then it stops, and ages."""
+    model, data, _ = block("RK4", transition_velocity=0.05)
+    data.qvel[0] = 20.0
+    for _ in range(2500):
+        mujoco.mj_step(model, data)
+        assert np.isfinite(data.qvel[0])
+        assert abs(data.act[0]) < 30
+    # braked by about 20 N for a second; contacts cannot be older than the run
+    assert abs(data.qvel[0]) < 0.05
+    assert data.act[0] < np.log1p(1e-3 * data.time / 1e-5) + 0.1
+    assert "renewed faster than RK4 resolves" in "".join(capfd.readouterr())
