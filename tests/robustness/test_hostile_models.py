@@ -136,5 +136,6 @@ def test_a_command_survives_it(name: str, tmp_path: Path, long_run: bool) -> Non
     found = Cost(*json.loads(done.stdout))
     assert found.status in (0, 2), found.said
     assert "Traceback" not in found.said
-    assert found.memory < 1.2e9
+    # copies without number are given up where the bound on a model is
+    assert found.memory < (1.2e9 if name == "replicated_twice" else 500e6)
     assert found.seconds < 20
