@@ -108,11 +108,12 @@ class Forces:
                 force += self._compare(each, row, values, shown.qacc, stepped)
             pull -= row.J * force
         self._move_bare(data.qvel - before, shown.qacc, before, pull)
-        for each, held, values in zip(self.case.devices, heat, read, strict=True):
+        for each, row, held, values in zip(self.case.devices, rows, heat, read, strict=True):
             # the damping of a LuGre bristle may give back what it has taken: the law is so
             if not each.keys.get("bristle_damping"):
                 fell = held - values["dissipated_energy"]
-                self._note("heat", float(fell > 1e-9 * (1e-7 + abs(held))))
+                rounding = 1e-14 * abs(float(values["total"]) * row.v) * h
+                self._note("heat", float(fell > 1e-9 * (1e-12 + abs(held)) + rounding))
 
     def _compare(self, each: Drawn, row, values, qacc, stepped) -> float:
         """Note how well the inertance's force fits; what the step's own acceleration adds to it."""

@@ -34,8 +34,8 @@ int constrained_fits(const mjModel* m, const mjData* d, const Group* group, int 
 // Solve. smooth: f as a vector of the model; a: acceleration along the devices; force: F; W (n x
 // n): how the acceleration falls with the force there, constraints answering. q becomes the
 // engine's warm start. Returns the number of rounds, negative if it stopped at its bound: then the
-// forces are those of a step that the constraints meet in the metric H, bounded and passive all the
-// same, and the warm start stays.
+// forces are those of a step that the constraints meet in the metric H, and the warm start stays.
+// Those are bounded and passive, but where a law falls with the acceleration (level of LuGre).
 int constrained_solve(const mjModel* m, mjData* d, const Metric* metric, const Group* group,
                       const Constrained* problem, const mjtNum* smooth, mjtNum* a, mjtNum* force,
                       mjtNum* W);

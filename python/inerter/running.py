@@ -50,8 +50,9 @@ class SolveCounts:
         force needs no solution.
     stops
         Of these, solves that stopped at their bound: the force is that of a step in which the
-        constraints act in the metric of the integrator, bounded and passive, and may differ from
-        the acceleration that it goes with.
+        constraints act in the metric of the integrator, and may differ from the acceleration that
+        it goes with. It is bounded and passive, but where a law falls with the velocity over the
+        step (the level of LuGre).
     misfits
         Evaluations in which force and acceleration were left more than 1e-6 apart, because the
         engine's constraint solver was told to stop early (noslip, no warm start).
