@@ -119,8 +119,8 @@ def _changed(case: Case, change: Callable[[dict[str, Any]], dict[str, Any]]) -> 
     return replace(case, devices=devices)
 
 
-def _without_springs(spec: mujoco.MjSpec, case: Case) -> mujoco.MjModel:
-    """The model whose devices only have inertance, damping and friction."""
+def _without_springs(spec: mujoco.MjSpec, case: Case) -> tuple[mujoco.MjModel, mujoco.MjModel]:
+    """The models whose devices have inertance alone, and inertance, damping and friction."""
 
     def changed(keys: dict[str, Any]) -> dict[str, Any]:
         still = {k: v for k, v in keys.items() if k not in SPRINGS}
@@ -128,10 +128,11 @@ def _without_springs(spec: mujoco.MjSpec, case: Case) -> mujoco.MjModel:
             still = {k: v for k, v in still.items() if not k.startswith("control")}
         return still
 
-    still = _changed(case, changed)
-    model = added(spec, still).compile()
-    _set_options(model, case)
-    return model
+    plain = _changed(case, lambda keys: {"inertance": keys["inertance"]})
+    models = [added(spec, each).compile() for each in (plain, _changed(case, changed))]
+    for model in models:
+        _set_options(model, case)
+    return models[0], models[1]
 
 
 def _kept_energy(
