@@ -130,7 +130,7 @@ def _changed(case: Case, change: Callable[[dict[str, Any]], dict[str, Any]]) -> 
 
 
 def _without_springs(spec: mujoco.MjSpec, case: Case) -> tuple[mujoco.MjModel, mujoco.MjModel]:
-    """The models whose devices have inertance alone, shafts and all, and damping and friction too."""
+    """The models whose devices have inertance and shafts, and damping and friction besides."""
 
     def changed(keys: dict[str, Any]) -> dict[str, Any]:
         still = {k: v for k, v in keys.items() if k not in SPRINGS}

@@ -101,8 +101,8 @@ class Forces:
         rows = [row_of(bare, side, each) for each in self.case.devices]
         read = [place.read(shown.sensordata) for place in self.places]
         stepped = (data.qvel - before) / h
-        # bodies that jam and constraints at the engine's least softness (1e-15): its solver does not
-        # end at a solution, and no force fits what it leaves
+        # where bodies jam, and of constraints at the engine's least softness (1e-15), its solver
+        # does not end at a solution, and no force fits what it leaves
         ends = shown.solver_niter.max() < self.model.opt.iterations
         ends = ends and (not side.nefc or side.efc_R.min() > 1e-14)
         pull = np.zeros(bare.nv)
@@ -377,7 +377,7 @@ def at_rest(
 
 
 def kept_energy(model: mujoco.MjModel, data: mujoco.MjData, case: Case) -> Figures:
-    """Drift of all energy where nothing takes any, at steps that resolve it; RK4 keeps its order."""
+    """Drift of all energy where nothing takes any, as steps get shorter; RK4 keeps its order."""
     start = np.zeros(mujoco.mj_stateSize(model, STATE))
     mujoco.mj_getState(model, data, start, STATE)
     places = [device_of(model, each.name) for each in case.devices]
