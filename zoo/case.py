@@ -138,8 +138,14 @@ def _without_springs(spec: mujoco.MjSpec, case: Case) -> tuple[mujoco.MjModel, m
             still = {k: v for k, v in still.items() if not k.startswith("control")}
         return still
 
-    matter = ("inertance", "series_stiffness", "series_damping", "backlash")
-    plain = _changed(case, lambda keys: {k: keys[k] for k in matter if k in keys})
+    def matter(keys: dict[str, Any]) -> dict[str, Any]:
+        kept = ("inertance", "series_stiffness", "series_damping", "backlash")
+        held = {k: v for k, v in keys.items() if k in kept}
+        if keys.get("control") == "inertance":
+            held |= {k: v for k, v in keys.items() if k.startswith("control")}
+        return held
+
+    plain = _changed(case, matter)
     models = [added(spec, each).compile() for each in (plain, _changed(case, changed))]
     for model in models:
         _set_options(model, case)
