@@ -119,7 +119,8 @@ def _figures(
     # RK4 takes friction explicitly: a sharp law chatters within its slope, warned of or not
     sharp = any(each.keys.get("friction") in SHARP for each in case.devices)
     if case.integrator != "RK4" or not sharp:
-        figures |= checks.at_rest(small, start, lambda: _without_springs(spec, case))
+        names = [each.name for each in case.devices]
+        figures |= checks.at_rest(small, start, lambda: _without_springs(spec, case), names)
     figures |= _kept_energy(spec, small, start, case)
     return figures | checks.cost(small, start, model)
 

@@ -52,10 +52,9 @@ def same_state(bare: mujoco.MjModel, start: mujoco.MjData, model: mujoco.MjModel
     data = mujoco.MjData(model)
     for field in ("qpos", "qvel", "mocap_pos", "mocap_quat", "eq_active", "qacc_warmstart"):
         getattr(data, field)[:] = getattr(start, field)
-    for field in ("act", "ctrl", "history"):
-        given = getattr(start, field, np.zeros(0))
-        if len(given):
-            getattr(data, field)[: len(given)] = given
+    for field, count in (("act", bare.na), ("ctrl", bare.nu), ("history", bare.nhistory)):
+        if count:
+            getattr(data, field)[:count] = getattr(start, field)[:count]
     return data
 
 
@@ -348,7 +347,10 @@ def saved_as_xml(spec: mujoco.MjSpec, model: mujoco.MjModel, directory: str) -> 
 
 
 def at_rest(
-    bare: mujoco.MjModel, start: mujoco.MjData, make: Callable[[], tuple[mujoco.MjModel, ...]]
+    bare: mujoco.MjModel,
+    start: mujoco.MjData,
+    make: Callable[[], tuple[mujoco.MjModel, mujoco.MjModel]],
+    names: list[str],
 ) -> Figures:
     """Speed after some steps of a model that stands still without its devices, per speed there.
 
@@ -366,7 +368,11 @@ def at_rest(
     plain, model = (weighted_alike(each, bare) for each in make())
     heavy = same_state(bare, still, plain)
     mujoco.mj_step(plain, heavy, settle)
-    data = same_state(plain, heavy, model)
+    data = same_state(bare, heavy, model)
+    for name in names:
+        given, taken = (device_of(each, name).act for each in (plain, model))
+        for state, address in given.items():
+            data.act[taken[state]] = heavy.act[address]
     moving, fast = float(np.abs(heavy.qvel).max()), 0.0
     for _ in range(60):
         for each, run in ((bare, still), (plain, heavy), (model, data)):
