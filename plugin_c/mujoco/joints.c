@@ -2,7 +2,8 @@
 //
 // The solution is where the convex function
 //   phi(x) = x'H x / 2 - f'x + sum_i (integral of F_i)(g_i x_i + bias_i)
-// is least. Beside x the forces y are kept that balance it exactly, H x = f - sum_i g_i y_i e_i, so
+// is least; where H is not symmetric there is no phi, and its slope along a step is taken all the
+// same. Beside x the forces y are kept that balance it exactly, H x = f - sum_i g_i y_i e_i, so
 // that the gradient of phi is F - y on each joint and H is never multiplied. Newton's step is
 //   (H + sum_i g_i^2 s_i e_i e_i') dx = sum_i g_i (y_i - F_i) e_i,   y -> F + s g dx,
 // s the rises of F. Where it goes too far the line is searched. While the rises hardly change the
@@ -27,9 +28,11 @@ static const double kSame = 1e-2;
 
 typedef struct Solve_ {
   const mjModel* m;
+  mjData* d;
   const Group* group;
   const Joints* problem;
   const mjtNum* H;
+  int lu;                    // 1: in the sparsity of D, and not symmetric
   int* dof;                  // of each device
   mjtNum* gear;              // n, as everything that follows of a device
   mjtNum *a, *force, *law;   // where x is; y there; F there
@@ -43,7 +46,7 @@ typedef struct Solve_ {
 
 int joints_fit(const mjModel* m, const mjData* d, const Metric* metric, const Group* group,
                const int* moment) {
-  if (group->nrow || !(metric->kind == METRIC_INERTIA || metric->kind == METRIC_CHOLESKY)) {
+  if (group->nrow || metric->kind == METRIC_DISCRETE) {
     return 0;
   }
   for (int i = 0; i < group->n; i++) {
@@ -63,8 +66,16 @@ int joints_fit(const mjModel* m, const mjData* d, const Metric* metric, const Gr
 
 //------------------------------ linear algebra ----------------------------------------------------
 
-static int diagonal(const mjModel* m, int dof) {
-  return m->M_rowadr[dof] + m->M_rownnz[dof] - 1;
+static int start_of(const Solve* s, int dof) {
+  return s->lu ? s->m->D_rowadr[dof] : s->m->M_rowadr[dof];
+}
+
+static int count_of(const Solve* s, int dof) {
+  return s->lu ? s->m->D_rownnz[dof] : s->m->M_rownnz[dof];
+}
+
+static int diagonal(const Solve* s, int dof) {
+  return start_of(s, dof) + (s->lu ? s->m->D_diag[dof] : s->m->M_rownnz[dof] - 1);
 }
 
 // factor of H and the rises
@@ -72,12 +83,16 @@ static void factor(Solve* s) {
   const mjModel* m = s->m;
   const Group* group = s->group;
   for (int i = 0; i < group->ndof; i++) {
-    int start = m->M_rowadr[group->dof[i]];
-    mju_copy(s->factor + start, s->H + start, m->M_rownnz[group->dof[i]]);
+    int start = start_of(s, group->dof[i]);
+    mju_copy(s->factor + start, s->H + start, count_of(s, group->dof[i]));
   }
   for (int i = 0; i < s->problem->n; i++) {
-    s->factor[diagonal(m, s->dof[i])] += s->gear[i] * s->gear[i] * s->rise[i];
+    s->factor[diagonal(s, s->dof[i])] += s->gear[i] * s->gear[i] * s->rise[i];
     s->used[i] = s->rise[i];
+  }
+  if (s->lu) {
+    metric_factor_lu(m, s->d, group->ndof, group->dof, s->factor);
+    return;
   }
   const int* list = group->ndof == m->nv ? NULL : group->dof;
   mj_factorI(s->factor, s->inverse, group->ndof, m->M_rownnz, m->M_rowadr, m->M_colind, list);
@@ -86,6 +101,10 @@ static void factor(Solve* s) {
 // x in place
 static void solve(Solve* s) {
   const mjModel* m = s->m;
+  if (s->lu) {
+    metric_solve_lu(m, s->factor, s->group->ndof, s->group->dof, s->x);
+    return;
+  }
   const int* list = s->group->ndof == m->nv ? NULL : s->group->dof;
   mj_solveLD(s->x, s->factor, s->inverse, s->group->ndof, 1, m->M_rownnz, m->M_rowadr, m->M_colind,
              list);
@@ -95,7 +114,7 @@ static void solve(Solve* s) {
 static int factor_serves(const Solve* s) {
   for (int i = 0; i < s->problem->n; i++) {
     mjtNum square = s->gear[i] * s->gear[i];
-    mjtNum size = s->H[diagonal(s->m, s->dof[i])] + square * s->used[i];
+    mjtNum size = s->H[diagonal(s, s->dof[i])] + square * s->used[i];
     if (square * fabs(s->rise[i] - s->used[i]) > kSame * size) {
       return 0;
     }
@@ -129,7 +148,7 @@ static void start(Solve* s, const mjtNum* smooth) {
     s->force[i] = s->law[i] + s->rise[i] * (a - before);
     s->a[i] = a;
     s->size[i] = fabs(bias[i]) +
-                 fabs(s->gear[i] * smooth[s->dof[i]]) / s->H[diagonal(s->m, s->dof[i])] + DBL_MIN;
+                 fabs(s->gear[i] * smooth[s->dof[i]]) / s->H[diagonal(s, s->dof[i])] + DBL_MIN;
   }
 }
 
@@ -224,8 +243,9 @@ int joints_solve(const mjModel* m, mjData* d, const Metric* metric, const Group*
                  const Joints* problem, const mjtNum* smooth, mjtNum* a, mjtNum* force) {
   mj_markStack(d);
   int n = problem->n;
-  mjtNum* numbers = mj_stackAllocNum(d, 8 * n + m->nC + 2 * m->nv);
-  Solve s = {.m = m, .group = group, .problem = problem};
+  int lu = metric->kind == METRIC_LU, entries = (int)(lu ? m->nD : m->nC);
+  mjtNum* numbers = mj_stackAllocNum(d, 8 * n + entries + 2 * m->nv);
+  Solve s = {.m = m, .d = d, .group = group, .problem = problem, .lu = lu};
   s.H = metric->matrix ? metric->matrix : d->M;
   s.dof = mj_stackAllocInt(d, n);
   s.a = a;
@@ -239,7 +259,7 @@ int joints_solve(const mjModel* m, mjData* d, const Metric* metric, const Group*
   s.turn = s.used + n;
   s.size = s.turn + n;
   s.factor = s.size + n;
-  s.inverse = s.factor + m->nC;
+  s.inverse = s.factor + entries;
   s.x = s.inverse + m->nv;
   for (int i = 0; i < n; i++) {
     int entry = d->moment_rowadr[problem->moment[i]];

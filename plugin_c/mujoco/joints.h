@@ -15,8 +15,8 @@
 #include "mujoco/metric.h"
 #include "mujoco/monotone.h"
 
-// Whether a group is such: no constraints, a metric that is symmetric and that of the engine. W is
-// not found then.
+// Whether a group is such: no constraints, a metric in the sparsity of the engine's. W is not found
+// then.
 int joints_fit(const mjModel* m, const mjData* d, const Metric* metric, const Group* group,
                const int* moment);
 

@@ -29,14 +29,14 @@ static int add_joint_damping(const mjModel* m, const mjData* d, mjtNum* H) {
 
 // LU without fill-in, rows eliminated from the leaves to the root: in the sparsity of the tree
 // every dof couples only with its ancestors and descendants
-static void factor_lu(const mjModel* m, mjData* d, mjtNum* A) {
+void metric_factor_lu(const mjModel* m, mjData* d, int ndof, const int* dof, mjtNum* A) {
   mj_markStack(d);
   int* place = mj_stackAllocInt(d, m->nv);
   for (int i = 0; i < m->nv; i++) {
     place[i] = -1;
   }
-  for (int k = m->nv - 1; k >= 0; k--) {
-    int start = m->D_rowadr[k], diagonal = start + m->D_diag[k];
+  for (int n = ndof - 1; n >= 0; n--) {
+    int k = dof ? dof[n] : n, start = m->D_rowadr[k], diagonal = start + m->D_diag[k];
     for (int p = start; p < diagonal; p++) {
       // row i of an ancestor, less its multiple of row k
       int i = m->D_colind[p], first = m->D_rowadr[i], last = first + m->D_rownnz[i];
@@ -55,7 +55,7 @@ static void factor_lu(const mjModel* m, mjData* d, mjtNum* A) {
   mj_freeStack(d);
 }
 
-static void solve_lu(const mjModel* m, const mjtNum* A, int ndof, const int* dof, mjtNum* x) {
+void metric_solve_lu(const mjModel* m, const mjtNum* A, int ndof, const int* dof, mjtNum* x) {
   // upper part, leaves first
   for (int k = ndof - 1; k >= 0; k--) {
     int i = dof[k], start = m->D_rowadr[i], end = start + m->D_rownnz[i];
@@ -163,7 +163,7 @@ void metric_factor(const mjModel* m, mjData* d, const Metric* metric) {
     mj_factorI(metric->factor, metric->inverse, m->nv, m->M_rownnz, m->M_rowadr, m->M_colind, NULL);
   } else if (metric->kind == METRIC_LU) {
     mju_copy(metric->factor, metric->matrix, m->nD);
-    factor_lu(m, d, metric->factor);
+    metric_factor_lu(m, d, m->nv, NULL, metric->factor);
   }
 }
 
@@ -229,7 +229,7 @@ static void solve(const mjModel* m, mjData* d, const Metric* metric, int ndof, c
   } else if (transposed) {
     solve_lu_transposed(m, metric->factor, ndof, dof, x);
   } else {
-    solve_lu(m, metric->factor, ndof, dof, x);
+    metric_solve_lu(m, metric->factor, ndof, dof, x);
   }
 }
 

@@ -39,6 +39,11 @@ void metric_solve(const mjModel* m, mjData* d, const Metric* metric, int ndof, c
 void metric_solve_transposed(const mjModel* m, mjData* d, const Metric* metric, int ndof,
                              const int* dof, const mjtNum* y, mjtNum* x);
 
+// Factor in place a matrix in the sparsity of D (METRIC_LU), or the rows of some dofs of it, as
+// above; and solve in place with that.
+void metric_factor_lu(const mjModel* m, mjData* d, int ndof, const int* dof, mjtNum* A);
+void metric_solve_lu(const mjModel* m, const mjtNum* A, int ndof, const int* dof, mjtNum* x);
+
 // product = H x in the metric of the discrete integrator
 void metric_multiply_discrete(const mjModel* m, mjData* d, const mjtNum* x, mjtNum* product);
 

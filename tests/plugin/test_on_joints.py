@@ -14,7 +14,7 @@ from inerter import solve_counts
 
 PRESSED = """<body pos="0 50 0"><joint name="pressed" type="slide" axis="0 0 1" limited="true"
 range="0 1"/><geom size="0.1" contype="0" conaffinity="0"/></body>"""
-INTEGRATORS = ["Euler", "implicitfast", "RK4"]
+INTEGRATORS = ["Euler", "implicit", "implicitfast", "RK4"]
 
 
 def _law(rng: np.random.Generator) -> dict[str, float | str]:
