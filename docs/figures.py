@@ -201,6 +201,30 @@ def damping_and_stiffness() -> None:
     loops("damping_and_stiffness", devices, 1.0, AMPLITUDE)
 
 
+def dampers() -> None:
+    """Dampers of vehicles: force over speed, straight, uneven, digressive, progressive."""
+    devices = {
+        "viscous": Device(viscous=1000),
+        "damping_asymmetry 0.4": Device(viscous=1000, damping_asymmetry=0.4),
+        "damping_knee 0.1, damping_beyond 0.2": Device(
+            viscous=1000, damping_knee=0.1, damping_beyond=0.2
+        ),
+        "all three": Device(
+            viscous=1000, damping_asymmetry=0.4, damping_knee=0.1, damping_beyond=0.2
+        ),
+    }
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    axes: Axes = figure.subplots()
+    speeds = np.linspace(-0.5, 0.5, 401)
+    for (name, device), style in zip(devices.items(), ("-", "--", "-", "--"), strict=True):
+        force = [float(np.ravel(device.evaluate(0.0, v, 0.0, 0.0)["total"])[0]) for v in speeds]
+        axes.plot(speeds, force, style, label=name)
+    axes.set_xlabel("velocity [m/s]")
+    axes.set_ylabel("force [N]")
+    axes.legend()
+    _save(figure, "dampers")
+
+
 def branches() -> None:
     """Two viscoelastic branches beside a spring, at three frequencies: force over displacement."""
     rubber = Device(
@@ -360,8 +384,8 @@ def semi_active() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
-    damping_and_stiffness, branches, inertance, series, friction_side, end_stops, gas, fluid,
-    along_the_stroke, along_each_direction, coil, aging, control, semi_active,
+    damping_and_stiffness, dampers, branches, inertance, series, friction_side, end_stops, gas,
+    fluid, along_the_stroke, along_each_direction, coil, aging, control, semi_active,
 )  # fmt: skip
 
 

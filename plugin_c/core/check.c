@@ -321,7 +321,7 @@ static uint32_t parts_of(const InerterDevice* p) {
          (gas ? PART_GAS : 0) | (pipe || gas || brake ? PART_FLYWHEEL : 0) |
          (series ? PART_SERIES : 0) | (p->backlash > 0 ? PART_BACKLASH : 0) |
          (stops ? PART_STOPS : 0) | (branch_count(p) ? PART_BRANCHES : 0) |
-         (wheel ? PART_WHEEL_FRICTION : 0);
+         (inerter_shapes_damping(p) ? PART_DAMPER : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
 int device_check(InerterDevice* device, char* message) {

@@ -171,6 +171,10 @@ double inerter_bristle(const InerterDevice* device, double* damping) {
   return has_bristle(device) ? law_of(device)->stiffness(device) : 0;
 }
 
+double inerter_steepest_damping(const InerterDevice* device) {
+  return damper_steepest(device);
+}
+
 double inerter_viscous(const InerterDevice* device, double x) {
   return damping_at(device, stretch_of(device, x));
 }
@@ -275,7 +279,7 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
 double inerter_dissipated_power(const InerterDevice* device, double x, double v, double a,
                                 const double* z) {
   double stretch = stretch_of(device, x), w = v;
-  double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v)) * v;
+  double damper = damper_force(device, stretch, v);
   double carried = branch_force(device, x, v, a, z);
   double load = load_at_terminals(device, v, carried) * fabs(carried);
   Place rubbing = place_of_friction(device, stretch, v, z);

@@ -120,6 +120,7 @@ typedef struct InerterDevice_ {
   int nstate, nfriction, nbranch;  // states, of the friction law, of branches; by inerter_finish
   int ncontrol;                    // 1: a state of the control
   double control_rest, command;    // value as stated; the one that is commanded (inerter_command)
+  double damping_held;             // of `viscous`, what an engine takes care of: left out of forces
   InerterCurve curve[INERTER_NSTROKE];
 } InerterDevice;
 
@@ -127,6 +128,11 @@ typedef struct InerterDevice_ {
 // the channel gives it.
 static inline int inerter_is_given(const InerterDevice* device, int i) {
   return (int)(device->given[i / 64] >> i % 64 & 1);
+}
+// Whether damping bends or differs by direction: no engine's damping can hold it.
+static inline int inerter_shapes_damping(const InerterDevice* device) {
+  return device->damping_asymmetry != 0 ||
+         (device->damping_knee > 0 && device->damping_beyond != 1);
 }
 // Whether a finished device has load friction.
 static inline int inerter_has_load_friction(const InerterDevice* device) {
@@ -352,6 +358,8 @@ INERTER_API double inerter_curve_steepest(const InerterDevice* device, InerterSt
 
 // Viscous damping at x [N s/m].
 INERTER_API double inerter_viscous(const InerterDevice* device, double x);
+// the steepest slope of the viscous damper's force over the velocity
+INERTER_API double inerter_steepest_damping(const InerterDevice* device);
 
 // Whether x and z are finite numbers that lie where the laws hold: 1, or 0 with a message that
 // names law, value and limit. Every other function answers a number that is none with such a

@@ -19,6 +19,7 @@ enum {
   PART_STOPS = 1 << 6,
   PART_WHEEL_FRICTION = 1 << 7,  // friction at the flywheel behind a series element
   PART_BRANCHES = 1 << 8,
+  PART_DAMPER = 1 << 9,  // damping that bends, or differs by direction
 
   // along the stroke (curve.c); that of friction is in friction.h
   PART_FRICTION_BACK = 1 << 17,
@@ -155,10 +156,21 @@ static inline double damping_at(const InerterDevice* device, double stretch) {
              : device->viscous;
 }
 
+// damper.c: force at a velocity, with c(x); the steepest slope of c over it
+double damper_shaped(const InerterDevice* p, double viscous, double v);
+double damper_steepest(const InerterDevice* p);
+
+// force of the dampers between the terminals, at displacement `stretch`
+static inline double damper_force(const InerterDevice* device, double stretch, double v) {
+  double viscous = damping_at(device, stretch);
+  return has(device, PART_DAMPER) ? damper_shaped(device, viscous, v)
+                                  : (viscous + device->quadratic_damping * fabs(v)) * v;
+}
+
 // T without friction, at displacement `stretch`
 static inline double parallel_force(const InerterDevice* device, double stretch, double v) {
   double spring = spring_force(device, stretch);
-  double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v)) * v;
+  double damper = damper_force(device, stretch, v);
   double stops = has(device, PART_STOPS) ? stop_force(device, stretch, v) : 0;
   return spring + damper + device->force_offset + stops;
 }

@@ -161,7 +161,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       force.inertance = (inertance + slope * h) * a + rest;
     }
     double spring = spring_force(device, stretch);
-    double damper = (damping_at(device, stretch) + device->quadratic_damping * fabs(v1)) * v1;
+    double damper = damper_force(device, stretch, v1);
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
     if (has(device, PART_BRANCHES)) {
       stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
@@ -185,7 +185,8 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
   *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
   step->kind = STEP_GENERAL;
   if (inerter_has_load_friction(device) || device->quadratic_damping != 0 ||
-      has(device, PART_SERIES) || has(device, PART_STOPS) || has(device, PART_BRANCHES)) {
+      has(device, PART_SERIES) || has(device, PART_STOPS) || has(device, PART_BRANCHES) ||
+      has(device, PART_DAMPER)) {
     return;
   }
 

@@ -19,6 +19,12 @@
   X(rest_length, "m", 0, -INFINITY, INFINITY, CLOSED, "", "length at which x is 0")                \
   /* other force laws */                                                                           \
   X(quadratic_damping, "N*s^2/m^2", 0, 0, INFINITY, CLOSED, "", "force per v*abs(v), c2")          \
+  X(damping_asymmetry, "1", 0, -0.999, 0.999, CLOSED, "",                                          \
+    "relative rise of all damping while x grows, fall while it shrinks")                           \
+  X(damping_knee, "m/s", 0, 0, INFINITY, CLOSED, "",                                               \
+    "speed at which viscous damping bends, v_k; 0: it does not")                                   \
+  X(damping_beyond, "1", 1, 0, INFINITY, CLOSED, "",                                               \
+    "slope of viscous damping beyond the knee, relative to that below")                            \
   X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "", "force per x^3, k3")             \
   X(force_offset, "N", 0, -INFINITY, INFINITY, CLOSED, "", "constant force")                       \
   X(load_friction, "1", 0, 0, 1, CLOSED, "", "friction per inertance force, mu")                   \

@@ -37,7 +37,7 @@ int coupled_needed(const mjModel* m, const Instance* self) {
          instance_has_stop(share) || instance_has_branches(share) ||
          instance_has_sharp_friction(share) || self->stiff_bristle ||
          inerter_has_curve(share, INERTER_STROKE_viscous) ||
-         share->control == INERTER_CONTROL_viscous;
+         share->control == INERTER_CONTROL_viscous || inerter_shapes_damping(share);
 }
 
 // whether the force over a step depends on how easily the terminals give way

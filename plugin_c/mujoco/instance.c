@@ -99,6 +99,10 @@ static InerterDevice matter_of(const InerterDevice* share) {
   matter.inertance_curvature = share->inertance_curvature;
   matter.inertance_speed_gradient = share->inertance_speed_gradient;
   matter.viscous = share->viscous;
+  matter.damping_asymmetry = share->damping_asymmetry;
+  matter.damping_knee = share->damping_knee;
+  matter.damping_beyond = share->damping_beyond;
+  matter.damping_held = share->damping_held;
   const int kept[] = {INERTER_STROKE_inertance, INERTER_STROKE_inertance_back,
                       INERTER_STROKE_viscous};
   for (int i = 0; i < 3; i++) {
@@ -141,7 +145,8 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   if (self->native && !series && !live) {
     device->inertance = armature;
   }
-  if (self->native && !instance_is_live(self, INERTER_INDEX_viscous)) {
+  int shaped = inerter_shapes_damping(device);
+  if (self->native && !instance_is_live(self, INERTER_INDEX_viscous) && !(shaped && damping == 0)) {
     device->viscous = damping;
   } else {
     device->viscous = undamped ? 0 : self->viscous;
@@ -156,7 +161,8 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
   }
   self->replaced = 0;
   if (self->native) {
-    self->share.viscous -= damping;
+    self->share.viscous -= shaped ? 0 : damping;
+    self->share.damping_held = shaped ? damping : 0;
     if (live || instance_varies(device)) {
       self->replaced = series ? 0 : armature;
     } else if (!series) {

@@ -204,8 +204,9 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
   } else {
     mjtNum armature = m->actuator_armature[actuator], damping = m->actuator_damping[actuator];
     mjtNum inertance = armature, viscous = damping;
-    // a damping that the control sets is the plugin's as a whole
-    double own_viscous = device->control == INERTER_CONTROL_viscous ? 0 : device->viscous;
+    // a damping that the control sets, or that is no straight line, is the plugin's as a whole
+    int own = device->control == INERTER_CONTROL_viscous || inerter_shapes_damping(device);
+    double own_viscous = own ? 0 : device->viscous;
     if ((!series && merge(m, actuator, device, INERTER_INDEX_inertance, kInertanceSlot,
                           device->inertance, "armature", &inertance, message)) ||
         merge(m, actuator, device, INERTER_INDEX_viscous, kViscousSlot, own_viscous, "damping",

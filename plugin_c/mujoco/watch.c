@@ -218,7 +218,7 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
   if (stages) {
     double both = light + wheel;
-    consider(&fastest, p->viscous * light, decay, "viscous", implicit);
+    consider(&fastest, inerter_steepest_damping(p) * light, decay, "viscous", implicit);
     consider(&fastest, p->flywheel_viscous * wheel, decay, "flywheel_viscous", implicit);
     consider(&fastest, sqrt(p->stop_stiffness * light), swing, "stop_stiffness", implicit);
     consider(&fastest, friction_slope(p) * (instance_rubs_flywheel(p) ? wheel : light), decay,

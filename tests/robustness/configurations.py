@@ -116,6 +116,9 @@ def meant(draw: st.DrawFn) -> Values:
         values |= {
             "viscous": draw(st.floats(0.0, 2e3)),
             "quadratic_damping": draw(st.floats(0.0, 1e3)),
+            "damping_asymmetry": draw(st.floats(-0.999, 0.999)),
+            "damping_knee": draw(st.floats(0.0, 10.0)),
+            "damping_beyond": draw(st.floats(0.0, 10.0)),
             "stiffness": draw(st.floats(0.0, 2e4)),
             "stiffness_cubic": draw(st.floats(0.0, 1e6)),
             "rest_length": draw(_signed(0.02)),

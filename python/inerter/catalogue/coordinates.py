@@ -177,6 +177,19 @@ _ALL = (
         size=lambda s: s.force / s.velocity**2, lower=_zero,
         begin=lambda s: 0.01 * s.force / s.velocity**2, column=lambda x, v, a, t: v * np.abs(v),
     ),
+    Coordinate(
+        name="damping_asymmetry", unit="1", words={"damping_asymmetry": "asymmetry of the damping"},
+        lower=lambda s: -0.95, upper=lambda s: 0.95,
+    ),
+    Coordinate(
+        name="damping_knee", unit="m/s", words={"damping_knee": "knee of the damping v_k"},
+        size=lambda s: s.velocity, lower=lambda s: 0.1 * s.velocity,
+        upper=lambda s: 3 * s.velocity, logarithmic=True, none=None,
+    ),
+    Coordinate(
+        name="damping_beyond", unit="1", words={"damping_beyond": "slope beyond the knee"},
+        lower=_zero, upper=lambda s: 20.0, none=1.0,
+    ),
     # friction
     Coordinate(
         name="coulomb_force", unit="N", words={"coulomb_force": "sliding level f_c"},
@@ -406,11 +419,15 @@ NOT_OF_DEVICE = tuple(each.name for each in _ALL if each.belongs_to != "device")
 """Coordinates of the record: of its force channel, of where its runs begin."""
 NUISANCES = tuple(each.name for each in _ALL if each.nuisance)
 """Coordinates that name no effect."""
-ENTANGLED = (
-    *(each.name for each in _ALL if each.entangled),
-    "gas_pressure", "series_stiffness", "series_damping",
-)  # fmt: skip
-"""With one of these the force is no longer the inertance times the acceleration."""
+_BENT = ("damping_asymmetry", "damping_knee", "damping_beyond")
+ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
+    "inertance": (
+        *(each.name for each in _ALL if each.entangled),
+        "gas_pressure", "series_stiffness", "series_damping",
+    ),
+    "viscous": _BENT, "quadratic_damping": _BENT,
+})  # fmt: skip
+"""With one of these the force is no longer the coordinate times its column."""
 JUMPS = tuple(each.name for each in _ALL if each.jumps)
 """Beside the friction laws' own, those by which a force is not smooth in the motion."""
 PARAMETER_WORDS: Mapping[str, str] = MappingProxyType(

@@ -257,6 +257,26 @@ _ALL = (
         experiment="repeat at twice the amplitude", rivals=("viscous_friction",),
     ),
     Effect(
+        name="damper_asymmetry", rank=10, coordinates=("damping_asymmetry",),
+        reported=("viscous", "damping_asymmetry"),
+        plain="damping that differs between the two directions",
+        meaning="c v (1 + kappa sgn(v))",
+        cause="bump and rebound valves of their own, a check valve",
+        taken_for="asymmetric friction or a constant force",
+        experiment="repeat at half the speed, damping halves and friction stays",
+        rivals=("asymmetric_friction", "force_offset"),
+    ),
+    Effect(
+        name="digressive_damping", rank=12, coordinates=("damping_knee", "damping_beyond"),
+        telling=(), reported=("viscous", "damping_knee", "damping_beyond"), far=True,
+        plain="damping that bends with the speed",
+        meaning="c v up to a speed v_k, beyond it less for every further m/s, or more",
+        cause="a valve that opens, shear thinning of the oil",
+        taken_for="Coulomb with viscous friction",
+        experiment="run slow strokes, there the force goes with the speed and friction does not",
+        rivals=("coulomb_friction", "stribeck_friction", "quadratic_damping"),
+    ),
+    Effect(
         name="variable_inertance", rank=13,
         coordinates=("inertance_gradient", "inertance_curvature", "inertance_speed_gradient"),
         reported=(

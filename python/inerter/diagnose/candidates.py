@@ -216,6 +216,21 @@ def _stiffness(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidat
         yield from _term(effect, model, sizes)
 
 
+def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A damper's shape, with the damping that has it where there is none."""
+    if all(name in model.free for name in effect.coordinates):
+        return
+    linear = model.values.get("viscous", 0.0) or 0.5 * sizes.force / sizes.velocity
+    starts: list[dict[str, float]] = [{"viscous": linear, "damping_asymmetry": 0.0}]
+    if effect.name == "digressive_damping":
+        starts = [
+            {"viscous": slope * linear, "damping_knee": knee * sizes.velocity,
+             "damping_beyond": beyond}
+            for slope, knee, beyond in ((3.0, 0.25, 0.2), (1.5, 1.0, 0.3), (0.7, 1.0, 3.0))
+        ]  # fmt: skip
+    yield Candidate(effect.name, None, tuple(model.adding(None, **each) for each in starts))
+
+
 def _inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if "inertance" not in model.free:
         start = model.values.get("inertance") or sizes.force / sizes.acceleration
@@ -234,6 +249,8 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 _SPECIAL: dict[str, Build] = {
     "sensor_filter": _filter,
+    "damper_asymmetry": _damper,
+    "digressive_damping": _damper,
     "inertance_error": _inertance,
     "parallel_stiffness": _stiffness,
     "variable_inertance": _variable_inertance,

@@ -111,23 +111,28 @@ def width(model: Model) -> dict[str, float]:
 
 LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
 """The effect that each friction law is named as."""
+_DAMPERS = ("damper_asymmetry", "digressive_damping")
+"""Effects that bend a viscous damping, which belongs to them."""
 _LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")
 
 
 def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
     """Effects (and friction law) that a model has beyond the baseline.
 
-    A Coulomb level that varies with direction or position is one effect, not two; a play has its
-    shaft in it.
+    A Coulomb level that varies with direction or position is one effect, not two, and so is a
+    damping that bends; a play has its shaft in it.
     """
     added = {name for name in model.free if name not in baseline.free}
     law = LAW_EFFECT.get(model.friction)
     touched = model.friction != baseline.friction or not added.isdisjoint(LAW_COORDINATES)
     varied = [name for name in _LEVELS if not added.isdisjoint(EFFECTS[name].coordinates)]
+    bent = any(not added.isdisjoint(EFFECTS[name].coordinates) for name in _DAMPERS)
     found: list[tuple[str, str | None]] = []
     for name, effect in EFFECTS.items():
         if effect.kind == "law":
             there = touched and name == law and not (model.friction == "coulomb" and varied)
+        elif name == "viscous_friction" and bent:
+            there = False
         elif effect.kind == "play":
             there = name in added
         elif effect.kind == "shaft":
@@ -153,15 +158,15 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         along, speed = ("inertance_gradient", "inertance_curvature"), ("inertance_speed_gradient",)
         if {*along, *speed} <= set(model.free):
             return [model.without(speed), model.without(along), without]
-    if effect in _LEVELS:
-        # the variation of the level alone
+    if effect in (*_LEVELS, *_DAMPERS):
+        # the variation of the level, the bend of the damping alone
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
 
 
 def stripped(model: Model, effect: str, baseline: Model) -> Model:
     """The model without what is particular to an effect; a level that varies leaves the level."""
-    if effect in _LEVELS:
+    if effect in (*_LEVELS, *_DAMPERS):
         return model.without(EFFECTS[effect].coordinates)
     names = [name for name, _ in effects_of(model, baseline) if name != effect]
     return submodel(model, names, baseline)
@@ -176,6 +181,9 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
     for name in dropped:
         names.update(EFFECTS[name].coordinates if name not in laws else LAW_COORDINATES)
         names.update(EFFECTS[name].stated_as)
+    kept_dampers = [name for name in _DAMPERS if name in effects and name in present]
+    if any(name in dropped for name in _DAMPERS) and not kept_dampers:
+        names.add("viscous")
     friction = model.friction
     kept_levels = [name for name in _LEVELS if name in effects and name in present]
     # a level came with the variation that it is known by, where the baseline has none to vary

@@ -1,6 +1,7 @@
 """What acts straight between the terminals: springs, dampers, a constant force, end stops.
 
-    T = c v + c2 v |v| + k x + k3 x^3 + F_0 + stops + f(x) + c_x(x) v
+    T = s (c D(v) + c2 v |v|) + k x + k3 x^3 + F_0 + stops + f(x),  c = c_0 + c_x(x)
+    D(v) = r v + (1 - r) v / sqrt(1 + (v / v_k)^2), v without a knee;  s = 1 + kappa sign(v)
 
 f and c_x, force and damping of the place: `stroke.py`.
 
@@ -21,23 +22,38 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """The sum of all of them [N]."""
     total = p.force_offset
     # a value on a tape is no number that could be 0
-    if p.viscous != 0.0:
-        total = total + p.viscous * v
-    if p.quadratic_damping != 0.0:
-        total = total + p.quadratic_damping * f.abs(v) * v
+    if (damper := _damper(f, p, x, v)) is not None:
+        total = total + damper
     if p.stiffness != 0.0:
         total = total + p.stiffness * x
     if p.stiffness_cubic:
         total = total + p.stiffness_cubic * x * x * x
     if stroke.there(p, "force"):
         total = total + stroke.value(f, p, "force", x)
-    if stroke.there(p, "viscous"):
-        total = total + stroke.value(f, p, "viscous", x) * v
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = f.greatest(0.0, 1.0 + p.stop_damping * direction * v)
         total = total + direction * p.stop_stiffness * depth * approach
     return total
+
+
+def _damper(f: Functions, p: Parameters, x: Value, v: Value) -> Value | None:
+    """Force of the dampers [N], None without any."""
+    total, bent = None, v
+    if p.damping_knee != 0.0:
+        ratio = v / p.damping_knee
+        bent = v * (p.damping_beyond + (1.0 - p.damping_beyond) / f.sqrt(1.0 + ratio * ratio))
+    if p.viscous != 0.0:
+        total = p.viscous * bent
+    if stroke.there(p, "viscous"):
+        along = stroke.value(f, p, "viscous", x) * bent
+        total = along if total is None else total + along
+    if p.quadratic_damping != 0.0:
+        turbulent = p.quadratic_damping * f.abs(v) * v
+        total = turbulent if total is None else total + turbulent
+    if total is None or p.damping_asymmetry == 0.0:
+        return total
+    return total + p.damping_asymmetry * f.abs(total)
 
 
 def stored_energy(p: Parameters, x: float) -> float:
@@ -51,9 +67,8 @@ def stored_energy(p: Parameters, x: float) -> float:
 
 def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """Heat in dampers and stops [W]."""
-    heat = (p.viscous + p.quadratic_damping * f.abs(v)) * v * v
-    if stroke.there(p, "viscous"):
-        heat = heat + stroke.value(f, p, "viscous", x) * v * v
+    damper = _damper(f, p, x, v)
+    heat = 0.0 if damper is None else damper * v
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = direction * v

@@ -115,7 +115,7 @@ class Problem:
             and not model.device().nstate
             and not clips(model.values)
             and all(np.isinf(run.far) for run in self.runs)
-            and not (name == "inertance" and any(other in model.values for other in ENTANGLED))
+            and not any(other in model.values for other in ENTANGLED.get(name, ()))
         ):
             rest = model.values.get("rest_length", 0.0)
             columns = []

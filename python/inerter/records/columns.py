@@ -74,11 +74,19 @@ def recognise(table: RawTable, kind: Kind | None, stated: Mapping[str, Statement
         if not key or index in taken:
             continue
         target = own if known else extra
+        if known and key in own and own[key] not in taken:
+            # a sensor's volts beside what they were turned into
+            less = _raw_one(name, table.header, own[key], index)
+            if less is not None:
+                kept = own[key] + index - less
+                own[key], units[key] = kept, split_header(table.header[kept])[1]
+                extra[table.header[less].strip()] = less
+                continue
         if key in target or (known and key in extra):
             first = table.header[target[key]].strip()
             raise RecordError(
                 f"{table.path}: columns {first!r} and {header.strip()!r} both hold {key!r}; "
-                "keep one of them"
+                f"say which by --column {key}={header.strip()!r}"
             )
         target[key] = index
         if known:
@@ -87,6 +95,15 @@ def recognise(table: RawTable, kind: Kind | None, stated: Mapping[str, Statement
     if kind in (None, "bench") and not {"road", "frequency"} & set(own):
         _guess_others(table, found)
     return found
+
+
+def _raw_one(name: str, header: tuple[str, ...], first: int, second: int) -> int | None:
+    """Of two columns of one name that whose unit is none of this quantity, where the other's is."""
+    units = [split_header(header[index])[1] for index in (first, second)]
+    right = [motion_of_unit(name, unit) is not None for unit in units]
+    if None in units or right[0] == right[1]:
+        return None
+    return second if right[0] else first
 
 
 def _names_of_turning(header: tuple[str, ...], own: Mapping[str, int]) -> dict[str, str]:

@@ -158,6 +158,29 @@ def _asymmetric(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) 
     )
 
 
+def _uneven_damper(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
+    asymmetry = rounded(draw.uniform(0.2, 0.6) * draw.choice([-1.0, 1.0]))
+    return _Unit(
+        device=replace(ideal, viscous=1.0, damping_asymmetry=asymmetry),
+        channel=Channel(),
+        scaling=("viscous",),
+        names=("viscous", "damping_asymmetry"),
+    )
+
+
+def _digressive(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
+    drives = [run.drive for run in runs]
+    speed = float(np.median([rms(np.asarray(d.motion.velocity(d.time))) for d in drives]))
+    unit = replace(
+        ideal,
+        viscous=1.0,
+        damping_knee=rounded(speed * draw.uniform(0.3, 1.0)),
+        damping_beyond=rounded(draw.uniform(0.1, 0.4)),
+    )
+    names = ("viscous", "damping_knee", "damping_beyond")
+    return _Unit(device=unit, channel=Channel(), scaling=("viscous",), names=names)
+
+
 def _position(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
     gradient, curvature = _draw_level(draw, _travel(runs))
     unit = replace(
@@ -299,6 +322,8 @@ _SIZES = {
 _UNITS: dict[str, Callable[[Generator, ReferenceDevice, list[Situation]], _Unit]] = {
     "stribeck_friction": _stribeck,
     "asymmetric_friction": _asymmetric,
+    "damper_asymmetry": _uneven_damper,
+    "digressive_damping": _digressive,
     "position_dependent_friction": _position,
     "friction_drift": _friction_drift,
     "gas_spring": _gas,

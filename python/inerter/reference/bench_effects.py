@@ -28,6 +28,8 @@ EFFECTS = (
     "sensor_saturation",
     "periodic_disturbance",
     "sensor_filter",
+    "damper_asymmetry",
+    "digressive_damping",
 )
 """Every effect that a bench record can hide."""
 
@@ -41,6 +43,9 @@ LEVEL_CHANGES = ("asymmetric_friction", "position_dependent_friction", "friction
 
 # of them, what Bouc-Wen's loop has no level for
 NEEDS_LEVEL = LEVEL_CHANGES[:2]
+
+# these are all of one viscous damping
+DAMPERS = ("viscous_friction", "damper_asymmetry", "digressive_damping")
 
 # an inertance has one series element, and a gap comes with its own
 _SERIES = ("backlash", "series_elasticity")
@@ -71,6 +76,9 @@ def clash(effects: Sequence[str]) -> str | None:
     levels = [name for name in effects if name in LEVEL_CHANGES]
     if levels and "coulomb_friction" in laws:
         return f"{levels[0]} brings its own Coulomb friction; leave coulomb_friction out"
+    dampers = [name for name in effects if name in DAMPERS]
+    if len(dampers) > 1:
+        return f"{' and '.join(dampers)} are of the same damping; leave one of them out"
     if all(name in effects for name in _SERIES):
         return "backlash has its own series element; leave series_elasticity out"
     return None

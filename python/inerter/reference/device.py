@@ -351,9 +351,7 @@ class ReferenceDevice(DeviceParameters):
         """
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
-        heat = parallel.damping_force(v, self.viscous, self.quadratic_damping) * v
-        if "viscous" in self.along:
-            heat = heat + self.along["viscous"](stretch) * v * v
+        heat = self._damper(stretch, v) * v
         place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
         heat = heat + FRICTION[self.friction].dissipated_power(self, place, rate, friction)
         heat = heat + end_stops.dissipated_power(self, stretch, v)
@@ -388,15 +386,21 @@ class ReferenceDevice(DeviceParameters):
         """Every parameter by name, defaults included; NaN for one that is not given."""
         return {name: value for name, value in asdict(self).items() if name != "command"}
 
+    def _damper(self, stretch: Quantity, v: Quantity) -> Quantity:
+        """Force [N] of what damps between the terminals."""
+        viscous = self.viscous
+        if "viscous" in self.along:
+            viscous = viscous + self.along["viscous"](stretch)
+        shape = self.damping_asymmetry, self.damping_knee, self.damping_beyond
+        return parallel.damping_force(v, viscous, self.quadratic_damping, *shape)
+
     def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
         """T [N] without friction."""
         stretch = x - self.rest_length
         spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
-        damper = parallel.damping_force(v, self.viscous, self.quadratic_damping)
+        damper = self._damper(stretch, v)
         if "force" in self.along:
             spring = spring + self.along["force"](stretch)
-        if "viscous" in self.along:
-            damper = damper + self.along["viscous"](stretch) * v
         force = spring + damper + self.force_offset + end_stops.force(self, stretch, v)
         return force + branches.force(self, self._split(z)[1])
 

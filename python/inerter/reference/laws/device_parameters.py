@@ -42,6 +42,15 @@ class DeviceParameters(FrictionParameters):
     inertance_speed_gradient: float = parameter(0.0, "s/m", "relative rise of b per |v|")
     viscous: float = parameter(0.0, "N s/m", "linear damping c", at_least=0.0)
     quadratic_damping: float = parameter(0.0, "N s^2/m^2", "quadratic damping c2", at_least=0.0)
+    damping_asymmetry: float = parameter(
+        0.0, "-", "relative rise of the damping while x grows", at_least=-0.999, at_most=0.999
+    )
+    damping_knee: float = parameter(
+        0.0, "m/s", "speed at which the linear damping bends; 0: nowhere", at_least=0.0
+    )
+    damping_beyond: float = parameter(
+        1.0, "-", "its slope beyond, relative to that below", at_least=0.0
+    )
     stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
     stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
     rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")

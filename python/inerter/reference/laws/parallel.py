@@ -1,18 +1,22 @@
 """The branches beside inertance and friction: dampers, springs, offset.
 
-    F = c v + c2 v |v| + k (x - l0) + k3 (x - l0)^3 + f0
+    F = (1 + kappa sgn v) (c D(v) + c2 v |v|) + k (x - l0) + k3 (x - l0)^3 + f0
+    D(v) = r v + (1 - r) v / sqrt(1 + (v / v_k)^2), v without a knee
 
-Symbols: c `viscous` [N s/m], c2 `quadratic_damping` [N s^2/m^2], k `stiffness` [N/m],
+Symbols: c `viscous` [N s/m], c2 `quadratic_damping` [N s^2/m^2], kappa `damping_asymmetry`,
+v_k `damping_knee` [m/s], r `damping_beyond`, k `stiffness` [N/m],
 k3 `stiffness_cubic` [N/m^3], l0 `rest_length` [m], f0 `force_offset` [N].
 Sign: tension positive.
 Range: passive for c, c2 >= 0; the offset is work done from outside and counts as neither
 stored nor dissipated.
-Stored: k (x - l0)^2 / 2 + k3 (x - l0)^4 / 4. Dissipated: c v^2 + c2 |v|^3.
+Stored: k (x - l0)^2 / 2 + k3 (x - l0)^4 / 4. Dissipated: (1 + kappa sgn v) (c D(v) v + c2 |v|^3).
 Source: elementary; a published set's sigma2, c_d, c0 all are c.
 Not modelled: frequency-dependent damping; end stops and gas stand in their own files.
 """
 
 from __future__ import annotations
+
+import numpy as np
 
 from .parameters import Quantity
 
@@ -28,6 +32,17 @@ def spring_energy(extension: Quantity, stiffness: float, stiffness_cubic: float)
     return (0.5 * stiffness + 0.25 * stiffness_cubic * square) * square
 
 
-def damping_force(velocity: Quantity, viscous: float, quadratic_damping: float) -> Quantity:
+def damping_force(
+    velocity: Quantity,
+    viscous: Quantity,
+    quadratic_damping: float,
+    asymmetry: float = 0.0,
+    knee: float = 0.0,
+    beyond: float = 1.0,
+) -> Quantity:
     """Damper force [N] at the velocity [m/s]."""
-    return (viscous + quadratic_damping * abs(velocity)) * velocity
+    bent = velocity
+    if knee:
+        bent = velocity * (beyond + (1.0 - beyond) / np.hypot(1.0, velocity / knee))
+    force = viscous * bent + quadratic_damping * abs(velocity) * velocity
+    return force + asymmetry * abs(force)
