@@ -155,13 +155,17 @@ class Structure:
         strut, acceleration = self.solve(state, forces, points)
         if not any(each.bends for each in self.struts):
             return points, strut, acceleration
-        for _ in range(MOST_ROUNDS):
+        bent = [self.directions.T @ acceleration]
+        for turn in range(MOST_ROUNDS):
             before = np.array([p.known for p in points])
-            points = self.points(state, contacts, self.directions.T @ acceleration)
+            points = self.points(state, contacts, bent[-1])
             strut, acceleration = self.solve(state, forces, points)
             moved = abs(np.array([p.known for p in points]) - before)
-            if np.all(moved <= 1e-14 * abs(before)):
+            if np.all(moved <= 1e-13 * abs(before)):
                 return points, strut, acceleration
+            bent.append(self.directions.T @ acceleration)
+            if turn % 2:
+                bent = [_limit(*bent[-3:])]
         raise RuntimeError(
             "the load on a bristle and the acceleration do not settle; is load_friction "
             "bristle_damping |v| below the friction level?"
@@ -292,6 +296,13 @@ class Structure:
             first + names.index("gap_position"),
             first + names.index("series_deflection"),
         )
+
+
+def _limit(first: Array, second: Array, third: Array) -> Array:
+    """Where three numbers of a geometric row lead (Aitken)."""
+    bend = third - 2.0 * second + first
+    safe = np.where(bend == 0.0, 1.0, bend)
+    return np.where(bend == 0.0, third, third - (third - second) ** 2 / safe)
 
 
 def joint_branch_forces(

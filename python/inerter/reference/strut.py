@@ -70,7 +70,8 @@ class Strut:
         if self.layout not in LAYOUTS:
             raise ValueError(f"layout: '{self.layout}' is not one of {', '.join(LAYOUTS)}")
         inertance = self.device.total_inertance
-        if self.device.load_shares[0] != self.device.load_shares[1]:
+        shares = self.device.load_shares
+        if shares[0] != shares[1] and not load.bends(self.device):
             raise ValueError(
                 f"mu_forward {self.device.load_shares[0]} and mu_backward "
                 f"{self.device.load_shares[1]} differ: the reference vehicles have one load "
