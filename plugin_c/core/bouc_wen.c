@@ -9,12 +9,18 @@
 // beta >= |gamma| and 0 <= A <= 1.
 // Source: Bouc 1967, Wen 1976; eq. (12)-(13) of the hysteretic inerter paper. The parameters are
 // redundant: scaling z changes alpha, beta, gamma, k0 and leaves F alone.
-// Along the stroke (friction.h) beta and gamma are divided by level^n: |z| yields at that share of
+// Along the stroke (friction.h), and under a load (load_friction.c), which raises the yield force
+// abs(1 - A) k0 (alpha / (beta + gamma))^(1/n), beta and gamma are divided by level^n: |z| yields at that share of
 // where it did, with the same stiffness and the same stored energy.
 // Free play before the yielding share: friction_play.c.
 // Not modelled: pinching, degradation.
 
 #include "friction.h"
+
+double bouc_wen_level(const InerterDevice* p) {
+  double bound = pow(p->bw_alpha / (p->bw_beta + p->bw_gamma), 1 / p->bw_exponent);
+  return fabs(1 - p->bw_ratio) * p->bw_stiffness * bound;
+}
 
 // z' along the path: rate per unit |v| in direction s = sgn(v), and its slope over z. `loading`: z
 // has the direction of s, or is 0 and about to have it; else it has the other one.
@@ -28,16 +34,17 @@ static double slope(const InerterDevice* p, double narrow, double s, double z, i
   return s * (p->bw_alpha - c * power * fabs(z));
 }
 
-// level, and what it makes of beta and gamma
-static double level_at(const InerterDevice* p, double x, double v) {
-  return p->parts & PART_FRICTION_CURVE ? friction_level(p, x, v) : 1;
+// level, raised by a load, and what it makes of beta and gamma
+static double level_at(const InerterDevice* p, double x, double v, double load) {
+  double level = p->parts & PART_FRICTION_CURVE ? friction_level(p, x, v) : 1;
+  return load == 0 ? level : level + load / bouc_wen_level(p);
 }
 static double narrowing(const InerterDevice* p, double level) {
   return level == 1 ? 1 : pow(level, -p->bw_exponent);
 }
 
-static double rate(const InerterDevice* p, double x, double v, double z) {
-  double derivative, narrow = narrowing(p, level_at(p, x, v));
+static double rate(const InerterDevice* p, double x, double v, double z, double load) {
+  double derivative, narrow = narrowing(p, level_at(p, x, v, load));
   return fabs(v) * slope(p, narrow, sign(v), z, v * z >= 0, &derivative);
 }
 
@@ -69,8 +76,8 @@ static double advance(const InerterDevice* p, double narrow, double s, double z,
 // Exact for n = 1. Second order for other n: sub-steps of a quarter of the yield distance as long
 // as the slope changes, then one that ends at the limit of z. The tangent passes over a sharp knee,
 // so that the limit has to be kept here.
-static double step(const InerterDevice* p, double x, double v, double z, double h) {
-  double level = level_at(p, x, v), narrow = narrowing(p, level);
+static double step(const InerterDevice* p, double x, double v, double z, double h, double load) {
+  double level = level_at(p, x, v, load), narrow = narrowing(p, level);
   double s = sign(v);
   double path = fabs(v) * h;
   double n = p->bw_exponent;
@@ -91,11 +98,11 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
 
 // Time until z = 0, d|z|/dt = -|v| (alpha + (beta - gamma) |z|^n): closed for n = 1, else by the
 // five-point rule of Gauss over |z|. Infinite where z does not come back.
-static double straight(const InerterDevice* p, double x, double v, double z) {
+static double straight(const InerterDevice* p, double x, double v, double z, double load) {
   const double points[] = {0.5384693101056831, 0.9061798459386640};
   const double weights[] = {0.4786286704993665, 0.2369268850561891};
   double n = p->bw_exponent, size = fabs(z);
-  double rise = (p->bw_beta - p->bw_gamma) * narrowing(p, level_at(p, x, v));
+  double rise = (p->bw_beta - p->bw_gamma) * narrowing(p, level_at(p, x, v, load));
   double ratio = rise * pow(size, n) / p->bw_alpha;
   if (!(ratio > -1)) {
     return INFINITY;
@@ -114,7 +121,8 @@ static double straight(const InerterDevice* p, double x, double v, double z) {
   return path / fabs(v);
 }
 
-static double force(const InerterDevice* p, double x, double v, double z) {
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
+  (void)load;
   (void)v;
   return p->bw_stiffness * (p->bw_ratio * x + (1 - p->bw_ratio) * z);
 }

@@ -9,8 +9,9 @@
 
 #include "friction.h"
 
-static double force(const InerterDevice* p, double x, double v, double z) {
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
+  (void)load;
   double ratio = v / p->stribeck_velocity;
   double shape = 0.25 * ratio * ratio + 0.75;
   double sliding = p->coulomb_force * tanh(4 * ratio);

@@ -129,6 +129,25 @@ static int check_load(InerterDevice* device, char* message) {
                     name, *both[i], device->load_friction);
     }
   }
+
+  // a load raises the force at which Bouc-Wen yields: there has to be one
+  if (device->friction == INERTER_FRICTION_bouc_wen && inerter_has_load_friction(device)) {
+    double narrow = device->bw_beta + device->bw_gamma;
+    double mu = fmax(device->mu_forward, device->mu_backward);
+    if (!(narrow > 0)) {
+      return refuse(message,
+                    "load friction is %g, but bw_beta + bw_gamma is %g: this bouc_wen never "
+                    "yields, so that no load can raise where it does; give bw_beta + bw_gamma > 0, "
+                    "or remove the load friction",
+                    mu, narrow);
+    }
+    if (device->bw_ratio == 1) {
+      return refuse(message,
+                    "load friction is %g, but bw_ratio is 1: no share of this bouc_wen yields, so that "
+                    "no load can raise where it does; give bw_ratio < 1, or remove the load friction",
+                    mu);
+    }
+  }
   return 0;
 }
 

@@ -11,8 +11,9 @@
 
 #include "friction.h"
 
-static double force(const InerterDevice* p, double x, double v, double z) {
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
+  (void)load;
   return friction_level(p, x, v) * p->coulomb_force * friction_direction(p, v);
 }
 

@@ -1,10 +1,11 @@
 // Dahl friction: one bristle that bends before it slides.
 //
-//   z' = v sgn(u) |u|^m,  u = 1 - sigma0 z sgn(v) / f_c
+//   z' = v sgn(u) |u|^m,  u = 1 - sigma0 z sgn(v) / (f_c + load)
 //   F  = sigma0 z
 //
 // z [m] bristle deflection, sigma0 [N/m] bristle_stiffness, f_c [N] coulomb_force (times the level
-// of friction.h), m dahl_exponent. Stored energy sigma0 z^2 / 2. |F| <= f_c once inside.
+// of friction.h), m dahl_exponent, load [N]: load_friction.c. Stored energy sigma0 z^2 / 2.
+// |F| <= f_c + load once inside.
 // Passive for every m.
 // Source: Dahl 1968; eq. (4)-(6) of the hysteretic inerter paper.
 // Free play before it: friction_play.c.
@@ -17,15 +18,19 @@ static double slack(const InerterDevice* p, double level, double v, double z) {
   return 1 - p->bristle_stiffness * z * sign(v) / level;
 }
 
-static double rate(const InerterDevice* p, double x, double v, double z) {
-  double level = friction_level(p, x, v) * p->coulomb_force;
+static double yield_level(const InerterDevice* p, double x, double v, double load) {
+  return friction_level(p, x, v) * p->coulomb_force + load;
+}
+
+static double rate(const InerterDevice* p, double x, double v, double z, double load) {
+  double level = yield_level(p, x, v, load);
   double u = slack(p, level, v, z);
   return p->dahl_exponent == 1 ? v * u : v * sign(u) * pow(fabs(u), p->dahl_exponent);
 }
 
 // At constant v, u' = -(sigma0 |v| / f_c) sgn(u) |u|^m has a closed form for every m.
-static double step(const InerterDevice* p, double x, double v, double z, double h) {
-  double level = friction_level(p, x, v) * p->coulomb_force;
+static double step(const InerterDevice* p, double x, double v, double z, double h, double load) {
+  double level = yield_level(p, x, v, load);
   if (v == 0) {
     return z;
   }
@@ -47,8 +52,8 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
 }
 
 // u' as above, from u > 1 until u = 1
-static double straight(const InerterDevice* p, double x, double v, double z) {
-  double level = friction_level(p, x, v) * p->coulomb_force;
+static double straight(const InerterDevice* p, double x, double v, double z, double load) {
+  double level = yield_level(p, x, v, load);
   double path = log1p(p->bristle_stiffness * fabs(z) / level), m = p->dahl_exponent;
   if (m != 1) {
     path = expm1((1 - m) * path) / (1 - m);
@@ -56,7 +61,8 @@ static double straight(const InerterDevice* p, double x, double v, double z) {
   return path * level / (p->bristle_stiffness * fabs(v));
 }
 
-static double force(const InerterDevice* p, double x, double v, double z) {
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
+  (void)load;
   (void)x;
   (void)v;
   return p->bristle_stiffness * z;

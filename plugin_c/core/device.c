@@ -22,31 +22,60 @@ static Place place_of_friction(const InerterDevice* device, double stretch, doub
   return (Place){stretch - series[0], series[1]};
 }
 
+// N; F_s with a series element
+static double branch_force(const InerterDevice* device, double x, double v, double a,
+                           const double* z) {
+  if (has(device, PART_SERIES)) {
+    return series_force(device, v, z + series_index(device));
+  }
+  double rest, inertance = inerter_inertance(device, x, v, &rest);
+  return inertance * a + rest;
+}
+
+// the load there
+static double law_load(const InerterDevice* device, double x, double v, double a, const double* z) {
+  if (!inerter_load_bends(device)) {
+    return 0;
+  }
+  Place place = place_of_friction(device, stretch_of(device, x), v, z);
+  double carried = branch_force(device, x, v, a, z);
+  if (has(device, PART_WHEEL_FRICTION)) {
+    carried -= bristle_spring(device, place.x, place.v, z);
+  }
+  return load_on_bristle(device, place.v, carried);
+}
+
 // force of the friction law there
-static double law_force(const InerterDevice* device, double stretch, double v, const double* z) {
+static double law_force(const InerterDevice* device, double stretch, double v, const double* z,
+                        double load) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
   Place place = place_of_friction(device, stretch, v, z);
   if (has_bristle(device)) {
-    return friction_force(device, place.x, place.v, z);
+    return friction_force(device, place.x, place.v, z, load);
   }
-  return law_of(device)->force(device, place.x, place.v, 0);
+  return law_of(device)->force(device, place.x, place.v, 0, 0);
 }
 
 // what friction at the flywheel takes of the force that comes through the series element
-static double wheel_drag(const InerterDevice* device, double stretch, double v, const double* z) {
+static double wheel_drag(const InerterDevice* device, double x, double v, const double* z) {
   if (!has(device, PART_WHEEL_FRICTION)) {
     return 0;
   }
   const double* series = z + series_index(device);
-  double force = series_force(device, v, series), friction = law_force(device, stretch, v, z);
-  return force - wheel_carried(device, series[1], force, friction);
+  double load = law_load(device, x, v, 0, z), force = series_force(device, v, series);
+  double friction = law_force(device, stretch_of(device, x), v, z, load);
+  if (inerter_load_bends(device)) {
+    return friction;
+  }
+  return force - wheel_carried(device, series[1], z, force, friction);
 }
 
 // load friction per force at the terminals
-static double load_at_terminals(const InerterDevice* device, double v, double carried) {
-  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v, carried);
+static double load_at_terminals(const InerterDevice* device, double v, const double* z,
+                                double carried) {
+  return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v, z, carried);
 }
 
 // T without friction
@@ -62,16 +91,16 @@ int inerter_nstate(const InerterDevice* device) {
   return device->nstate;
 }
 
-void inerter_state_rate(const InerterDevice* device, double x, double v, const double* z,
+void inerter_state_rate(const InerterDevice* device, double x, double v, double a, const double* z,
                         double* rate) {
   double stretch = stretch_of(device, x);
   Place place = place_of_friction(device, stretch, v, z);
   if (has_bristle(device)) {
-    friction_rates(device, place.x, place.v, z, rate);
+    friction_rates(device, place.x, place.v, z, law_load(device, x, v, a, z), rate);
   }
   if (has(device, PART_SERIES)) {
     int first = series_index(device);
-    double drag = wheel_drag(device, stretch, v, z);
+    double drag = wheel_drag(device, x, v, z);
     series_rate(device, stretch, v, z + first, drag, rate + first);
   }
   if (has(device, PART_BRANCHES)) {
@@ -82,13 +111,19 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, const d
   }
 }
 
-void inerter_state_step(const InerterDevice* device, double x, double v, double* z, double h) {
-  double stretch = stretch_of(device, x);
-  if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
-    friction_step(device, stretch, v, z, h);
+void inerter_state_step(const InerterDevice* device, double x, double v, double a, double* z,
+                        double h) {
+  double stretch = stretch_of(device, x), carried = 0;
+  int bends = inerter_load_bends(device);
+  if (bends) {
+    carried = branch_force(device, x, v, a, z);
   }
   if (has(device, PART_SERIES)) {
     series_step(device, stretch, v, 0, 0, z, z + series_index(device), h);
+    carried = bends ? 0.5 * (carried + branch_force(device, x, v, a, z)) : 0;
+  }
+  if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
+    friction_step(device, stretch, v, z, h, load_on_bristle(device, v, carried));
   }
   if (has(device, PART_BRANCHES)) {
     branches_step(device, v, z + branch_index(device), h);
@@ -112,8 +147,10 @@ static double bristle_of_force(const InerterDevice* device, double x, double v, 
   // the Stribeck peak, fast the full asymmetry
   double speed = (z < 0 ? -10 : 10) * device->transition_velocity;
   double stretch = stretch_of(device, x);
-  double slow = law_of(device)->step(device, stretch, copysign(1e-200, z), 0, 1e215);
-  double fast = law_of(device)->step(device, stretch, speed, 0, 1e15 / fabs(speed));
+  double load = fmax(law_load(device, x, v, a, (double[INERTER_MAXSTATE]){0}),
+                     law_load(device, x, -v, a, (double[INERTER_MAXSTATE]){0}));
+  double slow = law_of(device)->step(device, stretch, copysign(1e-200, z), 0, 1e215, load);
+  double fast = law_of(device)->step(device, stretch, speed, 0, 1e15 / fabs(speed), load);
   double limit = fmax(fabs(slow), fabs(fast));
   return isfinite(limit) ? copysign(fmin(fabs(z), limit), z) : z;
 }
@@ -143,7 +180,8 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
     }
     if (law_of(device)->several && device->nfriction) {
       double wanted = force - inerter_force(device, x, v, a, z).total;
-      law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted, z);
+      law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted,
+                                         law_load(device, x, v, a, z), z);
     } else if (device->nfriction) {
       z[0] = play_of_force(device, x, v, a, force);
     }
@@ -157,7 +195,7 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
   double rest = force - inerter_force_motion(device, x, v, z);
 
   // rest = F_s + load |F_s|
-  double load = load_at_terminals(device, v, rest);
+  double load = load_at_terminals(device, v, z, rest);
   double carried = rest / (1 + load * sign(rest));
   if (isfinite(carried)) {
     series_of_force(device, v, carried, series);
@@ -180,7 +218,7 @@ double inerter_viscous(const InerterDevice* device, double x) {
 }
 
 double inerter_friction_force(const InerterDevice* device, double x, double v, const double* z) {
-  return law_force(device, stretch_of(device, x), v, z);
+  return law_force(device, stretch_of(device, x), v, z, 0);
 }
 
 double inerter_inertance(const InerterDevice* device, double x, double v, double* rest) {
@@ -197,25 +235,15 @@ double inerter_inertance(const InerterDevice* device, double x, double v, double
   return inertance;
 }
 
-// N; F_s with a series element
-static double branch_force(const InerterDevice* device, double x, double v, double a,
-                           const double* z) {
-  if (has(device, PART_SERIES)) {
-    return series_force(device, v, z + series_index(device));
-  }
-  double rest, inertance = inerter_inertance(device, x, v, &rest);
-  return inertance * a + rest;
-}
-
 double inerter_force_motion(const InerterDevice* device, double x, double v, const double* z) {
   double force = beside_force(device, stretch_of(device, x), v, z);
   if (has(device, PART_WHEEL_FRICTION)) {
     return force + branch_force(device, x, v, 0, z);
   }
-  force += inerter_friction_force(device, x, v, z);
+  force += law_force(device, stretch_of(device, x), v, z, law_load(device, x, v, 0, z));
   if (has(device, PART_SERIES)) {
     double carried = branch_force(device, x, v, 0, z);
-    force += carried + inerter_load_factor(device, v, carried) * fabs(carried);
+    force += carried + inerter_load_factor(device, v, z, carried) * fabs(carried);
   }
   return force;
 }
@@ -223,7 +251,7 @@ double inerter_force_motion(const InerterDevice* device, double x, double v, con
 double inerter_force_motion_of_rate(const InerterDevice* device, double x, double v,
                                     const double* z, const double* rate) {
   if (!has_bristle(device) || !law_of(device)->force_of_rate || device->friction_backlash != 0 ||
-      has(device, PART_SERIES)) {
+      has(device, PART_SERIES) || inerter_load_bends(device)) {
     return inerter_force_motion(device, x, v, z);
   }
   double friction = law_of(device)->force_of_rate(device, z[0], rate[0]);
@@ -235,14 +263,14 @@ InerterForce inerter_force(const InerterDevice* device, double x, double v, doub
   InerterForce force;
   force.inertance = branch_force(device, x, v, a, z);
   if (has(device, PART_WHEEL_FRICTION)) {
-    force.friction = wheel_drag(device, stretch_of(device, x), v, z);
+    force.friction = wheel_drag(device, x, v, z);
     force.total = force.inertance + beside_force(device, stretch_of(device, x), v, z);
     force.inertance -= force.friction;
     return force;
   }
-  double bristle = inerter_friction_force(device, x, v, z);
-  force.friction =
-      bristle + inerter_load_factor(device, v, force.inertance) * fabs(force.inertance);
+  double load = law_load(device, x, v, a, z);
+  force.friction = law_force(device, stretch_of(device, x), v, z, load) +
+                   inerter_load_factor(device, v, z, force.inertance) * fabs(force.inertance);
   force.total =
       force.inertance + beside_force(device, stretch_of(device, x), v, z) + force.friction;
   return force;
@@ -281,22 +309,24 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   double stretch = stretch_of(device, x), w = v;
   double damper = damper_force(device, stretch, v);
   double carried = branch_force(device, x, v, a, z);
-  double load = load_at_terminals(device, v, carried) * fabs(carried);
+  double load = load_at_terminals(device, v, z, carried) * fabs(carried);
+  double on_bristle = law_load(device, x, v, a, z);
   Place rubbing = place_of_friction(device, stretch, v, z);
-  double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, stretch, v, z)
-                                                     : inerter_friction_force(device, x, v, z);
+  double friction = has(device, PART_WHEEL_FRICTION)
+                        ? wheel_drag(device, x, v, z)
+                        : law_force(device, stretch, v, z, on_bristle);
   double power = (damper + load) * v + friction * rubbing.v;
 
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term
   const FrictionLaw* law = law_of(device);
   if (has_bristle(device) && law->several) {
     double rate[INERTER_MAXFRICTION];
-    friction_rates(device, rubbing.x, rubbing.v, z, rate);
+    friction_rates(device, rubbing.x, rubbing.v, z, on_bristle, rate);
     power -= law->several->stored_power(device, z, rate);
   } else if (has_bristle(device)) {
     double bristle = bristle_deflection(device, z[0]);
-    power -=
-        2 * law->energy(device, 0, 1) * bristle * law->rate(device, rubbing.x, rubbing.v, bristle);
+    double rate = law->rate(device, rubbing.x, rubbing.v, bristle, on_bristle);
+    power -= 2 * law->energy(device, 0, 1) * bristle * rate;
     power -= 2 * law->energy(device, 1, 0) * rubbing.x * rubbing.v;
   }
   if (has(device, PART_SERIES)) {

@@ -243,16 +243,18 @@ INERTER_API const char* inerter_compiler(void);
 // "flywheel_velocity", "gap_position", "branch_deflection_1", ...; NULL past the end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 
-// Rates of the states z at displacement x, velocity v.
-INERTER_API void inerter_state_rate(const InerterDevice* device, double x, double v,
+// Rates of the states z at displacement x, velocity v, acceleration a, which matters only where a
+// load bends a bristle (inerter_load_bends) without a series element.
+INERTER_API void inerter_state_rate(const InerterDevice* device, double x, double v, double a,
                                     const double* z, double* rate);
 
-// States after a time h at constant velocity v from displacement x, in place; unconditionally
+// States after a time h at velocity v from displacement x, in place, with the load of an
+// acceleration a (as above) and else at constant velocity; unconditionally
 // stable however stiff the law. A friction state: exact or second order, at the friction level of
 // x. The others: second order where h resolves them, settled where it does not; but the force of
 // gas at the flywheel is that of the start, so that h has to resolve its stiffness.
-INERTER_API void inerter_state_step(const InerterDevice* device, double x, double v, double* z,
-                                    double h);
+INERTER_API void inerter_state_step(const InerterDevice* device, double x, double v, double a,
+                                    double* z, double h);
 
 // States at which the device has a given total force at x, v, a. A friction state within what its
 // law can hold; 0 where the force does not depend on it. With a series element this one carries the
@@ -281,7 +283,8 @@ INERTER_API double inerter_control_power(const InerterDevice* device, double x, 
 //------------------------------ forces and energy -------------------------------------------------
 
 // All forces that do not depend on acceleration: T, and with a series element also N and its load
-// friction. Without one those are told by inerter_inertance and inerter_load_factor.
+// friction. Without one those are told by inerter_inertance and inerter_load_factor, and the damper
+// of LuGre, where a load bends its bristle, is that of a = 0.
 INERTER_API double inerter_force_motion(const InerterDevice* device, double x, double v,
                                         const double* z);
 
@@ -292,7 +295,7 @@ INERTER_API double inerter_force_motion_of_rate(const InerterDevice* device, dou
 // Largest stiffness of the friction law's bristle [N/m], and its damping [N s/m]; 0 without one.
 INERTER_API double inerter_bristle(const InerterDevice* device, double* damping);
 
-// Force of the friction law alone (without load friction), at the terminals or at the flywheel.
+// Force of the friction law alone (without any load), at the terminals or at the flywheel.
 INERTER_API double inerter_friction_force(const InerterDevice* device, double x, double v,
                                           const double* z);
 
@@ -300,9 +303,13 @@ INERTER_API double inerter_friction_force(const InerterDevice* device, double x,
 // a = 0 [N]. With a series element both are 0.
 INERTER_API double inerter_inertance(const InerterDevice* device, double x, double v, double* rest);
 
-// Load friction per force N through the inertance at velocity v: mu sign(v), so that it adds
-// inerter_load_factor * |N|. Of N only the sign counts.
-INERTER_API double inerter_load_factor(const InerterDevice* device, double v, double carried);
+// Load friction per force N through the inertance at velocity v and states z, so that it adds
+// inerter_load_factor * |N|; 0 where the load bends a bristle. Of N only the sign counts.
+INERTER_API double inerter_load_factor(const InerterDevice* device, double v, const double* z,
+                                       double carried);
+
+// Whether the load raises the level at which a bristle yields: rates of its states then follow N.
+INERTER_API int inerter_load_bends(const InerterDevice* device);
 
 // All forces.
 INERTER_API InerterForce inerter_force(const InerterDevice* device, double x, double v, double a,
@@ -335,7 +342,7 @@ INERTER_API void inerter_step_begin(InerterStep* step, const InerterDevice* devi
 
 // The same for the force of this instant, h = 0; motion: what inerter_force_motion says.
 INERTER_API void inerter_step_instant(InerterStep* step, const InerterDevice* device, double x,
-                                      double v, double motion);
+                                      double v, const double* z, double motion);
 
 // Whether the force is a line in a; the force at a, and how it rises with a (>= 0).
 INERTER_API int inerter_step_is_line(const InerterStep* step);

@@ -27,6 +27,8 @@ enum { PART_FRICTION_CURVE = 1 << 16 };
 double friction_curve_level(const InerterDevice* p, double x, double rise, double* lean);
 
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
+// load [N]: by how much the force through the gear raises the level of a law with a bristle
+// (load_friction.c); the others ignore it.
 // straight: time until a state that v straightens is 0; asked for where z v < 0 only.
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
 // force_of_rate: the force where the rate of the state is known already; NULL where it is no help.
@@ -39,19 +41,21 @@ double friction_curve_level(const InerterDevice* p, double x, double rise, doubl
 // several: the same of a law with several states, whose functions take all of them; then rate,
 // step, straight, force and energy are NULL.
 typedef struct FrictionStates_ {
-  void (*rate)(const InerterDevice* p, double x, double v, const double* z, double* rate);
-  void (*step)(const InerterDevice* p, double x, double v, double* z, double h);
+  void (*rate)(const InerterDevice* p, double x, double v, const double* z, double load,
+               double* rate);
+  void (*step)(const InerterDevice* p, double x, double v, double* z, double h, double load);
   double (*force)(const InerterDevice* p, const double* z);
   double (*energy)(const InerterDevice* p, const double* z);
   double (*stored_power)(const InerterDevice* p, const double* z, const double* rate);
-  void (*of_force)(const InerterDevice* p, double x, double v, double force, double* z);
+  void (*of_force)(const InerterDevice* p, double x, double v, double force, double load,
+                   double* z);
 } FrictionStates;
 
 typedef struct FrictionLaw_ {
-  double (*rate)(const InerterDevice* p, double x, double v, double z);
-  double (*step)(const InerterDevice* p, double x, double v, double z, double h);
-  double (*straight)(const InerterDevice* p, double x, double v, double z);
-  double (*force)(const InerterDevice* p, double x, double v, double z);
+  double (*rate)(const InerterDevice* p, double x, double v, double z, double load);
+  double (*step)(const InerterDevice* p, double x, double v, double z, double h, double load);
+  double (*straight)(const InerterDevice* p, double x, double v, double z, double load);
+  double (*force)(const InerterDevice* p, double x, double v, double z, double load);
   double (*energy)(const InerterDevice* p, double x, double z);
   double (*stiffness)(const InerterDevice* p);
   void (*along)(const InerterDevice* p, const FrictionPath* path, double* z, double* forces);
@@ -72,11 +76,18 @@ extern const FrictionLaw inerter_brown_mcphee;
 extern const FrictionLaw inerter_maxwell_slip;
 extern const FrictionLaw inerter_rate_state;
 
-// maxwell_slip.c: how many elements there are; stiffness and slip force of one, side by side
+// maxwell_slip.c: how many elements there are; sum of their slip forces [N]; stiffness and slip force of one, side by side
 int slip_count(const InerterDevice* p);
+double slip_level(const InerterDevice* p);
 static inline const double* slip_element(const InerterDevice* p, int i) {
   return (const double*)p + offsetof(InerterDevice, slip_stiffness_1) / sizeof(double) + 2 * i;
 }
+
+// bouc_wen.c: force at which it yields [N], for beta + gamma > 0
+double bouc_wen_level(const InerterDevice* p);
+
+// rate_state.c: what speed and age make of the level
+double rate_state_factor(const InerterDevice* p, double v, double z);
 
 // by InerterFriction; nothing to call for "none"
 extern const FrictionLaw* const inerter_friction_law[];
@@ -84,9 +95,9 @@ extern const FrictionLaw* const inerter_friction_law[];
 // friction_play.c: a law with a bristle behind its free play, s its state. play_force_over_step:
 // over a step of h seconds to the state `end`, with the spring's implicit share.
 double play_deflection(const InerterDevice* p, double s);
-double play_rate(const InerterDevice* p, double x, double v, double s);
-double play_step(const InerterDevice* p, double x, double v, double s, double h);
-double play_force(const InerterDevice* p, double x, double v, double s);
+double play_rate(const InerterDevice* p, double x, double v, double s, double load);
+double play_step(const InerterDevice* p, double x, double v, double s, double h, double load);
+double play_force(const InerterDevice* p, double x, double v, double s, double load);
 double play_force_over_step(const InerterDevice* p, double x, double v, double s, double end,
                             double share, double h);
 
@@ -136,20 +147,20 @@ static inline double sign(double v) {
 
 // Forces at the samples of a path, the state z stepped from each to the next at the mean velocity
 // and the middle between them, which keeps the path of the law. Every law has this loop compiled
-// with its own step and force in it; without a state step is NULL.
+// with its own step and force in it, without load; without a state step is NULL.
 static inline void friction_along(const InerterDevice* restrict p, const FrictionPath* path,
                                   double* restrict z, double* restrict forces,
                                   double (*step)(const InerterDevice* p, double x, double v,
-                                                 double z, double h),
+                                                 double z, double h, double load),
                                   double (*force)(const InerterDevice* p, double x, double v,
-                                                  double z)) {
+                                                  double z, double load)) {
   const double *x = path->x, *v = path->v;
   double h = path->h, rest = p->rest_length, now = step ? *z : 0;
   for (int i = path->first; i < path->last; i++) {
     if (step && i) {
-      now = step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, now, h);
+      now = step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, now, h, 0);
     }
-    forces[i - path->first] = force(p, x[i] - rest, v[i], now);
+    forces[i - path->first] = force(p, x[i] - rest, v[i], now, 0);
     if (step && path->states) {
       path->states[i] = now;
     }

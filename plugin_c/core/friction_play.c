@@ -25,22 +25,22 @@ static int engaged(const InerterDevice* p, double v, double s) {
   return fabs(s) > p->friction_backlash || (fabs(s) == p->friction_backlash && s * v > 0);
 }
 
-double play_rate(const InerterDevice* p, double x, double v, double s) {
-  return engaged(p, v, s) ? law_of(p)->rate(p, x, v, play_deflection(p, s)) : v;
+double play_rate(const InerterDevice* p, double x, double v, double s, double load) {
+  return engaged(p, v, s) ? law_of(p)->rate(p, x, v, play_deflection(p, s), load) : v;
 }
 
 // Exact at constant v as far as the law is: the bristle straightens, the play is crossed, the
 // bristle bends on the other side, each for its share of the time.
-double play_step(const InerterDevice* p, double x, double v, double s, double h) {
+double play_step(const InerterDevice* p, double x, double v, double s, double h, double load) {
   const FrictionLaw* law = law_of(p);
   double eps = p->friction_backlash, side = sign(v);
   if (v == 0) {
     return s;
   }
   if (side * s < -eps) {
-    double z = play_deflection(p, s), straight = law->straight(p, x, v, z);
+    double z = play_deflection(p, s), straight = law->straight(p, x, v, z, load);
     if (!(straight < h)) {
-      double end = law->step(p, x, v, z, h);
+      double end = law->step(p, x, v, z, h, load);
       return side * end < 0 ? end - side * eps : -side * eps;
     }
     h -= straight;
@@ -54,21 +54,21 @@ double play_step(const InerterDevice* p, double x, double v, double s, double h)
     h -= across;
     s = side * eps;
   }
-  return side * eps + law->step(p, x, v, play_deflection(p, s), h);
+  return side * eps + law->step(p, x, v, play_deflection(p, s), h, load);
 }
 
 // force at deflection z of the bristle and its rate: nothing that pulls across the play
 static double contact_force(const InerterDevice* p, double x, double z, double rate) {
   if (p->friction != INERTER_FRICTION_lugre) {
-    return law_of(p)->force(p, x, 0, z);
+    return law_of(p)->force(p, x, 0, z, 0);
   }
   double force = p->bristle_stiffness * z + p->bristle_damping * rate;
   return z > 0 ? fmax(0, force) : z < 0 ? fmin(0, force) : force;
 }
 
-double play_force(const InerterDevice* p, double x, double v, double s) {
+double play_force(const InerterDevice* p, double x, double v, double s, double load) {
   double z = play_deflection(p, s);
-  return contact_force(p, x, z, engaged(p, v, s) ? law_of(p)->rate(p, x, v, z) : 0);
+  return contact_force(p, x, z, engaged(p, v, s) ? law_of(p)->rate(p, x, v, z, load) : 0);
 }
 
 // Over a step: each side's damper at the mean rate of its bristle, so that the force does not
@@ -80,7 +80,7 @@ double play_force_over_step(const InerterDevice* p, double x, double v, double s
   double pull = fmin(0, s + eps), pulling = fmin(0, end + eps) - pull;
   double z = push + share * pushing + pull + share * pulling;
   if (p->friction != INERTER_FRICTION_lugre) {
-    return law_of(p)->force(p, x, v, z);
+    return law_of(p)->force(p, x, v, z, 0);
   }
   double upper = p->bristle_stiffness * (push + share * pushing) + p->bristle_damping * pushing / h;
   double lower = p->bristle_stiffness * (pull + share * pulling) + p->bristle_damping * pulling / h;

@@ -59,38 +59,46 @@ static inline int has_bristle(const InerterDevice* p) {
 static inline double bristle_deflection(const InerterDevice* p, double s) {
   return p->friction_backlash == 0 ? s : play_deflection(p, s);
 }
-static inline double bristle_rate(const InerterDevice* p, double x, double v, double s) {
-  return p->friction_backlash == 0 ? law_of(p)->rate(p, x, v, s) : play_rate(p, x, v, s);
+static inline double bristle_rate(const InerterDevice* p, double x, double v, double s,
+                                  double load) {
+  return p->friction_backlash == 0 ? law_of(p)->rate(p, x, v, s, load)
+                                   : play_rate(p, x, v, s, load);
 }
-static inline double bristle_step(const InerterDevice* p, double x, double v, double s, double h) {
-  return p->friction_backlash == 0 ? law_of(p)->step(p, x, v, s, h) : play_step(p, x, v, s, h);
+static inline double bristle_step(const InerterDevice* p, double x, double v, double s, double h,
+                                  double load) {
+  return p->friction_backlash == 0 ? law_of(p)->step(p, x, v, s, h, load)
+                                   : play_step(p, x, v, s, h, load);
 }
-static inline double bristle_force(const InerterDevice* p, double x, double v, double s) {
-  return p->friction_backlash == 0 ? law_of(p)->force(p, x, v, s) : play_force(p, x, v, s);
+static inline double bristle_force(const InerterDevice* p, double x, double v, double s,
+                                   double load) {
+  return p->friction_backlash == 0 ? law_of(p)->force(p, x, v, s, load)
+                                   : play_force(p, x, v, s, load);
 }
 
 // a friction law with states, one or several: rates, states after a time, force, stored energy and
 // its rate
 static inline void friction_rates(const InerterDevice* p, double x, double v, const double* z,
-                                  double* rate) {
+                                  double load, double* rate) {
   const FrictionStates* several = law_of(p)->several;
   if (several) {
-    several->rate(p, x, v, z, rate);
+    several->rate(p, x, v, z, load, rate);
   } else {
-    rate[0] = bristle_rate(p, x, v, z[0]);
+    rate[0] = bristle_rate(p, x, v, z[0], load);
   }
 }
-static inline void friction_step(const InerterDevice* p, double x, double v, double* z, double h) {
+static inline void friction_step(const InerterDevice* p, double x, double v, double* z, double h,
+                                 double load) {
   const FrictionStates* several = law_of(p)->several;
   if (several) {
-    several->step(p, x, v, z, h);
+    several->step(p, x, v, z, h, load);
   } else {
-    z[0] = bristle_step(p, x, v, z[0], h);
+    z[0] = bristle_step(p, x, v, z[0], h, load);
   }
 }
-static inline double friction_force(const InerterDevice* p, double x, double v, const double* z) {
+static inline double friction_force(const InerterDevice* p, double x, double v, const double* z,
+                                    double load) {
   const FrictionStates* several = law_of(p)->several;
-  return several ? several->force(p, z) : bristle_force(p, x, v, z[0]);
+  return several ? several->force(p, z) : bristle_force(p, x, v, z[0], load);
 }
 static inline double friction_energy(const InerterDevice* p, double x, const double* z) {
   const FrictionStates* several = law_of(p)->several;
@@ -192,16 +200,28 @@ static inline double flywheel_force(const InerterDevice* p, double y, double w) 
   return gas + flywheel_damper(p, w).value;
 }
 
+// load_friction.c: by how much a force N through the inertance raises the level of a law with a
+// bristle that moves with velocity v [N]
+double load_on_bristle(const InerterDevice* p, double v, double carried);
+
+// force of a law with a bristle without its damper
+static inline double bristle_spring(const InerterDevice* p, double x, double v, const double* z) {
+  return p->friction == INERTER_FRICTION_lugre
+             ? p->bristle_stiffness * bristle_deflection(p, z[0])
+             : friction_force(p, x, v, z, 0);
+}
+
 // wheel_friction.c: N, of the force F_s that the series element bears and of the friction law's
-// force, at velocity w of the flywheel
-double wheel_carried(const InerterDevice* p, double w, double force, double friction);
+// force, at velocity w of the flywheel; z: states of the law
+double wheel_carried(const InerterDevice* p, double w, const double* z, double force,
+                     double friction);
 
 // over_step.c: force of the friction law over a step h at displacement x to velocity v1. v:
 // velocity at which the level of friction without memory is taken; z: states of the law, those of
-// the end when it returns; share: implicit part of a bristle's spring. friction_grip: how the force
+// the end when it returns; share: implicit part of a bristle's spring; load: on its level. friction_grip: how the force
 // rises with the velocity at v [N s/m].
 double friction_over_step(const InerterDevice* p, double x, double v, double v1, double h,
-                          double share, double* z);
+                          double share, double load, double* z);
 double friction_grip(const InerterDevice* p, double x, double v);
 
 // series.c: states s, w, gap in z; x, v of the terminals; drag: what friction at the flywheel takes

@@ -1,11 +1,11 @@
 // LuGre friction: a bristle whose yield level follows the Stribeck curve.
 //
-//   z' = v - sigma0 |v| z / g(v),  g = f_c + (f_s - f_c) exp(-(|v| / v_s)^delta)
+//   z' = v - sigma0 |v| z / g(v),  g = f_c + (f_s - f_c) exp(-(|v| / v_s)^delta) + load
 //   F  = sigma0 z + sigma1 z'      (sigma2 v is the device's viscous term)
 //
 // z [m] bristle deflection; sigma0 [N/m] bristle_stiffness, sigma1 [N s/m] bristle_damping;
 // f_c, f_s [N] coulomb_force, static_force (times the level of friction.h); v_s [m/s]
-// stribeck_velocity; delta stribeck_exponent. Stored energy sigma0 z^2 / 2; steady sliding g(v).
+// stribeck_velocity; delta stribeck_exponent; load [N]: load_friction.c. Stored energy sigma0 z^2 / 2; steady sliding g(v).
 // Source: Canudas de Wit, Olsson, Astrom, Lischinsky 1995. The hysteretic inerter paper prints
 // |v| z / g without sigma0: its g is this g divided by sigma0.
 // Passive where sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed.
@@ -14,18 +14,18 @@
 
 #include "friction.h"
 
-static double yield_level(const InerterDevice* p, double x, double v) {
-  return friction_level(p, x, v) * friction_stribeck_curve(p, v);
+static double yield_level(const InerterDevice* p, double x, double v, double load) {
+  return friction_level(p, x, v) * friction_stribeck_curve(p, v) + load;
 }
 
-static double rate(const InerterDevice* p, double x, double v, double z) {
-  double g = yield_level(p, x, v);
+static double rate(const InerterDevice* p, double x, double v, double z, double load) {
+  double g = yield_level(p, x, v, load);
   return v - p->bristle_stiffness * fabs(v) * z / g;
 }
 
 // exact at constant v: exponential decay towards sgn(v) g / sigma0
-static double step(const InerterDevice* p, double x, double v, double z, double h) {
-  double g = yield_level(p, x, v);
+static double step(const InerterDevice* p, double x, double v, double z, double h, double load) {
+  double g = yield_level(p, x, v, load);
   if (v == 0) {
     return z;
   }
@@ -34,8 +34,8 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
 }
 
 // the same decay, from z against v until 0
-static double straight(const InerterDevice* p, double x, double v, double z) {
-  double decay = p->bristle_stiffness / yield_level(p, x, v);
+static double straight(const InerterDevice* p, double x, double v, double z, double load) {
+  double decay = p->bristle_stiffness / yield_level(p, x, v, load);
   return log1p(decay * fabs(z)) / (decay * fabs(v));
 }
 
@@ -43,8 +43,8 @@ static double force_of_rate(const InerterDevice* p, double z, double z_rate) {
   return p->bristle_stiffness * z + p->bristle_damping * z_rate;
 }
 
-static double force(const InerterDevice* p, double x, double v, double z) {
-  return force_of_rate(p, z, rate(p, x, v, z));
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
+  return force_of_rate(p, z, rate(p, x, v, z, load));
 }
 
 // both at once, with the derivative over v but for that of the level's asymmetry

@@ -2,11 +2,11 @@
 //
 //   z_i' = v                       while element i sticks: u_i > 0
 //   z_i' = v min(u_i, 0)           at its limit, or beyond
-//   u_i  = 1 - k_i z_i sgn(v) / (f_i level)
+//   u_i  = 1 - k_i z_i sgn(v) / (f_i level),  level + load / sum of f_i under a load
 //   F    = sum of k_i z_i
 //
 // z_i [m] deflection of element i; k_i [N/m] slip_stiffness_i, f_i [N] slip_force_i, level:
-// friction.h. Elements 1 to 8, numbered without a gap. Stored energy: sum of k_i z_i^2 / 2.
+// friction.h, load [N]: load_friction.c. Elements 1 to 8, numbered without a gap. Stored energy: sum of k_i z_i^2 / 2.
 // Breakaway and sliding: sum of f_i. From rest F(x) is a polygon with corners at f_i / k_i.
 // Why: one bristle (dahl.c, lugre.c, bouc_wen.c) has one number of memory, and forgets a loop
 // within a loop. Here every reversal is remembered until a larger one wipes it out, and loops
@@ -22,6 +22,14 @@
 // u of an element at its limit, but for rounding: it stays there
 static const double kReached = 1e-12;
 
+double slip_level(const InerterDevice* p) {
+  double sum = 0;
+  for (int i = 0; i < slip_count(p); i++) {
+    sum += slip_element(p, i)[1];
+  }
+  return sum;
+}
+
 int slip_count(const InerterDevice* p) {
   int count = 0;
   while (count < INERTER_MAXSLIP && slip_element(p, count)[0] > 0) {
@@ -30,8 +38,15 @@ int slip_count(const InerterDevice* p) {
   return count;
 }
 
-static void rate(const InerterDevice* p, double x, double v, const double* z, double* rates) {
-  double level = friction_level(p, x, v), side = sign(v);
+// level of every element; a load raises the sum of the slip forces
+static double level_at(const InerterDevice* p, double x, double v, double load) {
+  double level = friction_level(p, x, v);
+  return load == 0 ? level : level + load / slip_level(p);
+}
+
+static void rate(const InerterDevice* p, double x, double v, const double* z, double load,
+                 double* rates) {
+  double level = level_at(p, x, v, load), side = sign(v);
   for (int i = 0; i < p->nfriction; i++) {
     const double* element = slip_element(p, i);
     double u = 1 - element[0] * z[i] * side / (element[1] * level);
@@ -39,11 +54,11 @@ static void rate(const InerterDevice* p, double x, double v, const double* z, do
   }
 }
 
-static void step(const InerterDevice* p, double x, double v, double* z, double h) {
+static void step(const InerterDevice* p, double x, double v, double* z, double h, double load) {
   if (v == 0) {
     return;
   }
-  double level = friction_level(p, x, v), side = sign(v), path = fabs(v) * h;
+  double level = level_at(p, x, v, load), side = sign(v), path = fabs(v) * h;
   for (int i = 0; i < p->nfriction; i++) {
     const double* element = slip_element(p, i);
     double limit = element[1] * level / element[0], q = side * z[i];
@@ -84,8 +99,9 @@ static double stiffness(const InerterDevice* p) {
 }
 
 // on the curve from rest: one deflection for all, those at their limit left behind
-static void of_force(const InerterDevice* p, double x, double v, double wanted, double* z) {
-  double level = friction_level(p, x, v), side = sign(wanted), deflection = 0;
+static void of_force(const InerterDevice* p, double x, double v, double wanted, double load,
+                     double* z) {
+  double level = level_at(p, x, v, load), side = sign(wanted), deflection = 0;
   for (int round = 0; round <= p->nfriction; round++) {
     double rest = fabs(wanted), stiff = 0;
     for (int i = 0; i < p->nfriction; i++) {
@@ -111,7 +127,7 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   (void)v;
   for (int i = path->first; i < path->last; i++) {
     if (i) {
-      step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / path->h, z, path->h);
+      step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / path->h, z, path->h, 0);
     }
     forces[i - path->first] = force(p, z);
     for (int k = 0; k < n && path->states; k++) {

@@ -6,23 +6,42 @@
 
 #include "laws.h"
 
+// Force through the inertance that loads a bristle: in the middle between two samples, with a series
+// element at the first.
+static double middle_load(const InerterDevice* device, const double* x, const double* v,
+                          const double* a, const double* z) {
+  if (!inerter_load_bends(device)) {
+    return 0;
+  }
+  if (has(device, PART_SERIES)) {
+    return series_force(device, v[0], z + series_index(device));
+  }
+  double rest, middle = 0.5 * (x[0] + x[1]);
+  double inertance = inerter_inertance(device, middle, 0.5 * (v[0] + v[1]), &rest);
+  return 0.5 * inertance * (a[0] + a[1]) + rest;
+}
+
 // States from one sample to the next, h later. A bristle sees the mean velocity at the middle,
 // which keeps its path; a series element sees the cubic through both samples: a stiff one carries
 // b a.
-static void step_between(const InerterDevice* device, const double* x, const double* v, double* z,
-                         double h) {
+static void step_between(const InerterDevice* device, const double* x, const double* v,
+                         const double* a, double* z, double h) {
   double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
-  if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
-    double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
-    friction_step(device, middle, mean, z, h);
-  }
+  double before = middle_load(device, x, v, a, z);
   if (has(device, PART_BRANCHES)) {
     branches_step(device, mean, z + branch_index(device), h);
   }
   if (has(device, PART_SERIES)) {
-    double a = (6 * mean - 4 * v[0] - 2 * v[1]) / h;
+    double begin = (6 * mean - 4 * v[0] - 2 * v[1]) / h;
     double jerk = 6 * (v[0] + v[1] - 2 * mean) / (h * h);
-    series_step(device, start, v[0], a, jerk, z, z + series_index(device), h);
+    series_step(device, start, v[0], begin, jerk, z, z + series_index(device), h);
+  }
+  if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
+    double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
+    double carried = inerter_load_bends(device) && has(device, PART_SERIES)
+                         ? 0.5 * (before + series_force(device, v[1], z + series_index(device)))
+                         : before;
+    friction_step(device, middle, mean, z, h, load_on_bristle(device, mean, carried));
   }
   if (device->ncontrol) {
     z[control_index(device)] = control_step(device, z[control_index(device)], h);
@@ -77,7 +96,7 @@ void inerter_along(const InerterDevice* device, int n, double h, const double* x
     plain_along(device, n, h, x, v, a, now, total, friction, states);
   } else {
     for (int i = 0; i < n; i++) {
-      if (nstate && i) step_between(device, x + i - 1, v + i - 1, now, h);
+      if (nstate && i) step_between(device, x + i - 1, v + i - 1, a + i - 1, now, h);
       InerterForce force = inerter_force(device, x[i], v[i], a[i], now);
       if (total) total[i] = force.total;
       if (friction) friction[i] = force.friction;
@@ -100,7 +119,7 @@ void inerter_along_commanded(const InerterDevice* device, int n, double h, const
   if (z) memcpy(now, z, size);
   for (int i = 0; i < n; i++) {
     // the step runs with the value of its start
-    if (nstate && i) step_between(&present, x + i - 1, v + i - 1, now, h);
+    if (nstate && i) step_between(&present, x + i - 1, v + i - 1, a + i - 1, now, h);
     inerter_command(&present, command[i], now);
     InerterForce force = inerter_force(&present, x[i], v[i], a[i], now);
     if (total) total[i] = force.total;
@@ -126,7 +145,7 @@ static void evaluate(const InerterDevice* device, int n, int i, double x, double
   result[3 * n + i] = inerter_stored_energy(device, x, v, z);
   result[4 * n + i] = inerter_dissipated_power(device, x, v, a, z);
   if (device->nstate) {
-    inerter_state_rate(device, x, v, z, rates + (size_t)i * (size_t)device->nstate);
+    inerter_state_rate(device, x, v, a, z, rates + (size_t)i * (size_t)device->nstate);
   }
 }
 

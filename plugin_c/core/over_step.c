@@ -5,7 +5,7 @@
 //   stroke: at x
 //   end stops: at x + h v1, v1
 //   bristle: z1 = step(x, v1, z, h), force at z + share (z1 - z), its damper at the mean rate
-//   (z1 - z) / h, however soon within the step the bristle is bent
+//   (z1 - z) / h, however soon within the step the bristle is bent; its load is N over the step
 //   rigid inertance: B a + R + G at (x, v), the dampers of G with their slope times (v1 - v)
 //   series element: series_step.c
 //   share(k, m) = max(0, 1 - 1 / (h^2 k m)), m = mobility [1/kg] of the masses at the spring's ends
@@ -34,8 +34,8 @@ enum { STEP_LINE, STEP_FRICTION, STEP_BRISTLE, STEP_LOAD, STEP_GENERAL };  // In
 static Tangent sharp_friction(const InerterStep* step, double v1) {
   const InerterDevice* p = step->device;
   if (!law_of(p)->level) {
-    double near = 1e-6 * p->stribeck_velocity, force = law_of(p)->force(p, step->stretch, v1, 0);
-    double beside = law_of(p)->force(p, step->stretch, v1 + near, 0);
+    double near = 1e-6 * p->stribeck_velocity, force = law_of(p)->force(p, step->stretch, v1, 0, 0);
+    double beside = law_of(p)->force(p, step->stretch, v1 + near, 0, 0);
     return (Tangent){force, fmax(0, (beside - force) / near)};
   }
   double direction = tanh(v1 / step->width);
@@ -73,37 +73,37 @@ static double bristle_share(const InerterDevice* device, double h, double mobili
 
 // force of a law with a bristle; z, z1: its state at the start and at the end
 static double bristle_over_step(const InerterDevice* device, double x, double v1, double z,
-                                double h, double share, double* z1) {
+                                double h, double share, double load, double* z1) {
   const FrictionLaw* law = law_of(device);
-  *z1 = bristle_step(device, x, v1, z, h);
+  *z1 = bristle_step(device, x, v1, z, h, load);
   if (device->friction_backlash > 0) {
     return play_force_over_step(device, x, v1, z, *z1, share, h);
   }
   double middle = z + share * (*z1 - z);
   return law->force_of_rate ? law->force_of_rate(device, middle, (*z1 - z) / h)
-                            : law->force(device, x, v1, middle);
+                            : law->force(device, x, v1, middle, load);
 }
 
 // the same of a law with several states
 static double states_over_step(const InerterDevice* device, double x, double v1, double h,
-                               double share, double* z) {
+                               double share, double load, double* z) {
   double mean[INERTER_MAXFRICTION];
   memcpy(mean, z, sizeof(double) * (size_t)device->nfriction);
-  friction_step(device, x, v1, z, h);
+  friction_step(device, x, v1, z, h, load);
   for (int i = 0; i < device->nfriction; i++) {
     mean[i] += share * (z[i] - mean[i]);
   }
-  return friction_force(device, x, v1, mean);
+  return friction_force(device, x, v1, mean, load);
 }
 
 double friction_over_step(const InerterDevice* device, double x, double v, double v1, double h,
-                          double share, double* z) {
+                          double share, double load, double* z) {
   if (device->friction == INERTER_FRICTION_none) {
     return 0;
   }
   if (has_bristle(device)) {
-    return law_of(device)->several ? states_over_step(device, x, v1, h, share, z)
-                                   : bristle_over_step(device, x, v1, z[0], h, share, z);
+    return law_of(device)->several ? states_over_step(device, x, v1, h, share, load, z)
+                                   : bristle_over_step(device, x, v1, z[0], h, share, load, z);
   }
   InerterStep step = {.device = device, .v = v};
   find_level(&step, x);
@@ -129,10 +129,10 @@ double friction_grip(const InerterDevice* device, double x, double v) {
 
 // friction at the terminals with its load, or at the flywheel
 static double friction_with_load(const InerterDevice* device, double friction, double drag,
-                                 double v1, double carried) {
+                                 double v1, const double* z, double carried) {
   return has(device, PART_WHEEL_FRICTION)
              ? drag
-             : friction + inerter_load_factor(device, v1, carried) * fabs(carried);
+             : friction + inerter_load_factor(device, v1, z, carried) * fabs(carried);
 }
 
 InerterForce inerter_force_over_step(const InerterDevice* device, double x, double v, double a,
@@ -147,10 +147,6 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     force = inerter_force(device, x, v, a, z);
   } else {
     double friction = 0, drag = 0;
-    if (!has(device, PART_WHEEL_FRICTION)) {
-      double share = bristle_share(device, h, mobility);
-      friction = friction_over_step(device, stretch, v, v1, h, share, next);
-    }
     if (has(device, PART_SERIES)) {
       double* series = next + series_index(device);
       force.inertance =
@@ -159,6 +155,11 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       double rest, inertance = inerter_inertance(device, x, v, &rest);
       double slope = has(device, PART_FLYWHEEL) ? flywheel_damper(device, v).slope : 0;
       force.inertance = (inertance + slope * h) * a + rest;
+    }
+    if (!has(device, PART_WHEEL_FRICTION)) {
+      double share = bristle_share(device, h, mobility);
+      double load = load_on_bristle(device, v1, force.inertance);
+      friction = friction_over_step(device, stretch, v, v1, h, share, load, next);
     }
     double spring = spring_force(device, stretch);
     double damper = damper_force(device, stretch, v1);
@@ -169,7 +170,7 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     if (device->ncontrol) {
       next[control_index(device)] = control_step(device, next[control_index(device)], h);
     }
-    force.friction = friction_with_load(device, friction, drag, v1, force.inertance);
+    force.friction = friction_with_load(device, friction, drag, v1, z, force.inertance);
     force.total = force.inertance + spring + damper + device->force_offset + stops + force.friction;
   }
   if (end && device->nstate) {
@@ -206,14 +207,16 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
 }
 
 void inerter_step_instant(InerterStep* step, const InerterDevice* device, double x, double v,
-                          double motion) {
-  *step = (InerterStep){.device = device, .x = x, .v = v};
+                          const double* z, double motion) {
+  *step = (InerterStep){.device = device, .x = x, .v = v, .z = z};
   step->rise = inerter_inertance(device, x, v, &step->start);
-  if (inerter_has_load_friction(device)) {
+  if (inerter_load_bends(device) && device->bristle_damping > 0) {
+    step->kind = STEP_GENERAL;  // a bristle's damper moves with the load
+  } else if (inerter_has_load_friction(device) && !inerter_load_bends(device)) {
     step->kind = STEP_LOAD;
     step->motion = motion;
-    step->load = inerter_load_factor(device, v, 1);
-    step->load_negative = inerter_load_factor(device, v, -1);
+    step->load = inerter_load_factor(device, v, z, 1);
+    step->load_negative = inerter_load_factor(device, v, z, -1);
   } else {
     step->kind = STEP_LINE;
     step->start += motion;
@@ -229,10 +232,10 @@ static double state_force(const InerterStep* step, double stretch, double v1, do
   const InerterDevice* p = step->device;
   double end[INERTER_MAXFRICTION];
   if (!law_of(p)->several) {
-    return bristle_over_step(p, stretch, v1, step->z[0], step->h, share, end);
+    return bristle_over_step(p, stretch, v1, step->z[0], step->h, share, 0, end);
   }
   memcpy(end, step->z, sizeof(double) * (size_t)p->nfriction);
-  return states_over_step(p, stretch, v1, step->h, share, end);
+  return states_over_step(p, stretch, v1, step->h, share, 0, end);
 }
 
 // the same, with its slope over v1

@@ -27,14 +27,20 @@ static double factor(const InerterDevice* p, double v, double z) {
   return 1 + p->rate_effect * log(speed / p->rate_velocity) + p->age_effect * z;
 }
 
-static double rate(const InerterDevice* p, double x, double v, double z) {
+double rate_state_factor(const InerterDevice* p, double v, double z) {
+  return fmax(kLeast, factor(p, v, z));
+}
+
+static double rate(const InerterDevice* p, double x, double v, double z, double load) {
   (void)x;
+  (void)load;
   return (p->rate_velocity * exp(-fmax(kYoungest, z)) - fabs(v)) / p->age_distance;
 }
 
 // exact at constant v: theta decays towards L / |v|, or grows with the time
-static double step(const InerterDevice* p, double x, double v, double z, double h) {
+static double step(const InerterDevice* p, double x, double v, double z, double h, double load) {
   (void)x;
+  (void)load;
   if (h == 0) {
     return z;
   }
@@ -47,7 +53,8 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   return larger + log1p(exp(fmin(old, young) - larger));
 }
 
-static double force(const InerterDevice* p, double x, double v, double z) {
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
+  (void)load;
   double level = p->coulomb_force * friction_level(p, x, v);
   return level * fmax(kLeast, factor(p, v, z)) * friction_direction(p, v);
 }

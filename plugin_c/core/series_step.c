@@ -146,6 +146,26 @@ static Flywheel held(Flywheel flywheel, double drag) {
   return flywheel;
 }
 
+// force of the law over the step, its level that of the load; states of the end
+static double rubbing_force(const InerterDevice* p, Rubbing* rubbing, double w, double force,
+                            double drag) {
+  size_t size = sizeof(double) * (size_t)p->nfriction;
+  double load = load_on_bristle(p, w, force - drag);
+  if (inerter_load_bends(p) && p->bristle_damping > 0) {
+    // less the bristle's spring alone, on the mean of its way with the load of its start
+    double spring = bristle_spring(p, rubbing->y, w, rubbing->start);
+    load = load_on_bristle(p, w, force - spring);
+    friction_over_step(p, rubbing->y, rubbing->near, w, rubbing->h, rubbing->implicit, load,
+                       rubbing->end);
+    double after = bristle_spring(p, rubbing->y, w, rubbing->end);
+    spring += rubbing->implicit * (after - spring);
+    load = load_on_bristle(p, w, force - spring);
+    memcpy(rubbing->end, rubbing->start, size);
+  }
+  return friction_over_step(p, rubbing->y, rubbing->near, w, rubbing->h, rubbing->implicit, load,
+                            rubbing->end);
+}
+
 // by how much friction at a drag differs from it
 static double misfit(const InerterDevice* p, Element element, Flywheel flywheel, Rubbing* rubbing,
                      double drag) {
@@ -156,9 +176,9 @@ static double misfit(const InerterDevice* p, Element element, Flywheel flywheel,
   if (rubbing->start) {
     memcpy(rubbing->end, rubbing->start, sizeof(double) * (size_t)p->nfriction);
   }
-  double friction = friction_over_step(p, rubbing->y, rubbing->near, w, rubbing->h,
-                                       rubbing->implicit, rubbing->end);
-  return friction + inerter_load_factor(p, w, force - drag) * fabs(force - drag) - drag;
+  double friction = rubbing_force(p, rubbing, w, force, drag);
+  return friction +
+         inerter_load_factor(p, w, rubbing->start, force - drag) * fabs(force - drag) - drag;
 }
 
 enum { MOST_TURNS = 100 };

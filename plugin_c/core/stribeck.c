@@ -9,8 +9,9 @@
 
 #include "friction.h"
 
-static double force(const InerterDevice* p, double x, double v, double z) {
+static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
+  (void)load;
   return friction_level(p, x, v) * friction_stribeck_curve(p, v) * friction_direction(p, v);
 }
 

@@ -1,11 +1,12 @@
 // Friction behind the series element, beside the inertance (friction_side = flywheel).
 //
-//   F_s = N + F_f(y, w, z) + mu sign(w) |N|,   N = B w' + R + G
-//   N = (F_s - F_f) / (1 + mu sign(w) sgn(F_s - F_f))
+//   F_s = N + F_f(y, w, z) + lambda |N|,   N = B w' + R + G
+//   N = (F_s - F_f) / (1 + lambda sgn(F_s - F_f))
 //
 // F_s [N] force of the series element (series.c), F_f [N] friction law at the flywheel's
 // displacement y = x - s [m], velocity w [m/s] and its own state z; N [N] force through the
-// inertance; mu load_friction, sign(w) = tanh(w / v_t). Without a series element y = x, w = v, F_s
+// inertance; lambda that of load_friction.c, 0 where the load raises the level of a bristle in F_f,
+// by |N| without LuGre's damper. Without a series element y = x, w = v, F_s
 // is the force between the terminals, and there is nothing to tell the sides apart: the same
 // calculation then. Steps: series_step.c solves for the friction together with the flywheel's
 // velocity. Why: friction of the nut's bearing and of the flywheel sits behind the elastic shaft;
@@ -15,7 +16,8 @@
 
 #include "laws.h"
 
-double wheel_carried(const InerterDevice* p, double w, double force, double friction) {
+double wheel_carried(const InerterDevice* p, double w, const double* z, double force,
+                     double friction) {
   double rest = force - friction;
-  return rest / (1 + inerter_load_factor(p, w, rest) * sign(rest));
+  return rest / (1 + inerter_load_factor(p, w, z, rest) * sign(rest));
 }

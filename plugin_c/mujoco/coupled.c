@@ -56,7 +56,7 @@ static void begin(const mjModel* m, Coupled* c, mjtNum mobility) {
   if (h == 0) {
     mjtNum motion = self->disabled ? inerter_force_motion(&self->matter, self->x, self->v, NULL)
                                    : instance_force_motion(self);
-    inerter_step_instant(&c->step, present(self), self->x, self->v, motion);
+    inerter_step_instant(&c->step, present(self), self->x, self->v, self->state, motion);
   } else {
     inerter_step_begin(&c->step, present(self), self->x, self->v, self->state, h, mobility);
   }

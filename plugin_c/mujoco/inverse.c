@@ -48,7 +48,7 @@ static int look(const mjModel* m, const mjData* d, int instance, Now* now,
 static mjtNum share_of_force(const mjModel* m, const Now* now) {
   const Instance* self = &now->self;
   const InerterDevice* share = self->disabled ? &self->matter : &self->share;
-  mjtNum a = now->a, rest;
+  mjtNum a = now->a;
   if (now->asleep || self->forceless) {
     return 0;
   }
@@ -57,10 +57,7 @@ static mjtNum share_of_force(const mjModel* m, const Now* now) {
                                                  m->opt.timestep, now->mobility, NULL);
     return force.total - self->replaced * a;
   }
-  mjtNum branch = inerter_inertance(share, self->x, self->v, &rest) * a + rest;
-  mjtNum load = inerter_load_factor(share, self->v, branch) * fabs(branch);
-  return branch + load + inerter_force_motion(share, self->x, self->v, self->state) -
-         self->replaced * a;
+  return inerter_force(share, self->x, self->v, a, self->state).total - self->replaced * a;
 }
 
 // acceleration of each device over the step that has this qacc, and mobility of the terminals

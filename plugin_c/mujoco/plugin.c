@@ -209,6 +209,14 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
 
 //------------------------------ forward pass ------------------------------------------------------
 
+// rates of the states, at an acceleration, where the engine asked for them
+static void rate_states(const mjModel* m, Instance* self, mjtNum a, mjtNum* rate) {
+  mjtNum x = self->rate_x, v = self->rate_v;
+  inerter_state_rate(&self->device, x, v, a, self->rate_state, self->rate);
+  mju_copy(rate, self->rate, inerter_nstate(&self->device));
+  watch_bristle(m, self, x, v, a, self->rate_state, rate);
+}
+
 static void act_dot(const mjModel* m, mjData* d, int instance) {
   if (instance_absent(d, instance)) {
     return;
@@ -227,12 +235,10 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
   mjtNum* rate = d->act_dot + address;
   mju_zero(rate, nstate);
   if (!instance_idle(m, d, self)) {
-    mjtNum x = self->rate_x = instance_displacement(m, d, self);
-    mjtNum v = self->rate_v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
+    self->rate_x = instance_displacement(m, d, self);
+    self->rate_v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
     mju_copy(self->rate_state, d->act + address, nstate);
-    inerter_state_rate(&self->device, x, v, self->rate_state, self->rate);
-    mju_copy(rate, self->rate, nstate);
-    watch_bristle(m, self, x, v, self->rate_state, rate);
+    rate_states(m, self, 0, rate);
   }
 }
 
@@ -316,6 +322,10 @@ static void compute_forces(const mjModel* m, mjData* d, int instance, Instance* 
       continue;
     }
     Instance* each = instance_of(d, k);
+    if (each->solved && inerter_load_bends(&each->device) && !instance_idle(m, d, each)) {
+      // the load on the bristle is known only now
+      rate_states(m, each, each->acceleration, d->act_dot + instance_act(m, each));
+    }
     watch_force(m, each, d->actuator_force[m->actuator_outadr[each->actuator]] - each->detour);
     if (each->sensed && !instance_sees_falling_asleep(m, d)) {
       remember_power(m, d, each);
@@ -377,11 +387,11 @@ static void advance(const mjModel* m, mjData* d, int instance) {
 
   // the step went from x with the velocity that stands in qvel now
   mjtNum v = instance_velocity(m, d, self), a = (v - self->v) / h;
-  if (instance_has_series(&self->device)) {
+  if (instance_has_series(&self->device) || inerter_load_bends(&self->device)) {
     inerter_force_over_step(&self->share, self->x, self->v, a + self->bias, self->state, h,
                             self->mobility, self->state);
   } else if (nstate) {
-    inerter_state_step(&self->device, self->x + 0.5 * h * v, v, self->state, h);
+    inerter_state_step(&self->device, self->x + 0.5 * h * v, v, 0, self->state, h);
   }
   mju_copy(state, self->state, nstate);
   if (heat) {

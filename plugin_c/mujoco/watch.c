@@ -67,7 +67,7 @@ static void watch_age(const mjModel* m, Instance* self, double x, double v, cons
                       mjtNum* rate) {
   double after[INERTER_MAXSTATE], half = 0.5 * m->opt.timestep;
   mju_copy(after, state, inerter_nstate(&self->device));
-  inerter_state_step(&self->device, x, v, after, half);
+  inerter_state_step(&self->device, x, v, 0, after, half);
   double most = 1.3 * fabs(after[0] - state[0]) / half;
   if (!(fabs(rate[0]) > most)) {
     return;
@@ -82,8 +82,8 @@ static void watch_age(const mjModel* m, Instance* self, double x, double v, cons
   instance_complain(m, self, COMPLAINT_BRISTLE, message);
 }
 
-void watch_bristle(const mjModel* m, Instance* self, double x, double v, const mjtNum* state,
-                   mjtNum* rate) {
+void watch_bristle(const mjModel* m, Instance* self, double x, double v, double a,
+                   const mjtNum* state, mjtNum* rate) {
   const InerterDevice* device = &self->device;
   if (m->opt.integrator != mjINT_RK4 || !instance_has_bristle(device)) {
     return;
@@ -116,7 +116,7 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, const m
     double outwards = copysign(1e-6 * fabs(state[i]) + 1e-15, state[i]);
     there[i] += device->nfriction > 1 ? outwards : step;
   }
-  inerter_state_rate(device, x, v, there, beyond);
+  inerter_state_rate(device, x, v, a, there, beyond);
   double decay = 0, fastest = 2 / m->opt.timestep;
   for (int i = 0; i < device->nfriction; i++) {
     double each = (rate[i] - beyond[i]) / (there[i] - state[i]);

@@ -31,7 +31,7 @@ void watch_sites(const mjModel* m, const mjData* d, Instance* self);
 // towards sliding at a rate of sigma0 |v| / g, which is easily beyond the stability of explicit
 // stages. There it is slowed to the fastest that is stable: sliding then sets in within a step
 // instead of at once, at the same level.
-void watch_bristle(const mjModel* m, Instance* self, double x, double v, const mjtNum* state,
-                   mjtNum* rate);
+void watch_bristle(const mjModel* m, Instance* self, double x, double v, double a,
+                   const mjtNum* state, mjtNum* rate);
 
 #endif  // INERTER_MUJOCO_WATCH_H_

@@ -258,15 +258,20 @@ class Device:
         return Device(**{**kept, self.control: getattr(c, self.control)})
 
     @overload
-    def step(self, x: float, v: float, z: float, h: float) -> float: ...
+    def step(self, x: float, v: float, z: float, h: float, a: float = 0.0) -> float: ...
     @overload
     def step(
-        self, x: float, v: float, z: Sequence[float] | NDArray, h: float
+        self, x: float, v: float, z: Sequence[float] | NDArray, h: float, a: float = 0.0
     ) -> NDArray[np.float64]: ...
-    def step(self, x: float, v: float, z: Any, h: float) -> float | NDArray[np.float64]:
-        """States after a time h at constant velocity v from displacement x, in the form of z."""
+    def step(
+        self, x: float, v: float, z: Any, h: float, a: float = 0.0
+    ) -> float | NDArray[np.float64]:
+        """States after a time h at constant velocity v from displacement x, in the form of z.
+
+        Where the load raises the level of a bristle, it is that of the acceleration a [m/s^2].
+        """
         states = self._states(z)
-        library().inerter_state_step(ctypes.byref(self._c), x, v, states.ctypes.data, h)
+        library().inerter_state_step(ctypes.byref(self._c), x, v, a, states.ctypes.data, h)
         return states if np.ndim(z) else float(states[0]) if self.nstate else 0.0
 
     def state_of_force(

@@ -108,7 +108,7 @@ def library() -> ctypes.CDLL:
         for what in ("name", "meaning"):
             getattr(found, f"inerter_{word}_{what}").restype = ctypes.c_char_p
     at, number = ctypes.c_void_p, ctypes.c_double
-    found.inerter_state_step.argtypes = [at, number, number, at, number]
+    found.inerter_state_step.argtypes = [at, *[number] * 3, at, number]
     found.inerter_state_of_force.argtypes = [at, *[number] * 4, at]
     found.inerter_valid.argtypes = [at, number, at, ctypes.c_char_p]
     found.inerter_force_over_step.argtypes = [at, *[number] * 3, at, number, number, at]

@@ -121,14 +121,15 @@ def test_terms_add_up_to_the_force_and_the_state_rates(friction: str) -> None:
         for i, (x, v, a) in enumerate(motion.tolist()):
             stretch, z = x - device.rest_length, states[i].tolist()
             total, found = 0.0, np.zeros(device.nstate)
-            for term in law.terms(NUMBERS, p, stretch, v, z):
+            for term in law.terms(NUMBERS, p, stretch, v, z, a):
                 total += term.terminals * term.value
                 for place, share in term.rates:
                     found[place] += share * term.value
             sign = np.sign(true["inertance"][i])
-            total += law.mass(NUMBERS, p, stretch, v, sign) * a
+            rubbed = law.states_of(p, z).friction
+            total += law.mass(NUMBERS, p, stretch, v, sign, rubbed) * a
             if rigid(device):
-                total += law.load_rest(NUMBERS, p, stretch, v, sign)
+                total += law.load_rest(NUMBERS, p, stretch, v, sign, rubbed)
             assert total == pytest.approx(true["total"][i], rel=SAME, abs=SAME * 1e3)
             for name, rate, expected in zip(device.state_names, found, rates[i], strict=False):
                 if name == "gap_position" and not device.series_damping:

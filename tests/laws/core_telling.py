@@ -169,15 +169,15 @@ class Telling:
             reach = reach + np.where(depth > 0.0, abs(x) + abs(place), 0.0)
         return (force, size * reach), (energy, size * reach**2), (heat, size * reach * abs(v))
 
-    def friction(self, v: Array, z: Array) -> tuple[Pair, Pair, Pair, Pair]:
-        """Force, rate of the state, stored energy, heat."""
+    def friction(self, v: Array, z: Array, load: Array) -> tuple[Pair, Pair, Pair, Pair]:
+        """Force, rate of the state, stored energy, heat; a load raises the level of a bristle."""
         p, none = self.p, term(0.0 * v)
         if p["friction"] == "coulomb":
             force = term(p["coulomb_force"] * np.tanh(v / p["transition_velocity"]))
             return force, none, none, term(force[0] * v)
         if not self.bristle:
             return none, none, none, none
-        stiff, limit = p["bristle_stiffness"], p["coulomb_force"] / p["bristle_stiffness"]
+        stiff, limit = p["bristle_stiffness"], (p["coulomb_force"] + load) / p["bristle_stiffness"]
         rate = v - abs(v) * z[:, 0] / limit
         rate_size = abs(v) * (1.0 + abs(z[:, 0]) / limit)
         force, energy = term(stiff * z[:, 0]), term(stiff * z[:, 0] ** 2 / 2.0)
@@ -190,17 +190,24 @@ class Telling:
         place = 1 if self.bristle else 0
         s, w = (z[:, place], z[:, place + 1]) if self.series else (0.0 * x, v)
         slide = w if self.wheel else v
-        friction, bristle_rate, bristle_energy, friction_heat = self.friction(slide, z)
         felt, rest, kinetic = self.inertance(x - s, w)
         damper = self.flywheel_damper(w)
         gas, gas_energy = self.gas(x - s)
         stops, stop_energy, stop_heat = self.stops(x, v)
-        rates = [bristle_rate] if self.bristle else []
         element: dict[str, Pair] = {}
         share = p["load_friction"] * np.tanh(slide / p["transition_velocity"])
+        share = 0.0 * slide if self.bristle else share
         through = term(0.0 * x)
+        bearing = add((felt[0] * a, felt[1] * abs(a)), rest, damper, gas)
         if self.series:
             element = self.element(v, z[:, place:])
+            bearing = element["force"]
+        spring = p["bristle_stiffness"] * z[:, 0] if self.bristle and self.wheel else 0.0 * x
+        on_bristle = p["load_friction"] * abs(bearing[0] - spring)
+        rubbed = self.friction(slide, z, on_bristle)
+        friction, bristle_rate, bristle_energy, friction_heat = rubbed
+        rates = [bristle_rate] if self.bristle else []
+        if self.series:
             carried = through = element["force"]
             if self.wheel:
                 # what is left of the shaft's force by the friction law, and by its own load
@@ -212,7 +219,7 @@ class Telling:
             rates += [(v - w, abs(v) + abs(w)), (turned, speed_up * felt[1] / abs(felt[0]))]
             rates += [element["gap_rate"]] if p["backlash"] else []
         else:
-            carried = add((felt[0] * a, felt[1] * abs(a)), rest, damper, gas)
+            carried = bearing
         load = share * abs(carried[0]), abs(share) * carried[1]
         spring = term(p["stiffness"] * x), term(p["stiffness_cubic"] * x**3)
         own_damper = term(p["viscous"] * v), term(p["quadratic_damping"] * v * abs(v))

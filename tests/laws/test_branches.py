@@ -57,7 +57,7 @@ def test_core_is_the_reference_on_random_devices() -> None:
         ):
             error = abs(found[name] - np.reshape(value, v.shape))
             assert np.all(error <= 1e-12 * (sizes[name][1] + more.get(name, 0.0))), (p, name)
-        rates = np.reshape(reference.state_rate(x, v, state), z.shape)
+        rates = np.reshape(reference.state_rate(x, v, state, a=a), z.shape)
         size = np.column_stack(
             [sizes["state_rate"][1], abs(v)[:, np.newaxis] + abs(z[:, -n:]) * k / c]
         )

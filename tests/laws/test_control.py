@@ -112,7 +112,7 @@ def test_the_tellings_agree(name: str, lag: float) -> None:
             size = np.max(np.abs(value)) + 1e-9
             np.testing.assert_allclose(said[key], value, rtol=1e-9, atol=1e-10 * size, err_msg=key)
         if device.nstate:
-            rates = np.asarray(told.state_rate(x, v, states)).reshape(len(x), device.nstate)
+            rates = np.asarray(told.state_rate(x, v, states, a=a)).reshape(len(x), device.nstate)
             found = said["state_rate"].reshape(rates.shape)
             np.testing.assert_allclose(found, rates, rtol=1e-9, atol=1e-10 * np.abs(rates).max())
 

@@ -145,12 +145,12 @@ def test_core_is_the_reference(law: str, wide: float) -> None:
 
         found = core.evaluate(x, v, a, z)
         carried = reference.inertance_force(x, v, a)
-        load = reference.load_friction_force(v, carried)
+        load = reference.load_friction_force(v, carried, z)
         expected = {
             "inertance": carried,
-            "friction": reference.friction_force(x, v, z) + load,
+            "friction": reference.friction_force(x, v, z, a=a) + load,
             "total": reference.force(x, v, a, z),
-            "state_rate": reference.state_rate(x, v, z),
+            "state_rate": reference.state_rate(x, v, z, a=a),
             "stored_energy": reference.stored_energy(x, v, z),
             "dissipated_power": reference.dissipated_power(x, v, a, z),
         }
@@ -179,7 +179,7 @@ def test_core_is_the_reference_of_the_complete_device() -> None:
             "inertance": reference.inertance_force(x, v, a, state),
             "friction": reference.total_friction(x, v, a, state),
             "total": reference.force(x, v, a, state),
-            "state_rate": reference.state_rate(x, v, state),
+            "state_rate": reference.state_rate(x, v, state, a=a),
             "stored_energy": reference.stored_energy(x, v, state),
             "dissipated_power": reference.dissipated_power(x, v, a, state),
         }

@@ -122,11 +122,11 @@ def test_core_is_the_reference(law: str) -> None:
         x, v, a, _ = draw_points(rng, 100, 1.0)
         s = places(rng, p, 100)
         found = core.evaluate(x, v, a, s)
-        load = reference.load_friction_force(v, reference.inertance_force(x, v, a))
+        load = reference.load_friction_force(v, reference.inertance_force(x, v, a), s)
         expected = {
-            "friction": reference.friction_force(x, v, s) + load,
+            "friction": reference.friction_force(x, v, s, a=a) + load,
             "total": reference.force(x, v, a, s),
-            "state_rate": reference.state_rate(x, v, s),
+            "state_rate": reference.state_rate(x, v, s, a=a),
             "stored_energy": reference.stored_energy(x, v, s),
             "dissipated_power": reference.dissipated_power(x, v, a, s),
         }

@@ -36,7 +36,7 @@ def expected_of(reference: ReferenceDevice, x: Array, v: Array, a: Array, z: Arr
         "inertance": carried,
         "friction": reference.total_friction(x, v, a, state),
         "total": reference.force(x, v, a, state),
-        "state_rate": reference.state_rate(x, v, state),
+        "state_rate": reference.state_rate(x, v, state, a=a),
         "stored_energy": reference.stored_energy(x, v, state),
         "dissipated_power": reference.dissipated_power(x, v, a, state),
     }

@@ -50,7 +50,7 @@ def test_core_is_the_reference(wide: float) -> None:
         stiffness = np.array([p[n] for n in p if n.startswith("slip_stiffness")])
         spring = stiffness * abs(z)
         rate_size = abs(v)[:, np.newaxis] * (2.0 + abs(z) * 1e3 * 10.0**wide * 10.0**wide)
-        rates = np.reshape(reference.state_rate(x, v, state), z.shape)
+        rates = np.reshape(reference.state_rate(x, v, state, a=a), z.shape)
         assert np.all(abs(found["state_rate"] - rates) <= 1e-12 * rate_size)
         size = 1.0 + spring.sum(axis=1) + abs(found["total"]) + abs(found["inertance"])
         size += (abs(p["stiffness"]) + abs(p["stiffness_cubic"]) * x**2) * abs(x - p["rest_length"])

@@ -44,7 +44,7 @@ def test_power_balance(friction: str, point: tuple[float, float, float, float]) 
     device = device_with(
         friction, rest_length=0.003, force_offset=7.0, friction_asymmetry=0.2, friction_gradient=8.0
     )
-    rate = float(device.state_rate(x, v, z))
+    rate = float(device.state_rate(x, v, z, a=a))
 
     # stored energy's rate along the path, by central differences
     h = 1e-5

@@ -169,7 +169,7 @@ def test_what_is_taken_is_simulated_right(
     states = np.column_stack([columns[name] for name in device.state_names] or [np.zeros_like(x)])
     z = reference.state_argument(states)
     carried = reference.inertance_force(x, v, a, z)
-    friction = reference.friction_force(x, v, z) + reference.load_friction_force(v, carried)
+    friction = reference.total_friction(x, v, a, z)
     size = np.abs(carried).max() + np.abs(friction).max() + np.abs(columns["force"]).max() + 1.0
     np.testing.assert_allclose(columns["friction_force"], friction, rtol=0, atol=1e-9 * size)
     np.testing.assert_allclose(

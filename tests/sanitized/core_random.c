@@ -239,7 +239,7 @@ int main(void) {
     if (!own || !end) abort();
     double* states = own + 1;
     memcpy(states, z, sizeof(double) * (size_t)nstate);
-    inerter_state_step(&device, x[0], v[0], states, h);
+    inerter_state_step(&device, x[0], v[0], a[0], states, h);
     inerter_state_of_force(&device, x[1], v[1], a[1], tame ? moderate() : any(&source), end + 1);
     for (int i = 0; tame && i < nstate; i++) {
       int bounded = device.friction != INERTER_FRICTION_bouc_wen || i > 0;

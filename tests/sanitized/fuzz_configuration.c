@@ -100,7 +100,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   double z[INERTER_MAXSTATE] = {0};
   *message = 0;
   REQUIRE(inerter_valid(&device, device.rest_length, z, message));
-  inerter_state_step(&device, device.rest_length, 0.1, z, 1e-3);
+  inerter_state_step(&device, device.rest_length, 0.1, 1.0, z, 1e-3);
   inerter_force(&device, device.rest_length, 0.1, 1, z);
   return 0;
 }

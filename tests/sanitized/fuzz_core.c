@@ -223,7 +223,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   memcpy(own, z, sizeof(double) * (size_t)wide);
   InerterForce force = inerter_force(&device, x[0], v[0], a[0], own);
   inerter_evaluate(&device, N, x, v, a, z, result, rates);
-  inerter_state_rate(&device, x[0], v[0], own, end);
+  inerter_state_rate(&device, x[0], v[0], a[0], own, end);
   REQUIRE(!sound ||
           (isfinite(force.total) && isfinite(force.inertance) && isfinite(force.friction)));
   REQUIRE(!sound || !nstate || all_finite(end, nstate));
@@ -231,7 +231,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   REQUIRE(!sound || !nstate || all_finite(end, nstate));
   force = inerter_force_over_step(&device, x[0], v[0], a[0], own, h, mobility, end);
   REQUIRE(!steady || (isfinite(force.total) && (!nstate || all_finite(end, nstate))));
-  inerter_state_step(&device, x[0], v[0], own, h);
+  inerter_state_step(&device, x[0], v[0], a[0], own, h);
   REQUIRE(!steady || !nstate || all_finite(own, nstate));
   memcpy(own, z, sizeof(double) * (size_t)wide);
   inerter_evaluate_commanded(&device, N, x, v, a, a, z, result, rates);

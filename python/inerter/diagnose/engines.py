@@ -104,7 +104,9 @@ def _reference(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     reference, motion = ReferenceDevice(**given), _motion(run)
     found = response(reference, motion, times, initial_state=state, rtol=1e-8)
     states = reference.state_argument(found.states) if reference.nstate else 0.0
-    friction = reference.friction_force(found.displacement, found.velocity, states)
+    friction = reference.friction_force(
+        found.displacement, found.velocity, states, a=found.acceleration
+    )
     return {"total": found.force, "friction": np.asarray(friction)}
 
 

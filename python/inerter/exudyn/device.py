@@ -1,18 +1,19 @@
 """The device as Exudyn needs it: forces at the terminals, rates of the states, energy.
 
-    F = T + F_friction + N + mu tanh(v / v_t) |N|      mu by the sign of N v
+    F = T + F_friction + N + lambda |N|      lambda by the sign of N v
 
 T: `beside.py`; friction: `friction.py`; N, through the inertance: `flywheel.py`, behind the series
 element of `series.py` if there is one. States z: friction_state, series_deflection s,
 flywheel_velocity w, gap_position, each only where it is needed.
 
 With `friction_side` "flywheel" and a series element, whose force is S: F = T + S, and
-S = N + F_friction + mu tanh(w / v_t) |N| at the flywheel's displacement and velocity w.
+S = N + F_friction + lambda |N| at the flywheel's displacement and velocity w.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,13 +58,15 @@ def states_of(p: Parameters, z: Sequence[Value]) -> States:
     return States(**found | ({"friction": several} if several else {}))
 
 
-def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -> list[Term]:
-    """All that does not depend on acceleration; the inertance of `mass` is left out.
+def terms(
+    f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value], a: Value = 0.0
+) -> list[Term]:
+    """All but the inertance of `mass`; the acceleration counts where a load bends a bristle.
 
     x [m] is the length minus rest_length, v [m/s] its rate; p of `control.present`.
     """
     state, place = states_of(p, z), {name: i for i, name in enumerate(p.state_names)}
-    rubbing = _rubbing(f, p, x, v, state)
+    rubbing = _rubbing(f, p, x, v, state, _bearing(f, p, x, v, a, state))
     at_terminals = beside.force(f, p, x, v)
     found: list[Term] = []
     for spring, dashpot, e, at in branches.deflections(p, z):
@@ -93,7 +96,8 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
         # all that friction takes of the shaft's force
         rest = rest + shaft.force - carried(f, p, x, v, 0.0, z)
     elif rubs_by_load(p):
-        at_terminals = at_terminals + _load_share(f, p, v, shaft.force) * f.abs(shaft.force)
+        share = _load_share(f, p, v, shaft.force, state.friction)
+        at_terminals = at_terminals + share * f.abs(shaft.force)
     spinning = place["flywheel_velocity"]
     if flywheel.varies(p) or (control.lags(p) and p.control == "inertance"):
         found.append(Term(shaft.force, 1.0))
@@ -107,34 +111,45 @@ def terms(f: Functions, p: Parameters, x: Value, v: Value, z: Sequence[Value]) -
     return [*found, Term(at_terminals, 1.0)]
 
 
-def mass(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value = 0.0) -> Value:
-    """Inertance at the terminals [kg]; `load_sign` is the sign of N, for load friction."""
+def mass(
+    f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value = 0.0, rubbed: Any = 0.0
+) -> Value:
+    """Inertance at the terminals [kg].
+
+    For load friction: `load_sign` is the sign of N, `rubbed` the friction state.
+    """
     if series.is_there(p):
         return 0.0
     inertance = flywheel.inertance(f, p, x, v)[0]
     if not rubs_by_load(p):
         return inertance
-    return inertance * (1.0 + load_sign * _load_share(f, p, v, load_sign))
+    return inertance * (1.0 + load_sign * _load_share(f, p, v, load_sign, rubbed))
 
 
-def load_rest(f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value) -> Value:
+def load_rest(
+    f: Functions, p: Parameters, x: Value, v: Value, load_sign: Value, rubbed: Any
+) -> Value:
     """Load friction of that part of N that does not depend on acceleration [N]."""
     rest = flywheel.inertance(f, p, x, v)[1] + flywheel.force(f, p, x, v)
-    return load_sign * _load_share(f, p, v, load_sign) * rest
+    return load_sign * _load_share(f, p, v, load_sign, rubbed) * rest
 
 
 def carried(f: Functions, p: Parameters, x: Value, v: Value, a: Value, z: Sequence[Value]) -> Value:
     """N, the force through the inertance [N]."""
+    state = states_of(p, z)
+    bearing = _bearing(f, p, x, v, a, state)
+    if not rubs_flywheel(p):
+        return bearing
+    left = bearing - _law_force(_rubbing(f, p, x, v, state, bearing))
+    if not rubs_by_load(p):
+        return left
+    return left / (1.0 + _load_share(f, p, state.speed, left, state.friction) * f.sign(left))
+
+
+def _bearing(f: Functions, p: Parameters, x: Value, v: Value, a: Value, state: States) -> Value:
+    """N, or the force of the series element [N]."""
     if series.is_there(p):
-        state = states_of(p, z)
-        rate = v - state.speed
-        force = series.at(f, p, state.deflection, rate, state.gap).force
-        if not rubs_flywheel(p):
-            return force
-        left = force - _law_force(_rubbing(f, p, x, v, state))
-        if not rubs_by_load(p):
-            return left
-        return left / (1.0 + _load_share(f, p, state.speed, left) * f.sign(left))
+        return series.at(f, p, state.deflection, v - state.speed, state.gap).force
     inertance, rest = flywheel.inertance(f, p, x, v)
     return inertance * a + rest + flywheel.force(f, p, x, v)
 
@@ -144,10 +159,10 @@ def forces(
 ) -> dict[str, Value]:
     """Total force, force through the inertance, friction with load friction [N]."""
     through, state = carried(f, p, x, v, a, z), states_of(p, z)
-    rub = _law_force(_rubbing(f, p, x, v, state))
+    rub = _law_force(_rubbing(f, p, x, v, state, _bearing(f, p, x, v, a, state)))
     if rubs_by_load(p):
         speed = state.speed if rubs_flywheel(p) else v
-        rub = rub + _load_share(f, p, speed, through) * f.abs(through)
+        rub = rub + _load_share(f, p, speed, through, state.friction) * f.abs(through)
     total = beside.force(f, p, x, v) + branches.force(p, z) + rub + through
     return {"total": total, "inertance": through, "friction": rub}
 
@@ -169,7 +184,8 @@ def dissipated_power(
 ) -> Value:
     """Power turned into heat [W]; `through` is N [N], read for load friction only."""
     state = states_of(p, z)
-    rubbing = _rubbing(f, p, x, v, state)
+    bearing = _bearing(f, p, x, v, 0.0, state) if series.is_there(p) else through
+    rubbing = _rubbing(f, p, x, v, state, bearing)
     place, speed = (x - state.deflection, state.speed) if rubs_flywheel(p) else (x, v)
     heat = beside.dissipated_power(f, p, x, v) + branches.dissipated_power(p, z)
     heat = heat + rubbing.bound * speed
@@ -179,7 +195,8 @@ def dissipated_power(
             heat = heat + rubbing.damping * rubbing.rate * speed
         heat = heat - stored
     if rubs_by_load(p):
-        heat = heat + _load_share(f, p, speed, through) * f.abs(through) * speed
+        share = _load_share(f, p, speed, through, state.friction)
+        heat = heat + share * f.abs(through) * speed
     if not series.is_there(p):
         return heat + flywheel.dissipated_power(f, p, v)
     shaft = series.dissipated_power(f, p, state.deflection, v - state.speed, state.gap)
@@ -191,11 +208,24 @@ def rubs_flywheel(p: Parameters) -> bool:
     return p.friction_side == "flywheel" and series.is_there(p)
 
 
-def _rubbing(f: Functions, p: Parameters, x: Value, v: Value, state: States) -> friction.Friction:
-    """The friction law where it acts."""
+def _rubbing(
+    f: Functions, p: Parameters, x: Value, v: Value, state: States, bearing: Value
+) -> friction.Friction:
+    """The friction law where it acts, under the load of `_bearing`."""
     if rubs_flywheel(p):
         x, v = x - state.deflection, state.speed
-    return friction.LAWS[p.friction](f, p, x, v, state.friction)
+    law = friction.LAWS[p.friction]
+    if not bends(p):
+        return law(f, p, x, v, state.friction)
+    if rubs_flywheel(p):
+        # without the damper of LuGre
+        if p.friction == "lugre":
+            bearing = bearing - p.bristle_stiffness * friction.bristle(f, p, state.friction)
+        else:
+            bearing = bearing - law(f, p, x, v, state.friction).bound
+    now = copy(p)
+    now.load_level = _by_power(f, p, v, bearing) * f.abs(bearing)
+    return law(f, now, x, v, state.friction)
 
 
 def _law_force(rubbing: friction.Friction) -> Value:
@@ -209,11 +239,26 @@ def rubs_by_load(p: Parameters) -> bool:
     return bool(p.mu_forward or p.mu_backward)
 
 
-def _load_share(f: Functions, p: Parameters, v: Value, through: Value) -> Value:
-    """Mu tanh(v / v_t) [-]: mu forward where N v >= 0, else backward; of N the sign counts."""
-    if not rubs_by_load(p):
+def bends(p: Parameters) -> bool:
+    """Whether the load raises the level of a bristle."""
+    return rubs_by_load(p) and p.friction in ("dahl", "lugre", "bouc_wen", "maxwell_slip")
+
+
+def _by_power(f: Functions, p: Parameters, v: Value, through: Value) -> Value:
+    """Mu [-]: forward where N v >= 0, else backward."""
+    if p.mu_backward == p.mu_forward:
+        return p.mu_forward
+    return f.choose(through * v < 0.0, p.mu_backward, p.mu_forward)
+
+
+def _load_share(f: Functions, p: Parameters, v: Value, through: Value, rubbed: Any) -> Value:
+    """Load friction per |N| of a law without a bristle [-]; of N the sign counts."""
+    if not rubs_by_load(p) or bends(p):
         return 0.0
-    mu = p.mu_forward
-    if p.mu_backward != mu:
-        mu = f.choose(through * v < 0.0, p.mu_backward, mu)
+    mu = _by_power(f, p, v, through)
+    if p.friction == "brown_mcphee":
+        return mu * f.tanh(4.0 * v / p.stribeck_velocity)
+    if p.friction == "rate_state":
+        mu = mu * friction.bracket(f, p, v, rubbed)
+        mu = f.choose(through * v < 0.0, f.least(0.999, mu), mu)
     return mu * f.tanh(v / p.transition_velocity)

@@ -141,21 +141,23 @@ class Element:
         p = control.present(f, p, z)
         forces: list[Value] = [0.0] * self.size
         at_terminals: Value = 0.0
-        for term in law.terms(f, p, x, v, z):
-            at_terminals = at_terminals + term.terminals * term.value
-            for place, share in self.own_shares(term):
-                forces[place] = forces[place] + share * term.value
-        sign: Value = 0.0
         a: Value = 0.0
         if self.loaded:
             a = motion.bias
             for share, latest in zip(motion.row, q_tt, strict=False):
                 a = a + share * latest
+        for term in law.terms(f, p, x, v, z, a):
+            at_terminals = at_terminals + term.terminals * term.value
+            for place, share in self.own_shares(term):
+                forces[place] = forces[place] + share * term.value
+        sign: Value = 0.0
+        rubbed = law.states_of(p, z).friction
+        if self.loaded:
             through = law.carried(f, p, x, v, a, z)
             # where N changes sign the friction passes 0: a sign late by a step costs little
             sign = f.choose(through < 0.0, -1.0, 1.0)
-            at_terminals = at_terminals + law.load_rest(f, p, x, v, sign)
-        inertance = 0.0 if self.constant_mass else law.mass(f, p, x, v, sign)
+            at_terminals = at_terminals + law.load_rest(f, p, x, v, sign, rubbed)
+        inertance = 0.0 if self.constant_mass else law.mass(f, p, x, v, sign, rubbed)
         at_terminals = at_terminals + inertance * motion.bias
         for place, share in enumerate(motion.row):
             forces[place] = -(share * at_terminals)

@@ -129,7 +129,7 @@ def stribeck(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Frict
 
 def dahl(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = v sgn(u) |u|^n, u = 1 - sigma0 z sgn(v) / (f_c level); F = sigma0 z."""
-    limit = p.coulomb_force * level(f, p, x, v) / p.bristle_stiffness
+    limit = (p.coulomb_force * level(f, p, x, v) + p.load_level) / p.bristle_stiffness
     s, z = z, bristle(f, p, z)
     if p.dahl_exponent == 1.0:
         rate = v - f.abs(v) * z / limit
@@ -141,24 +141,40 @@ def dahl(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
 
 def lugre(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = v - sigma0 |v| z / g(v); F = sigma0 z + sigma1 z'."""
-    sliding = stribeck_curve(f, p, v) * level(f, p, x, v)
+    sliding = stribeck_curve(f, p, v) * level(f, p, x, v) + p.load_level
     s, z = z, bristle(f, p, z)
     rate = v - p.bristle_stiffness * f.abs(v) * z / sliding
     law = Friction(p.bristle_stiffness * z, p.bristle_damping, rate)
     return _behind_play(f, p, v, s, law)
 
 
+def loaded_by(p: Parameters) -> bool:
+    """Whether a load adds to the level of a bristle."""
+    return not isinstance(p.load_level, float) or p.load_level != 0.0
+
+
+def yield_force(p: Parameters) -> float:
+    """Force at which bouc_wen or maxwell_slip yields [N]."""
+    if p.friction == "maxwell_slip":
+        return sum(slip for _, slip in elements(p))
+    bound = (p.bw_alpha / (p.bw_beta + p.bw_gamma)) ** (1.0 / p.bw_exponent)
+    return abs(1.0 - p.bw_ratio) * p.bw_stiffness * bound
+
+
 def bouc_wen(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = alpha v - (beta |v| z + gamma v |z|) |z|^(n-1); F = A k0 x + (1 - A) k0 z.
 
-    Along the stroke, beta and gamma over level^n.
+    Along the stroke and under a load, beta and gamma over level^n.
     """
     s, z = z, bristle(f, p, z)
     narrowing = p.bw_beta * f.abs(v) * z + p.bw_gamma * v * f.abs(z)
     if p.bw_exponent != 1.0:
         narrowing = narrowing * f.power(f.abs(z), p.bw_exponent - 1.0)
-    if curved(p):
-        narrowing = narrowing / f.power(level(f, p, x, v), p.bw_exponent)
+    if curved(p) or loaded_by(p):
+        height = level(f, p, x, v) if curved(p) else 1.0
+        if loaded_by(p):
+            height = height + p.load_level / yield_force(p)
+        narrowing = narrowing / f.power(height, p.bw_exponent)
     elastic, yielding = p.bw_ratio * p.bw_stiffness, (1.0 - p.bw_ratio) * p.bw_stiffness
     law = Friction(elastic * x + yielding * z, 0.0, p.bw_alpha * v - narrowing)
     return _behind_play(f, p, v, s, law)
@@ -189,6 +205,8 @@ def maxwell_slip(f: Functions, p: Parameters, x: Value, v: Value, z: Any) -> Fri
     F = sum of k_i z_i.
     """
     factor, side = level(f, p, x, v), f.sign(v)
+    if loaded_by(p):
+        factor = factor + p.load_level / yield_force(p)
     total: Value = 0.0
     rates = []
     for (spring, slip), each in zip(elements(p), z, strict=True):
@@ -207,12 +225,16 @@ def rate_state(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Fri
 
     V^2 = v^2 + v_t^2; at least 0.001 is left of the bracket.
     """
+    rate = (p.rate_velocity * f.exp(-f.greatest(YOUNGEST, z)) - f.abs(v)) / p.age_distance
+    size = p.coulomb_force * level(f, p, x, v) * bracket(f, p, v, z)
+    return Friction(size * f.tanh(v / p.transition_velocity), 0.0, rate)
+
+
+def bracket(f: Functions, p: Parameters, v: Value, z: Value) -> Value:
+    """1 + A ln(V / v0) + B z of rate_state, at least 0.001."""
     width = p.transition_velocity
     speed = 0.5 * f.log((v * v + width * width) / (p.rate_velocity * p.rate_velocity))
-    bracket = f.greatest(LEAST_LEVEL, 1.0 + p.rate_effect * speed + p.age_effect * z)
-    rate = (p.rate_velocity * f.exp(-f.greatest(YOUNGEST, z)) - f.abs(v)) / p.age_distance
-    size = p.coulomb_force * level(f, p, x, v)
-    return Friction(size * bracket * f.tanh(v / width), 0.0, rate)
+    return f.greatest(LEAST_LEVEL, 1.0 + p.rate_effect * speed + p.age_effect * z)
 
 
 _ALL = (none, coulomb, stribeck, dahl, lugre, bouc_wen, brown_mcphee, maxwell_slip, rate_state)

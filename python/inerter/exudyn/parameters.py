@@ -33,7 +33,8 @@ def own_names(given: Mapping[str, Any]) -> dict[str, Any]:
 class Parameters(SimpleNamespace):
     """Parameters and lists of the device by name, those of `WORDS`, `nstate`, `state_names`.
 
-    `smooth_play` is this element's own, see `series.py`. For a control that sets a parameter
+    `smooth_play` is this element's own, see `series.py`; `load_level` [N] what a load adds to the
+    level of a bristle at the moment. For a control that sets a parameter
     (`control.py`): `command`, `aim` (the same within the bounds), `control_rest`, `static_follows`.
     """
 
@@ -44,7 +45,7 @@ class Parameters(SimpleNamespace):
         names = (*WORDS, "nstate", "state_names")
         numbers["smooth_play"] = smooth_play
         found = cls(**numbers, **{name: getattr(device, name) for name in names})
-        found.command = command
+        found.command, found.load_level = command, 0.0
         if device.control == "force":
             return found
         found.control_rest = getattr(device, device.control)

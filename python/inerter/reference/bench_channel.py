@@ -74,7 +74,10 @@ def answers(
         truth = _moved(device, run.drive, times - channel.delay, rtol)
         elapsed = times + run.start
         friction = device.friction_force(
-            truth.displacement, truth.velocity, device.state_argument(truth.states)
+            truth.displacement,
+            truth.velocity,
+            device.state_argument(truth.states),
+            a=truth.acceleration,
         )
         tone = np.sin(2.0 * np.pi * channel.disturbance_frequency * elapsed + run.phase)
         force = (

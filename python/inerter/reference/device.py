@@ -1,6 +1,6 @@
 """The device: an inertance with everything that stands beside it and in series with it.
 
-    F = T(x, v, z) + N + lambda(v) |N|
+    F = T(x, v, z) + N + lambda(v, z) |N|
     T = c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_stops         at the terminals
         + f(x) + c_x(x) v, the curves `force` and `viscous` of `laws/stroke.py`
     without a series element:  N = B(x, v) a + R(x, v) + G(x, v)
@@ -65,6 +65,9 @@ def _at_command(method: Callable[..., Any]) -> Callable[..., Any]:
 
     return wrapped
 
+
+MOST_ROUNDS = 200
+"""In which the acceleration of a loaded bristle with a damper is found."""
 
 _PLACE_OF_STATES = {
     "force": 3,
@@ -137,7 +140,8 @@ class ReferenceDevice(DeviceParameters):
         if self.rubs_flywheel:
             return self._series_force(x, v, z, contact) + self._beside(x, v, z)
         carried = self.inertance_force(x, v, a, z, contact=contact)
-        return carried + self.load_friction_force(v, carried) + self.rest_force(x, v, z)
+        along = self.load_friction_force(v, carried, z)
+        return carried + along + self.rest_force(x, v, z, a=a)
 
     @_at_command
     def branch(
@@ -164,34 +168,72 @@ class ReferenceDevice(DeviceParameters):
         return mass * a + rest
 
     @_at_command
-    def rest_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
-        """The part T of F [N] that stands beside the inertance branch."""
+    def rest_force(
+        self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, a: Quantity = 0.0
+    ) -> Quantity:
+        """The part T of F [N] that stands beside the inertance branch; a as in `friction_force`."""
         if self.rubs_flywheel:
             return self._beside(x, v, z)
-        return self._beside(x, v, z) + self.friction_force(x, v, z)
+        return self._beside(x, v, z) + self.friction_force(x, v, z, a=a)
 
     @_at_command
     def total_friction(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
         """Friction law and load friction [N], on the side where they act."""
         speed = self._states(z)[2] if self.rubs_flywheel else v
         carried = self.inertance_force(x, v, a, z)
-        return self.friction_force(x, v, z) + self.load_friction_force(speed, carried)
+        along = self.load_friction_force(speed, carried, z)
+        return self.friction_force(x, v, z, a=a) + along
 
     @_at_command
-    def friction_force(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
-        """Force of the friction law alone [N], without load friction and without `viscous`."""
+    def friction_force(
+        self,
+        x: Quantity,
+        v: Quantity,
+        z: Quantity = 0.0,
+        *,
+        a: Quantity = 0.0,
+        contact: Contact = None,
+    ) -> Quantity:
+        """Force of the friction law alone [N], without `viscous`.
+
+        Without load friction, but where the load raises the level of a bristle: there the damper of
+        LuGre follows it, without a series element with the acceleration a [m/s^2].
+        """
         state, deflection, speed, _ = self._states(z)
         stretch = x - self.rest_length
         place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
-        return FRICTION[self.friction].force(self, place, rate, state)
+        loaded = self._loaded(x, v, a, z, contact)
+        return FRICTION[self.friction].force(loaded, place, rate, state)
 
-    def load_friction_force(self, v: Quantity, carried: Quantity) -> Quantity:
-        """Load-dependent friction mu |N| tanh(v / v_t) [N], N the force carried."""
-        return load.force(self, carried, v)
+    def load_friction_force(self, v: Quantity, carried: Quantity, z: Quantity = 0.0) -> Quantity:
+        """Load-dependent friction lambda |N| [N] of a law without a bristle, N the force carried."""
+        return load.force(self, carried, v, self._states(z)[0])
 
-    def load_share(self, v: Quantity, carried: Quantity) -> Quantity:
-        """The factor lambda = mu tanh(v / v_t) [-] on |N| at the terminals, by the sign of N."""
-        return 0.0 * v if self.rubs_flywheel else load.share(self, carried, v)
+    def load_share(self, v: Quantity, carried: Quantity, z: Quantity = 0.0) -> Quantity:
+        """The factor lambda [-] on |N| at the terminals, by the sign of N."""
+        if self.rubs_flywheel:
+            return 0.0 * v
+        return load.share(self, carried, v, self._states(z)[0])
+
+    def _loaded(
+        self, x: Quantity, v: Quantity, a: Quantity, z: Quantity, contact: Contact = None
+    ) -> ReferenceDevice:
+        """The device with what the load adds to the level of its bristle."""
+        if not load.bends(self):
+            return self
+        friction, deflection, speed, _ = self._states(z)
+        if not self.rubs_flywheel:
+            mass, rest = self.branch(x, v, z, contact=contact)
+            return self._with_value("load_level", load.level(self, mass * a + rest, v))
+        place = x - self.rest_length - deflection
+        spring = FRICTION[self.friction].force(self._undamped, place, speed, friction)
+        left = self._series_force(x, v, z, contact) - spring
+        return self._with_value("load_level", load.level(self, left, speed))
+
+    @property
+    def _undamped(self) -> ReferenceDevice:
+        """The device without the damper of LuGre."""
+        return self if self.bristle_damping == 0.0 else self._with_value("bristle_damping", 0.0)
 
     @_at_command
     def acceleration(
@@ -212,24 +254,42 @@ class ReferenceDevice(DeviceParameters):
                 "series_stiffness: with a series element the force does not depend on the "
                 "terminals' acceleration; ask state_rate for the flywheel's"
             )
-        remainder = force - self.rest_force(x, v, z)
-        carried = remainder / (1.0 + self.load_share(v, remainder) * np.sign(remainder))
         mass, rest = self.branch(x, v, z)
-        return (carried - rest) / mass
+        found: Quantity = 0.0
+        for _ in range(MOST_ROUNDS):
+            before = found
+            remainder = force - self.rest_force(x, v, z, a=before)
+            share = self.load_share(v, remainder, z) * np.sign(remainder)
+            found = (remainder / (1.0 + share) - rest) / mass
+            # only the damper of a loaded bristle asks for the acceleration
+            same = abs(found - before) <= 1e-14 * (abs(found) + abs(before))
+            if not (load.bends(self) and self.bristle_damping > 0.0) or np.all(same):
+                break
+        return found
 
     def state_rate(
-        self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+        self,
+        x: Quantity,
+        v: Quantity,
+        z: Quantity = 0.0,
+        *,
+        a: Quantity = 0.0,
+        contact: Contact = None,
     ) -> Quantity:
-        """Rates of the states, in the form of `z`; zero for a device without any."""
+        """Rates of the states, in the form of `z`; zero for a device without any.
+
+        The acceleration a [m/s^2] counts where a load raises the level of a bristle, as in
+        `friction_force`.
+        """
         if self.control == "force":
-            return self._own_rate(x, v, z, contact=contact)
+            return self._own_rate(x, v, z, a, contact)
         present, inner = self._at_present(z)
         if not control.count(self):
-            return present._own_rate(x, v, inner, contact=contact)
+            return present._own_rate(x, v, inner, a, contact)
         change = np.asarray(control.rate(self, self._change(z)))
         if self.nstate == 1:
             return change + 0.0 * np.asarray(v)
-        rates = np.asarray(present._own_rate(x, v, inner, contact=contact))
+        rates = np.asarray(present._own_rate(x, v, inner, a, contact))
         columns = [rates] if present.nstate == 1 else list(np.moveaxis(rates, -1, 0))
         return np.stack(np.broadcast_arrays(*columns, change), axis=-1)
 
@@ -281,10 +341,10 @@ class ReferenceDevice(DeviceParameters):
         return found, array[..., 0] if self.nstate == 2 else array[..., :-1]
 
     def _own_rate(
-        self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
+        self, x: Quantity, v: Quantity, z: Quantity, a: Quantity, contact: Contact
     ) -> Quantity:
         """The same without a state of the control."""
-        inner = self._inner_rate(x, v, z, contact)
+        inner = self._inner_rate(x, v, z, a, contact)
         count = branches.count(self)
         if not count:
             return inner
@@ -297,12 +357,15 @@ class ReferenceDevice(DeviceParameters):
             columns = [*(np.moveaxis(np.asarray(inner), -1, 0) if several else [inner]), *columns]
         return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
-    def _inner_rate(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
+    def _inner_rate(
+        self, x: Quantity, v: Quantity, z: Quantity, a: Quantity, contact: Contact
+    ) -> Quantity:
         """The same of all states but those of the branches."""
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
         place, rubbing = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
-        rates = [FRICTION[self.friction].rate(self, place, rubbing, friction)]
+        loaded = self._loaded(x, v, a, z, contact)
+        rates = [FRICTION[self.friction].rate(loaded, place, rubbing, friction)]
         if not self.has_series:
             return rates[0]
 
@@ -353,9 +416,11 @@ class ReferenceDevice(DeviceParameters):
         stretch = x - self.rest_length
         heat = self._damper(stretch, v) * v
         place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
-        heat = heat + FRICTION[self.friction].dissipated_power(self, place, rate, friction)
+        loaded = self._loaded(x, v, a, z)
+        heat = heat + FRICTION[self.friction].dissipated_power(loaded, place, rate, friction)
         heat = heat + end_stops.dissipated_power(self, stretch, v)
-        heat = heat + self.load_friction_force(rate, self.inertance_force(x, v, a, z)) * rate
+        carried = self.inertance_force(x, v, a, z)
+        heat = heat + self.load_friction_force(rate, carried, z) * rate
         if self.has_series:
             heat = heat + series.dissipated_power(self, deflection, v - speed, gap)
         else:
@@ -406,8 +471,10 @@ class ReferenceDevice(DeviceParameters):
 
     def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         """N [N] where friction takes its part of F_s behind the series element."""
-        left = self._series_force(x, v, z, contact) - self.friction_force(x, v, z)
-        share = load.share(self, left, self._states(z)[2])
+        rubbing = self.friction_force(x, v, z, contact=contact)
+        left = self._series_force(x, v, z, contact) - rubbing
+        friction, _, speed, _ = self._states(z)
+        share = load.share(self, left, speed, friction)
         return left / (1.0 + share * np.sign(left))
 
     def _series_force(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:

@@ -1,6 +1,6 @@
 """A device's response along a motion that is imposed on it.
 
-    z' = state_rate(x(t), v(t), z),   F(t) = force(x(t), v(t), a(t), z(t))
+    z' = state_rate(x(t), v(t), z, a(t)),   F(t) = force(x(t), v(t), a(t), z(t))
 
 The motion is analytic, so only the device's states are integrated. A friction law has a corner
 where the velocity changes sign; each stretch between two corners is therefore integrated on its
@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 
 from .contacts import Clutch, Contacts, integrate
 from .device import ReferenceDevice
-from .laws import Quantity, branches, maxwell_slip
+from .laws import Quantity, branches, load, maxwell_slip
 
 Signal = Callable[[Quantity], Quantity]
 
@@ -224,6 +224,10 @@ def _integrate(
     corners = [float(kink) for kink in motion.kinks]
     for speed in marked_speeds(device):
         corners += velocity_crossings(motion, speed, start, end, scan_step)
+    if load.bends(device):
+        # where the load changes sign its size has a corner
+        bent = replace(motion, velocity=motion.acceleration)
+        corners += velocity_crossings(bent, 0.0, start, end, scan_step)
     edges = np.unique([start, *(c for c in corners if start < c < end), end])
 
     # a corner within rounding of a requested time is that time, else the solver's step vanishes
@@ -236,7 +240,8 @@ def _integrate(
 
     level_varies = device.friction_gradient != 0.0 or device.friction_curvature != 0.0
     level_varies |= "friction" in device.along or "friction_back" in device.along
-    needs_displacement = level_varies or device.has_series
+    bends = load.bends(device)
+    needs_displacement = level_varies or device.has_series or bends
     displacement, velocity = motion.displacement, motion.velocity
     absolute = rtol * state_scales(device)
 
@@ -248,7 +253,9 @@ def _integrate(
     ) -> NDArray[np.float64]:
         x = float(displacement(t)) if needs_displacement else 0.0
         contact = contacts[0] if contacts else None
-        found = of.state_rate(x, float(velocity(t)), of.state_argument(z), contact=contact)
+        a = float(motion.acceleration(t)) if bends else 0.0
+        v, states = float(velocity(t)), of.state_argument(z)
+        found = of.state_rate(x, v, states, a=a, contact=contact)
         return np.atleast_1d(found)
 
     clutches: tuple[Clutch, ...] = ()

@@ -32,6 +32,10 @@ Array = NDArray[np.float64]
 Forces = Callable[[float], Array]
 
 
+MOST_ROUNDS = 200
+"""In which the load on a bristle with a damper has to settle."""
+
+
 class RunOptions(TypedDict, total=False):
     """What the models hand on to `Structure.simulate`; meaning and defaults stand there."""
 
@@ -108,14 +112,16 @@ class Structure:
     def _loose(self) -> list[int]:
         return [i for i, s in enumerate(self.struts) if s.layout != "S1" and s.device.backlash > 0]
 
-    def points(self, state: Array, contacts: Contacts | None = None) -> list[StrutPoint]:
-        """What each strut does."""
+    def points(
+        self, state: Array, contacts: Contacts | None = None, bent: Array | None = None
+    ) -> list[StrutPoint]:
+        """What each strut does, at accelerations (struts,) of the elongations."""
         x, v = self._elongations(state)
         held: list[int | None] = [None] * len(self.struts)
         for i, contact in zip(self._loose, contacts or (), strict=False):
             held[i] = contact
         return [
-            strut.at(x[i], v[i], state[self.slices[i]], held[i])
+            strut.at(x[i], v[i], state[self.slices[i]], held[i], 0.0 if bent is None else bent[i])
             for i, strut in enumerate(self.struts)
         ]
 
@@ -135,11 +141,40 @@ class Structure:
         )
         return known + carried, free - self.mobility @ (self.directions @ carried)
 
+    def joint(
+        self, state: Array, forces: Array, contacts: Contacts | None = None
+    ) -> tuple[list[StrutPoint], Array, Array]:
+        """What the struts do, their forces and the accelerations, all at each other.
+
+        Raises
+        ------
+        RuntimeError
+            The damper of a bristle grows too fast with its load for the rounds to end.
+        """
+        points = self.points(state, contacts)
+        strut, acceleration = self.solve(state, forces, points)
+        if not any(each.bends for each in self.struts):
+            return points, strut, acceleration
+        bent = [self.directions.T @ acceleration]
+        for turn in range(MOST_ROUNDS):
+            before = np.array([p.known for p in points])
+            points = self.points(state, contacts, bent[-1])
+            strut, acceleration = self.solve(state, forces, points)
+            moved = abs(np.array([p.known for p in points]) - before)
+            if np.all(moved <= 1e-13 * abs(before)):
+                return points, strut, acceleration
+            bent.append(self.directions.T @ acceleration)
+            if turn % 2:
+                bent = [_limit(*bent[-3:])]
+        raise RuntimeError(
+            "the load on a bristle and the acceleration do not settle; is load_friction "
+            "bristle_damping |v| below the friction level?"
+        )
+
     def rates(self, state: Array, forces: Array, contacts: Contacts | None = None) -> Array:
         """Rate of the state, shape (nstate,), under the generalised forces (nq,)."""
         nq = len(self.mass)
-        points = self.points(state, contacts)
-        acceleration = self.solve(state, forces, points)[1]
+        points, _, acceleration = self.joint(state, forces, contacts)
         return np.concatenate((state[nq : 2 * nq], acceleration, *(p.rates for p in points)))
 
     def simulate(
@@ -217,8 +252,7 @@ class Structure:
         acceleration = np.empty((at.size, nq))
         rows = np.empty((4, at.size, count))
         for n, state in enumerate(path):
-            points = self.points(state)
-            strut, acceleration[n] = self.solve(state, forces(float(at[n])), points)
+            points, strut, acceleration[n] = self.joint(state, forces(float(at[n])))
             x, v = self._elongations(state)
             for i, p in enumerate(points):
                 beside = self.struts[i].stiffness * x[i]
@@ -262,6 +296,13 @@ class Structure:
             first + names.index("gap_position"),
             first + names.index("series_deflection"),
         )
+
+
+def _limit(first: Array, second: Array, third: Array) -> Array:
+    """Where three numbers of a geometric row lead (Aitken)."""
+    bend = third - 2.0 * second + first
+    safe = np.where(bend == 0.0, 1.0, bend)
+    return np.where(bend == 0.0, third, third - (third - second) ** 2 / safe)
 
 
 def joint_branch_forces(

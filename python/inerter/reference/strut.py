@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from .device import ReferenceDevice
-from .laws import Quantity
+from .laws import Quantity, load
 
 LAYOUTS = ("S1", "S2", "S3")
 
@@ -70,7 +70,8 @@ class Strut:
         if self.layout not in LAYOUTS:
             raise ValueError(f"layout: '{self.layout}' is not one of {', '.join(LAYOUTS)}")
         inertance = self.device.total_inertance
-        if self.device.load_shares[0] != self.device.load_shares[1]:
+        shares = self.device.load_shares
+        if shares[0] != shares[1] and not load.bends(self.device):
             raise ValueError(
                 f"mu_forward {self.device.load_shares[0]} and mu_backward "
                 f"{self.device.load_shares[1]} differ: the reference vehicles have one load "
@@ -94,8 +95,18 @@ class Strut:
         """Number of own states."""
         return 0 if self.layout == "S1" else self.own_motion + self.device.nstate
 
-    def at(self, x: float, v: float, own: Array, contact: int | None = None) -> StrutPoint:
-        """What the strut does at elongation x [m], v [m/s] with its own states, shape (nstate,)."""
+    @property
+    def bends(self) -> bool:
+        """Whether a load raises the level of a bristle between the strut's ends."""
+        return self.layout == "S2" and load.bends(self.device) and not self.device.has_series
+
+    def at(
+        self, x: float, v: float, own: Array, contact: int | None = None, a: float = 0.0
+    ) -> StrutPoint:
+        """What the strut does at elongation x [m], v [m/s] with its own states, shape (nstate,).
+
+        The acceleration a [m/s^2] counts where it `bends`.
+        """
         spring = self.stiffness * x
         if self.layout == "S1":
             return StrutPoint(
@@ -112,11 +123,11 @@ class Strut:
         if self.layout == "S2":
             mass, rest = self.device.branch(x, v, z, contact=contact)
             return StrutPoint(
-                known=spring + self.damping * v + float(self.device.rest_force(x, v, z)),
+                known=spring + self.damping * v + float(self.device.rest_force(x, v, z, a=a)),
                 mass=float(mass),
                 rest=float(rest),
-                share=float(self.device.load_share(v, 1.0)),
-                rates=self._device_rates(x, v, z, contact),
+                share=float(self.device.load_share(v, 1.0, z)),
+                rates=self._device_rates(x, v, z, a, contact),
                 device_displacement=x,
                 device_velocity=v,
                 device_state=z,
@@ -127,9 +138,11 @@ class Strut:
         speed = self._series_speed(v, own, contact)
         through = self.damping * (v - speed)
         motion = [speed]
+        bend = 0.0
         if not self.device.has_series:
-            motion.append(float(self.device.acceleration(y, speed, through, z)))
-        rates = np.concatenate((motion, self._device_rates(y, speed, z, contact)))
+            bend = float(self.device.acceleration(y, speed, through, z))
+            motion.append(bend)
+        rates = np.concatenate((motion, self._device_rates(y, speed, z, bend, contact)))
         return StrutPoint(
             known=spring + through,
             mass=0.0,
@@ -148,11 +161,13 @@ class Strut:
         z = self.device.state_argument(own[self.own_motion :])
         return (v if self.layout == "S2" else self._series_speed(v, own, contact)), z
 
-    def _device_rates(self, x: float, v: float, z: Quantity, contact: int | None) -> Array:
+    def _device_rates(
+        self, x: float, v: float, z: Quantity, a: float, contact: int | None
+    ) -> Array:
         if self.device.nstate == 0:
             return np.empty(0)
         return np.atleast_1d(
-            np.asarray(self.device.state_rate(x, v, z, contact=contact), dtype=float)
+            np.asarray(self.device.state_rate(x, v, z, a=a, contact=contact), dtype=float)
         )
 
     def _series_speed(self, v: float, own: Array, contact: int | None) -> float:

@@ -135,11 +135,11 @@ def force_change(case: Case, true: ValidationRun, displacement: float, velocity:
         # what goes through the inertance branch, with the load friction taken off
         beside = device.rest_force(x, v, z)
         loaded = force - beside
-        carried = loaded / (1.0 + device.load_share(v, loaded) * np.sign(loaded))
+        carried = loaded / (1.0 + device.load_share(v, loaded, z) * np.sign(loaded))
         for dx in (-slack[0][i], slack[0][i]):
             for dv in (-slack[1][i], slack[1][i]):
                 moved = device.rest_force(x + dx, v + dv, z)
-                moved = moved + carried + device.load_share(v + dv, carried) * np.abs(carried)
+                moved = moved + carried + device.load_share(v + dv, carried, z) * np.abs(carried)
                 worst = max(worst, float(np.abs(moved - force).max() / np.abs(force).max()))
     return worst
 

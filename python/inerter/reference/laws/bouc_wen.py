@@ -15,7 +15,8 @@ With `friction_backlash` z stands behind its free play (`free_play.py`), the ela
 does not.
 Source: Bouc 1967 and Wen 1976, as in "Modelling and identification of the hysteretic dynamics
 of inerters", eqs. (12)-(13), where the last term's exponent n is lost in print.
-Along the stroke (`friction_curve` and its kin) beta and gamma are divided by level^n: z saturates
+Along the stroke (`friction_curve` and its kin), and where a load adds to the force at which it
+yields, |1 - A| k0 (alpha / (beta + gamma))^(1/n) (`load.py`), beta and gamma are divided by level^n: z saturates
 at that share, with the same stiffness and energy.
 Not modelled: degradation, pinching, rate dependence.
 Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be rescaled with z.
@@ -23,11 +24,22 @@ Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be 
 
 from __future__ import annotations
 
+import numpy as np
+
 from . import free_play
 from .level import friction_level
 from .parameters import FrictionParameters, Quantity
 
 STATES = 1
+
+
+def raised(parameters: FrictionParameters, level: Quantity) -> Quantity:
+    """The level [-] with what the load adds to the force at which it yields."""
+    if np.ndim(parameters.load_level) == 0 and parameters.load_level == 0.0:
+        return level
+    saturated = parameters.bw_alpha / (parameters.bw_beta + parameters.bw_gamma)
+    bound = abs(1.0 - parameters.bw_ratio) * saturated ** (1.0 / parameters.bw_exponent)
+    return level + parameters.load_level / (parameters.bw_stiffness * bound)
 
 
 def rate(
@@ -37,9 +49,11 @@ def rate(
     bent = free_play.bristle(parameters, state)
     size = abs(bent)
     power = size ** (parameters.bw_exponent - 1.0)
+    level = 1.0
     if "friction" in parameters.along or "friction_back" in parameters.along:
         level = friction_level(parameters, displacement, velocity)
-        power = power / level**parameters.bw_exponent
+    level = raised(parameters, level)
+    power = power / level**parameters.bw_exponent
     hardening = parameters.bw_beta * abs(velocity) * bent * power
     shaping = parameters.bw_gamma * velocity * size * power
     engaged = parameters.bw_alpha * velocity - hardening - shaping

@@ -1,10 +1,10 @@
 """Dahl friction: an elastic bristle that yields gradually to the Coulomb level.
 
-    z' = v sgn(u) |u|^n,   u = 1 - sigma0 z sgn(v) / (f_c level(x, v)),   z' = 0 at v = 0
+    z' = v sgn(u) |u|^n,   u = 1 - sigma0 z sgn(v) / (f_c level(x, v) + l),   z' = 0 at v = 0
     F  = sigma0 z
 
 Symbols: z bristle deflection [m], sigma0 `bristle_stiffness` [N/m], f_c `coulomb_force` [N],
-n `dahl_exponent` [-], level see `level.py`.
+n `dahl_exponent` [-], level see `level.py`, l what the load adds, see `load.py` [N].
 Sign: tension positive; z grows with x.
 Range: f_c level > 0. For constant level and n = 1: |z| <= f_c / sigma0 for ever, once inside.
 Stored: sigma0 z^2 / 2. Dissipated: sigma0 z (v - z'), never negative for n = 1.
@@ -31,6 +31,7 @@ def rate(
 ) -> Quantity:
     """Rate of the bristle deflection z' [m/s]; arguments [m, m/s, m] broadcast together."""
     level = parameters.coulomb_force * friction_level(parameters, displacement, velocity)
+    level = level + parameters.load_level
     bristle = free_play.bristle(parameters, state)
     gap = 1.0 - parameters.bristle_stiffness * bristle * np.sign(velocity) / level
     if parameters.dahl_exponent == 1.0:

@@ -212,6 +212,17 @@ class DeviceParameters(FrictionParameters):
                 f"load_friction: {self.load_shares[1]} locks the flywheel that it acts on; give "
                 "less than 1"
             )
+        if self.friction == "bouc_wen" and max(self.load_shares) > 0.0:
+            if self.bw_beta + self.bw_gamma <= 0.0:
+                raise ValueError(
+                    f"bw_beta + bw_gamma: {self.bw_beta + self.bw_gamma} never yields, so that no "
+                    "load can raise where it does; give more than 0, or no load friction"
+                )
+            if self.bw_ratio == 1.0:
+                raise ValueError(
+                    f"bw_ratio: {self.bw_ratio} leaves no share that yields, so that no load can "
+                    "raise where it does; give less than 1, or no load friction"
+                )
 
     def _check_series(self) -> None:
         if self.series_stiffness == 0.0:

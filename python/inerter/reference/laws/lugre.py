@@ -1,11 +1,13 @@
 """LuGre friction: a bristle with damping that slides on the Stribeck curve.
 
-    z' = v - sigma0 |v| z / g,   g(x, v) = level(x, v) [f_c + (f_s - f_c) exp(-(|v| / v_s)^delta)]
+    z' = v - sigma0 |v| z / g
+    g(x, v) = level(x, v) [f_c + (f_s - f_c) exp(-(|v| / v_s)^delta)] + l
     F  = sigma0 z + sigma1 z'
 
 Symbols: z bristle deflection [m], sigma0 `bristle_stiffness` [N/m], sigma1 `bristle_damping`
 [N s/m], f_c `coulomb_force` [N], f_s `static_force` [N], v_s `stribeck_velocity` [m/s],
-delta `stribeck_exponent` [-], level see `level.py`. sigma2 is the device's `viscous`, counted
+delta `stribeck_exponent` [-], level see `level.py`,
+l what the load adds, see `load.py` [N]. sigma2 is the device's `viscous`, counted
 there once.
 Sign: tension positive; z grows with x. Steady sliding: F = g(v) sgn v.
 Range: g > 0. Constant g: |z| <= g / sigma0 for ever, once inside.
@@ -37,7 +39,7 @@ def sliding_level(
     shape = (abs(velocity) / parameters.stribeck_velocity) ** parameters.stribeck_exponent
     excess = parameters.breakaway_force - parameters.coulomb_force
     curve = parameters.coulomb_force + excess * np.exp(-shape)
-    return friction_level(parameters, displacement, velocity) * curve
+    return friction_level(parameters, displacement, velocity) * curve + parameters.load_level
 
 
 def rate(

@@ -60,6 +60,9 @@ class FrictionParameters(StrokeParameters):
 
     friction: str = "none"
 
+    load_level = 0.0
+    """What a load adds to the level of a bristle [N], see `load.py`; of the moment, no parameter."""
+
     coulomb_force: float = parameter(0.0, "N", "friction force at speed, f_c", at_least=0.0)
     static_force: float = parameter(
         UNSET, "N", "friction force at break-away, f_s >= f_c; not given: f_c", at_least=0.0

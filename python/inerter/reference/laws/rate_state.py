@@ -37,15 +37,20 @@ def rate(
     return aging / parameters.age_distance
 
 
+def bracket(parameters: FrictionParameters, velocity: Quantity, state: Quantity) -> Quantity:
+    """What speed and age make of the level [-]."""
+    speed = np.hypot(velocity, parameters.transition_velocity) / parameters.rate_velocity
+    found = 1.0 + parameters.rate_effect * np.log(speed) + parameters.age_effect * state
+    return np.maximum(1e-3, found)
+
+
 def force(
     parameters: FrictionParameters, displacement: Quantity, velocity: Quantity, state: Quantity
 ) -> Quantity:
     """Friction force [N], tension positive."""
-    width = parameters.transition_velocity
-    speed = np.hypot(velocity, width) / parameters.rate_velocity
-    bracket = 1.0 + parameters.rate_effect * np.log(speed) + parameters.age_effect * state
     level = parameters.coulomb_force * friction_level(parameters, displacement, velocity)
-    return level * np.maximum(1e-3, bracket) * np.tanh(velocity / width)
+    size = level * bracket(parameters, velocity, state)
+    return size * np.tanh(velocity / parameters.transition_velocity)
 
 
 def dissipated_power(
