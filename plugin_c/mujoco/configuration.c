@@ -12,6 +12,7 @@ const char* const kAttributes[NATTRIBUTE] = {
 #define X(name, ...) #name "_curve", #name "_periods",
     INERTER_STROKES(X)
 #undef X
+        "force_map",
 };
 // NOLINTEND(bugprone-suspicious-missing-comma)
 
