@@ -115,9 +115,9 @@ typedef struct InerterCurve_ {
 
 // a force over displacement and velocity (force_map.c); all but the values by inerter_finish
 typedef struct InerterMap_ {
-  int nvalue, nplace, nspeed;      // 0: none
-  double rate, speed_rate, edge;   // rows per metre, columns per w(v), w at the last column
-  double value[INERTER_MAXMAP];    // as stated, row by row
+  int nvalue, nplace, nspeed;     // 0: none
+  double rate, speed_rate, edge;  // rows per metre, columns per w(v), w at the last column
+  double value[INERTER_MAXMAP];   // as stated, row by row
   double fit[(INERTER_MAXPLACE + 2) * (INERTER_MAXSPEED + 2)];
   InerterCurve still;  // at v = 0
 } InerterMap;

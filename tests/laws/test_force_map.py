@@ -40,7 +40,7 @@ def test_it_runs_through_its_values_and_stays_beyond(scale: float | None) -> Non
 
 def test_two_by_two_is_a_product_of_the_cubics_that_are_level_at_both_ends() -> None:
     corners = np.array([[1.0, -2.0], [5.0, 3.0]])
-    device = Device(force_map=corners, force_map_columns=2, **PLACE)
+    device = Device(force_map=corners.tolist(), force_map_columns=2, **PLACE)
     u, w = np.meshgrid(np.linspace(0, 1, 9), np.linspace(0, 1, 9))
     down, across = u * u * (3 - 2 * u), w * w * (3 - 2 * w)
     expected = (1 - down) * ((1 - across) * corners[0, 0] + across * corners[0, 1])
@@ -52,7 +52,7 @@ def test_two_by_two_is_a_product_of_the_cubics_that_are_level_at_both_ends() -> 
 def test_rows_that_are_alike_are_a_curve_and_one_column_repeated_is_a_force_curve() -> None:
     values = VALUES[:, 0]
     device = Device(**{**MAP, "force_map": np.repeat(values, 5)})
-    curve = Device(force_curve=values, curve_lower=-0.05, curve_upper=0.07)
+    curve = Device(force_curve=values.tolist(), curve_lower=-0.05, curve_upper=0.07)
     x, v = np.linspace(-0.08, 0.1, 40), np.linspace(-0.9, 0.9, 40)
     for name in ("total", "stored_energy", "dissipated_power"):
         found, expected = (d.evaluate(x, v, 0.0, 0.0)[name] for d in (device, curve))

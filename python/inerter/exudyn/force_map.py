@@ -46,7 +46,7 @@ def stored_energy(p: Parameters, x: float) -> float:
 def _moving(f: Functions, p: Parameters, x: Value, v: Value, still: Value) -> Value:
     """F(x, v) - F(x, 0) [N], or what of it takes energy."""
     moving = _at(f, p, x, v) - still
-    return f.choose(0.0 < moving * v, moving, 0.0) if p.force_map_passive else moving
+    return f.choose(moving * v > 0.0, moving, 0.0) if p.force_map_passive else moving
 
 
 def _at(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
@@ -92,11 +92,11 @@ def _weights(f: Functions, at: Value, count: int) -> list[Value]:
 @lru_cache(maxsize=64)
 def _coefficients(values: tuple[float, ...], columns: int) -> NDArray[np.float64]:
     """Of the rows and columns, one more at each end, (rows + 2, columns + 2)."""
-    grid = np.reshape(values, (-1, columns))
+    grid: NDArray[np.float64] = np.array(values, dtype=np.float64).reshape(-1, columns)
     for _ in range(2):
         n = len(grid)
         matrix = (4.0 * np.eye(n) + np.eye(n, k=1) + np.eye(n, k=-1)) / 6.0
         matrix[0, 1] = matrix[-1, -2] = 2.0 / 6.0
         inner = np.linalg.solve(matrix, grid)
-        grid = np.vstack([inner[1], inner, inner[-2]]).T
+        grid = np.vstack([inner[1], inner, inner[-2]], dtype=np.float64).T
     return grid

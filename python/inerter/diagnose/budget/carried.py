@@ -100,9 +100,7 @@ def carried(
         return None
     found |= {"force_map_passive": 1.0} if passive else {}
     text = str(found.pop(KIND))
-    rich = Model(
-        model.friction, {**model.values, **found}, model.free, {**model.texts, KIND: text}
-    )
+    rich = Model(model.friction, {**model.values, **found}, model.free, {**model.texts, KIND: text})
     rest = data.raw.errors(rich)
     counted = blocks(data.raw.masks)
     before, after = block_squares(errors, counted), block_squares(rest, counted)
@@ -219,9 +217,7 @@ def _weights(share: Array, count: int) -> tuple[NDArray[np.intp], Array]:
     first = np.minimum(at.astype(np.intp), count - 2)
     u = at - first
     w = 1.0 - u
-    weight = np.column_stack(
-        [w**3, 3 * u**3 - 6 * u**2 + 4, 3 * (u**2 - u**3 + u) + 1, u**3]
-    )
+    weight = np.column_stack([w**3, 3 * u**3 - 6 * u**2 + 4, 3 * (u**2 - u**3 + u) + 1, u**3])
     index = np.abs(first[:, None] + np.arange(-1, 3))
     return np.where(index >= count, 2 * (count - 1) - index, index), weight / 6.0
 

@@ -150,9 +150,7 @@ def predictor(
     return [np.clip(m[:, used] @ weights, -limit, limit) for m in matrix], group
 
 
-def fitted_masks(
-    runs: Sequence[BenchRun], split: Split, errors: Sequence[Array]
-) -> list[Mask]:
+def fitted_masks(runs: Sequence[BenchRun], split: Split, errors: Sequence[Array]) -> list[Mask]:
     """What of the errors of every run can be learnt from."""
     return [
         mask & run.inner & np.isfinite(error)
