@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.blind_test.case import Outcome, ParameterError
+from inerter.blind_test.case import Named, Outcome, ParameterError
 from inerter.blind_test.plan import Plan
 from inerter.reference import EFFECTS, HYSTERETIC_LAWS
 
@@ -281,11 +281,16 @@ def failure(one: Outcome) -> dict[str, Any]:
         "law": one.law,
         "share": one.share,
         "truth": one.truth,
-        "named": [vars(named) for named in one.named],
+        "named": [_told(named) for named in one.named],
         "unexplained": one.unexplained,
         "error": one.error,
         "verdict": one.verdict,
     }
+
+
+def _told(named: Named) -> dict[str, Any]:
+    """A finding; without members where it has none."""
+    return {name: value for name, value in vars(named).items() if value or name != "members"}
 
 
 def _claims(one: Outcome) -> bool:
