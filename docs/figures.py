@@ -161,6 +161,21 @@ def along_the_stroke() -> None:
     loops("along_the_stroke", devices, 1.0, AMPLITUDE)
 
 
+def force_map() -> None:
+    """A force over displacement and velocity: as stated, and what of it is passive."""
+    rows, columns = np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-1, 1, 8), indexing="ij")
+    surface: dict[str, Any] = {
+        "force_map": 4 * np.sin(4 * rows) + 6 * np.tanh(4 * columns) * (1 - 1.5 * rows),
+        "force_map_columns": 8, "force_map_lower": -10e-3, "force_map_upper": 10e-3,
+        "force_map_speed": 0.06, "force_map_scale": 0.03,
+    }  # fmt: skip
+    devices = {
+        "as stated": Device(**surface),
+        "passive": Device(**surface, force_map_passive=1),
+    }
+    loops("force_map", devices, 1.0, AMPLITUDE)
+
+
 def along_each_direction() -> None:
     """Friction whose level along the stroke differs between the directions."""
     level: dict[str, Any] = {"friction": "dahl", **FRICTION["dahl"]}
@@ -385,7 +400,7 @@ def semi_active() -> None:
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
     damping_and_stiffness, dampers, branches, inertance, series, friction_side, end_stops, gas,
-    fluid, along_the_stroke, along_each_direction, coil, aging, control, semi_active,
+    fluid, along_the_stroke, force_map, along_each_direction, coil, aging, control, semi_active,
 )  # fmt: skip
 
 

@@ -351,7 +351,8 @@ int device_check(InerterDevice* device, char* message) {
                  check_friction(device, message) || check_load(device, message) ||
                  check_branches(device, message) || check_stops(device, message) ||
                  check_gas(device, message) || check_channel(device, message) ||
-                 check_series(device, message) || curve_check(device, message)
+                 check_series(device, message) || curve_check(device, message) ||
+                 map_check(device, message)
              ? -1
              : 0;
 }

@@ -88,6 +88,10 @@ static int set_law(const char* key, const char* text, const char* (*name)(int), 
 }
 
 const double* inerter_list_values(const InerterDevice* device, int i, int* count) {
+  if (i == INERTER_LIST_force_map) {
+    *count = device->map.nvalue;
+    return device->map.value;
+  }
   const InerterCurve* curve = &device->curve[i / 2];
   *count = i % 2 ? 3 * curve->nperiod : curve->nvalue;
   return i % 2 ? curve->period : curve->value;
@@ -103,7 +107,8 @@ int inerter_set_list(InerterDevice* device, int i, int count, const double* valu
     snprintf(message, INERTER_MESSAGE_SIZE, "%s has %d numbers; give %s", list->name, count,
              list->periods ? "three for each period (length [m] > 0, amplitude, phase [rad]), at "
                              "most 8 periods"
-                           : "2 to 64");
+             : list->most == INERTER_MAXMAP ? "4 to 384, row by row"
+                                            : "2 to 64");
     return -1;
   }
   for (int k = 0; k < count; k++) {
@@ -116,6 +121,11 @@ int inerter_set_list(InerterDevice* device, int i, int count, const double* valu
       return -1;
     }
   }
+  if (i == INERTER_LIST_force_map) {
+    device->map.nvalue = count;
+    memcpy(device->map.value, values, sizeof(double) * (size_t)count);
+    return 0;
+  }
   InerterCurve* curve = &device->curve[i / 2];
   *(list->periods ? &curve->nperiod : &curve->nvalue) = list->periods ? count / 3 : count;
   if (count) {
@@ -127,7 +137,7 @@ int inerter_set_list(InerterDevice* device, int i, int count, const double* valu
 // numbers separated by blanks
 static int set_list(InerterDevice* device, int i, const char* text, char* message) {
   const InerterList* list = inerter_list(i);
-  double values[INERTER_MAXCURVE];
+  double values[INERTER_MAXMAP];
   int count = 0;
   for (const char* at = text;;) {
     while (isspace((unsigned char)*at)) {
@@ -155,7 +165,7 @@ static int set_list(InerterDevice* device, int i, const char* text, char* messag
                (int)(length < 60 ? length : 60), at, list->meaning);
       return -1;
     }
-    if (count < INERTER_MAXCURVE) {
+    if (count < INERTER_MAXMAP) {
       values[count] = value;
     }
     count++;

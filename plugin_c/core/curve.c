@@ -153,30 +153,33 @@ uint32_t curve_parts(const InerterDevice* p) {
          (friction_back ? PART_FRICTION_BACK : 0) |
          (inertance || inertance_back ? PART_INERTANCE_CURVE | PART_VARYING : 0) |
          (inertance_back ? PART_INERTANCE_BACK : 0) | (force ? PART_FORCE_CURVE : 0) |
-         (viscous ? PART_VISCOUS_CURVE : 0);
+         (viscous ? PART_VISCOUS_CURVE : 0) | (p->map.nvalue ? PART_FORCE_MAP : 0);
 }
 
-// the coefficients, by elimination from both equations of the ends
-static void fit(InerterCurve* c, double lower, double upper) {
-  int n = c->nvalue;
-  double pivot[INERTER_MAXCURVE], *f = c->fit + 1;
+// by elimination from both equations of the ends
+void curve_coefficients(int n, const double* value, double* fit) {
+  double pivot[INERTER_MAXCURVE], *f = fit + 1;
   if (n < 2) {  // a straight line needs two
     return;
   }
-  c->lower = lower;
-  c->rate = (n - 1) / (upper - lower);
   pivot[0] = 0.5;
-  f[0] = 1.5 * c->value[0];
+  f[0] = 1.5 * value[0];
   for (int i = 1; i < n; i++) {
     double below = i == n - 1 ? 2 : 1, divisor = 4 - below * pivot[i - 1];
     pivot[i] = 1 / divisor;
-    f[i] = (6 * c->value[i] - below * f[i - 1]) / divisor;
+    f[i] = (6 * value[i] - below * f[i - 1]) / divisor;
   }
   for (int i = n - 2; i >= 0; i--) {
     f[i] -= pivot[i] * f[i + 1];
   }
-  c->fit[0] = f[1];
+  fit[0] = f[1];
   f[n] = f[n - 2];
+}
+
+static void fit(InerterCurve* c, double lower, double upper) {
+  c->lower = lower;
+  c->rate = (c->nvalue - 1) / (upper - lower);
+  curve_coefficients(c->nvalue, c->value, c->fit);
 }
 
 // Where base + curve is below the least that is allowed: 1 with place and value. The coefficients

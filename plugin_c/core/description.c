@@ -73,6 +73,8 @@ static const InerterList kLists[] = {
        meaning ", length [m], amplitude and phase [rad] of each sine of x"},
     INERTER_STROKES(X)
 #undef X
+        {"force_map", "N", INERTER_MAXMAP, 0, "",
+         "force over displacement (rows) and velocity (columns), row by row"},
 };
 
 const InerterList* inerter_list(int i) {

@@ -284,6 +284,9 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   if (has(device, PART_FORCE_CURVE)) {
     energy += curve_integral(&device->curve[INERTER_STROKE_force], stretch);
   }
+  if (has(device, PART_FORCE_MAP)) {
+    energy += map_energy(device, stretch);
+  }
   double y = stretch, w = v;
   if (has_bristle(device)) {
     energy += friction_energy(device, place_of_friction(device, stretch, v, z).x, z);
@@ -339,6 +342,9 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   }
   if (has(device, PART_BRANCHES)) {
     power += branches_heat(device, z + branch_index(device));
+  }
+  if (has(device, PART_FORCE_MAP)) {
+    power += map_heat(device, stretch, v);
   }
   return has(device, PART_STOPS) ? power + stop_heat(device, stretch, v) : power;
 }

@@ -1,14 +1,16 @@
 // A device: forces at the terminals, and an inertance, perhaps behind a series element.
 //
 //   F = T(x, v, z) + N + mu sign(v) |N|
-//   T = c(x) v + c2 v|v| + k x + k3 x^3 + f(x) + F_0 + F_friction + F_stops + F_branches
+//   T = c(x) v + c2 v|v| + k x + k3 x^3 + f(x) + F_map(x, v) + F_0 + F_friction + F_stops
+//       + F_branches
 //   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
 //   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
 //   F = T + F_s,  F_s = N + F_friction(y, w) + mu sign(w) |N|      friction_side = flywheel
 //   N = B(y, w) w' + R(y, w) + G(y, w)                             (wheel_friction.c)
 //
 // N: force through the inertance. B, R: inertance.c. G = flywheel_viscous w + pipe + gas: pipe.c,
-// gas_spring.c. c(x), f(x) and other curves along the stroke: curve.c. F_s, deflection s [m],
+// gas_spring.c. c(x), f(x) and other curves along the stroke: curve.c. F_map: force_map.c. F_s,
+// deflection s [m],
 // flywheel velocity w [m/s]: series.c. F_stops: end_stop.c. x, v, a: displacement [m] (length minus
 // rest_length), velocity [m/s] and acceleration [m/s^2] of terminal 2 relative to terminal 1,
 // positive = longer. Functions take the length. F [N]: the force that lengthens the device, tension
@@ -86,6 +88,9 @@ enum {
   INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH + 1,
   INERTER_MAXCURVE = 64,  // most values of a curve
   INERTER_MAXPERIOD = 8,  // most periods of a sum
+  INERTER_MAXPLACE = 24,  // most rows and columns of a force map
+  INERTER_MAXSPEED = 16,
+  INERTER_MAXMAP = INERTER_MAXPLACE * INERTER_MAXSPEED,
   INERTER_MESSAGE_SIZE = 512
 };
 
@@ -95,7 +100,8 @@ typedef enum InerterStroke_ {
   INERTER_STROKES(X)
 #undef X
       INERTER_NSTROKE,
-  INERTER_NLIST = 2 * INERTER_NSTROKE  // lists: curve and periods of each
+  INERTER_LIST_force_map = 2 * INERTER_NSTROKE,  // after curve and periods of each
+  INERTER_NLIST
 } InerterStroke;
 
 // a quantity along the stroke: a curve through values, and a sum of periods (curve.c)
@@ -106,6 +112,15 @@ typedef struct InerterCurve_ {
   double fit[INERTER_MAXCURVE + 2];      // of the curve through them; set by inerter_finish
   double period[3 * INERTER_MAXPERIOD];  // length [m], amplitude, phase [rad] of each
 } InerterCurve;
+
+// a force over displacement and velocity (force_map.c); all but the values by inerter_finish
+typedef struct InerterMap_ {
+  int nvalue, nplace, nspeed;     // 0: none
+  double rate, speed_rate, edge;  // rows per metre, columns per w(v), w at the last column
+  double value[INERTER_MAXMAP];   // as stated, row by row
+  double fit[(INERTER_MAXPLACE + 2) * (INERTER_MAXSPEED + 2)];
+  InerterCurve still;  // at v = 0
+} InerterMap;
 
 typedef struct InerterDevice_ {
 #define X(name, ...) double name;
@@ -122,6 +137,7 @@ typedef struct InerterDevice_ {
   double control_rest, command;    // value as stated; the one that is commanded (inerter_command)
   double damping_held;             // of `viscous`, what an engine takes care of: left out of forces
   InerterCurve curve[INERTER_NSTROKE];
+  InerterMap map;
 } InerterDevice;
 
 // Whether parameter i (or a name, such as INERTER_INDEX_gas_law) was set; the inertance also when
@@ -362,6 +378,9 @@ static inline int inerter_has_curve(const InerterDevice* device, InerterStroke s
   return device->curve[stroke].nvalue > 0 || device->curve[stroke].nperiod > 0;
 }
 INERTER_API double inerter_curve_steepest(const InerterDevice* device, InerterStroke stroke);
+
+// The largest sizes of the slopes of the force map over x [N/m] and over v [N s/m].
+INERTER_API double inerter_map_steepest(const InerterDevice* device, double* over_speed);
 
 // Viscous damping at x [N s/m].
 INERTER_API double inerter_viscous(const InerterDevice* device, double x);

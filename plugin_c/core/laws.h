@@ -26,7 +26,8 @@ enum {
   PART_INERTANCE_CURVE = 1 << 18,
   PART_INERTANCE_BACK = 1 << 19,
   PART_FORCE_CURVE = 1 << 20,
-  PART_VISCOUS_CURVE = 1 << 21
+  PART_VISCOUS_CURVE = 1 << 21,
+  PART_FORCE_MAP = 1 << 22
 };
 
 static inline int has(const InerterDevice* p, unsigned part) {
@@ -143,11 +144,20 @@ double stop_heat(const InerterDevice* p, double x, double v);
 
 // curve.c: curve and periods at x, with the slope; their value alone; their integral from 0 to x.
 // curve_check: see that those of a device fit, and make the curves; -1 with a message if not.
+// curve_coefficients: n + 2 of the spline through n values, level at both ends.
 Tangent curve_at(const InerterCurve* c, double x);
 double curve_value(const InerterCurve* c, double x);
 double curve_integral(const InerterCurve* c, double x);
 int curve_check(InerterDevice* device, char* message);
+void curve_coefficients(int n, const double* value, double* fit);
 uint32_t curve_parts(const InerterDevice* device);
+
+// force_map.c, at displacement x, velocity v: force with its slope over v, energy, heat.
+// map_check: as curve_check.
+Tangent map_force(const InerterDevice* p, double x, double v);
+double map_energy(const InerterDevice* p, double x);
+double map_heat(const InerterDevice* p, double x, double v);
+int map_check(InerterDevice* device, char* message);
 
 // k x + k3 x^3 + f(x), at displacement `stretch`
 static inline double spring_force(const InerterDevice* device, double stretch) {
@@ -180,7 +190,8 @@ static inline double parallel_force(const InerterDevice* device, double stretch,
   double spring = spring_force(device, stretch);
   double damper = damper_force(device, stretch, v);
   double stops = has(device, PART_STOPS) ? stop_force(device, stretch, v) : 0;
-  return spring + damper + device->force_offset + stops;
+  double map = has(device, PART_FORCE_MAP) ? map_force(device, stretch, v).value : 0;
+  return spring + damper + device->force_offset + stops + map;
 }
 
 // flywheel damping with its slope: flywheel_viscous w + pipe(w)

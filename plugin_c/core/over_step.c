@@ -164,6 +164,10 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
     double spring = spring_force(device, stretch);
     double damper = damper_force(device, stretch, v1);
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
+    if (has(device, PART_FORCE_MAP)) {
+      Tangent map = map_force(device, stretch, v);
+      stops += map.value + fmax(0, map.slope) * h * a;
+    }
     if (has(device, PART_BRANCHES)) {
       stops += branches_over_step(device, v1, next + branch_index(device), h, mobility);
     }
@@ -197,6 +201,11 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
   double viscous = damping_at(device, stretch);
   step->start = rest + spring_force(device, stretch) + viscous * v + device->force_offset;
   step->rise = inertance + h * (slope + viscous);
+  if (has(device, PART_FORCE_MAP)) {
+    Tangent map = map_force(device, stretch, v);
+    step->start += map.value;
+    step->rise += h * fmax(0, map.slope);
+  }
   step->kind = STEP_LINE;
   if (has_bristle(device)) {
     step->kind = STEP_BRISTLE;

@@ -160,7 +160,17 @@
   X(control_upper, "1", NAN, -INFINITY, INFINITY, CLOSED, "",                                      \
     "largest value that the control sets, in the unit of what it sets")                            \
   X(control_lag, "s", 0, 0, INFINITY, CLOSED, "",                                                  \
-    "time constant with which the value follows the control; 0: at once")
+    "time constant with which the value follows the control; 0: at once")                          \
+  /* a force over displacement and velocity: force_map (force_map.c) */                            \
+  X(force_map_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the first row of force_map") \
+  X(force_map_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "", "x of the last row of force_map")  \
+  X(force_map_speed, "m/s", NAN, 0, INFINITY, OPEN, "",                                            \
+    "velocity of the last column of force_map; of the first: minus that")                          \
+  X(force_map_scale, "m/s", NAN, 0, INFINITY, OPEN, "",                                            \
+    "columns are evenly spaced in asinh(v / scale), fine near 0; unset: in v")                     \
+  X(force_map_columns, "1", 0, 0, 16, CLOSED, "", "columns of force_map, a whole number")          \
+  X(force_map_passive, "1", 0, 0, 1, CLOSED, "",                                                   \
+    "1: leave out what of force_map would give energy; 0: as stated")
 
 // What changes along the stroke (curve.c): X(name, unit, laws, meaning). Each has two lists of
 // numbers: NAME_curve, values at evenly spaced places, and NAME_periods, three numbers for each.

@@ -8,10 +8,13 @@ const char* const kAttributes[NATTRIBUTE] = {
     INERTER_PARAMETERS(X)
 #undef X
         "friction",
-    "gas_law", "friction_side", "control",
+    "gas_law",
+    "friction_side",
+    "control",
 #define X(name, ...) #name "_curve", #name "_periods",
     INERTER_STROKES(X)
 #undef X
+        "force_map",
 };
 // NOLINTEND(bugprone-suspicious-missing-comma)
 

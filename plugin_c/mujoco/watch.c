@@ -215,11 +215,14 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   consider(&fastest, sqrt(fabs(p->stiffness) * light), swing, "stiffness", tendon);
   double steepest = inerter_curve_steepest(p, INERTER_STROKE_force);
   consider(&fastest, sqrt(steepest * light), swing, "force along the stroke", tendon);
+  double rise, over_place = inerter_map_steepest(p, &rise);
+  consider(&fastest, sqrt(over_place * light), swing, "force_map along the stroke", tendon);
   consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
   if (stages) {
     double both = light + wheel;
     consider(&fastest, inerter_steepest_damping(p) * light, decay, "viscous", implicit);
     consider(&fastest, p->flywheel_viscous * wheel, decay, "flywheel_viscous", implicit);
+    consider(&fastest, rise * light, decay, "force_map over velocity", implicit);
     consider(&fastest, sqrt(p->stop_stiffness * light), swing, "stop_stiffness", implicit);
     consider(&fastest, friction_slope(p) * (instance_rubs_flywheel(p) ? wheel : light), decay,
              p->friction == INERTER_FRICTION_brown_mcphee

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -113,6 +113,13 @@ def diagnose_command(
             "displacement=butterworth:60:2 (order; 4 where it is left out). May be given again.",
         ),
     ] = None,
+    carry: Annotated[
+        Literal["any", "passive", "nothing"],
+        typer.Option(
+            help="What device.toml may carry of what can be predicted but has no name, as a force "
+            "over displacement and velocity: any, passive (nothing that gives energy), nothing."
+        ),
+    ] = "any",
     out_dir: Folder = Path("out/diagnosis"),
     as_json: AsJson = False,
     dry_run: Annotated[
@@ -135,7 +142,8 @@ def diagnose_command(
     mapping = (inputs or [], sensors or [])
     # --quick: the name of --dry-run before
     folder = None if dry_run or quick else out_dir
-    _diagnose(record, device, model, holdout or [], folder, as_json, mapping, stated, filters or [])
+    how = (filters or [], carry)
+    _diagnose(record, device, model, holdout or [], folder, as_json, mapping, stated, how)
 
 
 def _diagnose(
@@ -147,7 +155,7 @@ def _diagnose(
     as_json: bool,
     mapping: tuple[list[str], list[str]] = ([], []),
     stated: dict[str, Any] | None = None,
-    filters: Sequence[str] = (),
+    how: tuple[Sequence[str], Literal["any", "passive", "nothing"]] = ((), "any"),
 ) -> Diagnosis:
     """Without a folder nothing is written."""
     from warnings import catch_warnings, simplefilter
@@ -165,7 +173,7 @@ def _diagnose(
         simplefilter("ignore", RuntimeWarning)
         with status(as_json) as progress, told_reading(**(stated or {})) as tell:
             with heard(lambda records: _first_look(records, as_json, tell)):
-                result = diagnose(record, device, model, holdout, progress, *mapping, filters)
+                result = diagnose(record, device, model, holdout, progress, *mapping, *how)
             tell()
         if folder:
             write_outputs(result, folder)

@@ -203,9 +203,14 @@ def _numbers(path: Path, key: str, value: Any) -> Any:
 def _list_toml(device: Device, name: str) -> str:
     """A list as TOML has it, periods in threes."""
     numbers = list(getattr(device, name))
-    if not lists()[name].periods:
-        return repr(numbers)
-    return repr([numbers[i : i + 3] for i in range(0, len(numbers), 3)])
+    if name == "force_map":
+        rows = _rows(numbers, int(device.force_map_columns), ",\n  ")
+        return f"[\n  {rows},\n]"
+    return f"[{_rows(numbers, 3, ', ')}]" if lists()[name].periods else repr(numbers)
+
+
+def _rows(numbers: list[float], columns: int, apart: str) -> str:
+    return apart.join(repr(numbers[i : i + columns]) for i in range(0, len(numbers), columns))
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -283,6 +288,7 @@ def device_text(
     lines += ["", "[device]"]
     for name, value in device.given.items():
         if name in lists():
+            lines += [f"# {printable(comments[name])}"] if name in comments else []
             lines.append(f"{name} = {_list_toml(device, name)}")
             continue
         text = f'"{value}"' if isinstance(value, str) else repr(float(value))

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import io
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from inerter.blind_test.case import ParameterError
+from inerter.blind_test.case import Named, Outcome, ParameterError
 from inerter.blind_test.output import write_blind_test
 from inerter.blind_test.picture import wilson
-from inerter.blind_test.plan import Plan
-from inerter.blind_test.score import calibration, score
+from inerter.blind_test.plan import BENCHES, Plan
+from inerter.blind_test.score import calibration, score, trust
 from inerter.blind_test.table import print_blind_test
 from made_up import outcome
 from rich.console import Console
@@ -167,3 +168,31 @@ def test_files_and_terminal(result: dict, tmp_path: Path) -> None:
     only = score(Plan(effects=(A,), count=0, unknown=1), OUTCOMES[-1:])
     write_blind_test(only, tmp_path)
     print_blind_test(only, console)
+
+
+def test_trust_counts_what_the_bench_brings_and_what_cannot_be_told_apart() -> None:
+    errors = tuple(ParameterError(A, "viscous", 10.0, 10.0 + off, 1.0) for off in (0.5, 1.9, 2.1))
+    right = outcome("single", (A,), ((A, 0.95), ("periodic_disturbance", 0.99)), errors=errors)
+    right = replace(right, brings=("periodic_disturbance",))
+    alike = outcome("single", (A,), (("sensor_delay", 0.9),))
+    alike = replace(alike, named=(Named("sensor_delay", None, 0.9, (A, "sensor_delay")),))
+    wrong = outcome("single", (A,), ((B, 0.97), (C, 0.5)))
+    found = trust([right, alike, wrong, outcome("clean")])
+    assert found["found"] == 0.75
+    assert found["nothing_false"] == 0.75
+    assert found["claims"] == 4
+    assert found["wrong_claims"] == 0.25
+    assert found["covered"] == pytest.approx(2 / 3)
+    assert found["wrong"] == {B: 1, C: 1}
+    assert found["missed"] == {A: 1}
+    # as it is kept in a file
+    again = Outcome.of_json(json.loads(json.dumps(alike.json())))
+    assert again == alike
+
+
+def test_benches_are_named_and_have_files_of_their_own() -> None:
+    ideal, realistic = (Plan(effects=(A,), count=1, seed=5, bench=b).tasks()[0] for b in BENCHES)
+    assert ideal.seed == realistic.seed
+    assert realistic.name == f"realistic-{ideal.name}"
+    with pytest.raises(ValueError, match=r"--bench: 'dirty' is not one of ideal, realistic"):
+        Plan(bench="dirty")

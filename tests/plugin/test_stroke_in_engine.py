@@ -22,6 +22,11 @@ DEVICES: dict[str, dict[str, Any]] = {
     "periods": {"inertance_periods": (0.03, 0.05, 1.0, 0.01, 0.01, 0.0)},
     "directions": {"inertance_curve": RISE, **RANGE, "inertance_back_periods": (0.03, 0.05, 0.0)},
     "force": {"force_curve": tuple(30.0 * y for y in RISE), **RANGE, "force_periods": (0.02, 3, 0)},
+    "map": {
+        "force_map": tuple(8.0 * y for y in (*RISE, *RISE[::-1], 0, 2, 1, -1, -2, 3)),
+        "force_map_columns": 6, "force_map_lower": -0.2, "force_map_upper": 0.2,
+        "force_map_speed": 0.6, "force_map_scale": 0.3,
+    },
     "all": {
         "inertance_curve": RISE, **RANGE, "inertance_periods": (0.03, 0.05, 1.0),
         "force_periods": (0.02, 5.0, 0.0), "viscous": 20.0, "viscous_curve": (5, 30, -5, 10),
@@ -173,6 +178,42 @@ def test_lists_can_be_live() -> None:
     model.numeric_data[place.live["force_periods"]] = -1.0
     with pytest.raises(mujoco.FatalError, match="force_periods: number 1 is -1"):
         mujoco.mj_forward(model, data)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "discrete", "RK4"])
+def test_a_passive_map_brings_a_mass_to_rest_whatever_its_numbers(integrator: str) -> None:
+    """Steep over velocity: more than an explicit step could take; sensors tell what it does."""
+    steep = np.linspace(-400.0, 400.0, 6) + np.array([[0.0, 60.0, -90.0, 30.0, 80.0, 0.0]] * 3)
+    step = 1e-4 if integrator == "RK4" else 2e-3
+    spec = mujoco.MjSpec()
+    spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
+    spec.option.timestep, spec.option.gravity = step, (0, 0, 0)
+    body = spec.worldbody.add_body(name="car")
+    body.add_joint(name="travel", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0])
+    body.add_geom(size=[0.1, 0, 0], mass=1.0)
+    added = add_device(
+        spec, joint="travel", force_map=steep, force_map_columns=6, force_map_passive=1,
+        force_map_lower=-0.1, force_map_upper=0.1, force_map_speed=0.5, stiffness=100.0,
+        live=("force_map",),
+    )  # fmt: skip
+    model = spec.compile()
+    place, data = added.of(model), mujoco.MjData(model)
+    data.qvel[0] = 0.4
+    mujoco.mj_forward(model, data)
+    expected = place.device.evaluate(0.0, 0.4, data.qacc[0], 0.0)
+    if integrator == "RK4":
+        for name in ("total", "stored_energy", "dissipated_power"):
+            told = {"stored_energy": "stored", "dissipated_power": "power"}.get(name, name)
+            if told in place.sensor:
+                assert data.sensordata[place.sensor[told]] == pytest.approx(expected[name][0])
+    first = 0.5 * data.qvel[0] ** 2
+    mujoco.mj_step(model, data, int(1.0 / step))
+    assert 0.5 * data.qvel[0] ** 2 < 0.05 * first
+    # the numbers are live: none of them, no force but the spring's
+    model.numeric_data[place.live["force_map"] : place.live["force_map"] + 18] = 0.0
+    data.qpos[0], data.qvel[0] = 0.02, 0.1
+    mujoco.mj_forward(model, data)
+    assert data.sensordata[place.sensor["total"]] == pytest.approx(2.0)
 
 
 def test_viscous_damping_along_the_stroke_goes_with_the_damper_flag() -> None:

@@ -145,6 +145,18 @@ def meant(draw: st.DrawFn) -> Values:
         if "friction" in values:
             values |= {"friction_curve": _text(draw(rises))}
     if draw(st.booleans()):
+        forces = st.lists(_signed(50.0), min_size=12, max_size=12)
+        values |= {
+            "force_map": _text(draw(forces)),
+            "force_map_columns": draw(st.sampled_from([3, 4])),
+            "force_map_lower": -0.03,
+            "force_map_upper": draw(st.floats(-0.01, 0.05)),
+            "force_map_speed": draw(_around(0.3, 0.5)),
+            "force_map_passive": draw(st.sampled_from([0, 1])),
+        }
+        if draw(st.booleans()):
+            values |= {"force_map_scale": draw(_around(0.05, 0.5))}
+    if draw(st.booleans()):
         values |= {
             "stop_upper": draw(st.floats(5e-3, 5e-2)),
             "stop_stiffness": draw(_around(5e4, 0.5)),

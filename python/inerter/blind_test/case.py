@@ -25,11 +25,12 @@ GAS = ("gas_pressure", "gas_area", "gas_volume")
 
 @dataclass(frozen=True)
 class Named:
-    """A finding: its effect, law and confidence."""
+    """A finding: its effect, law and confidence; effects that these data cannot tell from it."""
 
     effect: str
     law: str | None
     confidence: float
+    members: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,13 @@ class ParameterError:
         return np.inf if self.found is None else abs(self.found - self.true) / abs(self.true)
 
     @property
+    def covered(self) -> bool | None:
+        """Within 2 standard errors; None where there is none."""
+        if self.found is None or self.stderr is None or not 0.0 < self.stderr < np.inf:
+            return None
+        return abs(self.found - self.true) <= 2.0 * self.stderr
+
+    @property
     def near(self) -> bool:
         """Within 5 %, or within 3 standard errors."""
         if self.found is None:
@@ -62,7 +70,8 @@ class Outcome:
 
     law: of hysteretic friction, also where it was drawn; gain: share of the rms error against the
     noise-free force that is taken away on held-out data; seconds: of the diagnosis alone, on the
-    wall and of the processor, which says more where others use the machine.
+    wall and of the processor, which says more where others use the machine; brings: effects that
+    the bench adds by itself, which are right where they are named and need not be.
     """
 
     task: Task
@@ -76,6 +85,7 @@ class Outcome:
     processor_seconds: float = 0.0
     share: float | None = None
     error: str | None = None
+    brings: tuple[str, ...] = ()
 
     def json(self) -> dict[str, Any]:
         """As a JSON object."""
@@ -91,9 +101,12 @@ class Outcome:
             It is no such object.
         """
         task = Task(**{**data["task"], "effects": tuple(data["task"]["effects"])})
-        named = tuple(Named(**each) for each in data["named"])
+        named = tuple(
+            Named(**{**each, "members": tuple(each.get("members", ()))}) for each in data["named"]
+        )
         errors = tuple(ParameterError(**each) for each in data["parameters"])
-        return cls(**{**data, "task": task, "named": named, "parameters": errors})
+        brings = tuple(data.get("brings", ()))
+        return cls(**{**data, "task": task, "named": named, "parameters": errors, "brings": brings})
 
     truth: dict[str, float] = field(default_factory=dict)
 
@@ -101,6 +114,22 @@ class Outcome:
     def effects(self) -> tuple[str, ...]:
         """Effects that were named, the first first."""
         return tuple(named.effect for named in self.named)
+
+    def is_right(self, named: Named) -> bool:
+        """Whether a finding, or one that it cannot be told from, was hidden or the bench's own."""
+        there = {*self.task.effects, *self.brings}
+        return named.effect in there or any(name in there for name in named.members)
+
+    @property
+    def found(self) -> bool:
+        """Whether everything hidden was named, or something that it cannot be told from."""
+        said = {name for each in self.named for name in (each.effect, *each.members)}
+        return self.error is None and set(self.task.effects) <= said
+
+    @property
+    def nothing_false(self) -> bool:
+        """Whether every finding is right."""
+        return self.error is None and all(map(self.is_right, self.named))
 
     @property
     def first(self) -> str:
@@ -112,10 +141,13 @@ class Outcome:
 
 def hide(task: Task) -> HiddenCase:
     """The records of a case."""
+    realistic = task.bench == "realistic"
     if task.group == "unknown":
-        return hide_unknown(task.seed, task.kind, task.levels)
+        return hide_unknown(task.seed, task.kind, task.levels, realistic=realistic)
     first, *also = task.effects or ("none",)
-    return hide_effect(task.seed, first, law=task.law, noise=task.levels, also=also)
+    return hide_effect(
+        task.seed, first, law=task.law, noise=task.levels, also=also, realistic=realistic
+    )
 
 
 def records_of(case: HiddenCase) -> list[Record]:
@@ -153,7 +185,8 @@ def compare(task: Task, case: HiddenCase, diagnosis: Diagnosis) -> Outcome:
     return Outcome(
         task=task,
         law=case.law,
-        named=tuple(Named(f.effect, f.law, f.confidence) for f in diagnosis.findings),
+        named=tuple(Named(f.effect, f.law, f.confidence, f.members) for f in diagnosis.findings),
+        brings=case.chain.brings if case.chain else (),
         parameters=tuple(parameter_errors(case, diagnosis)),
         unexplained=diagnosis.unexplained.significant,
         gain=gain_on_truth(case, diagnosis),

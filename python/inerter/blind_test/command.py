@@ -36,6 +36,13 @@ def blind_test_command(
     unknown: Annotated[
         int | None, typer.Option(min=0, help=f"Cases with an unnamed effect; {_AS_COUNT}.")
     ] = None,
+    bench: Annotated[
+        str,
+        typer.Option(
+            help="ideal: white noise alone; realistic: rate, length, motion, filters, "
+            "quantisation, hum, drift, jitter, grip mass and ringing drawn for each case."
+        ),
+    ] = "ideal",
     seed: Annotated[
         int | None,
         typer.Option(min=0, help="Seed; default: $INERTER_SEED, else a new one. It is printed."),
@@ -54,6 +61,7 @@ def blind_test_command(
     Examples:
       inerter blind-test --count 3 --clean 0
       inerter blind-test --effects viscous_friction,end_stop --jobs 2
+      inerter blind-test --bench realistic --count 2
     """
     from inerter.blind_test.output import write_blind_test
     from inerter.blind_test.plan import Plan
@@ -68,7 +76,7 @@ def blind_test_command(
     names = EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
     with refusing(folder, "blind_test.json", "confusion.png", "calibration.png"):
         plan = Plan(
-            effects=names, count=count, noise=noise, seed=_seed(seed),
+            effects=names, count=count, noise=noise, seed=_seed(seed), bench=bench,
             **{name: usual if given is None else given for name, given in numbers.items()},
         )  # fmt: skip
         tasks = plan.tasks()

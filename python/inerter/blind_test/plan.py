@@ -10,12 +10,14 @@ import numpy as np
 
 from inerter.reference import EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
 
+BENCHES = ("ideal", "realistic")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
     """One case: `effects` that are hidden, empty for "clean"; for "unknown" its `kind`.
 
-    group: "single", "clean", "pairs", "triples" or "unknown".
+    group: "single", "clean", "pairs", "triples" or "unknown"; bench: one of `BENCHES`.
     """
 
     group: str
@@ -24,12 +26,15 @@ class Task:
     effects: tuple[str, ...] = ()
     law: str | None = None
     kind: str | None = None
+    bench: str = BENCHES[0]
 
     @property
     def name(self) -> str:
         """What tells it from every other case, as a file's name."""
         what = self.kind or "+".join(self.effects) or "nothing"
-        return "-".join([self.group, what, *([self.law] if self.law else []), str(self.seed)])
+        bench = [self.bench] if self.bench != BENCHES[0] else []
+        law = [self.law] if self.law else []
+        return "-".join([*bench, self.group, what, *law, str(self.seed)])
 
     @property
     def levels(self) -> NoiseLevels:
@@ -53,6 +58,9 @@ class Plan:
         White noise of the force per its rms; the displacement's is 1 micrometre for 0.01.
     seed
         Everything follows from it.
+    bench
+        "ideal": white noise and nothing else; "realistic": motion and measuring chain of a bench
+        as it is, drawn for each case.
 
     Raises
     ------
@@ -68,6 +76,7 @@ class Plan:
     unknown: int = 0
     noise: float = 0.01
     seed: int = 0
+    bench: str = BENCHES[0]
 
     def __post_init__(self) -> None:
         """See Raises."""
@@ -80,6 +89,8 @@ class Plan:
         for name in ("count", "clean", "pairs", "triples", "unknown", "seed"):
             if getattr(self, name) < 0:
                 raise ValueError(f"--{name}: {getattr(self, name)} is below 0")
+        if self.bench not in BENCHES:
+            raise ValueError(f"--bench: '{self.bench}' is not one of {', '.join(BENCHES)}")
         if not 0.0 <= self.noise <= 1.0:
             raise ValueError(f"--noise: {self.noise:g} is a share of the force rms, from 0 to 1")
         for name, size in (("pairs", 2), ("triples", 3)):
@@ -125,7 +136,10 @@ class Plan:
     ) -> Task:
         sequence = np.random.SeedSequence([self.seed, crc32(label.encode()), number])
         seed = int(sequence.generate_state(1)[0])
-        return Task(group=group, seed=seed, noise=self.noise, effects=effects, law=law, kind=kind)
+        return Task(
+            group=group, seed=seed, noise=self.noise, effects=effects, law=law, kind=kind,
+            bench=self.bench,
+        )  # fmt: skip
 
     def _drawn(self, group: str, size: int, number: int) -> list[tuple[str, ...]]:
         """Sets of effects that go together, none twice before each had its turn."""

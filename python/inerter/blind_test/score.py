@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.blind_test.case import Outcome, ParameterError
+from inerter.blind_test.case import Named, Outcome, ParameterError
 from inerter.blind_test.plan import Plan
 from inerter.reference import EFFECTS, HYSTERETIC_LAWS
 
@@ -50,6 +50,7 @@ def score(plan: Plan, outcomes: Sequence[Outcome], seconds: float = 0.0) -> dict
             "unknown": plan.unknown,
             "noise": plan.noise,
             "displacement_noise": 1e-4 * plan.noise,
+            "bench": plan.bench,
         },
         "confusion": confusion(groups["single"] + groups["clean"]),
         "laws": laws(groups["single"]),
@@ -64,6 +65,7 @@ def score(plan: Plan, outcomes: Sequence[Outcome], seconds: float = 0.0) -> dict
         "triples": several(groups["triples"]),
         "unknown": unknown(groups["unknown"]),
         "calibration": calibration(known),
+        "trust": trust(known),
         "gain_on_truth": gains(known),
         "seconds_per_case": times(outcomes),
         "seconds": seconds,
@@ -185,13 +187,44 @@ def _unknown(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     }
 
 
-def calibration(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
-    """Findings by confidence: how many there are and the share that was hidden; without unknown."""
-    findings = [
-        (named.confidence, named.effect in one.task.effects)
+def trust(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """How far what is said can be relied on, over all cases with named effects or none.
+
+    found: all that was hidden; nothing_false: every finding right, one that the bench brings and
+    one that the data cannot tell from a right one among them; claims: findings with 0.9 or more;
+    wrong_claims: of them; covered: share of the true values within 2 standard errors.
+    """
+    claims = [
+        one.is_right(named)
         for one in outcomes
         for named in one.named
+        if named.confidence >= CLAIMED
     ]
+    covered = [error.covered for one in outcomes for error in one.parameters]
+    wrong = Counter(
+        named.effect for one in outcomes for named in one.named if not one.is_right(named)
+    )
+    missed = Counter(
+        name
+        for one in outcomes
+        for name in one.task.effects
+        if name not in {n for each in one.named for n in (each.effect, *each.members)}
+    )
+    return {
+        "cases": len(outcomes),
+        "found": _share([one.found for one in outcomes]),
+        "nothing_false": _share([one.nothing_false for one in outcomes]),
+        "claims": len(claims),
+        "wrong_claims": _share([not right for right in claims]),
+        "covered": _share([bool(each) for each in covered if each is not None]),
+        "wrong": dict(wrong.most_common()),
+        "missed": dict(missed.most_common()),
+    }
+
+
+def calibration(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
+    """Findings by confidence: how many there are and the share that was hidden; without unknown."""
+    findings = [(named.confidence, one.is_right(named)) for one in outcomes for named in one.named]
     bins = []
     for lower, upper in pairwise(BINS):
         last = upper == BINS[-1]
@@ -235,7 +268,7 @@ def is_failure(one: Outcome) -> bool:
         return True
     if one.task.group == "unknown":
         return not one.unexplained or _claims(one)
-    return set(one.effects) != set(one.task.effects)
+    return not (one.found and one.nothing_false)
 
 
 def failure(one: Outcome) -> dict[str, Any]:
@@ -248,11 +281,16 @@ def failure(one: Outcome) -> dict[str, Any]:
         "law": one.law,
         "share": one.share,
         "truth": one.truth,
-        "named": [vars(named) for named in one.named],
+        "named": [_told(named) for named in one.named],
         "unexplained": one.unexplained,
         "error": one.error,
         "verdict": one.verdict,
     }
+
+
+def _told(named: Named) -> dict[str, Any]:
+    """A finding; without members where it has none."""
+    return {name: value for name, value in vars(named).items() if value or name != "members"}
 
 
 def _claims(one: Outcome) -> bool:

@@ -13,7 +13,9 @@ from rich.text import Text
 def print_blind_test(result: dict[str, Any], console: Console) -> None:
     """Print what `score` found."""
     noise = 100 * result["settings"]["noise"]
-    console.print(Text(f"Blind test, seed {result['seed']}, noise {noise:g} % of the force rms"))
+    bench = result["settings"]["bench"]
+    text = f"Blind test on {bench} benches, seed {result['seed']}, noise {noise:g} % of the force"
+    console.print(Text(f"{text} rms"))
     if result["effects"]:
         console.print(_effects(result))
     for line in _lines(result):
@@ -75,6 +77,15 @@ def _lines(result: dict[str, Any]) -> list[str]:
         lines.append(
             f"unknown: {_cases(part['cases'])}, {_percent(part['significant'])} called "
             f"unexplained, {_percent(part['wrong_claim'])} with a wrong finding given 90 % or more"
+        )
+    if (part := result["trust"])["cases"]:
+        lines.append(
+            f"all {_cases(part['cases'])}: found {_percent(part['found'])}, nothing false "
+            f"{_percent(part['nothing_false'])}; of {part['claims']} findings given 90 % or more "
+            f"{_percent(part['wrong_claims'])} wrong; 2 standard errors hold "
+            f"{_percent(part['covered'])}"
+            + _names(part["wrong"], "; wrong")
+            + _names(part["missed"], "; missed")
         )
     bins = [part for part in result["calibration"] if part["findings"]]
     if bins:

@@ -14,6 +14,7 @@ from inerter.device_file import (
     read_motion,
     refuse_other_motion,
 )
+from inerter.diagnose.budget.carried import Carrying
 from inerter.diagnose.result import Diagnosis, Finding
 from inerter.diagnose.rig import diagnose_bench
 from inerter.diagnose.table import diagnose_table
@@ -34,6 +35,7 @@ def diagnose(
     inputs: Sequence[str] = (),
     sensors: Sequence[str] = (),
     filters: Sequence[str] = (),
+    carry: Carrying = "any",
 ) -> Diagnosis:
     """Diagnose records from files.
 
@@ -56,6 +58,8 @@ def diagnose(
     filters : sequence of str
         CHANNEL=KIND:CUTOFF[:ORDER] of low-passes that a channel of bench records went through, such
         as "force=bessel:50".
+    carry : str
+        What the extended device may carry without a name, see `diagnose_bench`.
 
     Raises
     ------
@@ -87,7 +91,7 @@ def diagnose(
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):
-        found = diagnose_bench(bench, baseline, holdout, progress, delay, known)
+        found = diagnose_bench(bench, baseline, holdout, progress, delay, known, carry)
         return replace(found, rest_length=rest_length)
     if len(tables) == len(read):
         if holdout:

@@ -170,7 +170,8 @@ class Unexplained:
     ceiling : dict, optional
         Held-out error of the best flexible predictor, {"rmse"} [N]; None where there is none.
     carried : dict, optional
-        What is taken into the extended device without a name; None where nothing is.
+        What is taken into the extended device without a name, see `budget.carried`; None where
+        nothing is.
     predicted : float
         Rms of what the tests predict of the residual on held-out data [N].
     """
@@ -262,8 +263,21 @@ class Diagnosis:
         """The parts of the held-out error; None where no ceiling was looked for."""
         if self.unexplained.ceiling is None:
             return None
-        errors = self.baseline.rmse, self.extended.rmse, self.unexplained.ceiling["rmse"]
-        return budget_of(*errors, self.repeatability, self.motion)
+        kept = self.unexplained.carried
+        return budget_of(
+            self.baseline.rmse,
+            self.extended.rmse,
+            self.unexplained.ceiling["rmse"],
+            self.repeatability,
+            self.motion,
+            carried=kept["rmse_after"] if kept else None,
+        )
+
+    @property
+    def written(self) -> dict[str, Any]:
+        """The device as it is written: with what it carries without a name."""
+        kept = self.unexplained.carried
+        return self.extended.device | (kept["parameters"] if kept else {})
 
     @property
     def gain(self) -> float:

@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 from inerter.catalogue.effects import EFFECTS
 from inerter.core import Device
 from inerter.diagnose import wording
+from inerter.diagnose.budget.carried import Carrying, carried
 from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.decision import CRITERIA
@@ -65,6 +66,7 @@ def diagnose_bench(
     progress: Progress = lambda text: None,
     delay: float = 0.0,
     filters: Mapping[str, Filter] | None = None,
+    carry: Carrying = "any",
 ) -> Diagnosis:
     """What a simulation of the device lacks, on data it has not seen.
 
@@ -83,6 +85,9 @@ def diagnose_bench(
         Time by which the force channel is known to be late [s].
     filters : mapping, optional
         Low-passes that the channels "force" and "displacement" are known to have gone through.
+    carry : str
+        What the extended device may carry without a name, as a force over displacement and
+        velocity: "any", "passive" (nothing that would give energy) or "nothing".
 
     Raises
     ------
@@ -94,8 +99,9 @@ def diagnose_bench(
     for name, known in (filters or {}).items():
         channel |= named(name, known)
     given = Given(
-        records=list(records), device=device, holdout=holdout, progress=progress, channel=channel
-    )
+        records=list(records), device=device, holdout=holdout, progress=progress, channel=channel,
+        carry=carry,
+    )  # fmt: skip
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
     with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
@@ -116,6 +122,11 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
     given.progress("measuring what repeats, and what more could be predicted")
     errors = data.raw.errors(final)
     remains = with_ceiling(data, errors, floor, remains, judge.motion_noise(final))
+    kept = None
+    if given.carry != "nothing":
+        passive = given.carry == "passive"
+        kept = carried(data, final, floor, judge.motion_noise(final), passive=passive)
+    remains = replace(remains, carried=kept.json() if kept else None)
     again = repeats(data.whole, errors)
     missed = badly_missed(data, errors, floor)
     other = other_split(stands.searched.search, data, final, bool(missed))

@@ -18,6 +18,7 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.core import Device
 from inerter.diagnose.band import best_band, narrower_band, wider_band
 from inerter.diagnose.baseline import baseline_of
+from inerter.diagnose.budget.carried import Carrying
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
 from inerter.diagnose.composition import (
     bristle_is_known,
@@ -67,6 +68,8 @@ class Given:
     channel
         What is known of the force channel, as coordinates: its `delay` [s], low-passes (see
         `identify.channel_filter`).
+    carry
+        What the extended device may carry without a name.
     """
 
     records: Sequence[Record]
@@ -74,6 +77,7 @@ class Given:
     holdout: Sequence[str] = ()
     progress: Progress = lambda text: None
     channel: Mapping[str, float] = field(default_factory=dict)
+    carry: Carrying = "any"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,9 +1,9 @@
 """What acts straight between the terminals: springs, dampers, a constant force, end stops.
 
-    T = s (c D(v) + c2 v |v|) + k x + k3 x^3 + F_0 + stops + f(x),  c = c_0 + c_x(x)
+    T = s (c D(v) + c2 v |v|) + k x + k3 x^3 + F_0 + stops + f(x) + F_map(x, v),  c = c_0 + c_x(x)
     D(v) = r v + (1 - r) v / sqrt(1 + (v / v_k)^2), v without a knee;  s = 1 + kappa sign(v)
 
-f and c_x, force and damping of the place: `stroke.py`.
+f and c_x, force and damping of the place: `stroke.py`; F_map: `force_map.py`.
 
 Sign: tension positive. A stop at x_e pushes back with k_e delta (1 + e delta'), delta its
 compression, and never pulls (Hunt and Crossley 1975, exponent 1).
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from inerter.exudyn import stroke
+from inerter.exudyn import force_map, stroke
 from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -30,6 +30,8 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
         total = total + p.stiffness_cubic * x * x * x
     if stroke.there(p, "force"):
         total = total + stroke.value(f, p, "force", x)
+    if p.force_map:
+        total = total + force_map.force(f, p, x, v)
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = f.greatest(0.0, 1.0 + p.stop_damping * direction * v)
@@ -60,6 +62,8 @@ def stored_energy(p: Parameters, x: float) -> float:
     """Energy in springs and stops [J]."""
     energy = 0.5 * p.stiffness * x**2 + 0.25 * p.stiffness_cubic * x**4
     energy += stroke.integral(p, "force", x)
+    if p.force_map:
+        energy += force_map.stored_energy(p, x)
     for direction, place in _stops(p):
         energy += 0.5 * p.stop_stiffness * max(0.0, direction * (x - place)) ** 2
     return energy
@@ -69,6 +73,8 @@ def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """Heat in dampers and stops [W]."""
     damper = _damper(f, p, x, v)
     heat = 0.0 if damper is None else damper * v
+    if p.force_map:
+        heat = heat + force_map.dissipated_power(f, p, x, v)
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = direction * v

@@ -47,7 +47,7 @@ def value(f: Functions, p: Parameters, name: str, x: Value) -> Value:
     """The quantity at x [m]."""
     total = 0.0
     if values := getattr(p, f"{name}_curve"):
-        moments = _moments(values, p.curve_lower, p.curve_upper)
+        moments = curve_moments(values, p.curve_lower, p.curve_upper)
         total = total + _spline(f, moments, x)
     for wave, amplitude, phase in _waves(p, name):
         total = total + amplitude * f.sin(wave * x + phase)
@@ -58,7 +58,7 @@ def slope(f: Functions, p: Parameters, name: str, x: Value) -> Value:
     """Rate of f over x."""
     total = 0.0
     if values := getattr(p, f"{name}_curve"):
-        m = _moments(values, p.curve_lower, p.curve_upper)
+        m = curve_moments(values, p.curve_lower, p.curve_upper)
         for i, t in enumerate(_passed(f, m, x)):
             change = m.curvatures[i + 1] - m.curvatures[i]
             total = total + m.spacing * (float(m.curvatures[i]) + 0.5 * float(change) * t) * t
@@ -71,8 +71,8 @@ def integral(p: Parameters, name: str, x: float) -> float:
     """Integral of f from 0 to x."""
     total = 0.0
     if values := getattr(p, f"{name}_curve"):
-        moments = _moments(values, p.curve_lower, p.curve_upper)
-        total += _spline_integral(moments, x) - _spline_integral(moments, 0.0)
+        moments = curve_moments(values, p.curve_lower, p.curve_upper)
+        total += spline_integral(moments, x) - spline_integral(moments, 0.0)
     for wave, amplitude, phase in _waves(p, name):
         total += amplitude / wave * (math.cos(phase) - math.cos(wave * x + phase))
     return total
@@ -100,7 +100,7 @@ def _spline(f: Functions, m: Moments, x: Value) -> Value:
     return total
 
 
-def _spline_integral(m: Moments, x: float) -> float:
+def spline_integral(m: Moments, x: float) -> float:
     """Integral from the first place to x."""
     h, before = m.spacing, min(0.0, x - m.lower)
     total = m.values[0] * before
@@ -112,7 +112,7 @@ def _spline_integral(m: Moments, x: float) -> float:
 
 
 @lru_cache(maxsize=64)
-def _moments(values: tuple[float, ...], lower: float, upper: float) -> Moments:
+def curve_moments(values: tuple[float, ...], lower: float, upper: float) -> Moments:
     """The slopes make the second derivatives meet; 0 at the ends."""
     n, y = len(values), np.array(values)
     h = (upper - lower) / (n - 1)

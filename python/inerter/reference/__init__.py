@@ -19,6 +19,7 @@ published numbers of the models, plain data, come from `inerter/model_parameters
     bench.py         test records with hidden effects
     bench_motions.py, bench_effects.py, bench_devices.py, bench_channel.py   what it draws from
     bench_unknown.py test records with an effect that no name describes
+    bench_realistic.py  what a bench as it is does to motion and records
     wang_su.py       the demonstration record
 """
 

@@ -9,7 +9,8 @@ the truth.
     bench_devices.py   what an effect adds to the device, and its size
     bench_channel.py   what happens to the force on its way into the record
     bench_unknown.py   records with an effect that no name describes
-Not modelled: coloured noise, quantisation, rigs that shake in resonance.
+    bench_realistic.py what a bench as it is does to motion and records
+Not modelled: coloured noise, rigs that shake in resonance.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from .bench_channel import Channel, Situation, answers
 from .bench_devices import draw_effect, draw_limits, joined, own_names
 from .bench_effects import EFFECTS, HYSTERETIC_LAWS, NEEDS_LEVEL, check_effect, clash
 from .bench_motions import draw_drives
+from .bench_realistic import Chain, draw_bench_drives, draw_chain, quantised
 from .device import ReferenceDevice
 from .motion import Response
 from .record import write_record
@@ -86,6 +88,8 @@ class HiddenCase:
         For inertance_error the device that a user would state, with a wrong inertance; else None.
     kind
         For an effect without a name which it is, see `bench_unknown.py`; else None.
+    chain
+        What a realistic bench does to the records, see `bench_realistic.py`; else None.
     """
 
     seed: int
@@ -102,6 +106,7 @@ class HiddenCase:
     channel: Channel = field(default_factory=Channel)
     stated: dict[str, float] | None = None
     kind: str | None = None
+    chain: Chain | None = None
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -128,6 +133,7 @@ def hide_effect(
     law: str | None = None,
     noise: NoiseLevels | None = None,
     also: Sequence[str] = (),
+    realistic: bool = False,
 ) -> HiddenCase:
     """Draw a device with one hidden effect, or several, and its records.
 
@@ -144,6 +150,8 @@ def hide_effect(
         force rms instead of 0.2 N.
     also
         Further effects, each sized as if it were alone; saturation clips what there is.
+    realistic
+        On a bench with a measuring chain of its own, see `bench_realistic.py`.
 
     Runs with friction_drift share one clock: each starts some seconds after another. All others
     start at zero.
@@ -166,7 +174,8 @@ def hide_effect(
     law = _law(choose, effects, law)
 
     ideal = ReferenceDevice(inertance=rounded(np.exp(draw.uniform(np.log(20.0), np.log(400.0)))))
-    runs = draw_situations(move, more, ideal.inertance, "friction_drift" in effects)
+    one_clock = "friction_drift" in effects
+    runs = draw_situations(move, more, ideal.inertance, one_clock, realistic=realistic)
 
     # size each effect as if alone, the first by the numbers it would have alone
     generators = [draw, *more.spawn(len(also))]
@@ -196,17 +205,17 @@ def hide_effect(
         seed=seed, effect=name, law=law, device=device, also=tuple(also), stated=whole.stated,
         names={} if name == "none" else names,
         parameters=_values(device, channel, names),
-        ideal=ideal,
+        ideal=ideal, realistic=realistic,
     )  # fmt: skip
 
 
 def draw_situations(
-    move: Generator, more: Generator, inertance: float, one_clock: bool
+    move: Generator, more: Generator, inertance: float, one_clock: bool, *, realistic: bool = False
 ) -> list[Situation]:
     """The motions of a case, each with its start on the clock and a phase."""
     runs: list[Situation] = []
     start = 0.0
-    for drive in draw_drives(move, inertance):
+    for drive in (draw_bench_drives if realistic else draw_drives)(move, inertance):
         runs.append(Situation(drive, start, float(more.uniform(0.0, 2.0 * np.pi))))
         if one_clock:
             start = round(start + float(drive.time[-1]) + more.uniform(1.0, 10.0), 1)
@@ -220,6 +229,8 @@ def record_case(
     shake: Generator,
     noise: NoiseLevels | None,
     ideal: ReferenceDevice,
+    *,
+    realistic: bool = False,
     **known: Any,
 ) -> HiddenCase:
     """What the sensors saw of a device's answers; `known` are the case's other fields."""
@@ -227,18 +238,30 @@ def record_case(
     forces = np.concatenate([truth.force for truth in clean])
     levels = noise if noise is not None else NoiseLevels()
     sigma = float(np.hypot(levels.force, levels.force_share * rms(forces)))
+    chain = draw_chain(shake, [run.drive for run in runs], forces) if realistic else None
     seen = []
     for number, (run, truth, final) in enumerate(zip(runs, truths, clean, strict=True)):
-        drive, size = run.drive, run.drive.time.size
-        displacement = drive.displacement + levels.displacement * shake.standard_normal(size)
-        force = channel.clip(truth.force + sigma * shake.standard_normal(size))
-        clock = drive.time + run.start
+        drive, clock, felt = run.drive, run.drive.time + run.start, truth.force
+        displacement = drive.displacement
+        if chain is not None:
+            felt, displacement = chain.force(truth), chain.displacement(drive)
+            felt, displacement = (
+                chain.sampled(each, drive.time, shake) for each in (felt, displacement)
+            )
+            clock = clock[:: chain.every]
+            final = Response(**{n: q[:: chain.every] for n, q in vars(final).items()})
+        size = displacement.size
+        displacement = displacement + levels.displacement * shake.standard_normal(size)
+        force = channel.clip(felt + sigma * shake.standard_normal(size))
+        if chain is not None:
+            displacement = quantised(displacement, chain.displacement_step)
+            force = quantised(force, chain.force_step)
         name = f"run_{number + 1}"
         seen.append(
             HiddenRun(
                 name=name,
                 kind=drive.kind,
-                sample_rate=drive.rate,
+                sample_rate=drive.rate if chain is None else chain.rate,
                 time=clock,
                 displacement=displacement,
                 force=force,
@@ -251,6 +274,7 @@ def record_case(
         runs=tuple(seen),
         delay=channel.delay,
         channel=channel,
+        chain=chain,
         **known,
     )
 

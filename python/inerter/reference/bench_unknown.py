@@ -38,7 +38,11 @@ Force = Callable[[Generator, list[Response]], tuple[list[Array], Shape]]
 
 
 def hide_unknown(
-    seed: int, kind: str | None = None, noise: NoiseLevels | None = None
+    seed: int,
+    kind: str | None = None,
+    noise: NoiseLevels | None = None,
+    *,
+    realistic: bool = False,
 ) -> HiddenCase:
     """Draw an ideal inerter with an unnamed effect, and its records.
 
@@ -49,6 +53,8 @@ def hide_unknown(
     kind
         One of `UNKNOWN`; drawn if not given.
     noise
+        As for `hide_effect`.
+    realistic
         As for `hide_effect`.
 
     The case's effect is "unknown"; its parameters are the effect's size [N, or per its unit] and
@@ -66,7 +72,7 @@ def hide_unknown(
     if kind not in UNKNOWN:
         raise ValueError(f"kind: '{kind}' is not one of {', '.join(UNKNOWN)}")
     ideal = ReferenceDevice(inertance=rounded(np.exp(draw.uniform(np.log(20.0), np.log(400.0)))))
-    runs = draw_situations(move, more, ideal.inertance, one_clock=False)
+    runs = draw_situations(move, more, ideal.inertance, one_clock=False, realistic=realistic)
     bare = answers(ideal, Channel(), runs)
     share = draw.uniform(0.05, 0.30)
     if kind == "dead_band":
@@ -77,7 +83,7 @@ def hide_unknown(
     return record_case(
         runs, truths, Channel(), shake, noise,
         seed=seed, effect="unknown", law=None, device=ideal, kind=kind, parameters=parameters,
-        ideal=ideal,
+        ideal=ideal, realistic=realistic,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from inerter.core import Device
 from inerter.diagnose.result import TablePoints
 from inerter.motion_units import TRANSLATION, Kind, force_word, unit
 from inerter.pictures.palette import LIGHT
@@ -70,6 +71,34 @@ def _against_frequency(
             line(plot, f[order], value(force)[order], color, name)
         points(plot, f, value(force), color, name, 5)
     return plot
+
+
+# lines of a map that a picture shows
+MAP_LINES = 5
+SAMPLES = 121
+
+
+def carried_plots(parameters: dict[str, Any], motion: Kind = TRANSLATION) -> dict[str, go.Figure]:
+    """The map that a device carries: force over velocity at some places, and the other way.
+
+    Lines from the first to the last place or velocity, ever darker.
+    """
+    device = Device(**parameters)
+    lower, upper = device.force_map_lower, device.force_map_upper
+    fastest = device.force_map_speed
+    metre, force = unit(motion, "m"), f"{force_word(motion)} [{shown(unit(motion, 'N'))}]"
+    names = (f"displacement [{metre}]", f"velocity [{metre}/s]")
+    reach = (np.linspace(lower, upper, SAMPLES), np.linspace(-fastest, fastest, SAMPLES))
+    plots = {}
+    for place, over in (("carried-velocity", 1), ("carried-displacement", 0)):
+        plot = figure(names[over], force)
+        for k, each in enumerate(reach[1 - over][:: (SAMPLES - 1) // (MAP_LINES - 1)]):
+            both = (reach[0], each) if over == 0 else (each, reach[1])
+            values = device.evaluate(*both, 0.0, 0.0)["total"]
+            said = f"{names[1 - over].split(' ')[0]} {each:.3g} {names[1 - over].split(' ')[1]}"
+            line(plot, reach[over], values, "after", said, 1.2 + 0.3 * k, opacity=0.35 + 0.16 * k)
+        plots[place] = plot
+    return plots
 
 
 def cutoff_plot(method: dict[str, Any], motion: Kind = TRANSLATION) -> go.Figure | None:

@@ -10,6 +10,7 @@ from inerter.device_file import device_text
 from inerter.diagnose.result import Diagnosis
 from inerter.diagnose.vehicle.outcome import SystemDiagnosis
 from inerter.folder import file_names, write_files
+from inerter.motion_units import unit
 from inerter.report.page import render_report
 from inerter.rig import device_mjcf
 
@@ -25,12 +26,12 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
     if isinstance(diagnosis, SystemDiagnosis):
         _write_system(diagnosis, folder)
         return
-    device = Device(**diagnosis.extended.device)
+    device = Device(**diagnosis.written)
     names = ", ".join(record.name for record in diagnosis.records)
     comments = {
         name: f"{value.unit} (standard error {value.stderr:.2g})".removeprefix("1 ")
         for name, value in diagnosis.parameters.items()
-    }
+    } | _carried_comment(diagnosis)
     rest_length = {"rest_length": diagnosis.rest_length} if diagnosis.rest_length else {}
     toml = device_text(
         device.replace(**rest_length),
@@ -50,6 +51,18 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
             "report.html": render_report(diagnosis, toml, model),
         },
     )
+
+
+def _carried_comment(diagnosis: Diagnosis) -> dict[str, str]:
+    """What a file says before the map that a device carries, if it does."""
+    kept = diagnosis.unexplained.carried
+    if kept is None:
+        return {}
+    figures = f"{kept['rmse_before']:.3g} -> {kept['rmse_after']:.3g} {unit(diagnosis.motion, 'N')}"
+    return {
+        "force_map": f"fitted, no cause: {figures} rms on held-out data; the lines force_map... "
+        "may be left out"
+    }
 
 
 def _write_system(diagnosis: SystemDiagnosis, folder: Path) -> None:

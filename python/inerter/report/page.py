@@ -28,7 +28,7 @@ from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import to_script
 from inerter.printable import upright
 from inerter.report import text
-from inerter.report.other_plots import cutoff_plot, table_plots
+from inerter.report.other_plots import carried_plots, cutoff_plot, table_plots
 from inerter.report.run_plots import LOOP_CYCLES, run_plots
 from inerter.report.runs import part_held_out, pictured, rmse, role
 from inerter.report.subject import subject
@@ -61,6 +61,9 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
     runs = pictured(diagnosis.curves)
     table = _table(diagnosis)
     single = table_plots(table) if table else {}
+    kept = diagnosis.unexplained.carried
+    if kept is not None:
+        single |= carried_plots(kept["parameters"], diagnosis.motion)
     cutoff = cutoff_plot(diagnosis.method, diagnosis.motion)
     if cutoff is not None:
         single["cutoff"] = cutoff
@@ -86,6 +89,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         records=[_record(record, diagnosis) for record in diagnosis.records],
         warned=any(record.warnings for record in diagnosis.records),
         remains=_remains(diagnosis),
+        carried=kept,
         proposed=_proposed(diagnosis),
         engines=_engines(diagnosis),
         method=_method(diagnosis.method),

@@ -91,11 +91,21 @@ def ceiling(
     rest = [error - values for error, values in zip(errors, predicted, strict=True)]
     after = block_squares(rest, counted)
     takes = float(np.sqrt(max(before.sum() - after.sum(), 0.0) / total))
-    force = np.concatenate([run.force[mask] for run, mask in zip(runs, held, strict=True)])
-    least = max(NOISE_PART * noise, FORCE_PART * float(np.sqrt(np.mean(force**2))))
-    if takes < float(np.hypot(least, motion)) or advantage(before, after) < SURE:
+    if not matters(runs, held, takes, noise, motion) or advantage(before, after) < SURE:
         return Ceiling(own)
     return Ceiling(float(np.sqrt(after.sum() / total)), takes, looks_at)
+
+
+def matters(
+    runs: Sequence[BenchRun], held: Sequence[Mask], takes: float, noise: float, motion: float
+) -> bool:
+    """Whether an error that is taken away, rms [N], is of a size that smoothing does not leave.
+
+    held: the samples that it is of; noise: of force and motion, rms [N]; motion: of that alone.
+    """
+    force = np.concatenate([run.force[mask] for run, mask in zip(runs, held, strict=True)])
+    least = max(NOISE_PART * noise, FORCE_PART * float(np.sqrt(np.mean(force**2))))
+    return takes >= float(np.hypot(least, motion))
 
 
 def predictor(
@@ -105,10 +115,7 @@ def predictor(
 
     It learns from fitted samples alone, and predicts nothing larger than what it learnt from.
     """
-    fit = [
-        mask & run.inner & np.isfinite(error)
-        for mask, run, error in zip(split.fit, runs, errors, strict=True)
-    ]
+    fit = fitted_masks(runs, split, errors)
     nothing: tuple[list[Array], tuple[str, ...]] = ([np.zeros(e.size) for e in errors], ())
     learnt = sum(int(mask.sum()) for mask in fit)
     if learnt < FEWEST_SAMPLES:
@@ -119,15 +126,15 @@ def predictor(
     matrix = [np.column_stack([columns[name] for name in names]) for columns in made]
     low, high, scale = _bounds(matrix, fit)
     matrix = [np.clip(m, low, high) / scale for m in matrix]
-    parts = _parts(split, fit, every=-(-learnt // MOST_SAMPLES))
-    sums = _Sums([_products(matrix, errors, part) for part in parts])
+    parts = parts_of(split, fit)
+    sums = Sums([_products(matrix, errors, part) for part in parts])
 
     best, chosen = sums.square, None
     for group in GROUPS:
         used: Index = np.flatnonzero(np.isin(owner, [names.index(name) for name in group]))
         last = np.inf
         for penalty in PENALTIES:
-            error = sums.left_out(used, penalty)
+            error = sums.left_out(used, penalty * np.eye(used.size))
             if error < best:
                 best, chosen = error, (used, penalty, group)
             # ever less shrinking only gets worse from here on
@@ -137,14 +144,25 @@ def predictor(
     if chosen is None:
         return nothing
     used, penalty, group = chosen
-    weights = sums.weights(used, penalty)
+    weights = sums.weights(used, penalty * np.eye(used.size))
     sizes = [np.max(np.abs(e[m]), initial=0.0) for e, m in zip(errors, fit, strict=True)]
     limit = float(max(sizes))
     return [np.clip(m[:, used] @ weights, -limit, limit) for m in matrix], group
 
 
-class _Sums:
-    """Products of columns and errors over the parts of what is learnt from."""
+def fitted_masks(runs: Sequence[BenchRun], split: Split, errors: Sequence[Array]) -> list[Mask]:
+    """What of the errors of every run can be learnt from."""
+    return [
+        mask & run.inner & np.isfinite(error)
+        for mask, run, error in zip(split.fit, runs, errors, strict=True)
+    ]
+
+
+class Sums:
+    """Products of columns and errors over the parts of what is learnt from.
+
+    A `penalty` is a square form of the coefficients, per mean square of a column.
+    """
 
     def __init__(self, parts: Sequence[tuple[Array, Array, float]]) -> None:
         self.parts = parts
@@ -152,11 +170,11 @@ class _Sums:
         self.right = np.sum([right for _, right, _ in parts], axis=0)
         self.square = float(sum(square for _, _, square in parts))
 
-    def weights(self, used: Index, penalty: float) -> Array:
+    def weights(self, used: Index, penalty: Array) -> Array:
         """Coefficients of the columns `used`, learnt from everything."""
         return _ridge(self.gram[np.ix_(used, used)], self.right[used], penalty)
 
-    def left_out(self, used: Index, penalty: float) -> float:
+    def left_out(self, used: Index, penalty: Array) -> float:
         """Sum of squared errors on each part, learnt from the others."""
         at, total = np.ix_(used, used), 0.0
         whole, whole_right = self.gram[at], self.right[used]
@@ -167,8 +185,9 @@ class _Sums:
         return total
 
 
-def _parts(split: Split, fit: Sequence[Mask], every: int) -> list[list[Mask]]:
+def parts_of(split: Split, fit: Sequence[Mask]) -> list[list[Mask]]:
     """Fitted samples of each fold, and of none, thinned."""
+    every = max(1, -(-sum(int(mask.sum()) for mask in fit) // MOST_SAMPLES))
     thinned = [mask & (np.arange(mask.size) % every == 0) for mask in fit]
     rest = [mask.copy() for mask in thinned]
     parts = []
@@ -194,10 +213,10 @@ def _products(
     return rows.T @ rows, rows.T @ y, float(y @ y)
 
 
-def _ridge(gram: Array, right: Array, penalty: float) -> Array:
+def _ridge(gram: Array, right: Array, penalty: Array) -> Array:
     """Coefficients that shrink by `penalty` per mean square of a column."""
     unit = np.trace(gram) / max(len(gram), 1)
     if not unit > 0:
         return np.zeros(len(gram))
-    shrunk = gram + penalty * unit * np.eye(len(gram))
+    shrunk = gram + unit * penalty
     return cho_solve(cho_factor(shrunk, check_finite=False), right, check_finite=False)

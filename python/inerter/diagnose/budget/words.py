@@ -12,7 +12,7 @@ LEAST = 0.005
 
 @dataclass(frozen=True, kw_only=True)
 class Budget:
-    """The held-out error of the baseline [N] and its three parts, whose sum it is.
+    """The held-out error of the baseline [N] and its parts, whose sum it is.
 
     Attributes
     ----------
@@ -20,6 +20,8 @@ class Budget:
         Rms error before.
     named : float
         What the findings take away.
+    carried : float
+        What the extended device carries without a name takes away besides.
     predictable : float
         What a flexible predictor takes away besides: predictable, and without a name.
     rest : float
@@ -32,6 +34,7 @@ class Budget:
 
     baseline: float
     named: float
+    carried: float = 0.0
     predictable: float
     rest: float
     repeatability: float | None = None
@@ -39,8 +42,10 @@ class Budget:
 
     def parts(self) -> list[tuple[str, str, float]]:
         """Key, words and size [N] of each part."""
+        kept = [("carried", "carried, fitted without a cause", self.carried)]
         return [
             ("named", "named", self.named),
+            *(kept if self.carried else []),
             ("predictable", "predictable, without a name", self.predictable),
             ("rest", "not predictable by anything tried", self.rest),
         ]
@@ -53,6 +58,11 @@ class Budget:
         named = "nothing is named"
         if self.named > LEAST * whole:
             named = f"{self.named:.3g} {newton} is named"
+        if self.carried:
+            named += (
+                f", {self.carried:.3g} {newton} is carried in the extended device as a force over "
+                "displacement and velocity, fitted and without a cause"
+            )
         more = (
             f"{self.predictable:.3g} {newton} more could be predicted from the motion but has no "
             "name"
@@ -74,13 +84,19 @@ def budget_of(
     ceiling: float,
     repeatability: float | None,
     motion: Kind = TRANSLATION,
+    carried: float | None = None,
 ) -> Budget:
-    """The budget of a held-out error [N] of the baseline, the extended model and the predictor."""
-    least = min(ceiling, extended)
+    """The budget of a held-out error [N] of the baseline, the extended model and the predictor.
+
+    carried: that of the extended device with what it carries; None where it carries nothing.
+    """
+    kept = extended if carried is None else carried
+    least = min(ceiling, kept)
     return Budget(
         baseline=baseline,
         named=baseline - extended,
-        predictable=extended - least,
+        carried=extended - kept,
+        predictable=kept - least,
         rest=least,
         repeatability=repeatability,
         motion=motion,

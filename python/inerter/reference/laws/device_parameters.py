@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from .force_map import MOST_COLUMNS, MOST_ROWS, ForceMap
 from .parameters import UNSET, FrictionParameters, parameter
+from .stroke import flat
 
 GAS_LAWS = ("polytropic", "expanded")
 FRICTION_SIDES = ("terminals", "flywheel")
@@ -105,6 +109,20 @@ class DeviceParameters(FrictionParameters):
 
     coil_diameter: float = parameter(0.0, "m", "diameter of the channel's coil D_c", at_least=0.0)
 
+    force_map: Any = ()
+    force_map_lower: float = parameter(UNSET, "m", "place of the first row of force_map")
+    force_map_upper: float = parameter(UNSET, "m", "place of the last row of force_map")
+    force_map_speed: float = parameter(UNSET, "m/s", "velocity of its last column", above=0.0)
+    force_map_scale: float = parameter(
+        UNSET, "m/s", "columns evenly spaced in asinh(v / scale)", above=0.0
+    )
+    force_map_columns: float = parameter(
+        0.0, "-", "number of its columns", at_least=0.0, at_most=16.0
+    )
+    force_map_passive: float = parameter(
+        0.0, "-", "1: without what would give energy", at_least=0.0, at_most=1.0
+    )
+
     control: str = "force"
     control_lower: float = parameter(UNSET, "-", "smallest value that the control sets")
     control_upper: float = parameter(UNSET, "-", "largest value that the control sets")
@@ -124,6 +142,21 @@ class DeviceParameters(FrictionParameters):
         forward, backward = (self.load_friction if np.isnan(mu) else mu for mu in given)
         return forward, backward
 
+    @cached_property
+    def surface(self) -> ForceMap | None:
+        """The force over displacement and velocity; None without."""
+        if not self.force_map:
+            return None
+        return ForceMap(
+            values=self.force_map,
+            lower=self.force_map_lower,
+            upper=self.force_map_upper,
+            speed=self.force_map_speed,
+            scale=self.force_map_scale,
+            columns=int(self.force_map_columns),
+            passive=self.force_map_passive == 1.0,
+        )
+
     @property
     def rubs_flywheel(self) -> bool:
         """Whether friction acts behind a series element."""
@@ -140,6 +173,41 @@ class DeviceParameters(FrictionParameters):
         self._check_stops()
         self._check_gas()
         self._check_along(self.friction, self.friction_asymmetry, self.viscous)
+        self._check_map()
+
+    def _check_map(self) -> None:
+        values = flat(self.force_map)
+        object.__setattr__(self, "force_map", values)
+        needed = ("force_map_lower", "force_map_upper", "force_map_speed")
+        given = [name for name in needed if not np.isnan(getattr(self, name))]
+        given += ["force_map_columns"] * (self.force_map_columns > 0.0)
+        if not values:
+            given += ["force_map_scale"] * (not np.isnan(self.force_map_scale))
+            given += ["force_map_passive"] * (self.force_map_passive > 0.0)
+            if given:
+                raise ValueError(
+                    f"{given[0]}: {getattr(self, given[0])} without force_map; give its values, or "
+                    f"drop {given[0]}"
+                )
+            return
+        if len(given) < 4 or not self.force_map_lower < self.force_map_upper:
+            raise ValueError(
+                f"force_map_lower: {self.force_map_lower} m, force_map_upper "
+                f"{self.force_map_upper} m, force_map_speed {self.force_map_speed} m/s, "
+                f"force_map_columns {self.force_map_columns}; give all of them, the first below "
+                "the second"
+            )
+        rows = len(values) / self.force_map_columns
+        whole = self.force_map_columns % 1.0 == 0.0 and rows % 1.0 == 0.0
+        if not (whole and self.force_map_columns >= 2.0 and 2.0 <= rows <= MOST_ROWS):
+            raise ValueError(
+                f"force_map_columns: {self.force_map_columns} columns of {len(values)} numbers; "
+                f"give 2 to {MOST_COLUMNS} columns and 2 to {MOST_ROWS} rows"
+            )
+        if not np.isfinite(values).all():
+            raise ValueError("force_map: a number is not finite; give finite ones")
+        if self.force_map_passive not in (0.0, 1.0):
+            raise ValueError(f"force_map_passive: {self.force_map_passive}; give 0 or 1")
 
     def _check_control(self) -> None:
         if self.control not in CONTROLS:
