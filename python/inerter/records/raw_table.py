@@ -95,8 +95,8 @@ def to_numbers(series: pl.Series) -> tuple[Array, NDArray[np.intp]]:
     """Values of a series, NaN where missing or infinite, and the rows with no number."""
     values, bad = _to_float(series), np.empty(0, dtype=np.intp)
     if series.dtype == pl.String and values.null_count():
-        # second try: blanks around the number, then the words for "missing"
-        text = series.str.strip_chars()
+        # second try: blanks around the number or behind its sign, then the words for "missing"
+        text = series.str.strip_chars().str.replace(r"^([+-]) +", "$1")
         values = text.cast(pl.Float64, strict=False)
         spared = text.str.to_lowercase().is_in(MISSING_WORDS) | text.is_null()
         bad = np.flatnonzero((values.is_null() & ~spared).to_numpy())

@@ -8,6 +8,7 @@ from pathlib import Path
 from inerter.input_file import refuse_special
 
 from .bounds import BYTES, Wanted, everything, refuse_more
+from .foreign import foreign
 from .isolated import read_isolated
 from .mat_table import read_mat
 from .one_clock import on_one_clock
@@ -15,6 +16,7 @@ from .parquet_table import read_parquet
 from .raw_table import RawTable, listed
 from .record import RecordError
 from .stated import Stated
+from .text_layout import encoding_of
 from .text_table import read_text
 
 
@@ -50,7 +52,7 @@ READERS: Mapping[str, Callable[[Path, Wanted, Stated], RawTable]] = {
     "MDF4": _isolated("mdf"),
     "HDF5": _isolated("hdf5"),
 }
-_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn")
+_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn", ".log")
 _KINDS: Mapping[str, str] = {
     **dict.fromkeys(_TEXT, "text"),
     ".parquet": "parquet",
@@ -63,7 +65,9 @@ _KINDS: Mapping[str, str] = {
 }  # fmt: skip
 EXTENSIONS = tuple(_KINDS)
 # in a folder that is named as a whole, texts of other kinds stand beside records
-OF_FOLDERS = tuple(suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn"))
+OF_FOLDERS = tuple(
+    suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn", ".log")
+)
 
 # how a file begins whose format shows itself
 _BEGINNINGS: Mapping[bytes, str] = {
@@ -89,7 +93,15 @@ def read_table(path: Path, wanted: Wanted = everything, stated: Stated | None = 
     try:
         size = refuse_special(path)
         refuse_more(path, BYTES, size)
-        found = _begins(path)
+        start = _start(path)
+        found = _begins(start)
+        if (kind is None or found == "Excel" or kind == "text") and (
+            told_foreign := foreign(path, start)
+        ) is not None:
+            raise RecordError(told_foreign)
+        if kind == "Excel" and found is None and encoding_of(start) is not None and size:
+            # what some programs call a workbook is a text
+            found = "text"
         if found is not None and found != kind and not (kind == "MATLAB" and found == "HDF5"):
             told = f"{found} file named {path.suffix or 'without an extension'}"
             kind = found
@@ -118,12 +130,14 @@ def read_table(path: Path, wanted: Wanted = everything, stated: Stated | None = 
     return table.telling(told)
 
 
-def _begins(path: Path) -> str | None:
-    """The format that the first bytes of a file show."""
+def _start(path: Path) -> bytes:
     with path.open("rb") as file:
-        start = file.read(16)
+        return file.read(512)
+
+
+def _begins(start: bytes) -> str | None:
+    """The format that the first bytes of a file show."""
     for beginning, kind in _BEGINNINGS.items():
         if start.startswith(beginning):
-            # a zip is no workbook where it is named otherwise on purpose
             return kind
     return None

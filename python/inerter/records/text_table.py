@@ -20,9 +20,10 @@ import polars as pl
 
 from .bounds import Wanted, refuse_header, refuse_table
 from .clocks import clock_seconds, counted, without_day_breaks
+from .header import guess
 from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers
 from .record import Array, RecordError
-from .text_layout import Asked, Layout, encoding_of, find_layout
+from .text_layout import Asked, Layout, cells_of, encoding_of, find_layout
 from .units import split_header
 
 BLOCK = 1 << 24  # bytes that are read at a time
@@ -180,7 +181,7 @@ def _refuse_no_header(path: Path, layout: Layout) -> None:
         return
     comments = layout.comments
     hint = ""
-    if comments and len(comments[-1].split(layout.separator)) > 1:
+    if comments and any(guess(cell) for cell in cells_of(comments[-1], layout.separator)):
         hint = f" (the comment above, {quoted(comments[-1])}, may be it: remove its '#')"
     line = next((t for n, t in _data_lines_of(path, layout) if n >= layout.first), "")
     raise RecordError(
@@ -198,6 +199,7 @@ def _blocks(path: Path, layout: Layout) -> Iterator[_Block]:
     RecordError for anything but text.
     """
     number, rest = 1, b""
+    strip = re.compile(layout.strip.encode()) if layout.strip else None
     left = (layout.stop if layout.stop is not None else path.stat().st_size) - layout.mark
     decoder = None
     if layout.encoding != "utf-8":
@@ -224,6 +226,8 @@ def _blocks(path: Path, layout: Layout) -> Iterator[_Block]:
             rest = text[stop:] + b"\r" * cut
             text = text[:stop]
             _refuse_no_text(path, text, number)
+            if strip is not None:
+                text = strip.sub(b"", text)
             if b"\x00" in rest or len(rest) > LONGEST_LINE:
                 raise RecordError(_binary(path))
             if text or not ahead:
@@ -303,7 +307,7 @@ def _columns(
     """The wanted columns of a block as text by index, and the number of data lines."""
     width, separator = len(layout.header), layout.separator
     # what polars gets: no comments, no blank lines
-    body = block.text.rstrip(b" \t\n")
+    body = block.text.rstrip(b" \t\n" if separator != "\t" else b" \n")
     if b"#" in body:
         body = re.sub(rb"(?m)^[ \t]*#[^\n]*(\n|\Z)", b"", body).rstrip()
     blank = (b"\n\n", b"\n ", b"\n\t")
@@ -349,10 +353,13 @@ def _columns(
 
 
 def _data_lines(block: _Block) -> Iterator[tuple[int, str]]:
-    """Line number and text of every line that is neither blank nor a comment."""
+    """Line number and text of every line that is neither blank nor a comment.
+
+    Tabs at its ends stay: they may part cells that are empty.
+    """
     for number, line in enumerate(BytesIO(block.text), start=block.number):
-        text = line.strip()
-        if text and not text.startswith(b"#"):
+        text = line.strip(b" \r\n\f\v")
+        if text.strip() and not text.lstrip().startswith(b"#"):
             yield number, text.decode("utf-8")
 
 
@@ -367,8 +374,10 @@ def _data_lines_of(path: Path, layout: Layout) -> Iterator[tuple[int, str]]:
 
 def _cells(path: Path, number: int, line: str, separator: str) -> list[str]:
     """Cells of one line."""
-    if separator == " ":
+    if separator == " " and '"' not in line:
         return line.split()
+    if separator != "\t":
+        line = line.strip()
     try:
         return next(csv.reader([line], delimiter=separator, skipinitialspace=True))
     except csv.Error as error:
