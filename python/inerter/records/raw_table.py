@@ -34,6 +34,7 @@ class RawTable:
     header: column names as written; columns: by index, a series for each that was wanted; comments:
     the lines above the header; told: how it was read. Of a text file: separator; odd: by column,
     what is no number in it; lines: number and text of the header and of every data line, read anew.
+    decimated: of how many rows one was kept.
     """
 
     path: Path
@@ -44,6 +45,7 @@ class RawTable:
     separator: str = ","
     odd: Mapping[int, OddCell] = field(default_factory=dict)
     lines: Callable[[], Iterator[tuple[int, str]]] | None = None
+    decimated: int = 1
 
     def telling(self, text: str) -> RawTable:
         """The same table, of which something more is told first."""

@@ -264,7 +264,8 @@ def si_values(
             notes.append(_of_column(name, table.header[index].strip(), found, motion))
     counted = found.stated.get("time")
     if counted is not None and counted.interval is not None:
-        values["time"] = counted.interval * np.arange(table.rows, dtype=np.float64)
+        step = counted.interval * table.decimated
+        values["time"] = step * np.arange(table.rows, dtype=np.float64)
         notes.append(f"a sample every {counted.interval:g} s, as stated")
     text = ", ".join(note for note in notes if note)
     return values, [text] if text else [], motions

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping
 from pathlib import Path
+
+import polars as pl
 
 from inerter.input_file import refuse_special
 
 from .bounds import BYTES, Wanted, everything, refuse_more
+from .decimation import Decimator
+from .decimation import told as decimated
 from .foreign import foreign
 from .isolated import read_isolated
 from .mat_table import read_mat
@@ -15,7 +20,7 @@ from .one_clock import on_one_clock
 from .parquet_table import read_parquet
 from .raw_table import RawTable, listed
 from .record import RecordError
-from .stated import Stated
+from .stated import Stated, current
 from .text_layout import encoding_of
 from .text_table import read_text
 
@@ -25,12 +30,11 @@ def _isolated(kind: str) -> Callable[[Path, Wanted, Stated], RawTable]:
 
 
 def _text(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
-    return on_one_clock(read_text(path, wanted, stated.asked))
+    return on_one_clock(read_text(path, wanted, stated.asked, current().progress))
 
 
 def _parquet(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
-    del stated
-    return read_parquet(path, wanted)
+    return read_parquet(path, wanted, stated.asked.decimate)
 
 
 def _mat(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
@@ -127,7 +131,20 @@ def read_table(path: Path, wanted: Wanted = everything, stated: Stated | None = 
             f"{path}: there is a header ({listed(table.header)}) but no data below it; "
             "add rows or leave the file out"
         )
+    if table.decimated == 1 and stated is not None and stated.asked.decimate > 1:
+        table = _decimated(table, stated.asked.decimate)
     return table.telling(told)
+
+
+def _decimated(table: RawTable, by: int) -> RawTable:
+    """A table that was read as a whole, of which every n-th row is kept behind a low-pass."""
+    columns: dict[int, pl.Series] = {}
+    for index, series in table.columns.items():
+        values, bad = table.numbers(index)
+        if not len(bad):
+            columns[index] = pl.Series(series.name, Decimator(by).add(values))
+    told = ", ".join(text for text in (table.told, decimated(by)) if text)
+    return dataclasses.replace(table, columns=columns, told=told, lines=None, decimated=by)
 
 
 def _start(path: Path) -> bytes:

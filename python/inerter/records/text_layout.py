@@ -14,6 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import polars as pl
+
 from .header import guess
 from .header_rows import Heading, heading, is_clock
 from .record import RecordError
@@ -102,10 +104,14 @@ class Layout:
 
 @dataclass(frozen=True)
 class Asked:
-    """What the user says of a text: its separator and decimal mark, None where he does not."""
+    """What the user says of a text: its separator and decimal mark, None where he does not.
+
+    decimate: of how many rows one is kept, behind a low-pass.
+    """
 
     separator: str | None = None
     decimal: str | None = None
+    decimate: int = 1
 
 
 def cells_of(line: str, separator: str) -> list[str]:
@@ -116,6 +122,17 @@ def cells_of(line: str, separator: str) -> list[str]:
         return [cell.strip() for cell in line.split(separator)]
     reader = csv.reader([line], delimiter=separator, skipinitialspace=True)
     return [cell.strip() for cell in next(reader, [])]
+
+
+def pointed(column: pl.Series, layout: Layout) -> pl.Series:
+    """Texts with a decimal point, without groups of digits."""
+    if column.dtype != pl.String:
+        return column
+    if layout.grouped:
+        column = column.str.replace_all("." if layout.decimal == "," else ",", "", literal=True)
+    if layout.decimal == ",":
+        column = column.str.replace_all(",", ".", literal=True)
+    return column
 
 
 def encoding_of(head: bytes) -> tuple[str, int] | None:

@@ -9,7 +9,7 @@ import codecs
 import csv
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from io import BytesIO
@@ -20,10 +20,12 @@ import polars as pl
 
 from .bounds import Wanted, refuse_header, refuse_table
 from .clocks import clock_seconds, counted, without_day_breaks
+from .decimation import Decimator
+from .decimation import told as decimated
 from .header import guess
 from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers
 from .record import Array, RecordError
-from .text_layout import Asked, Layout, cells_of, encoding_of, find_layout
+from .text_layout import Asked, Layout, cells_of, encoding_of, find_layout, pointed
 from .units import split_header
 
 BLOCK = 1 << 24  # bytes that are read at a time
@@ -40,14 +42,22 @@ class _Block:
     last: bool
 
 
-def read_text(path: Path, wanted: Wanted, asked: Asked | None = None) -> RawTable:
+def read_text(
+    path: Path,
+    wanted: Wanted,
+    asked: Asked | None = None,
+    progress: Callable[[Path, float], None] = lambda path, share: None,
+) -> RawTable:
     """The raw table of a text file; RecordError when it cannot be read or has too much."""
     layout = find_layout(path, asked)
     if layout is not None:
         _refuse_no_header(path, layout)
-        table = _Growing(path, layout, wanted)
+        table = _Growing(path, layout, wanted, asked.decimate if asked else 1)
+        size, read = path.stat().st_size, 0
         for block in _blocks(path, layout):
             table.add(_from_line(block, layout.first))
+            read += len(block.text)
+            progress(path, read / max(size, read))
         return table.done()
     return _read_plain(path, wanted)
 
@@ -98,7 +108,7 @@ def _from_line(block: _Block, first: int) -> _Block:
 class _Growing:
     """The wanted columns of a table whose rows come block by block."""
 
-    def __init__(self, path: Path, layout: Layout, wanted: Wanted) -> None:
+    def __init__(self, path: Path, layout: Layout, wanted: Wanted, by: int = 1) -> None:
         header = layout.header
         refuse_header(path, header)
         self.path, self.header, self.rows, self.layout = path, header, 0, layout
@@ -109,6 +119,10 @@ class _Growing:
         self.texts: dict[int, list[pl.Series]] = {index: [] for index in self.as_text}
         self.odd: dict[int, OddCell] = {}
         self.clocks: set[int] = set()
+        self.by = by
+        if by > 1 and self.as_text:
+            raise RecordError(f"{path}: a file with a column 'run' is not decimated; split it")
+        self.decimators = {index: Decimator(by) for index in self.wanted}
 
     def add(self, block: _Block) -> None:
         """Take in the data lines of a block."""
@@ -123,7 +137,7 @@ class _Growing:
             if len(bad) and (seconds := clock_seconds(column)) is not None:
                 values, bad = seconds, bad[:0]
                 self.clocks.add(index)
-            self.numbers[index].append(values)
+            self.numbers[index].append(self.decimators[index].add(values))
             if len(bad) and index not in self.odd:
                 cells = _cells_of_row(self.path, block, int(bad[0]), self.layout.separator)
                 self.odd[index] = OddCell(self.rows + int(bad[0]), cells)
@@ -131,10 +145,10 @@ class _Growing:
 
     def _refuse_long(self, block: _Block, rows: int) -> None:
         """RecordError where there is too much, or a first block tells that there will be."""
-        refuse_table(self.path, self.rows + rows, len(self.wanted))
+        refuse_table(self.path, (self.rows + rows) / self.by, len(self.wanted))
         if not self.rows:
             whole = rows * self.path.stat().st_size / len(block.text)
-            refuse_table(self.path, whole, len(self.wanted), slack=1.5)
+            refuse_table(self.path, whole / self.by, len(self.wanted), slack=1.5)
 
     def done(self) -> RawTable:
         """The table of all blocks; gives its own rows away."""
@@ -149,30 +163,26 @@ class _Growing:
             columns[index] = pl.Series(
                 name, without_day_breaks(values) if index in self.clocks else values
             )
-        header = self.header
-        if self.layout.interval is not None and self.rows:
-            header, columns = counted(header, columns, self.rows, self.layout)
+        header, layout = self.header, self.layout
+        rows = len(next(iter(columns.values()), ())) if self.by > 1 else self.rows
+        if layout.interval is not None and rows:
+            step = layout.interval * self.by
+            header, columns = counted(header, columns, rows, replace(layout, interval=step))
+        elif self.by > 1 and self.wanted and not rows:
+            raise RecordError(
+                f"{self.path}: {self.rows} rows are too few for --decimate {self.by}; take less"
+            )
         return RawTable(
             path=self.path,
             header=header,
             columns=columns,
             comments=self.layout.comments,
-            told=self.layout.told(),
+            told=", ".join(t for t in (layout.told(), decimated(self.by)) if t),
             separator=self.layout.separator,
             odd=self.odd,
-            lines=partial(_data_lines_of, self.path, self.layout),
+            lines=partial(_data_lines_of, self.path, layout) if self.by == 1 else None,
+            decimated=self.by,
         )
-
-
-def pointed(column: pl.Series, layout: Layout) -> pl.Series:
-    """Texts with a decimal point, without groups of digits."""
-    if column.dtype != pl.String:
-        return column
-    if layout.grouped:
-        column = column.str.replace_all("." if layout.decimal == "," else ",", "", literal=True)
-    if layout.decimal == ",":
-        column = column.str.replace_all(",", ".", literal=True)
-    return column
 
 
 def _refuse_no_header(path: Path, layout: Layout) -> None:
