@@ -65,6 +65,22 @@ def test_two_files_of_a_recorder_with_a_channel_each_are_joined(tmp_path: Path) 
     assert "the same times in both files" in record.reading
 
 
+def test_a_channel_of_another_length_without_a_clock_is_refused(tmp_path: Path) -> None:
+    """Found by the fuzz: a group of a TDMS file that had lost its time."""
+    from nptdms import ChannelObject, TdmsWriter
+
+    path = tmp_path / "run.tdms"
+    with TdmsWriter(str(path)) as writer:
+        writer.write_segment(
+            [
+                ChannelObject("a", "Time [s]", 1e-3 * np.arange(400)),
+                ChannelObject("a", "Force [N]", np.arange(400.0)),
+                ChannelObject("b", "Position [mm]", np.arange(200.0)),
+            ]
+        )
+    assert "'Position [mm]' has not as many values as the others" in refusal(path)
+
+
 def test_a_set_point_is_not_what_was_measured(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", "t;Sollweg [mm];Istweg [mm];Kraft [N]",
                    [f"{0.001 * k:.3f};9;{k % 7}.5;{k % 5}.25" for k in range(60)])  # fmt: skip

@@ -8,6 +8,8 @@ even clock stays exact. Half a filter is lost at each end.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.signal import firwin, upfirdn
 
@@ -25,11 +27,9 @@ class Decimator:
     def __init__(self, by: int) -> None:
         self.by = by
         self.half = _SIDE * by
-        self.taps = (
-            firwin(2 * self.half + 1, _CUT_OFF / by, window=("kaiser", _BETA))
-            if by > 1
-            else np.ones(1)
-        )
+        window: Any = ("kaiser", _BETA)
+        taps = 2 * self.half + 1
+        self.taps = firwin(taps, _CUT_OFF / by, window=window) if by > 1 else np.ones(1)
         self.rest: Array = np.empty(0)
         self.origin: float | None = None
 

@@ -298,6 +298,11 @@ def _further(table: RawTable, found: Columns, left: dict[str, Array]) -> dict[st
 
 def numbers_of(table: RawTable, index: int) -> Array:
     """Values of a column as written; RecordError for the first cell that is no number."""
+    if index not in table.columns:
+        raise RecordError(
+            f"{table.path}: the channel {table.header[index].strip()!r} has not as many values as "
+            "the others, and no clock that would tell when each was; save it with its time"
+        )
     values, bad = table.numbers(index)
     if len(bad):
         row = int(bad[0])
