@@ -81,6 +81,17 @@ def test_a_channel_of_another_length_without_a_clock_is_refused(tmp_path: Path) 
     assert "'Position [mm]' has not as many values as the others" in refusal(path)
 
 
+def test_a_unit_that_is_needed_is_the_one_that_fits(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", "t;servo speed;F [N]", ROW)
+    stated = "velocity=20 mm/rev * servo speed"
+    assert "such as 'servo speed [rpm]'" in refusal(path, stated)
+    with reading([f"{stated} [rpm]"]):
+        (record,) = read_records(path, "bench")
+    assert "velocity = 20 mm/rev * servo speed [rpm]" in record.reading
+    # integrated: 1.5 turns a minute for a thousandth of a second
+    assert np.ptp(record.displacement) < 60 * 1e-3 * 6.5 * 0.02 / 60
+
+
 def test_a_set_point_is_not_what_was_measured(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", "t;Sollweg [mm];Istweg [mm];Kraft [N]",
                    [f"{0.001 * k:.3f};9;{k % 7}.5;{k % 5}.25" for k in range(60)])  # fmt: skip
