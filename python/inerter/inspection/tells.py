@@ -51,8 +51,6 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
     """
     inner = motion.inner
     sound = ~_spoilt(motion, warned)[inner]
-    if np.mean(sound) < LEAST_SHARE:
-        return []
     v = motion.velocity[inner]
     columns = {
         "inertance": (motion.acceleration[inner], "kg"),
@@ -61,6 +59,15 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
         "stiffness": (motion.displacement[inner], "N/m"),
     }
     names = list(columns)
+    if np.mean(sound) < LEAST_SHARE:
+        return [
+            Tell(
+                name=name, value=0.0, stderr=math.inf, unit=in_words(motion.motion, unit),
+                verdict="not told", reason="most of the force is clipped or spikes",
+                motion="a sensor of a wider range, or a weaker motion",
+            )
+            for name, (_, unit) in columns.items()
+        ]  # fmt: skip
     units = {name: in_words(motion.motion, unit) for name, (_, unit) in columns.items()}
     # one filter on both sides
     passed = np.column_stack(
@@ -101,8 +108,8 @@ def _spoilt(motion: Motion, warned: Collection[str]) -> NDArray[np.bool_]:
         for end in (np.quantile(sound, 0.999), np.quantile(sound, 0.001)):
             cut = flat & (np.abs(force - end) < 0.01 * size)
             bad |= cut | np.roll(cut, 1) | np.roll(cut, -1)
-    around = int(np.ceil(1.0 / (motion.cutoff * motion.spacing)))
-    return binary_dilation(bad, iterations=around) if bad.any() else bad
+    around = int(np.ceil(0.75 / (motion.cutoff * motion.spacing)))
+    return np.asarray(binary_dilation(bad, iterations=around) if bad.any() else bad, dtype=np.bool_)
 
 
 def _whole(motion: Motion, inner: NDArray[np.bool_], values: Array) -> Array:
