@@ -117,11 +117,16 @@ def _unwritten(error: OSError, folder: Path | None) -> str:
     return f"{error.filename or folder}: cannot be written ({error.strerror}); choose --out"
 
 
+def seconds_between_lines() -> int:
+    """How often progress is told in lines [s]; 0 for never."""
+    given = os.environ.get(EVERY_VARIABLE, "")
+    return int(given) if given.isascii() and given.isdigit() else EVERY
+
+
 @contextmanager
 def _lines(told: Callable[[], str]) -> Iterator[None]:
     """Where there is no terminal: a line on stderr every ten seconds."""
-    given = os.environ.get(EVERY_VARIABLE, "")
-    every = int(given) if given.isascii() and given.isdigit() else EVERY
+    every = seconds_between_lines()
     if every == 0:
         yield
         return

@@ -63,16 +63,16 @@ CASES = {
     "header and comment": (HEADER + "\n# end\n\n", ["no data below", HEADER.replace(",", ", ")]),
     "no header": ("\n".join(rows()), ["line 1", "no header", "time,displacement,force"]),
     "commented header": (
-        "\n".join(["# " + HEADER, *rows()]),
-        ["line 2", "no header", "remove its '#'", HEADER],
+        "\n".join(["# time,how far,pull", *rows()]),
+        ["line 2", "no header", "remove its '#'", "time,how far,pull"],
     ),
     "missing column": (
         "\n".join(["time,displacement,pull", *rows()]),
         ["no column 'force'", "found: time, displacement, pull", "needs the columns"],
     ),
     "misspelt column": (
-        "\n".join(["time,displacment[mm],force", *rows()]),
-        ["no column 'displacement'", "--column displacement='displacment[mm]'"],
+        "\n".join(["time,displacment[V],force", *rows()]),
+        ["no column 'displacement'", "--column displacement='200 m/V * displacment'"],
     ),
     "decimal commas": (
         "\n".join([HEADER, *(line.replace(".", ",") for line in rows())]),

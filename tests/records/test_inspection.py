@@ -10,7 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.inspection.channel import channel_facts
+from inerter.inspection.facts import facts_of
 from inerter.inspection.tells import Tell, words
+from inerter.records import Record, check_records
+from numpy.typing import NDArray
 
 
 @pytest.mark.parametrize("count", [2, 3, 5, 12, 33, 60, 250, 1000])
@@ -44,6 +47,39 @@ def test_rate_and_noise_are_told(tmp_path: Path) -> None:
     assert found["samples"] == 8000
     assert channels["force"]["noise"] == pytest.approx(0.5, rel=0.1)
     assert channels["displacement"]["unit"] == "m"
+
+
+@pytest.mark.parametrize("most", [np.inf, 430.0, 120.0])
+def test_what_a_clipped_force_tells_is_not_told_wrong(most: float) -> None:
+    """Clipped and with spikes: the errors cover as of an unspoilt record, or nothing is told."""
+    rng = np.random.default_rng(3)
+    t = np.asarray(1e-3 * np.arange(20_000), dtype=np.float64)
+
+    def motion(order: int) -> NDArray[np.float64]:
+        made = np.zeros(len(t))
+        for size, tone in ((0.02, 1.3), (0.004, 4.1)):
+            w = 2 * np.pi * tone
+            made += size * w**order * np.sin(w * t + order * np.pi / 2)
+        return made
+
+    x, v, a = (motion(order) for order in range(3))
+    force = np.clip(120 * a + 40 * v + 18 * np.sign(v) + rng.normal(0, 2, len(t)), -most, most)
+    if np.isfinite(most):
+        force[rng.integers(0, len(t), 6)] += 900
+    # in steps of 20 um, as of an encoder
+    steps = 2e-5 * np.round(x / 2e-5)
+    record = Record(name="run", time=t, displacement=steps, force=force)
+    (checked,) = check_records([record])
+    assert bool(checked.warnings) == np.isfinite(most)
+    found = {tell.name: tell for tell in facts_of(checked).tells}
+    assert len(found) == 4
+    if most == 120.0:
+        assert {tell.verdict for tell in found.values()} == {"not told"}
+        assert "clipped or spikes" in words(found["inertance"])
+        return
+    for name, true in (("inertance", 120.0), ("viscous friction", 40.0), ("dry friction", 18.0)):
+        tell = found[name]
+        assert abs(tell.value - true) < max(3 * tell.stderr, 0.01 * true), tell
 
 
 @pytest.mark.parametrize(

@@ -82,6 +82,7 @@ def facts_of(record: AnyRecord) -> Facts:
     channels = tuple(channel_facts(n, unit.get(n, ""), v, spacing) for n, v in even.items())
     steps = np.diff(part.time)
     low, high = np.quantile(steps, (0.01, 0.99))
+    codes = {warning.code for warning in record.warnings}
     smoothed = _smoothed(part, channels) if isinstance(part, Record) else None
     motion = motion_facts(smoothed) if smoothed is not None else None
     return Facts(
@@ -94,7 +95,9 @@ def facts_of(record: AnyRecord) -> Facts:
         channels=channels,
         smoothed=smoothed,
         motion=motion,
-        tells=tuple(tells(smoothed, motion)) if smoothed is not None and motion is not None else (),
+        tells=tuple(tells(smoothed, motion, codes))
+        if smoothed is not None and motion is not None
+        else (),
         looked_at=part.samples,
     )
 

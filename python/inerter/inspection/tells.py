@@ -8,10 +8,12 @@ says what it cannot be told from.
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation, median_filter
 
 from inerter.inspection.motion import MotionFacts
 from inerter.motion_units import words as in_words
@@ -21,6 +23,7 @@ Array = NDArray[np.float64]
 
 OWN = 0.1  # least share of a column that the others do not explain
 SURE = 0.1  # of a standard error in its value
+LEAST_SHARE = 0.2  # of the samples that have to be neither clipped nor spikes
 TIMES = 3.0  # standard errors that are seen
 
 
@@ -41,9 +44,13 @@ class Tell:
     motion: str = ""
 
 
-def tells(motion: Motion, facts: MotionFacts) -> list[Tell]:
-    """What a record tells of inertance, friction and stiffness."""
+def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> list[Tell]:
+    """What a record tells of inertance, friction and stiffness.
+
+    warned: codes of its warnings; what a clipped force or one with spikes says is left out.
+    """
     inner = motion.inner
+    sound = ~_spoilt(motion, warned)[inner]
     v = motion.velocity[inner]
     columns = {
         "inertance": (motion.acceleration[inner], "kg"),
@@ -52,13 +59,23 @@ def tells(motion: Motion, facts: MotionFacts) -> list[Tell]:
         "stiffness": (motion.displacement[inner], "N/m"),
     }
     names = list(columns)
+    if np.mean(sound) < LEAST_SHARE:
+        return [
+            Tell(
+                name=name, value=0.0, stderr=math.inf, unit=in_words(motion.motion, unit),
+                verdict="not told", reason="most of the force is clipped or spikes",
+                motion="a sensor of a wider range, or a weaker motion",
+            )
+            for name, (_, unit) in columns.items()
+        ]  # fmt: skip
     units = {name: in_words(motion.motion, unit) for name, (_, unit) in columns.items()}
     # one filter on both sides
     passed = np.column_stack(
         [lowpass(_whole(motion, inner, columns[n][0]), motion.spacing, motion.cutoff)[inner]
          if n == "dry friction" else columns[n][0] for n in names]
     )  # fmt: skip
-    force = lowpass(motion.force, motion.spacing, motion.cutoff)[inner]
+    passed = passed[sound]
+    force = lowpass(motion.force, motion.spacing, motion.cutoff)[inner][sound]
     matrix = np.column_stack([passed - passed.mean(axis=0), np.ones(len(force))])
     scale = np.maximum(np.std(matrix, axis=0), 1e-300)
     scale[-1] = 1.0
@@ -73,6 +90,26 @@ def tells(motion: Motion, facts: MotionFacts) -> list[Tell]:
               _own_share(scaled[:, :-1], k), facts, _closest(scaled[:, :-1], k, names))
         for k, name in enumerate(names)
     ]  # fmt: skip
+
+
+def _spoilt(motion: Motion, warned: Collection[str]) -> NDArray[np.bool_]:
+    """Samples whose force is clipped or a spike, and those that a low-pass mixes with them."""
+    force = motion.force
+    size = float(np.quantile(force, 0.999) - np.quantile(force, 0.001))
+    bad = np.zeros(force.size, dtype=np.bool_)
+    if "outliers" in warned:
+        apart = np.abs(force - median_filter(force, 5))
+        bad |= apart > max(10 * 1.4826 * float(np.median(apart)), 0.05 * size)
+    if "clipping" in warned:
+        # three in a row on one level, among the highest or the lowest
+        level = np.abs(np.diff(force)) < 1e-6 * size
+        flat = np.r_[level, False] & np.r_[False, level]
+        sound = force[~bad]
+        for end in (np.quantile(sound, 0.999), np.quantile(sound, 0.001)):
+            cut = flat & (np.abs(force - end) < 0.01 * size)
+            bad |= cut | np.roll(cut, 1) | np.roll(cut, -1)
+    around = int(np.ceil(0.75 / (motion.cutoff * motion.spacing)))
+    return np.asarray(binary_dilation(bad, iterations=around) if bad.any() else bad, dtype=np.bool_)
 
 
 def _whole(motion: Motion, inner: NDArray[np.bool_], values: Array) -> Array:

@@ -32,7 +32,7 @@ Wanted = Callable[[str], bool]
 """Whether a column of this header is to be read."""
 
 _ADVICE = {
-    ROWS: "give a part of it, or low-pass it and write every n-th row",
+    ROWS: "take every n-th row behind a low-pass, such as --decimate 10, or give a part of it",
     COLUMNS: "leave out those that are no channels",
     VALUES: "leave out columns, or give a part of it",
     BYTES: "give a part of it",

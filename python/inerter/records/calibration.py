@@ -261,9 +261,14 @@ def _factor(
             return float(gain.to_base_units().magnitude), TRANSLATION
         if name in UNITS and _electric(parse_unit(UNITS[name]), own):
             return float(gain.to_base_units().magnitude), ROTATION
+        fits = (
+            each for each in ("V", "rpm", "mm", "N", "mm/s", "m/s^2", "A", "deg")
+            if (gain * registry.Quantity(1, parse_unit(each))).dimensionality
+            == target.dimensionality
+        )  # fmt: skip
         raise RecordError(
             f"{where}: no unit is known of the column; write it behind its name, such as "
-            f"'{stated.column} [mm]'"
+            f"'{stated.column} [{next(fits, 'unit')}]'"
         )
     total = gain * registry.Quantity(1, parse_unit(unit))
     if turns(name, total.units):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from .calibration import Statement, column_of
-from .header import bare_name, guess
+from .header import bare_name, guess, is_wanted, of_unit
 from .raw_table import RawTable, listed
 from .record import AnyRecord, BenchTable, Record, RecordError, VehicleRecord
 from .turning import OWN_NAMES
@@ -145,6 +145,8 @@ def _guess_others(table: RawTable, found: Columns) -> None:
             # a measured velocity counts: a unit has to say that it is one
             ranked = [(r, i) for r, i in ranked if _fits(quantity, table.header[i], found)]
         best = [index for rank, index in ranked if rank == max(r for r, _ in ranked)]
+        if quantity in _REQUIRED:
+            best = _measured_ones(table, quantity, best, found)
         if len(best) > 1 and quantity in _REQUIRED:
             _ask(table, quantity, best)
         if len(best) == 1:
@@ -152,6 +154,21 @@ def _guess_others(table: RawTable, found: Columns) -> None:
             found.own[quantity] = best[0]
             found.units[quantity] = split_header(header)[1]
             del found.extra[header.strip()]
+
+
+def _measured_ones(table: RawTable, quantity: str, best: list[int], found: Columns) -> list[int]:
+    """Of several columns those that are no set points; of none the only one of such a unit."""
+    if not best:
+        alone = [
+            index
+            for index in found.extra.values()
+            if of_unit(table.header[index], quantity)
+            and guess(table.header[index]) is None
+            and not is_wanted(table.header[index])
+        ]
+        return alone if len(alone) == 1 else []
+    measured = [index for index in best if not is_wanted(table.header[index])]
+    return measured or best
 
 
 def _fits(quantity: str, header: str, found: Columns) -> bool:

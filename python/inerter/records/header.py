@@ -18,14 +18,16 @@ from .turning import OWN_NAMES, WORDS, turns
 # usual names, without accents; of a word within a name the unit has to agree
 _WORDS = {
     "time": "t time zeit prufzeit pruefzeit messzeit laufzeit testzeit uhrzeit temps tiempo tempo "
-    "tijd czas tid cas timestamp stamp datetime zeitstempel elapsed millis seconds aika "
-    "время 时间 時間",
+    "tijd czas tid cas timestamp stamp datetime zeitstempel elapsed millis micros milliseconds "
+    "microseconds millisekunden seconds sekunden secondes segundos secondi sekundy aika "
+    "время 时间 時間 试验时间 経過時間",
     "displacement": "x displacement disp displ weg standardweg traversenweg verschiebung hub "
     "auslenkung position pos extension stroke travel crosshead deplacement course desplazamiento "
     "spostamento corsa deslocamento verplaatsing przemieszczenie lvdt deflection actuator "
-    "langenanderung laengenaenderung forskydning перемещение 位移 変位",
+    "langenanderung laengenaenderung forskydning перемещение 位移 変位 行程 横梁位移 ストローク",
     "force": "f force kraft standardkraft prufkraft pruefkraft last load loadcell fuerza forza "
-    "forca kracht sila siła kraftaufnehmer effort kraftsensor сила усилие 力 荷重",
+    "forca kracht sila siła kraftaufnehmer effort kraftsensor сила усилие нагрузка 力 荷重 试验力 "
+    "载荷 负荷 試験力",
     "velocity": "v velocity speed geschwindigkeit vitesse velocidad velocita snelheid predkosc "
     "скорость 速度",
     "acceleration": "a acceleration acc accel beschleunigung aceleracion accelerazione aceleracao "
@@ -42,6 +44,17 @@ _PHRASES = {
     "fecha hora": "time", "date heure": "time", "elapsed time": "time", "time stamp": "time",
     "running time": "time", "total time": "time", "x value": "time",
 }  # fmt: skip
+# of names that are a unit
+_WITHIN = {
+    "millis": "ms", "milliseconds": "ms", "millisekunden": "ms", "micros": "us",
+    "microseconds": "us",
+}  # fmt: skip
+# a channel of a controller or a summary, not what was measured
+_WANTED = {
+    "soll", "sollwert", "sollweg", "sollkraft", "set", "setpoint", "target", "command", "cmd",
+    "demand", "reference", "ref", "desired", "consigne", "consigna", "error", "fehler", "max",
+    "maximum", "min", "minimum", "mean", "peak",
+}  # fmt: skip
 
 # as benches spell units; the case counts, as in mN and MN
 _SPELLED = {
@@ -52,6 +65,9 @@ _SPELLED = {
     "meter": "m", "metre": "m", "volt": "V", "volts": "V", "lb": "lbf", "lbs": "lbf",
     "mm/sec": "mm/s", "in/sec": "in/s", "m/sec": "m/s", "g's": "g",
     "u/min": "rpm", "1/min": "rpm", "min-1": "rpm", "rev/min": "rpm",
+    "с": "s", "сек": "s", "мс": "ms", "м": "m", "см": "cm", "мм": "mm", "мкм": "um", "н": "N",
+    "кн": "kN", "м/с": "m/s", "мм/с": "mm/s", "秒": "s", "毫秒": "ms", "米": "m", "毫米": "mm",
+    "微米": "um", "牛": "N", "千牛": "kN",
 }  # fmt: skip
 
 
@@ -65,6 +81,8 @@ def split_header(header: str) -> tuple[str, str | None]:
     text, unit = _in_brackets(header)
     if unit is None:
         text, unit = _behind(text)
+    if unit is None:
+        unit = _WITHIN.get(text.casefold())
     return re.sub(r"[\s\-]+", "_", text.casefold()), unit
 
 
@@ -76,14 +94,25 @@ def bare_name(header: str) -> str:
 
 def _in_brackets(header: str) -> tuple[str, str | None]:
     text = header.strip().strip("\ufeff\"'").strip()
-    match = re.fullmatch(r"([^\[(]*?)[\s,/_]*(?:\[([^\[\]]*)\]|\((.*)\))", text)
+    match = re.fullmatch(r"(.*?)[\s,/_]*(?:\[([^\[\]]*)\]|\(([^()]*(?:\([^()]*\)[^()]*)?)\))", text)
     if match is None or not match[1]:
-        return text, None
+        return _within_brackets(text)
     unit = (match[2] if match[2] is not None else match[3]).strip()
     if match[3] is not None and parse_unit(unit) is None and bench_unit(unit) is None:
         # round brackets may hold a remark: `Force (raw)` is no force in raws
         return (text, None) if not _looks_like_unit(unit) else (match[1], unit)
     return match[1], _spelled(unit) or None
+
+
+def _within_brackets(text: str) -> tuple[str, str | None]:
+    """`Time (s) Run #1`: the unit amid a name that is a usual one of its quantity."""
+    match = re.fullmatch(r"([^\[\]()]+?)\s*[\[(]([^\[\]()]+)[\])]\s+([^\[\]()]+)", text)
+    if match is None:
+        return text, None
+    quantity, unit = _best_guess(match[1]), bench_unit(match[2])
+    if quantity is None or not (agrees(quantity, unit) or unit in ("V", "mV")):
+        return text, None
+    return f"{match[1]} {match[3]}", unit
 
 
 def _looks_like_unit(text: str) -> bool:
@@ -136,8 +165,14 @@ def _words(name: str) -> list[str]:
     return [word for word in re.split(r"[^\w']+|_|(?<=\D)(?=\d)", text) if word]
 
 
+def _telling_words(name: str) -> list[str]:
+    """Words without numbers; of a path such as `/strut/force` those of its last part."""
+    return [w for w in _words(name.rsplit("/", 1)[-1] if name[:1] == "/" else name)
+            if not w.isdigit()]  # fmt: skip
+
+
 def _best_guess(name: str) -> str | None:
-    words = [w for w in _words(name) if not w.isdigit()]
+    words = _telling_words(name)
     phrase = " ".join(words)
     if phrase in _PHRASES:
         return _PHRASES[phrase]
@@ -188,11 +223,21 @@ def guess(header: str) -> tuple[str, int] | None:
     quantity = _best_guess(bare_name(header))
     if quantity is None or (unit is not None and not agrees(quantity, unit)):
         return None
-    words = [w for w in _words(bare_name(header)) if not w.isdigit()]
+    words = _telling_words(bare_name(header))
     whole = len(words) == 1
     if any(w in _TURNING for w in words) or (unit and turns(quantity, parse_unit(unit))):
         return (quantity, 0) if whole or unit is not None else None
-    if whole or " ".join(_words(bare_name(header))) in _PHRASES:
+    if whole or " ".join(words) in _PHRASES:
         # a time of day needs no unit; a date and a time of day neither
         return quantity, 2
     return (quantity, 1) if unit is not None else None
+
+
+def is_wanted(header: str) -> bool:
+    """Whether a name says that it is a set point, an error or a summary: nothing measured."""
+    return not _WANTED.isdisjoint(_words(bare_name(header)))
+
+
+def of_unit(header: str, quantity: str) -> bool:
+    """Whether a column has a unit of a quantity, whatever its name."""
+    return agrees(quantity, split_header(header)[1])

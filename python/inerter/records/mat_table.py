@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +11,13 @@ import numpy as np
 import polars as pl
 
 from .bounds import Wanted, refuse_header, refuse_table
+from .header import quantity_of
+from .header_rows import RATES, STEPS
 from .mat_layout import Variable, refuse_layout, variables
 from .raw_table import RawTable, listed
 from .record import RecordError
+
+_WIDEST = 64  # columns of a matrix
 
 
 def read_mat(path: Path, wanted: Wanted) -> RawTable:
@@ -38,12 +44,16 @@ def read_mat(path: Path, wanted: Wanted) -> RawTable:
             f"{path}: not a readable MATLAB file; save it with save(..., '-v7')"
         ) from None
     units = _fields(content.pop("units", None))
+    content, more = _unfolded(content)
+    units = more | units
     structs = [fields for value in content.values() if (fields := _fields(value))]
     if not any(_is_vector(value) for value in content.values()) and len(structs) == 1:
         content = structs[0]
         units = _fields(content.pop("units", None)) or units
 
     vectors = {name: np.ravel(v) for name, v in content.items() if _is_vector(v)}
+    for name, matrix in content.items():
+        vectors |= _columns_of(name, matrix)
     if not vectors and not left_out:
         raise RecordError(
             f"{path}: no vectors found (variables: {listed(list(content)) or 'none'}); "
@@ -72,7 +82,73 @@ def read_mat(path: Path, wanted: Wanted) -> RawTable:
         for index, (name, v) in enumerate(vectors.items())
         if wanted(header[index])
     }
-    return RawTable(path=path, header=(*header, *left_out), columns=columns)
+    table = RawTable(path=path, header=(*header, *left_out), columns=columns)
+    return _on_stated_clock(table, content, length)
+
+
+def _on_stated_clock(table: RawTable, content: Mapping[str, Any], rows: int) -> RawTable:
+    """A table that has no time, with one from the file's interval or rate, where it states one."""
+    stated = {name.casefold(): v for name, v in content.items() if np.size(v) == 1}
+    if any(quantity_of(name, "time") for name in table.header):
+        return table
+    for names, inverse in ((STEPS, False), (RATES, True)):
+        for name in names:
+            value = stated.get(name.casefold())
+            if isinstance(value, int | float | np.number) and value > 0:
+                step = 1.0 / float(value) if inverse else float(value)
+                start = stated.get("tstart", 0.0)
+                begin = float(start) if isinstance(start, int | float | np.number) else 0.0
+                made = pl.Series("time", begin + step * np.arange(rows))
+                header = (*table.header, "time [s]")
+                columns = {**table.columns, len(header) - 1: made}
+                told = f"a sample every {step:g} s"
+                return dataclasses.replace(table, header=header, columns=columns).telling(told)
+    return table
+
+
+def _unfolded(content: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Channels that are structs with a name and data, as ControlDesk writes them, and their units.
+
+    `bench.X.Data` and `bench.Y(2).Name`, `.Data`: found in a struct, or in one within it.
+    """
+    made: dict[str, Any] = dict(content)
+    units: dict[str, str] = {}
+    for name, value in content.items():
+        parts = [value, *_fields(value).values()]
+        found = [channel for part in parts for channel in _named_channels(part)]
+        if found:
+            del made[name]
+        for label, data, unit in found:
+            made[label] = data
+            units |= {label: unit} if unit else {}
+    return made, units
+
+
+def _named_channels(value: Any) -> list[tuple[str, Any, str]]:
+    names = getattr(getattr(value, "dtype", None), "names", None) or ()
+    if not {"Name", "Data"} <= set(names):
+        return []
+    found = []
+    for each in np.ravel(value):
+        label = each["Name"]
+        label = label[()] if isinstance(label, np.ndarray) and label.ndim == 0 else label
+        unit = each["Unit"] if "Unit" in names else ""
+        data = each["Data"]
+        data = data[()] if isinstance(data, np.ndarray) and data.dtype == object else data
+        if isinstance(label, str) and _is_vector(data):
+            # of a path in a model the last part is the name
+            found.append((label.rsplit("/", 1)[-1].strip('"'), data, str(unit or "")))
+    return found
+
+
+def _columns_of(name: str, matrix: Any) -> dict[str, Any]:
+    """Columns of a matrix that is much longer than wide: `data 1`, `data 2`."""
+    if not isinstance(matrix, np.ndarray) or matrix.ndim != 2 or matrix.dtype.kind not in "biuf":
+        return {}
+    long = matrix if matrix.shape[0] >= matrix.shape[1] else matrix.T
+    if long.shape[1] < 2 or long.shape[1] > _WIDEST or long.shape[0] < 10 * long.shape[1]:
+        return {}
+    return {f"{name} {k + 1}": long[:, k] for k in range(long.shape[1])}
 
 
 def _content(path: Path, wanted: Wanted) -> tuple[dict[str, Any], list[str]]:
@@ -84,7 +160,11 @@ def _content(path: Path, wanted: Wanted) -> tuple[dict[str, Any], list[str]]:
         # of the format before version 5, in which nothing is packed
         found = _old_variables(path)
     refuse_header(path, [each.name for each in found])
-    left_out = [each.name for each in found if each.is_vector and not wanted(each.name)]
+    left_out = [
+        each.name
+        for each in found
+        if each.is_vector and max(each.shape) == each.rows and not wanted(each.name)
+    ]
     needed = [each for each in found if each.name not in left_out]
     longest = max((each.rows for each in needed), default=0)
     refuse_table(path, longest, max(1, sum(each.is_vector for each in needed)))

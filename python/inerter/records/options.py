@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from inerter.console import notes, number
+from inerter.console import notes, number, seconds_between_lines
 
 Column = Annotated[
     list[str] | None,
@@ -36,6 +37,16 @@ Lag = Annotated[
 Decimal = Annotated[
     str | None, typer.Option("--decimal", metavar="MARK", help="Decimal mark: point or comma.")
 ]
+Decimate = Annotated[
+    int | None,
+    typer.Option(
+        "--decimate",
+        metavar="N",
+        min=1,
+        help="Keep every N-th row behind a low-pass of all columns alike, for files of more rows "
+        "than are read.",
+    ),
+]
 Separator = Annotated[
     str | None,
     typer.Option(
@@ -56,6 +67,28 @@ Statements = Annotated[
 ]
 
 
+class _Told:
+    """A line every ten seconds while a long file is read."""
+
+    def __init__(self) -> None:
+        self.begun = self.last = time.monotonic()
+        self.path: Path | None = None
+
+    def __call__(self, path: Path, share: float) -> None:
+        now = time.monotonic()
+        if path != self.path:
+            self.path, self.begun, self.last = path, now, now
+        every = seconds_between_lines()
+        if every and share < 1 and now - self.last >= every:
+            self.last = now
+            left = (now - self.begun) * (1 / share - 1)
+            notes.print(
+                f"reading {path}: {share:.0%} done, about {left:.0f} s left",
+                highlight=False,
+                soft_wrap=True,
+            )
+
+
 @contextmanager
 def told_reading(
     column: list[str] | None = None,
@@ -64,6 +97,7 @@ def told_reading(
     decimal: str | None = None,
     separator: str | None = None,
     sheet: str | None = None,
+    decimate: int | None = None,
     statements: Path | None = None,
 ) -> Iterator[Callable[[], None]]:
     """Read with what the command line states; call it when the files are read.
@@ -74,7 +108,7 @@ def told_reading(
 
     with reading(
         column or (), separator=separator, decimal=decimal, sheet=sheet, partner=partner,
-        lag=lag, file=statements,
+        lag=lag, decimate=decimate, file=statements, progress=_Told(),
     ) as now:  # fmt: skip
 
         def tell() -> None:
@@ -101,7 +135,7 @@ def with_reading(command: Callable[..., Any]) -> Callable[..., Any]:
 
     options: dict[str, Any] = {
         "column": Column, "partner": With, "lag": Lag, "decimal": Decimal,
-        "separator": Separator, "sheet": Sheet, "statements": Statements,
+        "separator": Separator, "sheet": Sheet, "decimate": Decimate, "statements": Statements,
     }  # fmt: skip
     own = [
         p for name, p in inspect.signature(command, eval_str=True).parameters.items()

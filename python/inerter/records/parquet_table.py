@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
 import polars as pl
 
 from .bounds import LONGEST_TEXT, Wanted, refuse_header, refuse_packing, refuse_table
-from .raw_table import RawTable
+from .decimation import Decimator, told
+from .raw_table import RawTable, to_numbers
 from .record import RecordError
 
 # what stands at the end of a file about what is in it: pyarrow needs some ten times as much to read
@@ -17,7 +19,7 @@ LARGEST_FOOTER = 1 << 24  # bytes
 NOTES = "inerter.comments"
 
 
-def read_parquet(path: Path, wanted: Wanted) -> RawTable:
+def read_parquet(path: Path, wanted: Wanted, by: int = 1) -> RawTable:
     """The wanted columns of the file; those that hold no numbers, times or texts hold nothing.
 
     Raises
@@ -35,15 +37,17 @@ def read_parquet(path: Path, wanted: Wanted) -> RawTable:
             rows, names = file.metadata.num_rows, _names(file, path)
             notes = (file.metadata.metadata or {}).get(NOTES.encode(), b"")
             kinds = {i: file.schema_arrow.field(i).type for i, n in enumerate(names) if wanted(n)}
-            refuse_table(path, rows, len(kinds))
-            refuse_packing(path, 8.0 * rows * len(kinds))
+            refuse_table(path, rows / by, len(kinds))
+            refuse_packing(path, 8.0 * rows / by * len(kinds))
         # texts as numbers of a list of texts: a column of one long text may be short in a file
         texts = [names[i] for i, kind in kinds.items() if _is_text(kind)]
         with pyarrow.parquet.ParquetFile(path, read_dictionary=texts) as file:
             columns = {
-                i: _column(path, file, names[i]) if _readable(kind) else _nothing(rows)
+                i: _nothing(rows // by) if not _readable(kind)
+                else _column(path, file, names[i]) if by == 1
+                else _decimated(path, file, names[i], by)
                 for i, kind in kinds.items()
-            }
+            }  # fmt: skip
     except (FileNotFoundError, RecordError):
         raise
     except (
@@ -55,7 +59,9 @@ def read_parquet(path: Path, wanted: Wanted) -> RawTable:
     ):
         raise RecordError(f"{path}: not a readable Parquet file; write it again") from None
     comments = tuple(notes.decode("utf-8", "replace").splitlines())
-    return RawTable(path=path, header=names, columns=columns, comments=comments)
+    return RawTable(
+        path=path, header=names, columns=columns, comments=comments, told=told(by), decimated=by
+    )
 
 
 def _refuse_footer(path: Path) -> None:
@@ -107,6 +113,17 @@ def _column(path: Path, file: Any, name: str) -> pl.Series:
                 )
         column = column.cast("string")
     return cast(pl.Series, pl.from_arrow(column))
+
+
+def _decimated(path: Path, file: Any, name: str, by: int) -> pl.Series:
+    """Every n-th row behind a low-pass, read a piece at a time."""
+    decimator, made = Decimator(by), []
+    for batch in file.iter_batches(batch_size=1 << 20, columns=[name], use_threads=False):
+        if _is_text(batch.column(0).type):
+            raise RecordError(f"{path}: column {name[:40]!r} holds texts, which --decimate cannot")
+        values, _ = to_numbers(cast(pl.Series, pl.from_arrow(batch.column(0))))
+        made.append(decimator.add(values))
+    return pl.Series(name, np.concatenate(made) if made else [])
 
 
 def _texts(chunk: Any) -> Any:

@@ -34,6 +34,7 @@ class RawTable:
     header: column names as written; columns: by index, a series for each that was wanted; comments:
     the lines above the header; told: how it was read. Of a text file: separator; odd: by column,
     what is no number in it; lines: number and text of the header and of every data line, read anew.
+    decimated: of how many rows one was kept.
     """
 
     path: Path
@@ -44,6 +45,7 @@ class RawTable:
     separator: str = ","
     odd: Mapping[int, OddCell] = field(default_factory=dict)
     lines: Callable[[], Iterator[tuple[int, str]]] | None = None
+    decimated: int = 1
 
     def telling(self, text: str) -> RawTable:
         """The same table, of which something more is told first."""
@@ -95,8 +97,8 @@ def to_numbers(series: pl.Series) -> tuple[Array, NDArray[np.intp]]:
     """Values of a series, NaN where missing or infinite, and the rows with no number."""
     values, bad = _to_float(series), np.empty(0, dtype=np.intp)
     if series.dtype == pl.String and values.null_count():
-        # second try: blanks around the number, then the words for "missing"
-        text = series.str.strip_chars()
+        # second try: blanks around the number or behind its sign, then the words for "missing"
+        text = series.str.strip_chars().str.replace(r"^([+-]) +", "$1")
         values = text.cast(pl.Float64, strict=False)
         spared = text.str.to_lowercase().is_in(MISSING_WORDS) | text.is_null()
         bad = np.flatnonzero((values.is_null() & ~spared).to_numpy())

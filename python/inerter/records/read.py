@@ -264,7 +264,8 @@ def si_values(
             notes.append(_of_column(name, table.header[index].strip(), found, motion))
     counted = found.stated.get("time")
     if counted is not None and counted.interval is not None:
-        values["time"] = counted.interval * np.arange(table.rows, dtype=np.float64)
+        step = counted.interval * table.decimated
+        values["time"] = step * np.arange(table.rows, dtype=np.float64)
         notes.append(f"a sample every {counted.interval:g} s, as stated")
     text = ", ".join(note for note in notes if note)
     return values, [text] if text else [], motions
@@ -297,6 +298,11 @@ def _further(table: RawTable, found: Columns, left: dict[str, Array]) -> dict[st
 
 def numbers_of(table: RawTable, index: int) -> Array:
     """Values of a column as written; RecordError for the first cell that is no number."""
+    if index not in table.columns:
+        raise RecordError(
+            f"{table.path}: the channel {table.header[index].strip()!r} has not as many values as "
+            "the others, and no clock that would tell when each was; save it with its time"
+        )
     values, bad = table.numbers(index)
     if len(bad):
         row = int(bad[0])

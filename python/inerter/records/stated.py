@@ -30,11 +30,12 @@ from inerter.folder import write_files
 from inerter.input_file import read_toml
 
 from .calibration import Statement, own_name, read_statement
+from .decimation import MOST
 from .record import RecordError
 from .text_layout import DECIMALS, SEPARATORS, Asked
 
 FILE = "records.toml"
-_KEYS = ("match", "separator", "decimal", "sheet", "with", "lag", "columns")
+_KEYS = ("match", "separator", "decimal", "sheet", "with", "lag", "decimate", "columns")
 
 
 @dataclass(frozen=True)
@@ -62,9 +63,11 @@ class Reading:
     sheet: str | None = None
     partner: Path | None = None
     lag: float | None = None
+    decimate: int | None = None
     file: Path | None = None
     told: list[str] = field(default_factory=list)
     read: list[Path] = field(default_factory=list)
+    progress: Callable[[Path, float], None] = lambda path, share: None
 
     def tell(self, path: Path, text: str) -> None:
         """Keep how a file was read, once."""
@@ -79,6 +82,7 @@ class Reading:
             for key, value in (
                 ("separator", self.separator), ("decimal", self.decimal), ("sheet", self.sheet),
                 ("with", str(self.partner) if self.partner else None), ("lag", self.lag),
+                ("decimate", self.decimate),
             )
             if value is not None
         }  # fmt: skip
@@ -115,7 +119,9 @@ def reading(
     sheet: str | None = None,
     partner: Path | None = None,
     lag: float | None = None,
+    decimate: int | None = None,
     file: Path | None = None,
+    progress: Callable[[Path, float], None] = lambda path, share: None,
 ) -> Iterator[Reading]:
     """Read with what the user states; columns: NAME=COLUMN, see `calibration`.
 
@@ -133,6 +139,7 @@ def reading(
             )
         read_statement(name.strip(), formula, "--column")
         named[name.strip()] = formula.strip()
+    _decimation(decimate, "--decimate")
     if file is not None and file.suffix.lower() != ".toml":
         raise RecordError(f"--statements {file}: give a .toml file")
     made = Reading(
@@ -142,7 +149,9 @@ def reading(
         sheet=sheet,
         partner=partner,
         lag=lag,
+        decimate=decimate,
         file=file,
+        progress=progress,
     )
     token = _CURRENT.set(made)
     try:
@@ -180,6 +189,14 @@ def _sign(given: str | None, known: Mapping[str, str], where: str) -> str | None
     raise RecordError(f"{where} is {given!r}; take one of {', '.join(known.values())}")
 
 
+def _decimation(given: Any, where: str) -> int:
+    if given is None:
+        return 1
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= MOST:
+        raise RecordError(f"{where} is {given!r}; give a whole number from 1 to {MOST}")
+    return given
+
+
 def current() -> Reading:
     """The reading that is under way; an empty one where there is none."""
     return _CURRENT.get() or Reading()
@@ -203,6 +220,7 @@ def stated_of(path: Path) -> Stated:
         asked=Asked(
             now.separator or _sign(entry.get("separator"), SEPARATORS, f"{where}: separator"),
             now.decimal or _sign(entry.get("decimal"), DECIMALS, f"{where}: decimal"),
+            _decimation(now.decimate or entry.get("decimate"), f"{where}: decimate"),
         ),
         sheet=now.sheet or entry.get("sheet"),
         partner=partner,

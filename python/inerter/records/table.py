@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping
 from pathlib import Path
+
+import polars as pl
 
 from inerter.input_file import refuse_special
 
 from .bounds import BYTES, Wanted, everything, refuse_more
+from .decimation import Decimator
+from .decimation import told as decimated
+from .foreign import foreign
 from .isolated import read_isolated
 from .mat_table import read_mat
 from .one_clock import on_one_clock
 from .parquet_table import read_parquet
 from .raw_table import RawTable, listed
 from .record import RecordError
-from .stated import Stated
+from .stated import Stated, current
+from .text_layout import encoding_of
 from .text_table import read_text
 
 
@@ -23,12 +30,11 @@ def _isolated(kind: str) -> Callable[[Path, Wanted, Stated], RawTable]:
 
 
 def _text(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
-    return on_one_clock(read_text(path, wanted, stated.asked))
+    return on_one_clock(read_text(path, wanted, stated.asked, current().progress))
 
 
 def _parquet(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
-    del stated
-    return read_parquet(path, wanted)
+    return read_parquet(path, wanted, stated.asked.decimate)
 
 
 def _mat(path: Path, wanted: Wanted, stated: Stated) -> RawTable:
@@ -50,7 +56,7 @@ READERS: Mapping[str, Callable[[Path, Wanted, Stated], RawTable]] = {
     "MDF4": _isolated("mdf"),
     "HDF5": _isolated("hdf5"),
 }
-_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn")
+_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn", ".log")
 _KINDS: Mapping[str, str] = {
     **dict.fromkeys(_TEXT, "text"),
     ".parquet": "parquet",
@@ -63,7 +69,9 @@ _KINDS: Mapping[str, str] = {
 }  # fmt: skip
 EXTENSIONS = tuple(_KINDS)
 # in a folder that is named as a whole, texts of other kinds stand beside records
-OF_FOLDERS = tuple(suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn"))
+OF_FOLDERS = tuple(
+    suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn", ".log")
+)
 
 # how a file begins whose format shows itself
 _BEGINNINGS: Mapping[bytes, str] = {
@@ -89,7 +97,15 @@ def read_table(path: Path, wanted: Wanted = everything, stated: Stated | None = 
     try:
         size = refuse_special(path)
         refuse_more(path, BYTES, size)
-        found = _begins(path)
+        start = _start(path)
+        found = _begins(start)
+        if (kind is None or found == "Excel" or kind == "text") and (
+            told_foreign := foreign(path, start)
+        ) is not None:
+            raise RecordError(told_foreign)
+        if kind == "Excel" and found is None and encoding_of(start) is not None and size:
+            # what some programs call a workbook is a text
+            found = "text"
         if found is not None and found != kind and not (kind == "MATLAB" and found == "HDF5"):
             told = f"{found} file named {path.suffix or 'without an extension'}"
             kind = found
@@ -115,15 +131,30 @@ def read_table(path: Path, wanted: Wanted = everything, stated: Stated | None = 
             f"{path}: there is a header ({listed(table.header)}) but no data below it; "
             "add rows or leave the file out"
         )
+    if table.decimated == 1 and stated is not None and stated.asked.decimate > 1:
+        table = _decimated(table, stated.asked.decimate)
     return table.telling(told)
 
 
-def _begins(path: Path) -> str | None:
-    """The format that the first bytes of a file show."""
+def _decimated(table: RawTable, by: int) -> RawTable:
+    """A table that was read as a whole, of which every n-th row is kept behind a low-pass."""
+    columns: dict[int, pl.Series] = {}
+    for index, series in table.columns.items():
+        values, bad = table.numbers(index)
+        if not len(bad):
+            columns[index] = pl.Series(series.name, Decimator(by).add(values))
+    told = ", ".join(text for text in (table.told, decimated(by)) if text)
+    return dataclasses.replace(table, columns=columns, told=told, lines=None, decimated=by)
+
+
+def _start(path: Path) -> bytes:
     with path.open("rb") as file:
-        start = file.read(16)
+        return file.read(512)
+
+
+def _begins(start: bytes) -> str | None:
+    """The format that the first bytes of a file show."""
     for beginning, kind in _BEGINNINGS.items():
         if start.startswith(beginning):
-            # a zip is no workbook where it is named otherwise on purpose
             return kind
     return None

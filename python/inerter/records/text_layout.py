@@ -6,6 +6,7 @@ where two readings are possible, both are shown and the user is asked.
 
 from __future__ import annotations
 
+import codecs
 import csv
 import re
 from collections import Counter
@@ -13,6 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import polars as pl
+
+from .header import guess
 from .header_rows import Heading, heading, is_clock
 from .record import RecordError
 
@@ -23,12 +27,24 @@ MOST_PREAMBLE = 400  # lines above the data
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab", "|": "bar", " ": "blanks"}
 DECIMALS = {".": "point", ",": "comma"}
 
-_POINT = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
+_POINT = re.compile(r"(?:[+-] *)?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(?:\d+,?\d*|,\d+)(?:[eEdD][+-]?\d+)?")
 _COMMA_GROUPED = re.compile(r"[+-]?\d{1,3}(?:\.\d{3})+,\d+")
 _POINT_GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+\.\d+")
 _UNSURE = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_COMMENTS = "#%"
 _MISSING = {"", "nan", "na", "n/a", "null", "none", "inf", "+inf", "-inf", "#n/a", "-"}
+
+
+# encodings that are tried where a text is no UTF-8, and what people call them
+_CALLED = {
+    "cp1252": "Latin-1", "gb18030": "GB 18030", "cp932": "Shift-JIS", "cp1251": "Windows-1251",
+    "cp1250": "Windows-1250",
+}  # fmt: skip
+# what the serial monitor of a microcontroller writes before lines, and its plotter before values
+_MONITOR = r"(?m)^[ \t]*\d{2}:\d{2}:\d{2}\.\d{3} -> ?"
+_LABEL = r"[A-Za-z_][\w ]*:(?=\s*[-+.\d])"
+_LABELLED = re.compile(rf"\s*(?:{_LABEL}\s*[-+.\deE]+[\s,;]*){{2,}}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +55,8 @@ class Layout:
     number of the first data line, both from 1; stop: byte of the file behind the last data line;
     comments: lines above the header; interval, start [s]: of a clock that only the preamble states;
     footer: lines below the data that are left out; preamble: lines above the names, blanks and
-    comments not counted.
+    comments not counted; strip: pattern of what a logger writes before lines or values; in_comment:
+    whether a comment names the columns.
     """
 
     encoding: str = "utf-8"
@@ -57,17 +74,23 @@ class Layout:
     stop: int | None = None
     footer: int = 0
     preamble: int = 0
+    strip: str = ""
+    in_comment: bool = False
 
     def told(self) -> str:
         """How the text was read, in words; empty where nothing of it is out of the ordinary."""
         parts = []
         if self.encoding not in ("utf-8", "ascii"):
-            name = {"cp1252": "Latin-1"}.get(self.encoding, self.encoding.upper())
-            parts.append(name)
+            parts.append(_CALLED.get(self.encoding, self.encoding.upper()))
         if self.separator != ",":
             parts.append(SEPARATORS[self.separator])
         if self.decimal != ".":
             parts.append("decimal comma")
+        if self.in_comment:
+            parts.append(f"names from the comment in line {self.header_line}")
+        if self.strip:
+            parts.append("times of the monitor left out" if self.strip == _MONITOR
+                         else "names from the labels")  # fmt: skip
         if self.preamble:
             parts.append(f"{self.preamble} preamble line" + "s" * (self.preamble > 1))
         if self.units_line:
@@ -81,20 +104,35 @@ class Layout:
 
 @dataclass(frozen=True)
 class Asked:
-    """What the user says of a text: its separator and decimal mark, None where he does not."""
+    """What the user says of a text: its separator and decimal mark, None where he does not.
+
+    decimate: of how many rows one is kept, behind a low-pass.
+    """
 
     separator: str | None = None
     decimal: str | None = None
+    decimate: int = 1
 
 
 def cells_of(line: str, separator: str) -> list[str]:
     """Cells of one line, stripped; csv.Error where it is none."""
-    if separator == " ":
+    if separator == " " and '"' not in line:
         return line.split()
     if '"' not in line:
         return [cell.strip() for cell in line.split(separator)]
     reader = csv.reader([line], delimiter=separator, skipinitialspace=True)
     return [cell.strip() for cell in next(reader, [])]
+
+
+def pointed(column: pl.Series, layout: Layout) -> pl.Series:
+    """Texts with a decimal point, without groups of digits."""
+    if column.dtype != pl.String:
+        return column
+    if layout.grouped:
+        column = column.str.replace_all("." if layout.decimal == "," else ",", "", literal=True)
+    if layout.decimal == ",":
+        column = column.str.replace_all(",", ".", literal=True)
+    return column
 
 
 def encoding_of(head: bytes) -> tuple[str, int] | None:
@@ -117,12 +155,30 @@ def encoding_of(head: bytes) -> tuple[str, int] | None:
     except UnicodeDecodeError as error:
         if error.start >= len(head) - 8 and len(head) >= HEAD:
             return "utf-8", 0
-        try:
-            head.decode("cp1252")
-        except UnicodeDecodeError:
-            return None
-        return "cp1252", 0
+        return _older_encoding(head)
     return "utf-8", 0
+
+
+def _older_encoding(head: bytes) -> tuple[str, int] | None:
+    """The encoding in which the lines name most of our quantities; of equals Latin-1."""
+    best, most = None, -1
+    for encoding in _CALLED:
+        decoder = codecs.getincrementaldecoder(encoding)()
+        try:
+            text = decoder.decode(head, final=len(head) < HEAD)
+        except UnicodeDecodeError:
+            continue
+        odd = [line for line in re.split(r"[\r\n]+", text)[:MOST_PREAMBLE] if not line.isascii()]
+        known = sum(
+            guess(cell) is not None for line in odd for cell in re.split(r"[;,\t|]", line)
+            if len(cell) < 60
+        ) + sum(
+            guess(cell) is not None for line in odd for cell in re.split(r"[;\t|]", line)
+            if len(cell) < 60
+        )  # fmt: skip
+        if known > most:
+            best, most = encoding, known
+    return None if best is None else (best, 0)
 
 
 def find_layout(path: Path, asked: Asked | None = None) -> Layout | None:
@@ -148,11 +204,29 @@ def find_layout(path: Path, asked: Asked | None = None) -> Layout | None:
     lines = text.split("\n")
     if not whole:
         lines = lines[:-1]
+    strip, labels = _before_values(lines)
+    if strip:
+        lines = [re.sub(strip, "", line) for line in lines]
     layout = _best(path, [line.strip(" \ufeff") for line in lines], asked)
     if layout is None:
         return None
-    layout = replace(layout, encoding=encoding, mark=mark)
+    layout = replace(layout, encoding=encoding, mark=mark, strip=strip)
+    if labels:
+        layout = replace(layout, header=labels, header_line=layout.first - 1, preamble=0)
     return _without_footer(layout, tail, encoding, size)
+
+
+def _before_values(lines: Sequence[str]) -> tuple[str, tuple[str, ...]]:
+    """What a serial monitor writes before lines or values, as a pattern; names from the latter."""
+    full = [line for line in lines if line.strip()]
+    if len(full) > 2 and 2 * sum(bool(re.match(_MONITOR, line)) for line in full) > len(full):
+        return _MONITOR, ()
+    labelled = [line for line in full[:200] if _LABELLED.fullmatch(line)]
+    if len(labelled) > 2 and 2 * len(labelled) > len(full[:200]):
+        names = [tuple(n[:-1].strip() for n in re.findall(_LABEL, line)) for line in labelled]
+        if len(set(names)) == 1:
+            return _LABEL, names[0]
+    return "", ()
 
 
 # --- rows and columns --------------------------------------------------------------------------
@@ -188,6 +262,14 @@ def _best(path: Path, lines: Sequence[str], asked: Asked) -> Layout | None:
     ]  # fmt: skip
     decimal, grouped = _decimal(path, rows.separator, body, asked)
     head = heading(rows.cells[: rows.first], rows.width, body[:3])
+    commented = None
+    beside = _beside_labels(body[:40])
+    if beside is not None:
+        head = Heading(beside)
+    elif len(head.names) != rows.width or all(is_value(name) for name in head.names):
+        commented = _comment_names(lines[: rows.first], rows.separator, rows.width)
+    if commented is not None:
+        head = replace(head, names=commented[0], line=commented[1], top=0)
     comments = tuple(
         text.lstrip("#").strip() for text in lines[: head.line - 1 if head.line else rows.first]
         if text.strip()
@@ -204,7 +286,39 @@ def _best(path: Path, lines: Sequence[str], asked: Asked) -> Layout | None:
         interval=head.interval,
         start=head.start,
         preamble=sum(cells is not None for cells in rows.cells[: max(head.top - 1, 0)]),
+        in_comment=commented is not None,
     )
+
+
+def _beside_labels(body: Sequence[Sequence[str]]) -> tuple[str, ...] | None:
+    """Names where an oscilloscope wrote what it knows into the first columns, beside the values."""
+    if not body or body[0][0].casefold() != "record length" or len(body[0]) < 5:
+        return None
+    stated = {row[0].casefold(): row[1] for row in body if row[0]}
+    time = f"time [{stated.get('horizontal units') or 's'}]"
+    value = f"{stated.get('source') or 'value'} [{stated.get('vertical units') or 'V'}]"
+    return ("", "", "", time, value, *[""] * (len(body[0]) - 5))
+
+
+def _comment_names(
+    lines: Sequence[str], separator: str, width: int
+) -> tuple[tuple[str, ...], int] | None:
+    """Names in the lowest comment that has one for each column, two known ones among them."""
+    for number in range(len(lines), 0, -1):
+        text = lines[number - 1].strip()
+        if not text or text[0] not in _COMMENTS:
+            continue
+        text = text.lstrip(_COMMENTS).strip()
+        for split in (separator, "\t", ";", ",", r"\s{2,}", r"\s+"):
+            names = tuple(
+                cell.strip().strip('"')
+                for cell in re.split(
+                    r"\s+" if split == " " else split if len(split) > 1 else re.escape(split), text
+                )
+            )
+            if len(names) == width and sum(guess(name) is not None for name in names) >= 2:
+                return names, number
+    return None
 
 
 def layout_of_cells(cells: Sequence[list[str] | None]) -> tuple[Heading, int] | None:
@@ -220,7 +334,7 @@ def layout_of_cells(cells: Sequence[list[str] | None]) -> tuple[Heading, int] | 
 def _rows(lines: Sequence[str], separator: str) -> _Rows | None:
     cells: list[list[str] | None] = []
     for line in lines:
-        if not line or line.startswith("#"):
+        if not line or line[0] in _COMMENTS:
             cells.append(None)
             continue
         try:
@@ -311,6 +425,7 @@ def _without_footer(layout: Layout, tail: bytes, encoding: str, size: int) -> La
         if at == 0:
             break
         line = body[at:].decode(encoding, "replace").strip("\r\n ")
+        line = re.sub(layout.strip, "", line) if layout.strip else line
         text = line.strip(layout.separator + " \t")
         if text and not text.startswith("#"):
             try:

@@ -9,7 +9,7 @@ import codecs
 import csv
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from io import BytesIO
@@ -20,9 +20,12 @@ import polars as pl
 
 from .bounds import Wanted, refuse_header, refuse_table
 from .clocks import clock_seconds, counted, without_day_breaks
+from .decimation import Decimator
+from .decimation import told as decimated
+from .header import guess
 from .raw_table import OddCell, RawTable, is_number, quoted, to_numbers
 from .record import Array, RecordError
-from .text_layout import Asked, Layout, encoding_of, find_layout
+from .text_layout import Asked, Layout, cells_of, encoding_of, find_layout, pointed
 from .units import split_header
 
 BLOCK = 1 << 24  # bytes that are read at a time
@@ -39,14 +42,22 @@ class _Block:
     last: bool
 
 
-def read_text(path: Path, wanted: Wanted, asked: Asked | None = None) -> RawTable:
+def read_text(
+    path: Path,
+    wanted: Wanted,
+    asked: Asked | None = None,
+    progress: Callable[[Path, float], None] = lambda path, share: None,
+) -> RawTable:
     """The raw table of a text file; RecordError when it cannot be read or has too much."""
     layout = find_layout(path, asked)
     if layout is not None:
         _refuse_no_header(path, layout)
-        table = _Growing(path, layout, wanted)
+        table = _Growing(path, layout, wanted, asked.decimate if asked else 1)
+        size, read = path.stat().st_size, 0
         for block in _blocks(path, layout):
             table.add(_from_line(block, layout.first))
+            read += len(block.text)
+            progress(path, read / max(size, read))
         return table.done()
     return _read_plain(path, wanted)
 
@@ -97,7 +108,7 @@ def _from_line(block: _Block, first: int) -> _Block:
 class _Growing:
     """The wanted columns of a table whose rows come block by block."""
 
-    def __init__(self, path: Path, layout: Layout, wanted: Wanted) -> None:
+    def __init__(self, path: Path, layout: Layout, wanted: Wanted, by: int = 1) -> None:
         header = layout.header
         refuse_header(path, header)
         self.path, self.header, self.rows, self.layout = path, header, 0, layout
@@ -108,6 +119,10 @@ class _Growing:
         self.texts: dict[int, list[pl.Series]] = {index: [] for index in self.as_text}
         self.odd: dict[int, OddCell] = {}
         self.clocks: set[int] = set()
+        self.by = by
+        if by > 1 and self.as_text:
+            raise RecordError(f"{path}: a file with a column 'run' is not decimated; split it")
+        self.decimators = {index: Decimator(by) for index in self.wanted}
 
     def add(self, block: _Block) -> None:
         """Take in the data lines of a block."""
@@ -122,7 +137,7 @@ class _Growing:
             if len(bad) and (seconds := clock_seconds(column)) is not None:
                 values, bad = seconds, bad[:0]
                 self.clocks.add(index)
-            self.numbers[index].append(values)
+            self.numbers[index].append(self.decimators[index].add(values))
             if len(bad) and index not in self.odd:
                 cells = _cells_of_row(self.path, block, int(bad[0]), self.layout.separator)
                 self.odd[index] = OddCell(self.rows + int(bad[0]), cells)
@@ -130,10 +145,10 @@ class _Growing:
 
     def _refuse_long(self, block: _Block, rows: int) -> None:
         """RecordError where there is too much, or a first block tells that there will be."""
-        refuse_table(self.path, self.rows + rows, len(self.wanted))
+        refuse_table(self.path, (self.rows + rows) / self.by, len(self.wanted))
         if not self.rows:
             whole = rows * self.path.stat().st_size / len(block.text)
-            refuse_table(self.path, whole, len(self.wanted), slack=1.5)
+            refuse_table(self.path, whole / self.by, len(self.wanted), slack=1.5)
 
     def done(self) -> RawTable:
         """The table of all blocks; gives its own rows away."""
@@ -148,30 +163,26 @@ class _Growing:
             columns[index] = pl.Series(
                 name, without_day_breaks(values) if index in self.clocks else values
             )
-        header = self.header
-        if self.layout.interval is not None and self.rows:
-            header, columns = counted(header, columns, self.rows, self.layout)
+        header, layout = self.header, self.layout
+        rows = len(next(iter(columns.values()), ())) if self.by > 1 else self.rows
+        if layout.interval is not None and rows:
+            step = layout.interval * self.by
+            header, columns = counted(header, columns, rows, replace(layout, interval=step))
+        elif self.by > 1 and self.wanted and not rows:
+            raise RecordError(
+                f"{self.path}: {self.rows} rows are too few for --decimate {self.by}; take less"
+            )
         return RawTable(
             path=self.path,
             header=header,
             columns=columns,
             comments=self.layout.comments,
-            told=self.layout.told(),
+            told=", ".join(t for t in (layout.told(), decimated(self.by)) if t),
             separator=self.layout.separator,
             odd=self.odd,
-            lines=partial(_data_lines_of, self.path, self.layout),
+            lines=partial(_data_lines_of, self.path, layout) if self.by == 1 else None,
+            decimated=self.by,
         )
-
-
-def pointed(column: pl.Series, layout: Layout) -> pl.Series:
-    """Texts with a decimal point, without groups of digits."""
-    if column.dtype != pl.String:
-        return column
-    if layout.grouped:
-        column = column.str.replace_all("." if layout.decimal == "," else ",", "", literal=True)
-    if layout.decimal == ",":
-        column = column.str.replace_all(",", ".", literal=True)
-    return column
 
 
 def _refuse_no_header(path: Path, layout: Layout) -> None:
@@ -180,7 +191,7 @@ def _refuse_no_header(path: Path, layout: Layout) -> None:
         return
     comments = layout.comments
     hint = ""
-    if comments and len(comments[-1].split(layout.separator)) > 1:
+    if comments and any(guess(cell) for cell in cells_of(comments[-1], layout.separator)):
         hint = f" (the comment above, {quoted(comments[-1])}, may be it: remove its '#')"
     line = next((t for n, t in _data_lines_of(path, layout) if n >= layout.first), "")
     raise RecordError(
@@ -198,6 +209,7 @@ def _blocks(path: Path, layout: Layout) -> Iterator[_Block]:
     RecordError for anything but text.
     """
     number, rest = 1, b""
+    strip = re.compile(layout.strip.encode()) if layout.strip else None
     left = (layout.stop if layout.stop is not None else path.stat().st_size) - layout.mark
     decoder = None
     if layout.encoding != "utf-8":
@@ -224,6 +236,8 @@ def _blocks(path: Path, layout: Layout) -> Iterator[_Block]:
             rest = text[stop:] + b"\r" * cut
             text = text[:stop]
             _refuse_no_text(path, text, number)
+            if strip is not None:
+                text = strip.sub(b"", text)
             if b"\x00" in rest or len(rest) > LONGEST_LINE:
                 raise RecordError(_binary(path))
             if text or not ahead:
@@ -303,7 +317,7 @@ def _columns(
     """The wanted columns of a block as text by index, and the number of data lines."""
     width, separator = len(layout.header), layout.separator
     # what polars gets: no comments, no blank lines
-    body = block.text.rstrip(b" \t\n")
+    body = block.text.rstrip(b" \t\n" if separator != "\t" else b" \n")
     if b"#" in body:
         body = re.sub(rb"(?m)^[ \t]*#[^\n]*(\n|\Z)", b"", body).rstrip()
     blank = (b"\n\n", b"\n ", b"\n\t")
@@ -349,10 +363,13 @@ def _columns(
 
 
 def _data_lines(block: _Block) -> Iterator[tuple[int, str]]:
-    """Line number and text of every line that is neither blank nor a comment."""
+    """Line number and text of every line that is neither blank nor a comment.
+
+    Tabs at its ends stay: they may part cells that are empty.
+    """
     for number, line in enumerate(BytesIO(block.text), start=block.number):
-        text = line.strip()
-        if text and not text.startswith(b"#"):
+        text = line.strip(b" \r\n\f\v")
+        if text.strip() and not text.lstrip().startswith(b"#"):
             yield number, text.decode("utf-8")
 
 
@@ -367,8 +384,10 @@ def _data_lines_of(path: Path, layout: Layout) -> Iterator[tuple[int, str]]:
 
 def _cells(path: Path, number: int, line: str, separator: str) -> list[str]:
     """Cells of one line."""
-    if separator == " ":
+    if separator == " " and '"' not in line:
         return line.split()
+    if separator != "\t":
+        line = line.strip()
     try:
         return next(csv.reader([line], delimiter=separator, skipinitialspace=True))
     except csv.Error as error:

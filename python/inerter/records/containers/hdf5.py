@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.records.bounds import COLUMNS, refuse_more
+from inerter.records.header_rows import RATES, STEPS
 from inerter.records.record import RecordError
 
 from .channels import Channel, with_unit
@@ -15,8 +16,6 @@ DEEPEST = 20  # groups within groups
 # filters that HDF5 brings or h5py does; another one would load a library that is named in a file
 _FILTERS = (1, 2, 3, 4, 5, 6, 32000)
 _UNITS = ("unit", "units", "Unit", "Units", "UNIT", "unit_string")
-_STEPS = ("dt", "interval", "wf_increment", "sampling_interval", "sample_interval", "delta_t")
-_RATES = ("fs", "rate", "sample_rate", "sampling_rate", "SamplingRate", "samplerate")
 _WIDEST = 64  # columns of a matrix
 
 
@@ -144,7 +143,7 @@ def _column(data: Any, long: int, column: int) -> Any:
 
 def _clock(data: Any, group: Any) -> tuple[float, float] | None:
     for attributes in (data.attrs, group.attrs, group.file.attrs):
-        for keys, inverse in ((_STEPS, False), (_RATES, True)):
+        for keys, inverse in ((STEPS, False), (RATES, True)):
             for key in keys:
                 if key not in attributes:
                     continue

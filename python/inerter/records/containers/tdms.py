@@ -7,6 +7,8 @@ from typing import Any
 
 from .channels import Channel, with_unit
 
+_UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit", "units")
+
 
 def channels(path: Path, sheet: str | None) -> list[Channel]:
     """The channels of a file; times of a waveform are its start offset and increment."""
@@ -21,7 +23,9 @@ def channels(path: Path, sheet: str | None) -> list[Channel]:
             step = about.get("wf_increment")
             found.append(
                 Channel(
-                    name=with_unit(channel.name, about.get("unit_string") or about.get("unit")),
+                    name=with_unit(
+                        channel.name, next((about[key] for key in _UNITS if about.get(key)), None)
+                    ),
                     rows=len(channel),
                     group=group.name,
                     load=_loader(channel),
