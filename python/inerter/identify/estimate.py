@@ -19,6 +19,7 @@ from threadpoolctl import threadpool_limits
 from inerter.catalogue.coordinates import CHANNEL_UNITS, NUISANCES, parameters_of, search_range
 from inerter.catalogue.friction import FRICTION
 from inerter.core import WORDS, Device, parameters
+from inerter.identify.choices import moved_by_choices
 from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_correlation, parameter_errors
 from inerter.identify.identifiability import identifiability
@@ -226,7 +227,11 @@ class _Data:
             problem, fit.model, jacobian, self.preparation, self.records, used,
             with_turns if self.turns else None,
         )  # fmt: skip
-        better, inflation = allowed_for(problem, fit, jacobian, noise)
+        choices = moved_by_choices(
+            problem, fit.model, [self.records[i] for i in used], self.preparation.channels,
+            with_turns if self.turns else None,
+        )  # fmt: skip
+        better, inflation = allowed_for(problem, fit, jacobian, noise, choices)
         estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
         typical = float(np.median(inflation)) if inflation.size else 1.0
         judge = partial(self._figures, typical)
