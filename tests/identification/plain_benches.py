@@ -296,7 +296,7 @@ def table(rows: Iterable[dict]) -> str:
 
 def main() -> None:
     """Run the campaign."""
-    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options = argparse.ArgumentParser(description="Do two standard errors hold?")
     options.add_argument("--count", type=int, default=40)
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--by", choices=list(WAYS), default="fit")
