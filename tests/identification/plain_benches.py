@@ -17,13 +17,13 @@ import json
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.stages import Given, prepared, search_in
-from inerter.identify.choices import moved_by_choices
+from inerter.identify.choices import covered
 from inerter.identify.estimate import identify
 from inerter.identify.fit import parameter_errors
 from inerter.records import Record
@@ -240,11 +240,7 @@ def by_fit(case: Case) -> Found:
                 **{f"{channel}_filter_order": order, f"{channel}_filter_bessel": float(bessel)}
             )
     fit = search.problem.fit(model)
-    moved = moved_by_choices(search.problem, fit.model, start.data.records)
-    units = search.problem.units(fit.model)
-    return parameter_errors(
-        replace(fit, covariance=fit.covariance + moved * np.outer(units, units))
-    )
+    return parameter_errors(covered(search.problem, fit, start.data.records))
 
 
 _LINEAR = ("viscous", "stiffness", "quadratic_damping", "force_offset")

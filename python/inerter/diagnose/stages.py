@@ -14,8 +14,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-import numpy as np
-
 from inerter.catalogue.effects import EFFECTS
 from inerter.core import Device
 from inerter.diagnose.band import best_band, narrower_band, wider_band
@@ -38,7 +36,7 @@ from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.run_constants import constants, contradicting, without_constants
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
-from inerter.identify.choices import moved_by_choices
+from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import on_clocks, thin
@@ -122,6 +120,12 @@ class Searched:
         search, data = self.search, self.data
         counted = Problem(search.runs, search.split.holdout, search.problem.scales)
         return Judge(data.band, data.raw, counted, data.preparation, self.prepared.baseline)
+
+    def covered(self, fit: Fit) -> Fit:
+        """A fit whose errors hold what other choices would move it by, see `identify.choices`."""
+        return covered(
+            self.search.problem, fit, self.data.records, self.data.preparation.channels
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -367,18 +371,10 @@ def confirmed(start: Settled) -> Confirmed:
         fit = replace(fit, covariance=fit.covariance + spread)
     else:
         progress("asking how far other choices of the analysis would lead")
-        fit = _with_choices(found, fit)
+        fit = found.covered(fit)
     return Confirmed(
         searched=found, before=start.before, fit=fit, chain=tuple(chain), standings=standings
     )
-
-
-def _with_choices(found: Searched, fit: Fit) -> Fit:
-    """The fit with what less smoothing, or no slow parts, would move it by in its errors."""
-    problem, data = found.search.problem, found.data
-    units = problem.units(fit.model)
-    moved = moved_by_choices(problem, fit.model, data.records, data.preparation.channels)
-    return replace(fit, covariance=fit.covariance + moved * np.outer(units, units))
 
 
 def _with_tone(found: Searched, fit: Fit) -> tuple[Fit, tuple[Link, float] | None]:

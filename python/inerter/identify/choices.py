@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identify.channel_filter import Filter, filter_of, named
-from inerter.identify.fit import Problem
+from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.records import Record
@@ -39,6 +39,15 @@ AS_GOOD = 1.01
 """Squared residual, per that with the delay, up to which a low-pass does as well."""
 HIGHEST = 0.3
 """Highest other cut-off, per sampling rate."""
+
+
+def covered(
+    problem: Problem, fit: Fit, records: Sequence[Record], channels: tuple[str, ...] = ()
+) -> Fit:
+    """A fit of a problem with what other choices would move it by in its errors, see below."""
+    units = problem.units(fit.model)
+    moved = moved_by_choices(problem, fit.model, records, channels)
+    return replace(fit, covariance=fit.covariance + moved * np.outer(units, units))
 
 
 def moved_by_choices(
