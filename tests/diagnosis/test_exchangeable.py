@@ -75,6 +75,12 @@ def test_one_sine_tells_no_delay_from_damping() -> None:
     value = told.parameters["viscous"]
     assert abs(value.value - 100) < 2 * value.stderr
     assert wording.effect_in_words(told).startswith("viscous friction or ")
+    # both amounts are said: without friction the delay is c / (b w^2)
+    late = told.parameters["delay"]
+    assert late.value == pytest.approx(value.value / (60 * (4 * np.pi) ** 2), rel=0.03)
+    assert late.stderr >= late.value / 3
+    assert f"viscous friction of {value.value:.3g} N s/m or a delay of " in told.evidence
+    assert "this motion cannot tell; a second frequency would" in told.evidence
 
 
 def test_several_sines_tell_them_apart() -> None:

@@ -11,10 +11,11 @@ from typing import get_type_hints
 
 import mujoco
 import numpy as np
+import plain_benches
 import pytest
 from inerter import load_plugin
 from inerter.commands import app
-from inerter.device_file import read_device
+from inerter.device_file import read_device, read_filters
 from inerter.identify.command import identify_command
 from inerter.identify.laws import PARTS
 from random_devices import Drawn, drawn
@@ -38,6 +39,20 @@ def folder(case: Drawn, tmp_path_factory: pytest.TempPathFactory) -> Path:
         lines = ["time,displacement,force", *(",".join(map(repr, map(float, r))) for r in rows)]
         (path / f"{record.name}.csv").write_text("\n".join(lines) + "\n")
     return path
+
+
+@pytest.fixture(scope="module")
+def filtered_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Runs whose force went through a low-pass that takes 0.3 % of the inertance away."""
+    path = tmp_path_factory.mktemp("filtered")
+    for record in FILTERED.records:
+        rows = zip(record.time, record.displacement, record.force, strict=True)
+        lines = ["time,displacement,force", *(",".join(map(repr, map(float, r))) for r in rows)]
+        (path / f"{record.name}.csv").write_text("\n".join(lines) + "\n")
+    return path
+
+
+FILTERED = plain_benches.drawn(27)
 
 
 def run(*arguments: object) -> tuple[int, str, str]:
@@ -140,3 +155,30 @@ def test_the_help_names_every_law_and_part() -> None:
     (law,) = (p for p in signature(identify_command).parameters.values() if p.name == "law")
     text = get_type_hints(identify_command, include_extras=True)[law.name].__metadata__[0].help
     assert set(PARTS) <= set(re.findall(r"\w+", text))
+
+
+@pytest.mark.parametrize("simulate", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_a_stated_filter_is_taken_out(
+    simulate: bool, filtered_folder: Path, tmp_path: Path
+) -> None:
+    bessel, order, cutoff = FILTERED.bench.force_filter or (False, 0, 0.0)
+    assert (bessel, order) == (True, 2)
+    stated = f"force=bessel:{cutoff}:{order}"
+    law, out = ["--law", "coulomb+stiffness", "--intervals", "normal"], tmp_path / "out"
+    law += ["--simulate"] if simulate else []
+    status, stdout, stderr = run(filtered_folder, *law, "--filter", stated, "--out", out, "--json")
+    assert status == 0, stderr
+    for each in json.loads(stdout)["results"]:
+        assert each["filters"] == {"force": f"bessel:{cutoff}:{order}"}
+        # without the filter, and with a delay in its place, 0.3 % are missing
+        value, truth = each["parameters"]["inertance"]["value"], FILTERED.parameters["inertance"]
+        assert value == pytest.approx(truth, rel=5e-4), each["law"]
+    assert read_filters(out / "device.toml") == {"force": f"bessel:{cutoff}:{order}"}
+
+
+@pytest.mark.parametrize("given", ["bessel:50", "torque=bessel:50", "force=50"])
+def test_what_is_no_filter_is_refused(given: str, folder: Path, tmp_path: Path) -> None:
+    status, _, stderr = run(folder, "--filter", given, "--out", tmp_path / "out")
+    assert status == 2
+    assert "--filter" in stderr
+    assert not (tmp_path / "out").exists()

@@ -19,7 +19,7 @@ from inerter.diagnose.result import Diagnosis, Finding
 from inerter.diagnose.rig import diagnose_bench
 from inerter.diagnose.table import diagnose_table
 from inerter.diagnose.vehicle import SystemInput, diagnose_model, is_for_a_model
-from inerter.identify.channel_filter import CHANNELS, Filter, read_filter
+from inerter.identify.channel_filter import Filter, read_filter, stated_filters
 from inerter.mjcf import device_of_model, motion_of_model
 from inerter.records import BenchTable, Record, RecordError, read_records
 
@@ -114,12 +114,4 @@ def _filters(device: Path | Device | None, given: Sequence[str]) -> dict[str, Fi
     if isinstance(device, Path):
         for channel, text in read_filters(device).items():
             found[channel] = read_filter(text, f"{device}: {channel}_filter")
-    for text in given:
-        channel, sign, stated = text.partition("=")
-        if not sign or channel.strip() not in CHANNELS:
-            raise ValueError(
-                f"--filter {text[:60]!r}: give CHANNEL=KIND:CUTOFF of the channel "
-                f"{' or '.join(CHANNELS)}, such as --filter force=bessel:50"
-            )
-        found[channel.strip()] = read_filter(stated, f"--filter {channel.strip()}")
-    return found
+    return found | stated_filters(given)

@@ -8,7 +8,7 @@ parameter only moves, its error is at least as large as that.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
+from inerter.diagnose.values import parameter_units
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 from inerter.motion_units import Kind, words
@@ -39,6 +40,9 @@ class Exchange:
         The parameter and its standard error then, in SI units.
     other : float
         The counterpart's parameter then.
+    instead : tuple of float
+        The counterpart's parameter without the effect, and its standard error; where the two are
+        not told apart.
     same : bool
         Whether the two are the same force along the motion.
     """
@@ -48,6 +52,7 @@ class Exchange:
     error: float
     other: float
     same: bool = False
+    instead: tuple[float, float] = (0.0, 0.0)
 
     @property
     def is_told_apart(self) -> bool:
@@ -55,8 +60,16 @@ class Exchange:
         return not self.same and abs(self.value) > CRITERIA.distinction * self.error
 
 
-def exchanges(search: Search, fit: Fit, effects: Sequence[str]) -> dict[str, Exchange]:
-    """The effects of a fitted model that have a counterpart which the model has not."""
+def exchanges(
+    search: Search,
+    fit: Fit,
+    effects: Sequence[str],
+    covered: Callable[[Fit], Fit] = lambda found: found,
+) -> dict[str, Exchange]:
+    """The effects of a fitted model that have a counterpart which the model has not.
+
+    covered: a fit with errors that allow for what its residuals do not show.
+    """
     asked = [
         effect
         for effect in effects
@@ -70,10 +83,15 @@ def exchanges(search: Search, fit: Fit, effects: Sequence[str]) -> dict[str, Exc
     same = search.problem.scales.one_tone and fit.model.friction == "none"
     found = {}
     for effect, both in zip(asked, fits, strict=True):
-        known, other = parameter_errors(both), COUNTERPARTS[effect]
+        known, other = parameter_errors(covered(both)), COUNTERPARTS[effect]
         if _COORDINATE[effect] in known and _COORDINATE[other] in known:
             value, error = known[_COORDINATE[effect]]
-            found[effect] = Exchange(other, value, error, known[_COORDINATE[other]][0], same)
+            exchange = Exchange(other, value, error, known[_COORDINATE[other]][0], same)
+            if not exchange.is_told_apart:
+                bare = _beside(fit.model.without([_COORDINATE[effect]]), other, spacing)
+                alone = parameter_errors(covered(search.problem.fit(bare)))
+                exchange = replace(exchange, instead=alone[_COORDINATE[other]])
+            found[effect] = exchange
     return found
 
 
@@ -96,7 +114,7 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     if exchange.is_told_apart:
         if moved < CRITERIA.distinction * found.stderr:
             return finding
-        amount = _amount(exchange, finding.motion)
+        amount = _amount(exchange.counterpart, exchange.other, finding.motion)
         beside = f"with {amount} beside it {name} would be {exchange.value:.3g}"
         return replace(
             finding,
@@ -106,23 +124,30 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     # it may be none
     error = max(error, abs(found.value) / CRITERIA.distinction)
     share = finding.confidence / 2
-    names = [EFFECTS[effect].plain for effect in (finding.effect, exchange.counterpart)]
+    value, spread = exchange.instead
+    other = _COORDINATE[exchange.counterpart]
+    unit = parameter_units(finding.motion)[other]
+    either = " or ".join(
+        _amount(effect, amount, finding.motion)
+        for effect, amount in ((finding.effect, found.value), (exchange.counterpart, value))
+    )
     rivals = [rival for rival in finding.rivals if rival.effect != exchange.counterpart]
     return replace(
         finding,
         confidence=share,
         members=(finding.effect, exchange.counterpart),
-        parameters=_with_error(finding.parameters, name, error),
+        parameters=_with_error(finding.parameters, name, error)
+        | {other: ParameterValue(value, max(spread, abs(value) / CRITERIA.distinction), unit)},
         rivals=[Rival(exchange.counterpart, share), *rivals],
-        evidence=f"{finding.evidence} This motion cannot tell {names[0]} from "
-        f"{names[1]}; one at a second frequency would.",
+        evidence=f"{finding.evidence} It is {either}: this motion cannot tell; a second frequency "
+        f"would ({EFFECTS['viscous_friction'].experiment}).",
     )
 
 
-def _amount(exchange: Exchange, motion: Kind) -> str:
-    if exchange.counterpart == "sensor_delay":
-        return f"a delay of {1e3 * exchange.other:.3g} ms"
-    return f"viscous friction of {exchange.other:.3g} {words(motion, 'N s/m')}"
+def _amount(effect: str, value: float, motion: Kind) -> str:
+    if effect == "sensor_delay":
+        return f"a delay of {1e3 * value:.3g} ms"
+    return f"viscous friction of {value:.3g} {words(motion, 'N s/m')}"
 
 
 def _with_error(

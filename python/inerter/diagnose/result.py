@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
-from inerter.identify.channel_filter import CHANNELS, filter_of
+from inerter.identify.channel_filter import filters_of
 from inerter.motion_units import TRANSLATION, Kind
 
 Array = NDArray[np.float64]
@@ -116,8 +116,7 @@ class Accuracy:
     @property
     def filters(self) -> dict[str, str]:
         """Low-passes of the channels as they are stated, by the channel's name."""
-        found = {channel: filter_of(self.channels, channel) for channel in CHANNELS}
-        return {channel: each.text for channel, each in found.items() if each}
+        return {channel: each.text for channel, each in filters_of(self.channels).items()}
 
     def json(self) -> dict[str, Any]:
         """As in the contract."""

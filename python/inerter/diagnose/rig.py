@@ -136,12 +136,19 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         stands.searched.prepared.baseline.values.get("delay", 0.0),
         motion,
     )
-    same = exchanges(stands.searched.search, stands.fit, [link.effect for link in stands.chain])
+    same = exchanges(
+        stands.searched.search,
+        stands.fit,
+        [link.effect for link in stands.chain],
+        stands.searched.covered,
+    )
     findings = [
         doubted(with_exchange(finding, same.get(finding.effect)), remains.structure)
         for finding in _findings(stands, values)
     ]
-    values = values | {name: v for each in findings for name, v in each.parameters.items()}
+    # a member that the model has not is told by its finding alone
+    told = {name: v for each in findings for name, v in each.parameters.items()}
+    values = values | {name: told[name] for name in values if name in told}
     given.progress("simulating the extended device in MuJoCo")
     squares = [judge.error_squares(fit.model) for fit in (stands.before, stands.fit)]
     diagnosis = Diagnosis(

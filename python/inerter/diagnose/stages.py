@@ -37,6 +37,7 @@ from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.run_constants import constants, contradicting, without_constants
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
+from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import on_clocks, thin
@@ -124,6 +125,12 @@ class Searched:
         counted = Problem(search.runs, search.split.holdout, search.problem.scales)
         return Judge(data.band, data.raw, counted, data.preparation, self.prepared.baseline)
 
+    def covered(self, fit: Fit) -> Fit:
+        """A fit whose errors hold what other choices would move it by, see `identify.choices`."""
+        return covered(
+            self.search.problem, fit, self.data.records, self.data.preparation.channels
+        )  # fmt: skip
+
 
 @dataclass(frozen=True, kw_only=True)
 class Settled:
@@ -188,13 +195,13 @@ def searched(start: Prepared) -> Searched:
     Where the model found predicts the force better in a wider band, the search goes on there.
     """
     data, band = start.data, start.weighed
-    search = _search_in(start, band)
+    search = search_in(start, band)
     final = search.run(until="backlash")
     for _ in range(CRITERIA.more_bands):
         wider = _wider(data, band, final.model)
         if "backlash" in final.model.free or wider is None:
             break
-        band, search = wider, _search_in(start, wider)
+        band, search = wider, search_in(start, wider)
         final = search.run(final.model, until="backlash")
     if calmer := _calmer(start, band, final.model):
         search, plainer = calmer
@@ -209,7 +216,7 @@ def searched(start: Prepared) -> Searched:
     return _in_narrower_band(found)
 
 
-def _search_in(start: Prepared, band: Preparation) -> Search:
+def search_in(start: Prepared, band: Preparation) -> Search:
     """A search in which errors count by the noise of the motion."""
     runs = [
         replace(run, corner=band.corner)
@@ -231,7 +238,7 @@ def _calmer(start: Prepared, band: Preparation, model: Model) -> tuple[Search, M
     laws = [] if model.friction == start.baseline.friction else simpler_laws(model)
     if not laws or band.cutoff <= start.plain.cutoff:
         return None
-    search = _search_in(start, replace(start.plain, corner=band.corner))
+    search = search_in(start, replace(start.plain, corner=band.corner))
     masks = search.split.fit
     best = min(map(search.problem.fit, laws), key=lambda fit: fit.rmse(masks))
     if best.rmse(masks) > (1 - CRITERIA.band_gain) * search.problem.fit(model).rmse(masks):
@@ -366,6 +373,9 @@ def confirmed(start: Settled) -> Confirmed:
         progress("free play: how far other data would lead")
         spread = jackknife(search.problem, found.data.full.folds, fit.model)
         fit = replace(fit, covariance=fit.covariance + spread)
+    else:
+        progress("asking how far other choices of the analysis would lead")
+        fit = found.covered(fit)
     return Confirmed(
         searched=found, before=start.before, fit=fit, chain=tuple(chain), standings=standings
     )

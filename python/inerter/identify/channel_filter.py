@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -94,6 +94,12 @@ def filter_of(values: Mapping[str, float], channel: str) -> Filter | None:
     return Filter(kind, int(values.get(f"{channel}_filter_order", USUAL_ORDER)), float(cutoff))
 
 
+def filters_of(values: Mapping[str, float]) -> dict[str, Filter]:
+    """The filters that some coordinates have, by channel."""
+    found = {channel: filter_of(values, channel) for channel in CHANNELS}
+    return {channel: each for channel, each in found.items() if each is not None}
+
+
 def read_filter(text: str, where: str) -> Filter:
     """A filter as it is stated: "bessel:50", "butterworth:60 Hz:2".
 
@@ -121,6 +127,26 @@ def read_filter(text: str, where: str) -> Filter:
             "or butterworth:60:2"
         )
     return Filter(names[0], degree, value)
+
+
+def stated_filters(given: Iterable[str]) -> dict[str, Filter]:
+    """Filters by channel, as options state them: "force=bessel:50".
+
+    Raises
+    ------
+    ValueError
+        No channel, or a filter that cannot be read.
+    """
+    found = {}
+    for text in given:
+        channel, sign, stated = text.partition("=")
+        if not sign or channel.strip() not in CHANNELS:
+            raise ValueError(
+                f"--filter {text[:60]!r}: give CHANNEL=KIND:CUTOFF of the channel "
+                f"{' or '.join(CHANNELS)}, such as --filter force=bessel:50"
+            )
+        found[channel.strip()] = read_filter(stated, f"--filter {channel.strip()}")
+    return found
 
 
 def filtered(values: Array, spacing: float, by: Filter, inverse: bool = False) -> Array:

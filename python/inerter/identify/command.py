@@ -37,6 +37,15 @@ def identify_command(
     holdout: Annotated[
         list[str] | None, typer.Option(help="Name of a run to judge on; may be given again.")
     ] = None,
+    filters: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--filter",
+            metavar="CHANNEL=KIND:HZ",
+            help="A low-pass that the force or the displacement went through: force=bessel:50, "
+            "displacement=butterworth:60:2 (order; 4 where it is left out). May be given again.",
+        ),
+    ] = None,
     loss: Annotated[
         str, typer.Option(help="linear; or soft_l1, huber, cauchy: outliers count less.")
     ] = "linear",
@@ -66,6 +75,7 @@ def identify_command(
       inerter identify runs/*.csv --law viscous,lugre+offset
       inerter identify bench.csv --fix inertance=113 --holdout slow
     """
+    from inerter.identify.channel_filter import stated_filters
     from inerter.identify.estimate import identify
     from inerter.identify.output import (
         json_text,
@@ -81,7 +91,8 @@ def identify_command(
             tell()
         with progress_bar("identifying", as_json) as progress:
             result = identify(
-                records, _names(law), fixed=_fixed(fix or []), holdout=holdout or (), loss=loss,
+                records, _names(law), fixed=_fixed(fix or []),
+                filters=stated_filters(filters or ()), holdout=holdout or (), loss=loss,
                 intervals=intervals, starts=starts, progress=progress,
             )  # fmt: skip
             if simulate:

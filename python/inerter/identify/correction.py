@@ -20,16 +20,19 @@ _BELIEVED, _WHOLE = 2.0, 0.01
 
 
 def allowed_for(
-    problem: Problem, fit: Fit, jacobian: Array, noise: NoiseEffect
+    problem: Problem, fit: Fit, jacobian: Array, noise: NoiseEffect, choices: Array
 ) -> tuple[Fit, Array]:
-    """The fit without the bias of noise, its covariance whole; variance per naive variance."""
+    """The fit without the bias of noise, its covariance whole; variance per naive variance.
+
+    choices: what `moved_by_choices` says (p, p).
+    """
     units = problem.units(fit.model)
     covariance = noise.covariance * np.outer(units, units)
 
     # what the residuals show beyond the channels' noise counts too
     shown, drawn = np.diag(fit.covariance), np.maximum(np.diag(covariance), 1e-300)
     more = np.sqrt(np.maximum(1.0, shown / drawn))
-    known = np.diag((noise.bias**2 + noise.smoothing**2) * units**2)
+    known = (np.diag(noise.bias**2) + choices) * np.outer(units, units)
     covariance = covariance * np.outer(more, more) + known
     flat = problem.masked(fit.residual)
     naive = np.linalg.pinv(jacobian.T @ jacobian) * float(np.mean(flat**2))

@@ -19,6 +19,8 @@ from threadpoolctl import threadpool_limits
 from inerter.catalogue.coordinates import CHANNEL_UNITS, NUISANCES, parameters_of, search_range
 from inerter.catalogue.friction import FRICTION
 from inerter.core import WORDS, Device, parameters
+from inerter.identify.channel_filter import Filter, named
+from inerter.identify.choices import moved_by_choices
 from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_correlation, parameter_errors
 from inerter.identify.identifiability import identifiability
@@ -64,6 +66,7 @@ def identify(
     laws: Sequence[str] = LAWS,
     *,
     fixed: Mapping[str, float | str] | None = None,
+    filters: Mapping[str, Filter] | None = None,
     holdout: Sequence[str] = (),
     loss: str = "linear",
     intervals: str = "profile",
@@ -81,6 +84,8 @@ def identify(
         What to fit, see `inerter.identify.laws`.
     fixed
         Parameters that are known, SI units.
+    filters
+        Low-passes that the channels "force" and "displacement" are known to have gone through.
     holdout
         Names of runs to judge on; by default the most typical one, or blocks of a single run.
     loss
@@ -109,6 +114,8 @@ def identify(
         if name not in (*parameters(), *WORDS):
             # says what it may have meant
             Device(**{name: known[name]})
+    for channel, low_pass in (filters or {}).items():
+        known |= named(channel, low_pass)
     one_motion(records)
     given, records = records, without_copies(records, holdout)
     refuse_unusable(records)
@@ -226,7 +233,11 @@ class _Data:
             problem, fit.model, jacobian, self.preparation, self.records, used,
             with_turns if self.turns else None,
         )  # fmt: skip
-        better, inflation = allowed_for(problem, fit, jacobian, noise)
+        choices = moved_by_choices(
+            problem, fit.model, [self.records[i] for i in used], self.preparation.channels,
+            with_turns if self.turns else None,
+        )  # fmt: skip
+        better, inflation = allowed_for(problem, fit, jacobian, noise, choices)
         estimates, correlation = self._estimates(problem, fit, better, inflation, intervals)
         typical = float(np.median(inflation)) if inflation.size else 1.0
         judge = partial(self._figures, typical)

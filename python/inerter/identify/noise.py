@@ -2,10 +2,10 @@
 
 Noise on the displacement becomes noise on the velocity and acceleration, along which a model is
 run. Least squares takes them for exact, so an estimate is biased, a little, and its errors are not
-those of the force alone. Smoothing adds a bias of its own. Both are measured here: the fitted model
-is driven along the smoothed motion, noise as large as the record's is drawn anew on every channel,
-and the made-up record goes through the same smoothing. One Gauss-Newton step from the fit says
-where an estimate from it would end.
+those of the force alone. Both are measured here: the fitted model is driven along the smoothed
+motion, noise as large as the record's is drawn anew on every channel, and the made-up record goes
+through the same smoothing. One Gauss-Newton step from the fit says where an estimate from it would
+end. What smoothing itself does is told by `choices`.
 
 Noise is taken for white, of the size that the upper third of each channel's spectrum shows.
 """
@@ -30,26 +30,14 @@ Array = NDArray[np.float64]
 
 DRAWS = 60
 SEED = 0
-NEIGHBOURS = (0.7, 1.4)
-"""Other cut-offs, per cut-off of the fit, that would have served as well."""
-SHARE = 0.5
-"""Of what neighbouring cut-offs move an estimate by, that counts as its error.
-
-Calibrated, not derived: the whole of it made intervals that held the truth in all of some forty
-devices drawn at random, where 95 % was asked for.
-"""
 
 
 @dataclass(frozen=True)
 class NoiseEffect:
-    """Of a fit's search variables: `bias` (p,), `covariance` (p, p) and `smoothing` (p,).
-
-    `smoothing` is `SHARE` of what the estimate moves by (rms) where the cut-off is another one.
-    """
+    """Of a fit's search variables: `bias` (p,) and `covariance` (p, p)."""
 
     bias: Array
     covariance: Array
-    smoothing: Array
 
 
 def effect_of_noise(
@@ -91,32 +79,7 @@ def effect_of_noise(
         steps[draw] = -projector @ _flat(problem, model, runs)
     bias = steps.mean(axis=0)
     covariance = np.cov(steps.T).reshape(bias.size, bias.size)
-    smoothing = _smoothing(problem, model, preparation, records, used, change)
-    return NoiseEffect(bias, covariance, smoothing)
-
-
-def _smoothing(
-    problem: Problem,
-    model: Model,
-    preparation: Preparation,
-    records: Sequence[Record],
-    used: Sequence[int],
-    change: Callable[[BenchRun], BenchRun],
-) -> Array:
-    """How far one Gauss-Newton step goes on the records at neighbouring cut-offs, rms (p,)."""
-    steps = []
-    for factor in NEIGHBOURS:
-        cutoff = factor * preparation.cutoff
-        runs = [change(thin(smooth(records[i], cutoff, preparation.channels))) for i in used]
-        # which samples count, at the instants of these runs
-        masks = [
-            np.interp(new.time, old.time, mask.astype(float)) > 0.99
-            for new, old, mask in zip(runs, problem.runs, problem.masks, strict=True)
-        ]
-        other = Problem(runs, masks, problem.scales)
-        residual = [r[m] for r, m in zip(other.residual(model), other.masks, strict=True)]
-        steps.append(np.linalg.pinv(other.jacobian(model)) @ np.concatenate(residual))
-    return SHARE * np.sqrt(np.mean(np.square(steps), axis=0))
+    return NoiseEffect(bias, covariance)
 
 
 @dataclass(frozen=True)

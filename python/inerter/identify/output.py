@@ -42,7 +42,14 @@ def write_identification(result: Identification, folder: Path) -> list[str]:
         {
             "identification.json": json_text(result),
             "identification.png": picture(result),
-            "device.toml": device_text(best.device, comments, best.delay, title, result.motion),
+            "device.toml": device_text(
+                best.device,
+                comments,
+                best.delay,
+                title,
+                result.motion,
+                {name: each.text for name, each in best.filters.items()},
+            ),
             "model.xml": device_mjcf(best.device, "identified_device", motion=result.motion),
         },
     )

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from inerter.catalogue.coordinates import NUISANCES
+from inerter.identify.channel_filter import Filter, filtered
 from inerter.identify.fit import Fit, parameter_correlation, parameter_errors
 from inerter.identify.model import Model
 from inerter.identify.result import Estimate, Identification, Identified, SimulatedErrors
@@ -26,6 +28,7 @@ from inerter.identify.simulated import (
     start_from,
 )
 from inerter.motion_units import words
+from inerter.records import Record
 
 SHARE = 0.7
 """Of a single run, what is fitted."""
@@ -88,7 +91,10 @@ class _Bench:
     """The runs of an identification, driven by their forces."""
 
     def __init__(self, result: Identification) -> None:
-        self.runs = [Simulator(record, delay=result.best.delay) for record in result.used]
+        best = result.best
+        self.runs = [
+            Simulator(_unfiltered(record, best.filters), delay=best.delay) for record in result.used
+        ]
         single = len(self.runs) == 1
         self.until = SHARE * result.used[0].duration if single else None
         self.used = [i for i in range(len(self.runs)) if single or result.split.fit[i].any()]
@@ -109,6 +115,15 @@ class _Bench:
             error = float(np.sqrt(np.mean(rest**2)))
         relative = error / self.variation if self.variation else math.nan
         return fit, SimulatedErrors(fit.error, error, relative)
+
+
+def _unfiltered(record: Record, filters: Mapping[str, Filter]) -> Record:
+    """A record before the low-passes of its channels."""
+    before = {
+        name: filtered(getattr(record, name), record.sample_interval, by, inverse=True)
+        for name, by in filters.items()
+    }
+    return replace(record, **before)
 
 
 def _parameters(fit: SimulatedFit, best: Identified) -> dict[str, Any]:

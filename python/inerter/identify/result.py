@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
+from inerter.identify.channel_filter import Filter, filters_of
 from inerter.identify.identifiability import Combination
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
@@ -122,12 +123,18 @@ class Identified(Figures):
     motion: SimulatedErrors | None = None
     worse_than: tuple[str, ...] = ()
 
+    @property
+    def filters(self) -> dict[str, Filter]:
+        """Low-passes of the record's channels, as they were stated."""
+        return filters_of(self.model.values)
+
     def json(self) -> dict[str, Any]:
         """Plain data."""
         return {
             "law": self.law,
             "device": self.device.given,
             "delay": self.delay,
+            "filters": {name: each.text for name, each in self.filters.items()},
             "parameters": {
                 name: {
                     "value": each.value,
