@@ -22,9 +22,10 @@ from numpy.typing import NDArray
 
 from .bench_channel import Channel, Situation, answers, draw_filter
 from .bench_effects import FRICTION_LAWS, LEVEL_CHANGES
-from .bench_motions import Drive, highest_frequency, is_free_of
+from .bench_motions import Drive, highest_frequency
+from .bench_units import UNITS, Unit, hysteresis, plain
 from .device import ReferenceDevice
-from .sizes import rms, rounded, size_for_share
+from .sizes import rounded, size_for_share
 
 
 @dataclass(frozen=True)
@@ -35,18 +36,6 @@ class Drawn:
     channel: dict[str, float] = field(default_factory=dict)
     names: tuple[str, ...] = ()
     stated: dict[str, float] | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Unit:
-    """An effect of unit size; `scaling` lists what grows with it, `share` bounds what is drawn."""
-
-    device: ReferenceDevice
-    channel: Channel
-    scaling: tuple[str, ...]
-    names: tuple[str, ...]
-    share: tuple[float, float] = (0.05, 0.40)
-    largest: float = np.inf
 
 
 def draw_effect(
@@ -62,14 +51,14 @@ def draw_effect(
     drives = [run.drive for run in runs]
     if effect in _UNSIZED:
         return _UNSIZED[effect](draw, ideal, drives)
-    if effect in _UNITS:
-        unit = _UNITS[effect](draw, ideal, runs)
+    if effect in UNITS:
+        unit = UNITS[effect](draw, ideal, runs)
     elif effect == "hysteretic_friction":
         travel = min(float(np.max(abs(drive.displacement))) for drive in drives)
-        device, scaling, names = _unit_hysteresis(draw, str(law), ideal, travel)
-        unit = _Unit(device=device, channel=Channel(), scaling=scaling, names=names)
+        device, scaling, names = hysteresis(draw, str(law), ideal, travel)
+        unit = Unit(device=device, channel=Channel(), scaling=scaling, names=names)
     else:
-        unit = _plain(draw, effect, ideal)
+        unit = plain(draw, effect, ideal)
 
     share = draw.uniform(*unit.share)
     size = min(_size_for_share(share, ideal, unit, runs), unit.largest)
@@ -126,263 +115,6 @@ def draw_limits(draw: Generator, force: NDArray[np.float64]) -> Drawn:
     else:
         found = {"force_minimum": rounded(np.quantile(force, clipped))}
     return Drawn({}, found, tuple(found))
-
-
-# effects of unit size
-
-
-def _stribeck(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    drives = [run.drive for run in runs]
-    speed = float(np.median([rms(np.asarray(d.motion.velocity(d.time))) for d in drives]))
-    unit = replace(
-        ideal,
-        friction="stribeck",
-        coulomb_force=1.0,
-        static_force=rounded(draw.uniform(1.5, 2.5)),
-        stribeck_velocity=rounded(speed * draw.uniform(0.1, 0.4)),
-    )
-    scaling = ("coulomb_force", "static_force")
-    return _Unit(
-        device=unit, channel=Channel(), scaling=scaling, names=(*scaling, "stribeck_velocity")
-    )
-
-
-def _asymmetric(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    asymmetry = rounded(draw.uniform(0.2, 0.6) * draw.choice([-1.0, 1.0]))
-    unit = replace(ideal, friction="coulomb", coulomb_force=1.0, friction_asymmetry=asymmetry)
-    return _Unit(
-        device=unit,
-        channel=Channel(),
-        scaling=("coulomb_force",),
-        names=("coulomb_force", "friction_asymmetry"),
-    )
-
-
-def _uneven_damper(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    asymmetry = rounded(draw.uniform(0.2, 0.6) * draw.choice([-1.0, 1.0]))
-    return _Unit(
-        device=replace(ideal, viscous=1.0, damping_asymmetry=asymmetry),
-        channel=Channel(),
-        scaling=("viscous",),
-        names=("viscous", "damping_asymmetry"),
-    )
-
-
-def _digressive(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    drives = [run.drive for run in runs]
-    speed = float(np.median([rms(np.asarray(d.motion.velocity(d.time))) for d in drives]))
-    unit = replace(
-        ideal,
-        viscous=1.0,
-        damping_knee=rounded(speed * draw.uniform(0.3, 1.0)),
-        damping_beyond=rounded(draw.uniform(0.1, 0.4)),
-    )
-    names = ("viscous", "damping_knee", "damping_beyond")
-    return _Unit(device=unit, channel=Channel(), scaling=("viscous",), names=names)
-
-
-def _position(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    gradient, curvature = _draw_level(draw, _travel(runs))
-    unit = replace(
-        ideal,
-        friction="coulomb",
-        coulomb_force=1.0,
-        friction_gradient=gradient,
-        friction_curvature=curvature,
-    )
-    names = ("coulomb_force", "friction_gradient", "friction_curvature")
-    return _Unit(device=unit, channel=Channel(), scaling=("coulomb_force",), names=names)
-
-
-def _friction_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    # 30 to 100 % over the whole set; a level that falls keeps a twentieth
-    change = draw.uniform(0.3, 1.0) * draw.choice([-1.0, 1.0])
-    whole = runs[-1].start + float(runs[-1].drive.time[-1])
-    channel = Channel(friction_drift=rounded(max(change, -0.95) / whole))
-    unit = replace(ideal, friction="coulomb", coulomb_force=1.0)
-    return _Unit(
-        device=unit,
-        channel=channel,
-        scaling=("coulomb_force",),
-        names=("coulomb_force", "friction_drift"),
-    )
-
-
-def _gas(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    area = rounded(np.exp(draw.uniform(np.log(1e-4), np.log(2e-3))))
-    # at the end of the stroke half to a fifth of the gas is compressed away
-    reach = _travel(runs) * draw.uniform(1.5, 4.0)
-    unit = replace(
-        ideal,
-        gas_pressure=1.0 / area,
-        gas_area=area,
-        gas_volume=rounded(area * reach),
-        gas_exponent=rounded(draw.uniform(1.05, 1.38)),
-    )
-    names = ("gas_pressure", "gas_area", "gas_volume", "gas_exponent")
-    return _Unit(device=unit, channel=Channel(), scaling=("gas_pressure",), names=names)
-
-
-def _end_stop(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    x = np.concatenate([run.drive.displacement for run in runs])
-    v = np.concatenate([np.asarray(run.drive.motion.velocity(run.drive.time)) for run in runs])
-    time = draw.uniform(0.03, 0.20)
-    side = str(draw.choice(["upper", "lower", "both"]))
-    within = 0.5 * time if side == "both" else time
-    stops: dict[str, float] = {}
-    if side != "lower":
-        stops["stop_upper"] = rounded(float(np.quantile(x, 1.0 - within)))
-    if side != "upper":
-        stops["stop_lower"] = rounded(float(np.quantile(x, within)))
-    damping = rounded(draw.uniform(0.1, 0.5) / float(np.max(abs(v))))
-    unit = replace(ideal, **stops, stop_stiffness=1.0, stop_damping=damping)
-    names = (*stops, "stop_stiffness", "stop_damping")
-    return _Unit(
-        device=unit, channel=Channel(), scaling=("stop_stiffness",), names=names, share=(0.10, 0.40)
-    )
-
-
-def _variable(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    kind = int(draw.integers(0, 4))
-    sign = float(draw.choice([-1.0, 1.0]))
-    names = (
-        ("inertance_gradient",),
-        ("inertance_curvature",),
-        ("inertance_gradient", "inertance_curvature"),
-        ("inertance_speed_gradient",),
-    )[kind]
-    travel = _travel(runs)
-    fastest = max(float(np.max(abs(r.drive.motion.velocity(r.drive.time)))) for r in runs)
-    ends = {
-        "inertance_gradient": travel,
-        "inertance_curvature": travel**2,
-        "inertance_speed_gradient": fastest,
-    }
-    # the factor changes by 0.1 at the end of the stroke or of the speed; seven times that at most
-    part = 0.1 / len(names)
-    signs = [sign, float(draw.choice([-1.0, 1.0]))]
-    values = {n: s * part / ends[n] for n, s in zip(names, signs, strict=False)}
-    return _Unit(
-        device=replace(ideal, **values),
-        channel=Channel(),
-        scaling=names,
-        names=names,
-        share=(0.05, 0.30),
-        largest=7.0,
-    )
-
-
-def _tone(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    drives = [run.drive for run in runs]
-    frequency = 45.0
-    for _ in range(100):
-        frequency = rounded(np.exp(draw.uniform(np.log(0.5), np.log(45.0))))
-        if is_free_of(drives, frequency):
-            break
-    channel = Channel(disturbance_amplitude=1.0, disturbance_frequency=frequency)
-    names = ("disturbance_amplitude", "disturbance_frequency")
-    return _Unit(device=ideal, channel=channel, scaling=names[:1], names=names)
-
-
-def _force_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> _Unit:
-    names = ("force_drift",)
-    return _Unit(
-        device=ideal,
-        channel=Channel(force_drift=float(draw.choice([-1.0, 1.0]))),
-        scaling=names,
-        names=names,
-    )
-
-
-def _plain(draw: Generator, effect: str, ideal: ReferenceDevice) -> _Unit:
-    """One parameter in proportion to the force."""
-    key = _SIZES[effect]
-    sign = float(draw.choice([-1.0, 1.0])) if effect == "force_offset" else 1.0
-    friction = "coulomb" if effect == "coulomb_friction" else "none"
-    # load friction is linear only up to 1, so its unit stays below
-    size = 0.5 if effect == "load_dependent_friction" else sign
-    return _Unit(
-        device=replace(ideal, friction=friction, **{key: size}),
-        channel=Channel(),
-        scaling=(key,),
-        names=(key,),
-    )
-
-
-_SIZES = {
-    "viscous_friction": "viscous",
-    "coulomb_friction": "coulomb_force",
-    "load_dependent_friction": "load_friction",
-    "parallel_stiffness": "stiffness",
-    "hardening_stiffness": "stiffness_cubic",
-    "force_offset": "force_offset",
-    "quadratic_damping": "quadratic_damping",
-}
-
-_UNITS: dict[str, Callable[[Generator, ReferenceDevice, list[Situation]], _Unit]] = {
-    "stribeck_friction": _stribeck,
-    "asymmetric_friction": _asymmetric,
-    "damper_asymmetry": _uneven_damper,
-    "digressive_damping": _digressive,
-    "position_dependent_friction": _position,
-    "friction_drift": _friction_drift,
-    "gas_spring": _gas,
-    "end_stop": _end_stop,
-    "variable_inertance": _variable,
-    "periodic_disturbance": _tone,
-    "force_drift": _force_drift,
-}
-
-
-def _draw_level(draw: Generator, travel: float) -> tuple[float, float]:
-    """Gradient [1/m] and curvature [1/m^2] that keep the level within 0.1 .. 1.9 of its middle."""
-    slope = draw.uniform(0.3, 0.8) * draw.choice([-1.0, 1.0])
-    bend = draw.uniform(0.3, 0.8) * draw.choice([-1.0, 1.0])
-    kind = int(draw.integers(0, 3))
-    if kind == 0:
-        bend = 0.0
-    elif kind == 1:
-        slope = 0.0
-    else:
-        slope, bend = 0.5 * slope, 0.5 * bend
-    return rounded(slope / travel), rounded(bend / travel**2)
-
-
-def _unit_hysteresis(
-    draw: Generator, law: str, ideal: ReferenceDevice, travel: float
-) -> tuple[ReferenceDevice, tuple[str, ...], tuple[str, ...]]:
-    """A law that saturates at unit force after 5 to 50 % of the smallest run's travel [m]."""
-    reach = float(np.exp(draw.uniform(np.log(0.05), np.log(0.5)))) * travel
-    if law == "bouc_wen":
-        exponent = rounded(draw.uniform(1.0, 2.0))
-        narrowing = reach**-exponent
-        shape = draw.uniform(0.5, 0.9)
-        unit = replace(
-            ideal,
-            friction=law,
-            bw_beta=rounded(shape * narrowing),
-            bw_gamma=rounded((1.0 - shape) * narrowing),
-            bw_exponent=exponent,
-            bw_ratio=rounded(draw.uniform(0.0, 0.1)),
-            bw_stiffness=1.0 / reach,
-        )
-        names = ("bw_alpha", "bw_beta", "bw_gamma", "bw_exponent", "bw_stiffness", "bw_ratio")
-        return unit, ("bw_stiffness",), names
-    scaling: tuple[str, ...] = ("coulomb_force", "bristle_stiffness")
-    if law == "dahl":
-        unit = replace(ideal, friction=law, coulomb_force=1.0, bristle_stiffness=1.0 / reach)
-        return unit, scaling, scaling
-    unit = replace(
-        ideal,
-        friction=law,
-        coulomb_force=1.0,
-        bristle_stiffness=1.0 / reach,
-        static_force=rounded(draw.uniform(1.3, 2.0)),
-        stribeck_velocity=rounded(np.exp(draw.uniform(np.log(3e-3), np.log(3e-2)))),
-        bristle_damping=draw.uniform(0.2e-3, 1e-3) / reach,
-    )
-    scaling = (*scaling, "static_force", "bristle_damping")
-    return unit, scaling, (*scaling, "stribeck_velocity")
 
 
 # effects whose size is not a share of the force
@@ -452,18 +184,13 @@ _UNSIZED: dict[str, Callable[[Generator, ReferenceDevice, list[Drive]], Drawn]] 
 
 
 def _size_for_share(
-    share: float, ideal: ReferenceDevice, unit: _Unit, runs: list[Situation]
+    share: float, ideal: ReferenceDevice, unit: Unit, runs: list[Situation]
 ) -> float:
     """The factor on `unit`'s effect that makes it `share` of the force rms over all runs."""
     bare = np.concatenate([ideal.inertance * run.drive.acceleration for run in runs])
     found = answers(unit.device, unit.channel, runs, 1e-6)
     extra = np.concatenate([one.force for one in found]) - bare
     return size_for_share(share, bare, extra)
-
-
-def _travel(runs: list[Situation]) -> float:
-    """The largest displacement [m] of all runs."""
-    return max(float(np.max(abs(run.drive.displacement))) for run in runs)
 
 
 def _differences(one: object, other: object) -> dict:
