@@ -222,7 +222,14 @@ class Telling:
             carried = bearing
         load = share * abs(carried[0]), abs(share) * carried[1]
         spring = term(p["stiffness"] * x), term(p["stiffness_cubic"] * x**3)
-        own_damper = term(p["viscous"] * v), term(p["quadratic_damping"] * v * abs(v))
+        side = 1.0 + p["damping_asymmetry"] * np.sign(v)
+        knee, beyond = p["damping_knee"], p["damping_beyond"]
+        bend = knee / np.sqrt(knee**2 + v**2) if knee else np.ones_like(v)
+        own_damper = (
+            term(p["viscous"] * side * v * (beyond if knee else 0.0)),
+            term(p["viscous"] * side * v * bend * (1.0 - beyond if knee else 1.0)),
+            term(p["quadratic_damping"] * side * v * abs(v)),
+        )
         rubbing = add(friction, load)
         felt_there = (through,) if self.wheel else (carried, rubbing)
         total = add(*felt_there, *spring, *own_damper, stops, term(p["force_offset"] + 0.0 * x))

@@ -198,8 +198,8 @@ def test_mirrored_motion_gives_the_mirrored_force(law: str) -> None:
     rng = np.random.default_rng(LAWS.index(law))
     for _ in range(20):
         p = draw_friction(rng, law) | draw_branches(rng)
-        even = {"rest_length": 0.0, "force_offset": 0.0, "inertance_gradient": 0.0}
-        device = Device(**(p | even))
+        uneven = ("rest_length", "force_offset", "inertance_gradient", "damping_asymmetry")
+        device = Device(**(p | dict.fromkeys(uneven, 0.0)))
         x, v, a, z = draw_points(rng, 100, reach(p))
         one, other = device.evaluate(x, v, a, z), device.evaluate(-x, -v, -a, -z)
         for name in ("total", "inertance", "friction", "state_rate"):

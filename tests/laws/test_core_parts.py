@@ -76,7 +76,7 @@ def test_heat_is_never_negative() -> None:
 
 def test_mirrored_devices_have_mirrored_forces() -> None:
     # stops swapped, everything that has a direction turned round
-    turned = ("inertance_gradient", "force_offset", "series_hardening")
+    turned = ("inertance_gradient", "force_offset", "series_hardening", "damping_asymmetry")
     for p, (x, v, a, z) in drawn(4, 200, 40):
         p |= {"rest_length": 0.0}
         for name in [name for name in p if name.startswith("gas")]:
