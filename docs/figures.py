@@ -205,6 +205,17 @@ def load_by_power() -> None:
     loops("load_by_power", devices, 1.0, AMPLITUDE)
 
 
+def load_on_bristle() -> None:
+    """The same load on friction without memory and on a bristle, which holds through a reversal."""
+    memory = {"friction": "dahl", "coulomb_force": 5.0, "bristle_stiffness": 3e4}
+    devices = {
+        "coulomb": Device(inertance=100, friction="coulomb", coulomb_force=5.0, load_friction=0.2),
+        "dahl": Device(inertance=100, **memory, load_friction=0.2),
+        "dahl, no load friction": Device(inertance=100, **memory),
+    }
+    loops("load_on_bristle", devices, 1.0, AMPLITUDE)
+
+
 def damping_and_stiffness() -> None:
     """Dampers and springs beside the inertance."""
     devices = {
@@ -399,8 +410,9 @@ def semi_active() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
-    damping_and_stiffness, dampers, branches, inertance, series, friction_side, end_stops, gas,
-    fluid, along_the_stroke, force_map, along_each_direction, coil, aging, control, semi_active,
+    load_on_bristle, damping_and_stiffness, dampers, branches, inertance, series, friction_side,
+    end_stops, gas, fluid, along_the_stroke, force_map, along_each_direction, coil, aging, control,
+    semi_active,
 )  # fmt: skip
 
 

@@ -10,10 +10,9 @@
 // Source: Bouc 1967, Wen 1976; eq. (12)-(13) of the hysteretic inerter paper. The parameters are
 // redundant: scaling z changes alpha, beta, gamma, k0 and leaves F alone.
 // Along the stroke (friction.h), and under a load (load_friction.c), which raises the yield force
-// abs(1 - A) k0 (alpha / (beta + gamma))^(1/n), beta and gamma are divided by level^n: |z| yields at that share of
-// where it did, with the same stiffness and the same stored energy.
-// Free play before the yielding share: friction_play.c.
-// Not modelled: pinching, degradation.
+// abs(1 - A) k0 (alpha / (beta + gamma))^(1/n), beta and gamma are divided by level^n: |z| yields
+// at that share of where it did, with the same stiffness and the same stored energy. Free play
+// before the yielding share: friction_play.c. Not modelled: pinching, degradation.
 
 #include "friction.h"
 

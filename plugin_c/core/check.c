@@ -142,10 +142,11 @@ static int check_load(InerterDevice* device, char* message) {
                     mu, narrow);
     }
     if (device->bw_ratio == 1) {
-      return refuse(message,
-                    "load friction is %g, but bw_ratio is 1: no share of this bouc_wen yields, so that "
-                    "no load can raise where it does; give bw_ratio < 1, or remove the load friction",
-                    mu);
+      return refuse(
+          message,
+          "load friction is %g, but bw_ratio is 1: no share of this bouc_wen yields, so that "
+          "no load can raise where it does; give bw_ratio < 1, or remove the load friction",
+          mu);
     }
   }
   return 0;

@@ -181,7 +181,7 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
     if (law_of(device)->several && device->nfriction) {
       double wanted = force - inerter_force(device, x, v, a, z).total;
       law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted,
-                                         law_load(device, x, v, a, z), z);
+                                        law_load(device, x, v, a, z), z);
     } else if (device->nfriction) {
       z[0] = play_of_force(device, x, v, a, force);
     }
@@ -315,9 +315,8 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
   double load = load_at_terminals(device, v, z, carried) * fabs(carried);
   double on_bristle = law_load(device, x, v, a, z);
   Place rubbing = place_of_friction(device, stretch, v, z);
-  double friction = has(device, PART_WHEEL_FRICTION)
-                        ? wheel_drag(device, x, v, z)
-                        : law_force(device, stretch, v, z, on_bristle);
+  double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, x, v, z)
+                                                     : law_force(device, stretch, v, z, on_bristle);
   double power = (damper + load) * v + friction * rubbing.v;
 
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term

@@ -76,7 +76,8 @@ extern const FrictionLaw inerter_brown_mcphee;
 extern const FrictionLaw inerter_maxwell_slip;
 extern const FrictionLaw inerter_rate_state;
 
-// maxwell_slip.c: how many elements there are; sum of their slip forces [N]; stiffness and slip force of one, side by side
+// maxwell_slip.c: how many elements there are; sum of their slip forces [N]; stiffness and slip
+// force of one, side by side
 int slip_count(const InerterDevice* p);
 double slip_level(const InerterDevice* p);
 static inline const double* slip_element(const InerterDevice* p, int i) {

@@ -217,9 +217,8 @@ double load_on_bristle(const InerterDevice* p, double v, double carried);
 
 // force of a law with a bristle without its damper
 static inline double bristle_spring(const InerterDevice* p, double x, double v, const double* z) {
-  return p->friction == INERTER_FRICTION_lugre
-             ? p->bristle_stiffness * bristle_deflection(p, z[0])
-             : friction_force(p, x, v, z, 0);
+  return p->friction == INERTER_FRICTION_lugre ? p->bristle_stiffness * bristle_deflection(p, z[0])
+                                               : friction_force(p, x, v, z, 0);
 }
 
 // wheel_friction.c: N, of the force F_s that the series element bears and of the friction law's
@@ -229,8 +228,8 @@ double wheel_carried(const InerterDevice* p, double w, const double* z, double f
 
 // over_step.c: force of the friction law over a step h at displacement x to velocity v1. v:
 // velocity at which the level of friction without memory is taken; z: states of the law, those of
-// the end when it returns; share: implicit part of a bristle's spring; load: on its level. friction_grip: how the force
-// rises with the velocity at v [N s/m].
+// the end when it returns; share: implicit part of a bristle's spring; load: on its level.
+// friction_grip: how the force rises with the velocity at v [N s/m].
 double friction_over_step(const InerterDevice* p, double x, double v, double v1, double h,
                           double share, double load, double* z);
 double friction_grip(const InerterDevice* p, double x, double v);

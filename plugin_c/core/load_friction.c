@@ -18,8 +18,8 @@
 //   mu_forward = tan(lambda + phi) / tan(lambda) - 1,
 //   mu_backward = 1 - tan(lambda - phi) / tan(lambda).
 // Range: mu_backward < 1; at 1 (phi = lambda) the screw locks itself, and no force says how fast
-// the flywheel turns; with rate_state mu_backward times the bracket is held below 0.999. N + F does not fall with N, so
-// that the acceleration follows uniquely; with the damper of LuGre as long as
+// the flywheel turns; with rate_state mu_backward times the bracket is held below 0.999. N + F does
+// not fall with N, so that the acceleration follows uniquely; with the damper of LuGre as long as
 // mu sigma1 |v| < level.
 // Source: Coulomb's law with the load as normal force; the square-threaded screw of any textbook.
 // Why not the whole bristle in proportion to the load (Canudas de Wit & Tsiotras 1999, for tyres):

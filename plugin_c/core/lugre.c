@@ -5,12 +5,11 @@
 //
 // z [m] bristle deflection; sigma0 [N/m] bristle_stiffness, sigma1 [N s/m] bristle_damping;
 // f_c, f_s [N] coulomb_force, static_force (times the level of friction.h); v_s [m/s]
-// stribeck_velocity; delta stribeck_exponent; load [N]: load_friction.c. Stored energy sigma0 z^2 / 2; steady sliding g(v).
-// Source: Canudas de Wit, Olsson, Astrom, Lischinsky 1995. The hysteretic inerter paper prints
-// |v| z / g without sigma0: its g is this g divided by sigma0.
-// Passive where sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed.
-// Free play before it: friction_play.c.
-// Not modelled: a sigma1 that falls with speed, hysteresis with non-local memory.
+// stribeck_velocity; delta stribeck_exponent; load [N]: load_friction.c. Stored energy sigma0 z^2 /
+// 2; steady sliding g(v). Source: Canudas de Wit, Olsson, Astrom, Lischinsky 1995. The hysteretic
+// inerter paper prints |v| z / g without sigma0: its g is this g divided by sigma0. Passive where
+// sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed. Free play before it:
+// friction_play.c. Not modelled: a sigma1 that falls with speed, hysteresis with non-local memory.
 
 #include "friction.h"
 

@@ -6,11 +6,11 @@
 //   F    = sum of k_i z_i
 //
 // z_i [m] deflection of element i; k_i [N/m] slip_stiffness_i, f_i [N] slip_force_i, level:
-// friction.h, load [N]: load_friction.c. Elements 1 to 8, numbered without a gap. Stored energy: sum of k_i z_i^2 / 2.
-// Breakaway and sliding: sum of f_i. From rest F(x) is a polygon with corners at f_i / k_i.
-// Why: one bristle (dahl.c, lugre.c, bouc_wen.c) has one number of memory, and forgets a loop
-// within a loop. Here every reversal is remembered until a larger one wipes it out, and loops
-// between the same ends are congruent: hysteresis with non-local memory (Masing's rules).
+// friction.h, load [N]: load_friction.c. Elements 1 to 8, numbered without a gap. Stored energy:
+// sum of k_i z_i^2 / 2. Breakaway and sliding: sum of f_i. From rest F(x) is a polygon with corners
+// at f_i / k_i. Why: one bristle (dahl.c, lugre.c, bouc_wen.c) has one number of memory, and
+// forgets a loop within a loop. Here every reversal is remembered until a larger one wipes it out,
+// and loops between the same ends are congruent: hysteresis with non-local memory (Masing's rules).
 // Rate-independent. An element is beyond its limit only where the level has just fallen (along the
 // stroke, with the direction); it comes back along a path of f_i / k_i, without giving energy.
 // Exact at constant v and level. Passive.

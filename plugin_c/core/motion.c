@@ -6,8 +6,8 @@
 
 #include "laws.h"
 
-// Force through the inertance that loads a bristle: in the middle between two samples, with a series
-// element at the first.
+// Force through the inertance that loads a bristle: in the middle between two samples, with a
+// series element at the first.
 static double middle_load(const InerterDevice* device, const double* x, const double* v,
                           const double* a, const double* z) {
   if (!inerter_load_bends(device)) {

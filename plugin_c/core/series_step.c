@@ -177,8 +177,8 @@ static double misfit(const InerterDevice* p, Element element, Flywheel flywheel,
     memcpy(rubbing->end, rubbing->start, sizeof(double) * (size_t)p->nfriction);
   }
   double friction = rubbing_force(p, rubbing, w, force, drag);
-  return friction +
-         inerter_load_factor(p, w, rubbing->start, force - drag) * fabs(force - drag) - drag;
+  return friction + inerter_load_factor(p, w, rubbing->start, force - drag) * fabs(force - drag) -
+         drag;
 }
 
 enum { MOST_TURNS = 100 };

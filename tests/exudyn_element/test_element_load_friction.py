@@ -110,3 +110,27 @@ def test_a_steady_pull() -> None:
     assert said["acceleration"] == pytest.approx(21.0 / (4.0 + 2.0 * 1.5), rel=1e-12)
     assert said["inertance"] == pytest.approx(6.0, rel=1e-12)
     assert said["friction"] == pytest.approx(3.0, rel=1e-12)
+
+
+DEVICES_WITH_MEMORY: dict[str, dict[str, Any]] = {
+    "dahl": {"coulomb_force": 40.0, "bristle_stiffness": 2e4},
+    "lugre": {"coulomb_force": 40.0, "bristle_stiffness": 2e4, "bristle_damping": 100.0},
+}
+
+
+@pytest.mark.parametrize("law", DEVICES_WITH_MEMORY)
+def test_a_load_on_a_bristle(law: str) -> None:
+    """The rate follows the latest acceleration: order one under RK44, two where it iterates."""
+    given = DEVICES_WITH_MEMORY[law] | {"friction": law, "inertance": 110.0, "load_friction": 0.2}
+    DEVICES[law] = given
+    try:
+        for solver, error in (("RK44", 4.0), ("GeneralizedAlpha", 0.3)):
+            for step in (2e-3, 1e-3):
+                bound = error * step if solver == "RK44" else error * step**2 * 1e3
+                assert run(law, solver, step)[0] < bound
+        before = 0.5 * MASSES[0] * START[0] ** 2 + 0.5 * 110.0 * START[0] ** 2
+        rows = run(law, "RK44", 1e-3)[1]
+        assert rows["all"][0] == pytest.approx(before, rel=1e-6)
+        assert np.all(np.diff(rows["dissipated_energy"]) >= 0.0)
+    finally:
+        del DEVICES[law]

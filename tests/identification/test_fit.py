@@ -34,6 +34,29 @@ def test_linear_parameters_to_rounding() -> None:
         assert fit.model.values[name] == pytest.approx(value, rel=1e-6)
 
 
+def test_load_on_a_bristle_is_recovered() -> None:
+    truth = {"inertance": 50.0, "friction": "dahl", "coulomb_force": 20.0,
+             "bristle_stiffness": 1e4, "load_friction": 0.2}  # fmt: skip
+    start = {"inertance": 40.0, "coulomb_force": 10.0, "presliding": 1e-3, "load_friction": 0.05}
+    fit = problem(run(Device(**truth), 0.05)).fit(Model("dahl", start, tuple(start)))
+    for name, (value, stderr) in parameter_errors(fit).items():
+        if name in truth:
+            assert value == pytest.approx(truth[name], rel=0.01, abs=4 * stderr), name
+
+
+def test_rate_and_state_is_recovered() -> None:
+    truth = {"inertance": 50.0, "coulomb_force": 60.0, "rate_effect": 0.02, "age_effect": 0.06,
+             "age_distance": 3e-4}  # fmt: skip
+    held = {"transition_velocity": 1e-3}
+    start = {"inertance": 40.0, "coulomb_force": 30.0, "rate_effect": 0.01, "age_effect": 0.01,
+             "age_distance": 1e-3}  # fmt: skip
+    one = run(Device(friction="rate_state", **truth, **held), 0.05)
+    fit = problem(one).fit(Model("rate_state", {**start, **held}, tuple(start)))
+    for name, (value, stderr) in parameter_errors(fit).items():
+        assert value == pytest.approx(truth[name], rel=0.02, abs=4 * stderr), name
+        assert stderr < 0.2 * truth[name], name
+
+
 @pytest.mark.parametrize("law", ["dahl", "lugre"])
 def test_bristles_are_recovered(law: str) -> None:
     truth = {"inertance": 50.0, "friction": law, "coulomb_force": 20.0, "bristle_stiffness": 1e4}

@@ -142,6 +142,20 @@ _ALL = (
         start=(1e-3, 0.3), start_unit=lambda s: s.force / s.velocity,
     ),
     Coordinate(
+        name="rate_effect", unit="1", words={"rate_effect": "rise of the level per ln(v), A"},
+        size=lambda s: 0.02, lower=_zero, upper=lambda s: 0.5, start=(3e-3, 0.1),
+    ),
+    Coordinate(
+        name="age_effect", unit="1", words={"age_effect": "rise of the level per ln(age), B"},
+        size=lambda s: 0.02, lower=_zero, upper=lambda s: 0.5, start=(3e-3, 0.1),
+    ),
+    Coordinate(
+        name="age_distance", unit="m", words={"age_distance": "way that renews the contacts, L"},
+        size=lambda s: 0.01 * s.displacement, lower=lambda s: 1e-5 * s.displacement,
+        upper=lambda s: 3 * s.displacement, logarithmic=True, none=None,
+        start=(1e-4, 0.3), start_unit=lambda s: s.displacement,
+    ),
+    Coordinate(
         name="bw_level", unit="N", size=lambda s: 0.1 * s.force, lower=lambda s: 1e-6 * s.force,
     ),
     Coordinate(

@@ -140,7 +140,7 @@ _ALL = (
         grid={"presliding": (0.01, 0.1, 0.5), "bw_shape": (0.6, 1.0)},
         begin={"bw_exponent": 1.2}, rich=True,
     ),
-    # held as they are stated: no fit changes them yet, no trial takes them
+    # held as they are stated: a diagnosis does not change them, no trial takes them
     FrictionLaw(
         name="maxwell_slip", words="Maxwell-slip", effect="hysteretic_friction", level="",
         constants=tuple(f"slip_{what}_{i}" for i in range(1, 9) for what in ("stiffness", "force")),
@@ -149,7 +149,7 @@ _ALL = (
     FrictionLaw(
         name="rate_state", words="rate-and-state", effect="coulomb_friction", level="",
         constants=("rate_effect", "age_effect", "rate_velocity", "age_distance"),
-        smoothed=True, memory=True, varies=False,
+        smoothed=True, memory=True, varies=False, contains=("none", "coulomb"),
     ),
 )  # fmt: skip
 

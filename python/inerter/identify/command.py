@@ -27,8 +27,8 @@ def identify_command(
             help="Laws, with commas or given again; parts joined by + as in "
             "lugre+series+offset. Laws: ideal, "
             "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, bouc_wen_any, "
-            "fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, load, "
-            "asymmetry, position, variable, delay, play."
+            "rate_state, fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, "
+            "load, asymmetry, position, variable, delay, play."
         ),
     ] = ["ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen"],  # noqa: B006
     fix: Annotated[

@@ -207,7 +207,7 @@ class ReferenceDevice(DeviceParameters):
         return FRICTION[self.friction].force(loaded, place, rate, state)
 
     def load_friction_force(self, v: Quantity, carried: Quantity, z: Quantity = 0.0) -> Quantity:
-        """Load-dependent friction lambda |N| [N] of a law without a bristle, N the force carried."""
+        """Load friction lambda |N| [N] of a law without a bristle, N the force carried."""
         return load.force(self, carried, v, self._states(z)[0])
 
     def load_share(self, v: Quantity, carried: Quantity, z: Quantity = 0.0) -> Quantity:

@@ -16,8 +16,8 @@ does not.
 Source: Bouc 1967 and Wen 1976, as in "Modelling and identification of the hysteretic dynamics
 of inerters", eqs. (12)-(13), where the last term's exponent n is lost in print.
 Along the stroke (`friction_curve` and its kin), and where a load adds to the force at which it
-yields, |1 - A| k0 (alpha / (beta + gamma))^(1/n) (`load.py`), beta and gamma are divided by level^n: z saturates
-at that share, with the same stiffness and energy.
+yields, |1 - A| k0 (alpha / (beta + gamma))^(1/n) (`load.py`), beta and gamma are divided by
+level^n: z saturates at that share, with the same stiffness and energy.
 Not modelled: degradation, pinching, rate dependence.
 Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be rescaled with z.
 """

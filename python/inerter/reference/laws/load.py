@@ -12,8 +12,8 @@ through the inertance branch [N], v_t `transition_velocity` [m/s]. For an ideal 
 Sign: tension positive; F v >= 0.
 Range: 0 <= mu_b < 1, so that the acceleration still follows uniquely from the force.
 Efficiency: power forward 1 / (1 + mu_f), backward 1 - mu_b.
-Energy: the stiffness of a bristle does not follow the load, so that a load that changes does no work
-on it, and the law is passive whatever the load does.
+Energy: the stiffness of a bristle does not follow the load, so that a load that changes does no
+work on it, and the law is passive whatever the load does.
 Source: Coulomb's law with the screw's own load as normal force; efficiency of a ball screw.
 Not modelled: load from other branches; LuGre behind a series element leaves its damper out of N.
 

@@ -5,7 +5,8 @@
     z_i' = v (1 - k_i z_i sgn(v) / (f_i level))     at the limit (where that is 0) and beyond
 
 Symbols: z_i deflection of element i [m], k_i `slip_stiffness_i` [N/m], f_i `slip_force_i` [N],
-level see `level.py`, to which a load l adds l / sum of f_i (`load.py`). Elements 1 to n; those with stiffness 0 are not there.
+level see `level.py`, to which a load l adds l / sum of f_i (`load.py`). Elements 1 to n; those
+with stiffness 0 are not there.
 Sign: tension positive; z_i grows with x.
 Range: k_i, f_i > 0. Beyond its limit an element is only where the level has fallen under it.
 Stored: sum of k_i z_i^2 / 2. Dissipated: sum of k_i z_i (v - z_i'), never negative.

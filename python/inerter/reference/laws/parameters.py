@@ -61,7 +61,7 @@ class FrictionParameters(StrokeParameters):
     friction: str = "none"
 
     load_level = 0.0
-    """What a load adds to the level of a bristle [N], see `load.py`; of the moment, no parameter."""
+    """What a load adds to the level of a bristle now [N], see `load.py`; no parameter."""
 
     coulomb_force: float = parameter(0.0, "N", "friction force at speed, f_c", at_least=0.0)
     static_force: float = parameter(
