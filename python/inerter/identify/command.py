@@ -62,6 +62,14 @@ def identify_command(
             help="Then fit the best law's motion under the measured force, without derivatives.",
         ),
     ] = False,
+    scaled_by: Annotated[
+        str | None,
+        typer.Option(
+            metavar="COLUMN",
+            help="Instead: which parameters go with a further column of the records, such as a "
+            "pressure or a voltage. Writes modulation.json and modulation.png.",
+        ),
+    ] = None,
     out_dir: Folder = Path("out/identification"),
     as_json: AsJson = False,
     stated: Any = None,
@@ -74,7 +82,11 @@ def identify_command(
     Examples:
       inerter identify runs/*.csv --law viscous,lugre+offset
       inerter identify bench.csv --fix inertance=113 --holdout slow
+      inerter identify seals/*.csv --scaled-by pressure
     """
+    if scaled_by is not None:
+        _modulation(record, scaled_by, out_dir, as_json, stated)
+        return
     from inerter.identify.channel_filter import stated_filters
     from inerter.identify.estimate import identify
     from inerter.identify.output import (
@@ -104,6 +116,27 @@ def identify_command(
         return
     print_identification(result, out)
     out.print(f"Written to {out_dir}: {', '.join(files)}")
+
+
+def _modulation(
+    record: list[str], channel: str, folder: Path, as_json: bool, stated: dict[str, Any]
+) -> None:
+    from inerter.folder import json_text
+    from inerter.identify.modulation import modulation
+    from inerter.identify.modulation_output import json_of, print_modulation, write_modulation
+    from inerter.records import Record, read_records
+
+    with refusing(folder, "modulation.json", "modulation.png"):
+        with told_reading(**stated) as tell:
+            records = read_records(record, "bench")
+            tell()
+        found = modulation([record for record in records if isinstance(record, Record)], channel)
+        files = write_modulation(found, folder)
+    if as_json:
+        print(json_text(json_of(found)), end="")
+        return
+    print_modulation(found, out)
+    out.print(f"Written to {folder}: {', '.join(files)}")
 
 
 def _names(given: list[str]) -> tuple[str, ...]:
