@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from inerter.diagnose.decision import CRITERIA, better, visible
+from inerter.diagnose.decision import CRITERIA, visible
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.result import Finding, RecordSummary
 from inerter.diagnose.statistics import advantage, gain_interval, win_shares
@@ -37,7 +37,6 @@ from inerter.diagnose.vehicle.search import (
 from inerter.diagnose.vehicle.sensor_units import unit_of
 from inerter.diagnose.vehicle.simulate import VehicleSimulator
 from inerter.diagnose.vehicle.split import split_drives
-from inerter.diagnose.vehicle.together import LEFT, stated_together
 from inerter.diagnose.vehicle.values import NAMED, parameter_values
 from inerter.diagnose.wording import doubts_of_records
 from inerter.records.duplicates import repeats_another, without_copies
@@ -129,7 +128,7 @@ class _System:
         columns = {output.column: spacing for output in self.channels.outputs}
         effects = Effects(self.user, self._scales(), self._loads(), columns)
         search = VehicleSearch(self.fit, effects, self._step_error, self.progress)
-        final = self._together(search, search.run())
+        final = search.run()
         start = search.refit([(VehicleModel(), {})])[0]
         chain = self._chain(search, start, final)
         while (weak := self._unconfirmed(chain)) is not None:
@@ -138,16 +137,6 @@ class _System:
             final = search.refit([search.without(final, weak)])[0]
             chain = self._chain(search, start, final)
         return self._diagnosis(search, start, final, chain)
-
-    def _together(self, search: VehicleSearch, final: VehicleScored) -> VehicleScored:
-        """The model of stated values that are wrong together, where that is better by far."""
-        if final.fit.error < LEFT:
-            return final
-        found = stated_together(search)
-        if found is None or not better(final, found[0], advantage(final.squares, found[0].squares)):
-            return final
-        search.steps = found[1]
-        return search.grown(found[0])
 
     # --- records -----------------------------------------------------------------------------
 

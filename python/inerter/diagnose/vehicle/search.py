@@ -99,12 +99,8 @@ class VehicleSearch:
 
     def run(self) -> VehicleScored:
         """From the user's model to the one that predicts best."""
-        return self.grown(self._score(fit_all(self.problem, [(VehicleModel(), {})])[0]))
-
-    def grown(self, current: VehicleScored) -> VehicleScored:
-        """A model with one effect more at a time, as long as each helps."""
-        most = len(self.steps) + CRITERIA.most_in_vehicles
-        while len(self.steps) < most:
+        current = self._score(fit_all(self.problem, [(VehicleModel(), {})])[0])
+        while len(self.steps) < CRITERIA.most_in_vehicles:
             if self._is_noise(current):
                 break
             step = self._best_step(current)
@@ -290,6 +286,11 @@ class VehicleSearch:
         if candidate is None or not candidate.telling:
             return True
         spread, values = errors(scored.fit), scored.model.values
+        if candidate.added.effect == "damper_asymmetry":
+            # alike in both directions it is a damping other than stated, however far off
+            one, other = candidate.telling
+            apart = abs(values[one] - values[other])
+            return apart > CRITERIA.distinction * float(np.hypot(spread[one], spread[other]))
         return any(
             abs(values[name] - self._before(candidate, name, before.model))
             > CRITERIA.distinction * spread[name]
