@@ -54,6 +54,40 @@ _ALL = (
         cause="brake, hub and links that the model leaves out", taken_for="tyre stiffness",
         experiment="weigh the wheel", rivals=("tyre_stiffness_error",),
     ),
+    Effect(
+        name="joint_friction", reported=("joint_friction",),
+        plain="dry friction of a joint of the vehicle",
+        meaning="f sign(v) between a wheel or body and its guide",
+        cause="guides, bushes and seals beside the device",
+        taken_for="friction of the device",
+        experiment="move the body by hand without spring and device",
+        rivals=("coulomb_friction", "joint_damping"),
+    ),
+    Effect(
+        name="joint_damping", reported=("joint_damping",),
+        plain="damping of a joint of the vehicle",
+        meaning="c v between a wheel or body and its guide",
+        cause="grease and seals of guides, rubber bushes", taken_for="damping of the suspension",
+        experiment="move the body by hand without spring and device",
+        rivals=("viscous_friction", "joint_friction"),
+    ),
+    Effect(
+        name="actuator_gain_error", reported=("actuator_gain",),
+        plain="a driven force of another size than recorded",
+        meaning="the force that acts is the recorded one times a gain",
+        cause="a motor constant, a gear or a calibration other than stated; a command recorded in "
+        "place of a force",
+        taken_for="masses and stiffnesses that are all off alike",
+        experiment="push against a load cell",
+    ),
+    Effect(
+        name="actuator_lag", reported=("actuator_lag",),
+        plain="a driven force that comes late",
+        meaning="the force follows the recorded one through a first-order lag",
+        cause="current loop, hydraulics, a command recorded in place of a force",
+        taken_for="a delay of all other channels", experiment="a step against a load cell",
+        rivals=("sensor_delay",),
+    ),
 )  # fmt: skip
 
 VEHICLE_EFFECTS: Mapping[str, Effect] = MappingProxyType({effect.name: effect for effect in _ALL})

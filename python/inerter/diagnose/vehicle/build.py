@@ -7,6 +7,8 @@ TYRE.tyre_damping           a further velocity actuator, whose control is the ro
 TYRE.tyre_static_load       force range of the road's actuator: it cannot pull by more [N]
 DEVICE.rebound_damping, DEVICE.bump_damping   the suspension's damper: the smaller one stays
                             where the user has it, the rest acts in its direction alone [N s/m]
+joint:NAME.joint_friction, joint_damping   of a wheel's or body's own joint [N, N s/m]
+actuator:NAME.actuator_gain, actuator_lag   of a force that the record drives [1, s]
 LINK.stiffness, LINK.stiffness_cubic, LINK.damping   of a joint or tendon
 BODY.mass                   of a body, its inertia in proportion [kg]
 """
@@ -28,8 +30,16 @@ from inerter.catalogue.coordinates import parameters_of
 from inerter.catalogue.friction import FRICTION, LAW_COORDINATES, law_coordinates
 from inerter.core import Device, DeviceError, parameters
 from inerter.device_in_model import DeviceInModel, devices_of
+from inerter.diagnose.vehicle.changes import (
+    add_one_sided,
+    change_force,
+    change_guide,
+    change_tyre,
+    rate_actuator,
+    split_damping,
+)
 from inerter.diagnose.vehicle.model import VehicleModel
-from inerter.diagnose.vehicle.parts import Parts, Suspension, Tyre, VehicleLink, find_parts
+from inerter.diagnose.vehicle.parts import Parts, Suspension, VehicleLink, find_parts
 from inerter.engine_errors import (
     COMPILE_ERRORS,
     cannot_be_opened,
@@ -38,8 +48,6 @@ from inerter.engine_errors import (
 )
 from inerter.model_bounds import refuse_not_a_number, refuse_unbounded
 from inerter.plugin import load_plugin
-
-_FAR = 1e12  # a force that no one-sided actuator reaches [N]
 
 
 @dataclass(kw_only=True)
@@ -95,6 +103,16 @@ class UserModel:
                 found[f"{device.name}.{name}"] = value
         for tyre in self.parts.tyres:
             found[f"{tyre.element}.tyre_stiffness"] = tyre.stiffness
+            rate = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_ACTUATOR, rate_actuator(tyre))
+            if rate >= 0:
+                found[f"{tyre.element}.tyre_damping"] = -float(self.model.actuator_biasprm[rate, 2])
+        for joint in self.guides:
+            dof = int(self.model.jnt_dofadr[joint])
+            found[f"{self.joint(joint)}.joint_friction"] = float(self.model.dof_frictionloss[dof])
+            found[f"{self.joint(joint)}.joint_damping"] = float(self.model.dof_damping[dof])
+        for actuator in self.forces:
+            element = self.actuator(actuator)
+            found |= {f"{element}.actuator_gain": 1.0, f"{element}.actuator_lag": 0.0}
         for part in self.parts.suspensions:
             for body in (part.wheel, part.body):
                 found[f"{self.body(body)}.mass"] = float(self.model.body_mass[body])
@@ -103,6 +121,44 @@ class UserModel:
                     for name in names:
                         found[f"{link.element}.{name}"] = self._of_link(link, name)
         return found
+
+    @cached_property
+    def guides(self) -> list[int]:
+        """Joints that guide a wheel or a body against what is neither: slides and hinges."""
+        model, found = self.model, set()
+        for part in self.parts.suspensions:
+            pair = (part.wheel, part.body)
+            for joint in range(model.njnt):
+                own = int(model.jnt_bodyid[joint])
+                if (
+                    own in pair
+                    and int(model.body_parentid[own]) not in pair
+                    and (int(model.jnt_type[joint]) in (2, 3))
+                ):
+                    found.add(joint)
+        return sorted(found)
+
+    @cached_property
+    def forces(self) -> list[int]:
+        """Actuators that a record drives with a force: fixed gain, no bias, no dynamics."""
+        model = self.model
+        tyres = {tyre.actuator for tyre in self.parts.tyres}
+        return [
+            i
+            for i in self.roads
+            if i not in tyres
+            and model.actuator_gaintype[i] == mujoco.mjtGain.mjGAIN_FIXED
+            and model.actuator_biastype[i] == mujoco.mjtBias.mjBIAS_NONE
+            and model.actuator_dyntype[i] == mujoco.mjtDyn.mjDYN_NONE
+        ]
+
+    def joint(self, index: int) -> str:
+        """A joint's name in coordinates."""
+        return f"joint:{self.model.joint(index).name or index}"
+
+    def actuator(self, index: int) -> str:
+        """An actuator's name in coordinates."""
+        return f"actuator:{self.model.actuator(index).name or index}"
 
     def _of_link(self, link: VehicleLink, name: str) -> float:
         if link.kind == "tendon":
@@ -154,7 +210,7 @@ class UserModel:
     def _lower_damping(self, name: str, change: VehicleModel) -> float | None:
         """What stays in a device's `viscous` where its damper differs by direction."""
         part = next((p for p in self.parts.suspensions if p.device == name), None)
-        split = _split_damping(name, change)
+        split = split_damping(name, change)
         if split is None or part is None or part.damper is None or part.damper.kind != "device":
             return None
         return min(split)
@@ -169,10 +225,14 @@ class UserModel:
         for part in self.parts.suspensions:
             self._change_suspension(spec, part, change)
         for tyre in self.parts.tyres:
-            _change_tyre(spec, tyre, change.of(tyre.element))
+            change_tyre(spec, tyre, change.of(tyre.element))
         for index in {b for p in self.parts.suspensions for b in (p.wheel, p.body)}:
             if (mass := change.of(self.body(index)).get("mass")) is not None:
                 self._weigh(spec, index, mass)
+        for joint in self.guides:
+            change_guide(spec.joints[joint], change.of(self.joint(joint)))
+        for index in self.forces:
+            states |= change_force(spec.actuators[index], change.of(self.actuator(index)))
         if states:
             # a keyframe that states the device's states has too few of them now
             for keyframe in spec.keys:
@@ -243,7 +303,7 @@ class UserModel:
                 column = np.array(element.damping)
                 column[0] = values["damping"]
                 element.damping = column
-        split = _split_damping(part.device, change)
+        split = split_damping(part.device, change)
         if split is None or part.damper is None:
             return
         rebound, bump = split
@@ -253,7 +313,7 @@ class UserModel:
             column = np.array(element.damping)
             column[0] = min(split)
             element.damping = column
-        _add_one_sided(spec, link, rebound, bump)
+        add_one_sided(spec, link, rebound, bump)
 
     def _weigh(self, spec: mujoco.MjSpec, index: int, mass: float) -> None:
         body, model = spec.bodies[index], self.model
@@ -327,76 +387,3 @@ def _number(value: float | str) -> float:
 def _has_files(spec: mujoco.MjSpec) -> bool:
     return any(getattr(each, "file", "") for kind in (spec.meshes, spec.textures, spec.hfields)
                for each in kind)  # fmt: skip
-
-
-def _split_damping(device: str, change: VehicleModel) -> tuple[float, float] | None:
-    values = change.of(device)
-    if "rebound_damping" not in values:
-        return None
-    return values["rebound_damping"], values["bump_damping"]
-
-
-def _add_one_sided(spec: mujoco.MjSpec, link: VehicleLink, rebound: float, bump: float) -> None:
-    """The part of a damper that acts in one direction: a velocity actuator that is cut at zero."""
-    extra = abs(rebound - bump)
-    # the force on the length is -extra v: negative while it grows
-    growing = (rebound > bump) == (link.direction > 0)
-    limits = [-_FAR, 0.0] if growing else [0.0, _FAR]
-    if link.kind == "tendon":
-        target, kind = spec.tendons[link.index].name, mujoco.mjtTrn.mjTRN_TENDON
-        gear = [1.0, 0, 0, 0, 0, 0]
-    elif link.kind == "joint":
-        target, kind = spec.joints[link.index].name, mujoco.mjtTrn.mjTRN_JOINT
-        gear = [1.0, 0, 0, 0, 0, 0]
-    else:
-        own = spec.actuators[link.index]
-        target, kind, gear = own.target, own.trntype, list(own.gear)
-    bias = np.zeros(10)
-    bias[2] = -extra
-    actuator = spec.add_actuator(
-        name=f"{link.name}_{'rebound' if rebound > bump else 'bump'}",
-        target=target,
-        trntype=kind,
-        gear=gear,
-        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-        biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-        forcelimited=True,
-        forcerange=limits,
-    )
-    actuator.gainprm = np.zeros_like(actuator.gainprm)
-    actuator.biasprm = bias
-
-
-def _change_tyre(spec: mujoco.MjSpec, tyre: Tyre, values: dict[str, float]) -> None:
-    actuator = spec.actuators[tyre.actuator]
-    if "tyre_stiffness" in values:
-        gain, bias = np.array(actuator.gainprm), np.array(actuator.biasprm)
-        gain[0], bias[1] = values["tyre_stiffness"], -values["tyre_stiffness"]
-        actuator.gainprm, actuator.biasprm = gain, bias
-    if "tyre_static_load" in values:
-        load = values["tyre_static_load"]
-        actuator.forcelimited = True
-        actuator.forcerange = [-load, _FAR] if tyre.pull > 0 else [-_FAR, load]
-    if "tyre_damping" in values:
-        extra = spec.add_actuator(
-            name=rate_actuator(tyre),
-            target=actuator.target,
-            trntype=actuator.trntype,
-            gear=list(actuator.gear),
-            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-        )
-        gain, bias = np.zeros(10), np.zeros(10)
-        gain[0], bias[2] = values["tyre_damping"], -values["tyre_damping"]
-        extra.gainprm, extra.biasprm = gain, bias
-        spec.add_sensor(
-            name=rate_actuator(tyre),
-            type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
-            objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
-            objname=rate_actuator(tyre),
-        )
-
-
-def rate_actuator(tyre: Tyre) -> str:
-    """Name of the actuator of a tyre's damping; its control is the road's rate [m/s]."""
-    return f"{tyre.name}_rate"

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from inerter.diagnose.decision import CRITERIA, visible
 from inerter.diagnose.doubt import doubted
-from inerter.diagnose.result import Finding, RecordSummary, Rival
+from inerter.diagnose.result import Finding, RecordSummary
 from inerter.diagnose.statistics import advantage, gain_interval, win_shares
 from inerter.diagnose.vehicle import wording
 from inerter.diagnose.vehicle.build import UserModel, model_of_text
@@ -20,8 +20,9 @@ from inerter.diagnose.vehicle.curves import channel_curves
 from inerter.diagnose.vehicle.drive import RecordedDrive, make_drive
 from inerter.diagnose.vehicle.effects import Effects, Scale
 from inerter.diagnose.vehicle.mapping import Channels
-from inerter.diagnose.vehicle.model import Added, VehicleModel
+from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
+from inerter.diagnose.vehicle.polarity import polarity
 from inerter.diagnose.vehicle.problem import ComparedChannel, DrivenProblem
 from inerter.diagnose.vehicle.remainder import remainder
 from inerter.diagnose.vehicle.search import (
@@ -31,11 +32,12 @@ from inerter.diagnose.vehicle.search import (
     VehicleSearch,
     block_squares,
     stacked_blocks,
+    standing_of,
 )
 from inerter.diagnose.vehicle.sensor_units import unit_of
 from inerter.diagnose.vehicle.simulate import VehicleSimulator
 from inerter.diagnose.vehicle.split import split_drives
-from inerter.diagnose.vehicle.values import parameter_values
+from inerter.diagnose.vehicle.values import NAMED, parameter_values
 from inerter.diagnose.wording import doubts_of_records
 from inerter.records.duplicates import repeats_another, without_copies
 from inerter.records.record import RecordWarning, TimeRecord
@@ -46,8 +48,6 @@ Progress = Callable[[str], None]
 
 # a finding that was surer than this when it was made is not compared again
 SURE = 0.9
-# a channel that runs against its simulation as surely as this has another sign
-_OPPOSITE = -0.5
 _METHOD = "not run: the simulation of the whole model is MuJoCo's"
 
 
@@ -109,7 +109,7 @@ class _System:
         progress("simulating the model along the recorded inputs")
         self.warnings: dict[str, list[RecordWarning]] = {r.name: list(r.warnings) for r in records}
         self.notes: list[str] = []
-        self.drives = self._right_signs(drives)
+        self.drives = self._checked(drives)
         self.whole = DrivenProblem(
             simulator=self.simulator, drives=self.drives, channels=self._channels()
         )
@@ -124,7 +124,9 @@ class _System:
 
     def run(self) -> SystemDiagnosis:
         """The whole procedure."""
-        effects = Effects(self.user, self._scales(), self._loads())
+        spacing = float(np.median([drive.spacing for drive in self.drives]))
+        columns = {output.column: spacing for output in self.channels.outputs}
+        effects = Effects(self.user, self._scales(), self._loads(), columns)
         search = VehicleSearch(self.fit, effects, self._step_error, self.progress)
         final = search.run()
         start = search.refit([(VehicleModel(), {})])[0]
@@ -138,32 +140,18 @@ class _System:
 
     # --- records -----------------------------------------------------------------------------
 
-    def _right_signs(self, drives: list[RecordedDrive]) -> list[RecordedDrive]:
-        """Runs with a tyre's force counted as the model does; other opposite channels are noted."""
+    def _checked(self, drives: list[RecordedDrive]) -> list[RecordedDrive]:
+        """Runs with a tyre's force counted as the model does; odd signs and scales are told."""
         simulated = [self.simulator.outputs([VehicleModel()], drive)[0] for drive in drives]
         if not all(np.isfinite(each).all() for each in simulated):
             raise ValueError(
                 f"{self.user.path}: the simulation of the recorded inputs fails (it diverges); "
                 "check the inputs' units and the model's timestep"
             )
-        signs = np.ones(len(self.channels.outputs))
-        for i, output in enumerate(self.channels.outputs):
-            measured = np.concatenate([d.measured[:, i] - d.measured[:, i].mean() for d in drives])
-            model = np.concatenate([s[:, i] - s[:, i].mean() for s in simulated])
-            size = np.linalg.norm(measured) * np.linalg.norm(model)
-            if not size or measured @ model / size > _OPPOSITE:
-                continue
-            if output.load:
-                signs[i] = -1.0
-                self.notes.append(f"{output.column} counted with the other sign")
-                continue
-            for record in self.records:
-                self.warnings[record.name].append(
-                    RecordWarning(
-                        "sign_flip",
-                        f"{output.column!r} runs against the simulation: another sign convention?",
-                    )
-                )
+        signs, notes, warnings = polarity(self.channels.outputs, drives, simulated)
+        self.notes += notes
+        for record in self.records:
+            self.warnings[record.name] += warnings
         return [replace(drive, measured=drive.measured * signs) for drive in drives]
 
     def _channels(self) -> list[ComparedChannel]:
@@ -291,13 +279,13 @@ class _System:
         found = []
         for i, added in enumerate(final.model.effects):
             step = next((s for s in search.steps if s.chosen.model.effects[-1:] == (added,)), None)
-            confidence, rivals = _standing(step, added)
+            confidence, rivals = standing_of(step, added)
             if step is not None and i + 1 < len(final.model.effects) and confidence < SURE:
                 # beside the effects found since, a rival may not be one any more
                 self.progress(f"comparing {added.effect} with what else could explain the data")
                 without, others = search.standing(final, i, step)
                 shares = win_shares([final.squares, without.squares, *(s.squares for s in others)])
-                confidence, rivals = _standing(Step(without, final, others, shares), added)
+                confidence, rivals = standing_of(Step(without, final, others, shares), added)
             finding = Finding(
                 effect=added.effect,
                 law=added.law,
@@ -310,7 +298,7 @@ class _System:
                 gain_interval=gain_interval(squares[i], squares[i + 1]),
             )
             kind, _, name = added.element.partition(":")
-            place = (name or kind) if several and kind != "body" else ""
+            place = (name or kind) if (several and kind != "body") or kind in NAMED else ""
             finding = replace(finding, evidence=wording.evidence(finding, place))
             found.append((finding, place))
         return sorted(found, key=lambda pair: -pair[0].gain)
@@ -350,7 +338,11 @@ class _System:
             extended=after,
             noise_floor=floor,
             unexplained=remains,
-            engines={"mujoco": self._written_error(xml), "exudyn": None, "reference": None},
+            engines={
+                "mujoco": self._written_error(xml, final.model),
+                "exudyn": None,
+                "reference": None,
+            },
             verdict=doubts_of_records(self._summaries())
             + wording.verdict(before, after, findings, places, remains, self.user.parts.unknown),
             parameters=parameters,
@@ -401,13 +393,17 @@ class _System:
             return "unused"
         return "holdout" if record.name in held else "fit"
 
-    def _written_error(self, xml: str) -> float | None:
-        """Held-out error of the model as written, read back from its text."""
+    def _written_error(self, xml: str, model: VehicleModel) -> float | None:
+        """Held-out error of the model as written, read back from its text.
+
+        What belongs to a channel, its delay, is in no model.
+        """
+        late = {n: v for n, v in model.values.items() if n.startswith("channel:")}
         written = model_of_text(xml, self.user.path)
         written.with_roads(self.user.roads)
         simulator = VehicleSimulator(written, self.channels, self.simulator.threads)
         problem = replace(self.held, simulator=simulator)
-        error = problem.error(problem.stacked([VehicleModel()])[0])
+        error = problem.error(problem.stacked([VehicleModel(late)])[0])
         return error if np.isfinite(error) else None
 
     def _method(self) -> dict:
@@ -427,24 +423,5 @@ class _System:
             "reference": _METHOD,
             **({"not_tried": self.user.parts.unknown} if self.user.parts.unknown else {}),
             **({"signs": self.notes} if self.notes else {}),
+            **({"unused": list(self.channels.unused)} if self.channels.unused else {}),
         }
-
-
-def _standing(step: Step | None, added: Added) -> tuple[float, list[Rival]]:
-    """Confidence and rivals of an effect, from the step in which it was added."""
-    if step is None:
-        return 0.5, []
-    confidence = float(step.shares[0])
-    rivals = []
-    for other, share in zip(step.others, step.shares[2:], strict=True):
-        assert other.candidate is not None
-        effect = other.candidate.added
-        # another law or start of the same effect is no doubt about the effect
-        if effect.effect == added.effect and effect.element == added.element:
-            confidence += float(share)
-        elif share >= CRITERIA.rival_kept:
-            rivals.append(Rival(effect.effect, float(share), effect.law))
-    twin = wording.EQUIVALENT.get(added.effect)
-    if twin:
-        rivals.append(Rival(twin, min(confidence, 1.0)))
-    return min(confidence, 1.0), sorted(rivals, key=lambda rival: -rival.confidence)

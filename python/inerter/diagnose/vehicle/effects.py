@@ -10,24 +10,24 @@ import numpy as np
 from inerter.catalogue.coordinates import COORDINATES
 from inerter.catalogue.friction import FRICTION
 from inerter.catalogue.scales import Range
+from inerter.diagnose.vehicle.around import around
 from inerter.diagnose.vehicle.build import UserModel
 from inerter.diagnose.vehicle.candidate import Scale, VehicleCandidate, candidate
 from inerter.diagnose.vehicle.model import Added, VehicleModel
-from inerter.diagnose.vehicle.parts import Suspension, Tyre
-
-_GRAVITY = 9.81
 
 
 @dataclass(frozen=True)
 class Effects:
     """Everything that can be tried in a user's model.
 
-    scales: by device; total: sprung and unsprung mass on each tyre by its element [kg].
+    scales: by device; loads: sprung and unsprung mass on each tyre by its element [kg]; columns:
+    time between samples [s] by compared column.
     """
 
     user: UserModel
     scales: Mapping[str, Scale]
     loads: Mapping[str, float] = field(default_factory=dict)
+    columns: Mapping[str, float] = field(default_factory=dict)
 
     def candidates(self, model: VehicleModel) -> Iterator[VehicleCandidate]:
         """Every effect that a model does not have yet."""
@@ -41,8 +41,7 @@ class Effects:
         for device in self.user.devices:
             for build in _DEVICE:
                 yield from build(self, device.name, model)
-        for build in _VEHICLE:
-            yield from build(self, model)
+        yield from around(self, model)
 
     def _doubled(self, added: Added) -> bool:
         """Whether the vehicle's own spring or damper says the same between the same bodies."""
@@ -330,98 +329,3 @@ _DEVICE: tuple[Builder, ...] = (
     _gas,
     _stops,
 )  # fmt: skip
-
-
-# --- around it: the vehicle --------------------------------------------------------------------
-
-
-def _tyres(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    for tyre in effects.user.parts.tyres:
-        stiffness = effects.stated(f"{tyre.element}.tyre_stiffness", model)
-        rate = _wheel_rate(effects, tyre)
-        yield candidate(
-            "tyre_damping", tyre.element, [{"tyre_damping": 0.03 * stiffness / rate}],
-            {"tyre_damping": Range(0.1 * stiffness / rate, 0.0)}, ("tyre_damping",),
-        )  # fmt: skip
-        yield candidate(
-            "tyre_stiffness_error", tyre.element, [{"tyre_stiffness": 1.05 * stiffness}],
-            {"tyre_stiffness": Range(stiffness, 0.02 * stiffness)}, ("tyre_stiffness",),
-        )  # fmt: skip
-        load = _GRAVITY * effects.loads.get(tyre.element, 0.0)
-        if load > 0:
-            # without gravity in the model, forces count from the static load
-            weightless = not np.any(effects.user.model.opt.gravity)
-            size = Range(load, 1e-3 * load if weightless else -0.5 * load, 5 * load, weightless)
-            starts = (1.0, 0.6, 0.3) if weightless else (0.0, 0.1)
-            yield candidate(
-                "tyre_liftoff", tyre.element, [{"tyre_static_load": r * load} for r in starts],
-                {"tyre_static_load": size}, (),
-            )  # fmt: skip
-
-
-def _wheel_rate(effects: Effects, tyre: Tyre) -> float:
-    """Wheel hop [rad/s]."""
-    part = next((p for p in effects.user.parts.suspensions if p.tyre == tyre), None)
-    if part is None:
-        return 60.0
-    return float(np.sqrt(tyre.stiffness / effects.user.model.body_mass[part.wheel]))
-
-
-def _suspensions(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    user = effects.user
-    bodies = set()
-    for part in user.parts.suspensions:
-        yield from _damper(effects, part, model)
-        yield from _spring(effects, part, model)
-        bodies |= {(part.body, "body_mass_error"), (part.wheel, "wheel_mass_error")}
-    for index, effect in sorted(bodies, key=lambda pair: pair[1]):
-        element = user.body(index)
-        mass = user.stated[f"{element}.mass"]
-        yield candidate(
-            effect, element, [{"mass": 1.05 * effects.stated(f"{element}.mass", model)}],
-            {"mass": Range(mass, 0.05 * mass)}, ("mass",),
-        )  # fmt: skip
-
-
-def _damper(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    if part.damper is None:
-        return
-    link = part.damper
-    now = effects.damping(part.device, model)
-    sizes = {"rebound_damping": Range(now, 0.0), "bump_damping": Range(now, 0.0)}
-    starts = [
-        {"rebound_damping": r * now, "bump_damping": b * now} for r, b in ((1.1, 0.9), (1.1, 1.0))
-    ]
-    yield candidate(
-        "damper_asymmetry", part.device, starts, sizes, ("rebound_damping", "bump_damping")
-    )
-    if link.kind != "device":
-        yield candidate(
-            "viscous_friction", link.element, [{"damping": 1.05 * now}],
-            {"damping": Range(now, 0.0)}, ("damping",),
-        )  # fmt: skip
-
-
-def _spring(effects: Effects, part: Suspension, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    if part.spring is None:
-        return
-    link, scale = part.spring, effects.scales[part.device]
-    name = f"{link.element}.stiffness"
-    now = effects.stated(name, model)
-    cubic = Range(max(now, 0.1 * scale.force / scale.x) / scale.x**2)
-    before = effects.stated(f"{link.element}.stiffness_cubic", model)
-    yield candidate(
-        "spring_hardening", link.element, [{"stiffness_cubic": before + 0.02 * cubic.size}],
-        {"stiffness_cubic": cubic}, ("stiffness_cubic",),
-    )  # fmt: skip
-    if link.kind != "device":
-        yield candidate(
-            "parallel_stiffness", link.element, [{"stiffness": 1.05 * now}],
-            {"stiffness": Range(now, 0.0)}, ("stiffness",),
-        )  # fmt: skip
-
-
-_VEHICLE: tuple[Callable[[Effects, VehicleModel], Iterator[VehicleCandidate]], ...] = (
-    _tyres,
-    _suspensions,
-)

@@ -19,6 +19,9 @@ ACCELEROMETERS = (
 )
 # lengths, which records count from another place than models do
 LENGTHS = (int(_SENSOR.mjSENS_TENDONPOS), int(_SENSOR.mjSENS_ACTUATORPOS))
+PLACES = (int(_SENSOR.mjSENS_FRAMEPOS), int(_SENSOR.mjSENS_RANGEFINDER))
+# load cells, whose zero has whatever hangs on them at rest
+CELLS = (int(_SENSOR.mjSENS_FORCE), int(_SENSOR.mjSENS_TORQUE))
 VEHICLE_INPUT = "road"
 VEHICLE_OUTPUTS = ("body_acceleration", "wheel_acceleration", "suspension_travel", "tyre_force")
 
@@ -31,8 +34,8 @@ class MappingError(ValueError):
 class Output:
     """A column, the sensor it is compared with and the component of that sensor.
 
-    floating: nobody knows its zero (accelerometers, lengths); load: a tyre's force, whose static
-    part is unknown.
+    floating: nobody knows its zero (accelerometers, lengths, places, load cells); load: a tyre's
+    force, whose static part is unknown.
     """
 
     column: str
@@ -44,10 +47,13 @@ class Output:
 
 @dataclass(frozen=True)
 class Channels:
-    """inputs: actuator by column; outputs: in the order of the record's columns."""
+    """inputs: actuator by column; outputs: in the order of the record's columns; unused: columns
+    that neither drive nor are compared.
+    """
 
     inputs: Mapping[str, str]
     outputs: tuple[Output, ...]
+    unused: tuple[str, ...] = ()
 
 
 def read_options(options: Sequence[str], name: str) -> dict[str, str]:
@@ -118,7 +124,8 @@ def map_columns(
             outputs.append(names.output(column, sensor, column in sensors))
     if not outputs:
         raise names.error("no column is compared with a sensor")
-    return Channels(driven, tuple(outputs))
+    used = {*driven, *(output.column for output in outputs)}
+    return Channels(driven, tuple(outputs), tuple(c for c in columns if c not in used))
 
 
 class _Names:
@@ -180,7 +187,12 @@ class _Names:
         size, kind = int(self.model.sensor_dim[index]), int(self.model.sensor_type[index])
         # under gravity a model's travel counts from its design, a record's from standing still
         sags = column == "suspension_travel" and bool(self.model.opt.gravity.any())
-        floating = kind in (*ACCELEROMETERS, *LENGTHS) or sags
+        floating = kind in (*ACCELEROMETERS, *LENGTHS, *PLACES, *CELLS) or sags
+        if kind == _SENSOR.mjSENS_JOINTPOS:
+            # the zero of an angle is told by gravity, that of a slide by nothing
+            joint = int(self.model.sensor_objid[index])
+            slides = int(self.model.jnt_type[joint]) == mujoco.mjtJoint.mjJNT_SLIDE
+            floating = sags or (slides and column not in VEHICLE_OUTPUTS)
         component = self._component(column, wanted, index, part, size, given)
         # the static load of a tyre is not in a model without gravity
         of = int(self.model.sensor_objid[index])

@@ -89,7 +89,9 @@ def find_parts(model: mujoco.MjModel, roads: list[int]) -> Parts:
         Actuators that the record drives.
     """
     tyres = [tyre for road in roads if (tyre := _tyre(model, road)) is not None]
-    driven = {_driven_body(model, road): road for road in roads}
+    # a road tells the wheel; another input, such as a measured force, only where there is no road
+    on_roads = [tyre.actuator for tyre in tyres] or roads
+    driven = {_driven_body(model, road): road for road in on_roads}
     unknown: list[str] = []
     found = []
     for device in devices_of(model):

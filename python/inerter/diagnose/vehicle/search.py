@@ -22,11 +22,13 @@ from inerter.diagnose.decision import (
     not_needed,
     plainest,
 )
+from inerter.diagnose.result import Rival
 from inerter.diagnose.statistics import advantage, win_shares
 from inerter.diagnose.vehicle.candidate import VehicleCandidate
 from inerter.diagnose.vehicle.effects import Effects
-from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.model import Added, VehicleModel
 from inerter.diagnose.vehicle.problem import DrivenProblem, VehicleFit, fit_all
+from inerter.diagnose.vehicle.wording import EQUIVALENT
 from inerter.estimation.covariance import sandwich
 
 Array = NDArray[np.float64]
@@ -284,6 +286,11 @@ class VehicleSearch:
         if candidate is None or not candidate.telling:
             return True
         spread, values = errors(scored.fit), scored.model.values
+        if candidate.added.effect == "damper_asymmetry":
+            # alike in both directions it is a damping other than stated, however far off
+            one, other = candidate.telling
+            apart = abs(values[one] - values[other])
+            return apart > CRITERIA.distinction * float(np.hypot(spread[one], spread[other]))
         return any(
             abs(values[name] - self._before(candidate, name, before.model))
             > CRITERIA.distinction * spread[name]
@@ -389,3 +396,23 @@ def _better(simple: VehicleScored, rich: VehicleScored) -> bool:
 
 def _as_good(simple: VehicleScored, best: VehicleScored) -> bool:
     return as_good(simple, best, advantage(simple.squares, best.squares))
+
+
+def standing_of(step: Step | None, added: Added) -> tuple[float, list[Rival]]:
+    """Confidence and rivals of an effect, from the step in which it was added."""
+    if step is None:
+        return 0.5, []
+    confidence = float(step.shares[0])
+    rivals = []
+    for other, share in zip(step.others, step.shares[2:], strict=True):
+        assert other.candidate is not None
+        effect = other.candidate.added
+        # another law or start of the same effect is no doubt about the effect
+        if effect.effect == added.effect and effect.element == added.element:
+            confidence += float(share)
+        elif share >= CRITERIA.rival_kept:
+            rivals.append(Rival(effect.effect, float(share), effect.law))
+    twin = EQUIVALENT.get(added.effect)
+    if twin:
+        rivals.append(Rival(twin, min(confidence, 1.0)))
+    return min(confidence, 1.0), sorted(rivals, key=lambda rival: -rival.confidence)

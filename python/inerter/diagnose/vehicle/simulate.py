@@ -13,9 +13,11 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
-from inerter.diagnose.vehicle.build import UserModel, rate_actuator
+from inerter.diagnose.vehicle.build import UserModel
+from inerter.diagnose.vehicle.changes import rate_actuator
 from inerter.diagnose.vehicle.drive import RecordedDrive
 from inerter.diagnose.vehicle.mapping import Channels, Output
 from inerter.diagnose.vehicle.model import VehicleModel
@@ -78,7 +80,17 @@ class VehicleSimulator:
             group = [compiled[i] for i in members]
             own = [starts[i] for i in members] if starts is not None else None
             found[members] = self._group([m for m in group if m is not None], drive, own)
+        for i, model in enumerate(models):
+            self._delay(found[i], model, drive)
         return found
+
+    def _delay(self, values: Array, model: VehicleModel, drive: RecordedDrive) -> None:
+        """Take the channels that a model has late from an earlier time, in place."""
+        for k, output in enumerate(self.channels.outputs):
+            delay = model.values.get(f"channel:{output.column}.delay", 0.0)
+            if delay and np.isfinite(values[:, k]).all():
+                at = np.clip(drive.time - delay, drive.time[0], drive.time[-1])
+                values[:, k] = CubicSpline(drive.time, values[:, k])(at)
 
     def start(self, model: mujoco.MjModel, drive: RecordedDrive) -> Start:
         """At rest: in the first keyframe, else in static equilibrium with the first input."""

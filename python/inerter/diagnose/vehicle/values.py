@@ -28,7 +28,14 @@ _UNITS = {
     "stiffness": "N/m",
     "stiffness_cubic": "N/m^3",
     "mass": "kg",
+    "joint_friction": "N",
+    "joint_damping": "N*s/m",
+    "actuator_gain": "1",
+    "actuator_lag": "s",
+    "delay": "s",
 }
+# elements that are named even where there is one of them
+NAMED = ("joint", "actuator", "channel")
 _MASSES = {"body_mass_error": "body_mass", "wheel_mass_error": "wheel_mass"}
 # the same of a hinge
 _TURNED = {"N": "N*m", "m": "rad", "kg": "kg*m^2"}
@@ -98,7 +105,9 @@ def _read(
 def _unit(user: UserModel, element: str, name: str) -> str:
     known = parameters().get(name)
     unit = known.unit if known else _UNITS.get(name, "")
-    if any(d.name == element and _turns(user.model, d.actuator) for d in user.devices):
+    kind, _, joint = element.partition(":")
+    hinge = kind == "joint" and (user.model.joint(joint).type[0] == mujoco.mjtJoint.mjJNT_HINGE)
+    if hinge or any(d.name == element and _turns(user.model, d.actuator) for d in user.devices):
         return re.sub(r"[A-Za-z]+", lambda word: _TURNED.get(word.group(), word.group()), unit)
     return unit
 
@@ -128,6 +137,8 @@ def _prefix(user: UserModel, element: str) -> str:
     if element in names:
         return f"{element}." if len(names) > 1 else ""
     kind, _, name = element.partition(":")
+    if kind in NAMED:
+        return f"{name}."
     alike = {
         "tyre": len(user.parts.tyres),
         "body": 1 if _is_the_body(user, element) else len(user.parts.suspensions),

@@ -1,0 +1,113 @@
+"""Edits of an MjSpec: dampers by direction, tyres, guides, forces that a record drives."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.parts import Tyre, VehicleLink
+
+_FAR = 1e12  # a force that no one-sided actuator reaches [N]
+
+
+def split_damping(device: str, change: VehicleModel) -> tuple[float, float] | None:
+    values = change.of(device)
+    if "rebound_damping" not in values:
+        return None
+    return values["rebound_damping"], values["bump_damping"]
+
+
+def add_one_sided(spec: mujoco.MjSpec, link: VehicleLink, rebound: float, bump: float) -> None:
+    """The part of a damper that acts in one direction: a velocity actuator that is cut at zero."""
+    extra = abs(rebound - bump)
+    # the force on the length is -extra v: negative while it grows
+    growing = (rebound > bump) == (link.direction > 0)
+    limits = [-_FAR, 0.0] if growing else [0.0, _FAR]
+    if link.kind == "tendon":
+        target, kind = spec.tendons[link.index].name, mujoco.mjtTrn.mjTRN_TENDON
+        gear = [1.0, 0, 0, 0, 0, 0]
+    elif link.kind == "joint":
+        target, kind = spec.joints[link.index].name, mujoco.mjtTrn.mjTRN_JOINT
+        gear = [1.0, 0, 0, 0, 0, 0]
+    else:
+        own = spec.actuators[link.index]
+        target, kind, gear = own.target, own.trntype, list(own.gear)
+    bias = np.zeros(10)
+    bias[2] = -extra
+    actuator = spec.add_actuator(
+        name=f"{link.name}_{'rebound' if rebound > bump else 'bump'}",
+        target=target,
+        trntype=kind,
+        gear=gear,
+        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+        biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        forcelimited=True,
+        forcerange=limits,
+    )
+    actuator.gainprm = np.zeros_like(actuator.gainprm)
+    actuator.biasprm = bias
+
+
+def change_guide(joint: mujoco.MjsJoint, values: dict[str, float]) -> None:
+    if "joint_friction" in values:
+        joint.frictionloss = values["joint_friction"]
+    if "joint_damping" in values:
+        column = np.array(joint.damping)
+        column[0] = values["joint_damping"]
+        joint.damping = column
+
+
+def change_force(actuator: mujoco.MjsActuator, values: dict[str, float]) -> bool:
+    """Gain and lag of a force that a record drives; whether it has a state now."""
+    if "actuator_gain" in values:
+        gain = np.array(actuator.gainprm)
+        gain[0] *= values["actuator_gain"]
+        actuator.gainprm = gain
+    if not values.get("actuator_lag", 0.0) > 0:
+        return False
+    column = np.array(actuator.dynprm)
+    column[0] = values["actuator_lag"]
+    actuator.dyntype, actuator.dynprm = mujoco.mjtDyn.mjDYN_FILTEREXACT, column
+    return True
+
+
+def change_tyre(spec: mujoco.MjSpec, tyre: Tyre, values: dict[str, float]) -> None:
+    actuator = spec.actuators[tyre.actuator]
+    if "tyre_stiffness" in values:
+        gain, bias = np.array(actuator.gainprm), np.array(actuator.biasprm)
+        gain[0], bias[1] = values["tyre_stiffness"], -values["tyre_stiffness"]
+        actuator.gainprm, actuator.biasprm = gain, bias
+    if "tyre_static_load" in values:
+        load = values["tyre_static_load"]
+        actuator.forcelimited = True
+        actuator.forcerange = [-load, _FAR] if tyre.pull > 0 else [-_FAR, load]
+    own = spec.actuator(rate_actuator(tyre))
+    if "tyre_damping" in values and own is not None:
+        # the user's model has one
+        gain, bias = np.array(own.gainprm), np.array(own.biasprm)
+        gain[0], bias[2] = values["tyre_damping"], -values["tyre_damping"]
+        own.gainprm, own.biasprm = gain, bias
+    elif "tyre_damping" in values:
+        extra = spec.add_actuator(
+            name=rate_actuator(tyre),
+            target=actuator.target,
+            trntype=actuator.trntype,
+            gear=list(actuator.gear),
+            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        )
+        gain, bias = np.zeros(10), np.zeros(10)
+        gain[0], bias[2] = values["tyre_damping"], -values["tyre_damping"]
+        extra.gainprm, extra.biasprm = gain, bias
+        spec.add_sensor(
+            name=rate_actuator(tyre),
+            type=mujoco.mjtSensor.mjSENS_ACTUATORFRC,
+            objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
+            objname=rate_actuator(tyre),
+        )
+
+
+def rate_actuator(tyre: Tyre) -> str:
+    """Name of the actuator of a tyre's damping; its control is the road's rate [m/s]."""
+    return f"{tyre.name}_rate"
