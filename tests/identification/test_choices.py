@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter.diagnose.stages import Given, prepared, search_in
@@ -45,6 +47,22 @@ def test_errors_of_a_right_model_hardly_grow() -> None:
     assert set(before) == set(case.parameters)
     for name in before:
         assert before[name][1] <= after[name][1] < 3 * before[name][1]
+
+
+def test_a_tone_does_not_hang_on_the_smoothing() -> None:
+    """It is fitted to the force as measured: above the band a step would say nothing."""
+    case = drawn(23, "no filter")
+    start = prepared(Given(records=case.records))
+    search = search_in(start, start.weighed)
+    terms = {name: v for name, v in case.parameters.items() if name != "inertance"}
+    tone = {"disturbance_amplitude": 1.0, "disturbance_frequency": 150.0}
+    fit = search.problem.fit(start.baseline.adding(None, **terms))
+    model = fit.model.adding(None, **tone)
+    known = np.diag([*np.diag(fit.covariance), 1e-4, 1e-6])
+    both = covered(search.problem, replace(fit, model=model, covariance=known), start.data.records)
+    errors = parameter_errors(both)
+    assert errors["disturbance_amplitude"][1] == pytest.approx(1e-2)
+    assert errors["viscous"][1] > np.sqrt(known[1, 1])
 
 
 @pytest.mark.long

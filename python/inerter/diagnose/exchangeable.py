@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose import wording
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue, Rival
@@ -21,7 +21,6 @@ from inerter.diagnose.search import Search
 from inerter.diagnose.values import parameter_units
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
-from inerter.motion_units import Kind, words
 
 # the effects that make up for each other, each by one coordinate
 COUNTERPARTS = {"viscous_friction": "sensor_delay", "sensor_delay": "viscous_friction"}
@@ -114,40 +113,31 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     if exchange.is_told_apart:
         if moved < CRITERIA.distinction * found.stderr:
             return finding
-        amount = _amount(exchange.counterpart, exchange.other, finding.motion)
+        amount = wording.amount_in_words(exchange.counterpart, exchange.other, finding.motion)
         beside = f"with {amount} beside it {name} would be {exchange.value:.3g}"
         return replace(
             finding,
             parameters=_with_error(finding.parameters, name, error),
             evidence=f"{finding.evidence} {beside[0].upper()}{beside[1:]} {found.unit}.",
         )
-    # it may be none
-    error = max(error, abs(found.value) / CRITERIA.distinction)
-    share = finding.confidence / 2
+    # it may be none, and so may be what stands in for it
+    size = abs(found.value)
+    error = float(np.clip(error, size / CRITERIA.distinction, max(size, found.stderr)))
     value, spread = exchange.instead
+    spread = max(spread, error / size * abs(value)) if size else spread
     other = _COORDINATE[exchange.counterpart]
     unit = parameter_units(finding.motion)[other]
-    either = " or ".join(
-        _amount(effect, amount, finding.motion)
-        for effect, amount in ((finding.effect, found.value), (exchange.counterpart, value))
-    )
+    share = finding.confidence / 2
     rivals = [rival for rival in finding.rivals if rival.effect != exchange.counterpart]
-    return replace(
+    told = replace(
         finding,
         confidence=share,
         members=(finding.effect, exchange.counterpart),
         parameters=_with_error(finding.parameters, name, error)
-        | {other: ParameterValue(value, max(spread, abs(value) / CRITERIA.distinction), unit)},
+        | {other: ParameterValue(value, spread, unit)},
         rivals=[Rival(exchange.counterpart, share), *rivals],
-        evidence=f"{finding.evidence} It is {either}: this motion cannot tell; a second frequency "
-        f"would ({EFFECTS['viscous_friction'].experiment}).",
     )
-
-
-def _amount(effect: str, value: float, motion: Kind) -> str:
-    if effect == "sensor_delay":
-        return f"a delay of {1e3 * value:.3g} ms"
-    return f"viscous friction of {value:.3g} {words(motion, 'N s/m')}"
+    return replace(told, evidence=wording.evidence(told))
 
 
 def _with_error(

@@ -26,6 +26,7 @@ from inerter.diagnose.other_runs import (
     split_in_words,
 )
 from inerter.diagnose.parallel import helped
+from inerter.diagnose.quantisation import steps_in_words, steps_of
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -127,6 +128,7 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         passive = given.carry == "passive"
         kept = carried(data, final, floor, judge.motion_noise(final), passive=passive)
     remains = replace(remains, carried=kept.json() if kept else None)
+    steps = steps_of(data, judge, final)
     again = repeats(data.whole, errors)
     missed = badly_missed(data, errors, floor)
     other = other_split(stands.searched.search, data, final, bool(missed))
@@ -163,13 +165,14 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         parameters=values,
         method=_method(stands)
         | {"run_constants": dict(stands.searched.prepared.constants)}
-        | {"missed_runs": missed, "other_split": other},
+        | {"missed_runs": missed, "other_split": other, "steps": steps},
         notes=[
             note
             for note in (
                 constants_in_words(stands.searched.prepared.constants, motion),
                 missed_in_words(missed, extended.rmse, motion),
                 split_in_words(data, other),
+                steps_in_words(steps, motion),
             )
             if note
         ],

@@ -18,7 +18,7 @@ from inerter.diagnose.result import (
     Rival,
     StatedValue,
 )
-from inerter.motion_units import force_word, words
+from inerter.motion_units import Kind, force_word, words
 
 MAINS = (50.0, 60.0)
 """Frequencies of the mains [Hz]."""
@@ -108,13 +108,31 @@ def _told_apart(effect: str, rival: Rival) -> str:
     return ""
 
 
+def amount_in_words(effect: str, value: float, motion: Kind) -> str:
+    """Such as "a delay of 3.8 ms", of an effect that one number describes."""
+    if effect == "sensor_delay":
+        return f"a delay of {1e3 * value:.3g} ms"
+    return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
+
+
+def either_in_words(finding: Finding) -> str:
+    """Such as "viscous friction of 120 N s/m or a delay of 3.8 ms": what members would be."""
+    coordinates = {member: EFFECTS[member].parameters[0] for member in finding.members}
+    return " or ".join(
+        amount_in_words(member, finding.parameters[name].value, finding.motion)
+        for member, name in coordinates.items()
+    )
+
+
 def evidence(finding: Finding) -> str:
     """One sentence: values, and what the effect does to the error on held-out data."""
     values = ", ".join(
         value_in_words(PARAMETER_WORDS.get(name, name), value)
         for name, value in finding.parameters.items()
     )
-    if is_missing(finding):
+    if finding.members:
+        values = f"{either_in_words(finding)}; this motion cannot tell, a second frequency would"
+    elif is_missing(finding):
         values = f"{EFFECTS[finding.effect].plain} as stated is not in these data"
     where = (
         "blocks left out of the fit (what is held out does not reach it)"
@@ -127,7 +145,11 @@ def evidence(finding: Finding) -> str:
         f"{finding.rmse_before:.3g} {newton} to {finding.rmse_after:.3g} {newton} "
         f"({100 * finding.gain:.0f} %)"
     )
-    likely = [rival for rival in finding.rivals if rival.confidence >= CRITERIA.rival_told]
+    likely = [
+        rival
+        for rival in finding.rivals
+        if rival.confidence >= CRITERIA.rival_told and rival.effect not in finding.members
+    ]
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
@@ -258,8 +280,14 @@ def _verdict(diagnosis: Diagnosis) -> str:
         for finding in diagnosis.findings
         if finding.rivals
         and finding.rivals[0].confidence >= CRITERIA.rival_told
-        and finding.rivals[0].effect != finding.effect
+        and finding.rivals[0].effect not in (finding.effect, *finding.members)
     ]
+    for finding in diagnosis.findings:
+        if finding.members:
+            text += (
+                f" It is {either_in_words(finding)}: this motion cannot tell; a second frequency "
+                f"would ({EFFECTS[finding.members[0]].experiment})."
+            )
     if doubts:
         text += " In these data " + "; ".join(doubts) + "."
     return text

@@ -37,6 +37,8 @@ FILTERS = (("butterworth", 1), ("bessel", 2), ("bessel", 4))
 """Kinds and orders of low-passes that a delay may be; of order one they are all alike."""
 AS_GOOD = 1.01
 """Squared residual, per that with the delay, up to which a low-pass does as well."""
+TONE = ("disturbance_amplitude", "disturbance_frequency")
+"""Coordinates that do not hang on how the motion is smoothed."""
 HIGHEST = 0.3
 """Highest other cut-off, per sampling rate."""
 
@@ -46,7 +48,11 @@ def covered(
 ) -> Fit:
     """A fit of a problem with what other choices would move it by in its errors, see below."""
     units = problem.units(fit.model)
-    moved = moved_by_choices(problem, fit.model, records, channels)
+    # a tone is fitted to the force as measured, and may lie above the band
+    kept = [i for i, name in enumerate(fit.model.free) if name not in TONE]
+    rest = replace(fit.model, free=tuple(fit.model.free[i] for i in kept))
+    moved = np.zeros((units.size, units.size))
+    moved[np.ix_(kept, kept)] = moved_by_choices(problem, rest, records, channels)
     return replace(fit, covariance=fit.covariance + moved * np.outer(units, units))
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import welch
 
 from inerter.records.motion import white_noise
+from inerter.records.steps import converter_step
 
 Array = NDArray[np.float64]
 
@@ -20,7 +21,6 @@ BEND = 10.0  # and by which more than before it
 PER_OCTAVE = 4
 HUM = 10.0  # times its neighbours: a line of the mains
 MAINS = (50.0, 60.0)
-MOST_LEVELS = 200_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +54,7 @@ def channel_facts(name: str, unit: str, values: Array, spacing: float) -> Channe
         low=float(values.min()),
         high=float(values.max()),
         noise=white_noise(values),
-        step=_step(values),
+        step=converter_step(values),
         band=band,
         hum=_hum(frequency, power, band),
         corner=_corner(frequency, power) if name.endswith(("force", "acceleration")) else None,
@@ -65,22 +65,6 @@ def spectrum(values: Array, spacing: float) -> tuple[Array, Array]:
     """Frequencies [Hz] and power per hertz of a channel without its mean."""
     length = min(values.size, SEGMENT)
     return welch(values - values.mean(), 1 / spacing, nperseg=length, detrend="linear")
-
-
-def _step(values: Array) -> float | None:
-    """The smallest step, where nearly all values are multiples of it apart."""
-    some = np.unique(values[:MOST_LEVELS])
-    steps = np.diff(some)
-    size = float(np.ptp(values))
-    steps = steps[steps > 1e-9 * size] if size else steps[:0]
-    if len(steps) < 3:
-        return None
-    # cells of a text are rounded, so that steps differ in their last digits
-    step = float(np.quantile(steps, 0.02))
-    step = float(np.median(steps[steps < 1.5 * step]))
-    whole = np.abs(steps / step - np.round(steps / step))
-    distinct = len(some) < 0.5 * min(len(values), MOST_LEVELS)
-    return step if distinct and np.quantile(whole, 0.9) < 0.1 else None
 
 
 def _band(frequency: Array, power: Array) -> float:
