@@ -129,12 +129,13 @@ static void fit(InerterDevice* p) {
 // a parameter of the map that is given without one, or missing beside one; NULL: neither
 static const char* odd_one(const InerterDevice* p) {
   int there = p->map.nvalue > 0;
-  const char* names[] = {"force_map_lower", "force_map_upper", "force_map_speed"};
-  const double values[] = {p->force_map_lower, p->force_map_upper, p->force_map_speed};
-  for (int i = 0; i < 3; i++) {
-    if (isnan(values[i]) == there) return names[i];
+  const char* names[] = {"force_map_lower", "force_map_upper", "force_map_speed",
+                         "force_map_columns"};
+  const double values[] = {p->force_map_lower, p->force_map_upper, p->force_map_speed,
+                           p->force_map_columns};
+  for (int i = 0; i < 4; i++) {
+    if (isnan(values[i]) ? there : !there) return names[i];
   }
-  if ((p->force_map_columns > 0) != there) return "force_map_columns";
   if (there) return NULL;
   if (!isnan(p->force_map_scale)) return "force_map_scale";
   return p->force_map_passive != 0 ? "force_map_passive" : NULL;
@@ -163,7 +164,7 @@ int map_check(InerterDevice* p, char* message) {
     return -1;
   }
   int whole = (int)columns;
-  if (columns != whole || whole < 2 || m->nvalue % whole || m->nvalue / whole < 2 ||
+  if (columns != whole || m->nvalue % whole || m->nvalue / whole < 2 ||
       m->nvalue / whole > INERTER_MAXPLACE) {
     snprintf(message, INERTER_MESSAGE_SIZE,
              "force_map has %d numbers and force_map_columns is %g; give rows x columns numbers, "

@@ -168,7 +168,7 @@
     "velocity of the last column of force_map; of the first: minus that")                          \
   X(force_map_scale, "m/s", NAN, 0, INFINITY, OPEN, "",                                            \
     "columns are evenly spaced in asinh(v / scale), fine near 0; unset: in v")                     \
-  X(force_map_columns, "1", 0, 0, 16, CLOSED, "", "columns of force_map, a whole number")          \
+  X(force_map_columns, "1", NAN, 2, 16, CLOSED, "", "columns of force_map, a whole number")        \
   X(force_map_passive, "1", 0, 0, 1, CLOSED, "",                                                   \
     "1: leave out what of force_map would give energy; 0: as stated")
 

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from inerter.core import Device, DeviceError, friction_laws, gas_laws, parameters
@@ -25,11 +26,16 @@ VALID: dict[str, dict[str, float]] = {
 # enough to make the part of a parameter valid
 CHANNEL = {"piston_area": 1e-3, "channel_area": 1e-4, "channel_length": 2.0}
 GAS = {"gas_pressure": 1e5, "gas_area": 1e-3, "gas_volume": 1e-4}
-PARTS: dict[str, dict[str, float]] = {
+MAP: dict[str, Any] = {
+    "force_map": [1.0] * 32, "force_map_lower": 0.0, "force_map_upper": 1.0, "force_map_speed": 1.0
+}  # fmt: skip
+PARTS: dict[str, dict[str, Any]] = {
     "gas_exponent": GAS,
     "stop_damping": {"stop_upper": 0.1, "stop_stiffness": 1e4},
     "backlash": {"inertance": 1.0, "series_stiffness": 1e4},
     "channel_roughness": CHANNEL,
+    "force_map_columns": MAP,
+    "force_map_passive": MAP | {"force_map_columns": 4},
 }
 
 

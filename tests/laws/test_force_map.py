@@ -150,7 +150,7 @@ def test_it_goes_through_a_file_and_a_text(tmp_path: Path) -> None:
 
 BAD: dict[str, tuple[dict[str, Any], list[str]]] = {
     "no range": ({"force_map": [1, 2, 3, 4]}, ["force_map_lower", "force_map_speed"]),
-    "no columns": ({**MAP, "force_map_columns": 0}, ["not force_map_columns"]),
+    "no columns": ({**PLACE, "force_map": [1] * 8}, ["but not force_map_columns"]),
     "no map": ({"force_map_scale": 0.1}, ["force_map_scale", "no force_map"]),
     "passive nothing": ({"force_map_passive": 1}, ["force_map_passive", "no force_map"]),
     "columns": ({**MAP, "force_map_columns": 6}, ["35 numbers", "columns is 6", "2 to 24 rows"]),

@@ -2,8 +2,7 @@
 
     F = T(x, v, z) + N + lambda(v, z) |N|
     T = c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_stops         at the terminals
-        + f(x) + c_x(x) v, the curves `force` and `viscous` of `laws/stroke.py`
-        + F_map(x, v), the surface of `laws/force_map.py`
+        + f(x) + c_x(x) v + F_map(x, v), see `laws/stroke.py` and `laws/force_map.py`
     without a series element:  N = B(x, v) a + R(x, v) + G(x, v)
     with one:                  N = F_s(s, s', gap),   B(y, w) w' + R(y, w) + G(y, w) = F_s
     G(y, w) = c_w w + pipe(w) + gas(y)                                    at the flywheel
@@ -396,8 +395,7 @@ class ReferenceDevice(DeviceParameters):
         energy = parallel.spring_energy(stretch, self.stiffness, self.stiffness_cubic)
         if "force" in self.along:
             energy = energy + self.along["force"].integral(stretch)
-        if self.surface:
-            energy = energy + self.surface.stored_energy(stretch)
+        energy = energy + (self.surface.stored_energy(stretch) if self.surface else 0.0)
         place, rate = (position, speed) if self.rubs_flywheel else (stretch, v)
         energy = energy + FRICTION[self.friction].stored_energy(self, place, rate, friction)
         energy = energy + end_stops.stored_energy(self, stretch)
@@ -418,8 +416,7 @@ class ReferenceDevice(DeviceParameters):
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
         heat = self._damper(stretch, v) * v
-        if self.surface:
-            heat = heat + self.surface.dissipated_power(stretch, v)
+        heat = heat + (self.surface.dissipated_power(stretch, v) if self.surface else 0.0)
         place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
         loaded = self._loaded(x, v, a, z)
         heat = heat + FRICTION[self.friction].dissipated_power(loaded, place, rate, friction)
@@ -472,8 +469,7 @@ class ReferenceDevice(DeviceParameters):
         if "force" in self.along:
             spring = spring + self.along["force"](stretch)
         force = spring + damper + self.force_offset + end_stops.force(self, stretch, v)
-        if self.surface:
-            force = force + self.surface.force(stretch, v)
+        force = force + (self.surface.force(stretch, v) if self.surface else 0.0)
         return force + branches.force(self, self._split(z)[1])
 
     def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:

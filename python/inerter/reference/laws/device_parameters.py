@@ -117,7 +117,7 @@ class DeviceParameters(FrictionParameters):
         UNSET, "m/s", "columns evenly spaced in asinh(v / scale)", above=0.0
     )
     force_map_columns: float = parameter(
-        0.0, "-", "number of its columns", at_least=0.0, at_most=16.0
+        UNSET, "-", "number of its columns", at_least=2.0, at_most=16.0
     )
     force_map_passive: float = parameter(
         0.0, "-", "1: without what would give energy", at_least=0.0, at_most=1.0
@@ -178,9 +178,8 @@ class DeviceParameters(FrictionParameters):
     def _check_map(self) -> None:
         values = flat(self.force_map)
         object.__setattr__(self, "force_map", values)
-        needed = ("force_map_lower", "force_map_upper", "force_map_speed")
-        given = [name for name in needed if not np.isnan(getattr(self, name))]
-        given += ["force_map_columns"] * (self.force_map_columns > 0.0)
+        needed = ("lower", "upper", "speed", "columns")
+        given = [n for n in (f"force_map_{n}" for n in needed) if not np.isnan(getattr(self, n))]
         if not values:
             given += ["force_map_scale"] * (not np.isnan(self.force_map_scale))
             given += ["force_map_passive"] * (self.force_map_passive > 0.0)
@@ -199,7 +198,7 @@ class DeviceParameters(FrictionParameters):
             )
         rows = len(values) / self.force_map_columns
         whole = self.force_map_columns % 1.0 == 0.0 and rows % 1.0 == 0.0
-        if not (whole and self.force_map_columns >= 2.0 and 2.0 <= rows <= MOST_ROWS):
+        if not (whole and 2.0 <= rows <= MOST_ROWS):
             raise ValueError(
                 f"force_map_columns: {self.force_map_columns} columns of {len(values)} numbers; "
                 f"give 2 to {MOST_COLUMNS} columns and 2 to {MOST_ROWS} rows"
