@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 MOST_LEVELS = 200_000
 
 
-def converter_step(values: NDArray[np.float64]) -> float | None:
+def converter_step(values: NDArray[np.floating]) -> float | None:
     """The smallest step of a channel (n,), where nearly all values are multiples of it apart."""
     some = np.unique(values[:MOST_LEVELS])
     steps = np.diff(some)
