@@ -116,8 +116,6 @@ def test_a_right_model_with_displaced_zeros_is_right(tmp_path: Path) -> None:
 HIDDEN = {
     "actuator_gain_error": (Bench(gain=1.4), {"actuator_force.actuator_gain": 1.4}),
     "joint_damping": (Bench(guide=6.0), {"body.joint_damping": 6.0}),
-    # eight times what is stated, alike in both directions
-    "viscous_friction": (Bench(damper=60.0), {"viscous": 60.0}),
     "tyre_damping": (Bench(tyre_damping=9.0), {"tyre_damping": 9.0}),
     "sensor_delay": (Bench(late=0.006), {"body_position.delay": 0.006}),
     "actuator_lag": (Bench(lag=0.05), {"actuator_force.actuator_lag": 0.05}),
