@@ -96,9 +96,8 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, double 
     return;
   }
 
-  if (instance_rubs_flywheel(device)) {
-    v = state[device->nfriction + 1];
-  }
+  // velocity of the friction
+  double w = instance_rubs_flywheel(device) ? state[device->nfriction + 1] : v;
 
   // slope of the rate over the state, a little beyond the state
   double there[INERTER_MAXSTATE], beyond[INERTER_MAXSTATE];
@@ -131,7 +130,7 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, double 
            "at %g m/s the state of friction \"%s\" relaxes within %.2g s, faster than RK4 resolves "
            "with a timestep of %g s, and was slowed to that; for this law prefer "
            "integrator=\"implicitfast\", which steps it exactly, or shorten the timestep",
-           v, inerter_friction_name(device->friction), 1 / decay, m->opt.timestep);
+           w, inerter_friction_name(device->friction), 1 / decay, m->opt.timestep);
   instance_complain(m, self, COMPLAINT_BRISTLE, message);
 }
 

@@ -92,3 +92,40 @@ def test_it_converges_to_the_reference(law: str, integrator: str, nested: bool) 
     most = {"discrete": 0.1, "RK4": 2e-5}.get(integrator, 0.006)
     assert errors[0] < most
     assert errors[1] < errors[0] / 2.5 or errors[1] < 2e-6
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("shaft", [False, True])
+def test_energy_balance_under_rk4(law: str, shaft: bool) -> None:
+    """What the masses lose is stored or heat, behind a shaft too, and nothing is slowed."""
+    keys = {"inertance": 113.0, "friction": law, "rest_length": 1.0, **LAWS[law]}
+    if shaft:
+        keys |= {"series_stiffness": 1e6, "series_damping": 3200.0, "friction_side": "flywheel"}
+    config = "".join(f'<config key="{k}" value="{v}"/>' for k, v in keys.items())
+    bodies = "".join(
+        f'<body pos="0 0 {i}"><joint type="slide" axis="0 0 1" stiffness="{GROUND[i]}"/>'
+        f'<inertial pos="0 0 0" mass="{MASSES[i]}" diaginertia="1 1 1"/><site name="s{i}"/></body>'
+        for i in (0, 1)
+    )
+    made = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><extension><plugin plugin="inerter.device"><instance name="d">{config}
+        </instance></plugin></extension>
+        <option gravity="0 0 0" integrator="RK4" timestep="2e-4"/><worldbody>{bodies}</worldbody>
+        <tendon><spatial name="t"><site site="s0"/><site site="s1"/></spatial></tendon>
+        <actuator><plugin instance="d" plugin="inerter.device" tendon="t"
+        actdim="{3 if shaft else 1}"/></actuator>
+        <sensor><plugin plugin="inerter.device" instance="d"/></sensor></mujoco>"""
+    )
+    data = mujoco.MjData(made)
+    data.qvel[0] = SPEED
+
+    def energy() -> float:
+        mujoco.mj_forward(made, data)
+        own = np.array(MASSES) @ data.qvel**2 + np.array(GROUND) @ data.qpos**2
+        # stored energy and heat are the last of the sensor
+        return 0.5 * own + data.sensordata[-2] + data.sensordata[-1]
+
+    before = energy()
+    for _ in range(500):
+        mujoco.mj_step(made, data)
+    assert energy() == pytest.approx(before, rel=1e-6)
