@@ -7,11 +7,16 @@ from collections.abc import Mapping
 from inerter.cars.parts import AxleParts, CarParts
 from inerter.cars.read import read_car
 from inerter.model_parameters import QUARTER_CAR
-from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.indices import INDICES
+from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.study import (
+    Study,
     StudyError,
     read_axle_stiffnesses,
+    read_layouts,
     read_names,
+    read_pairs,
+    read_series,
     read_stiffnesses,
 )
 from inerter.suspension.vehicle.cars import Axle, FullCar, HalfCar, Vehicle, full_car, half_car
@@ -65,6 +70,43 @@ def chosen_car(
         _only_full(correlation)
         return half_car()
     return full_car() if correlation is None else full_car(correlation)
+
+
+def study_asked(
+    *,
+    car: str,
+    layout: str,
+    indices: tuple[str, ...],
+    stiffness: str | None,
+    series: str,
+    road: Road,
+    equal: bool,
+    hold: str | None,
+    limit: str | None,
+    quarter: Mapping[str, float | None] | None = None,
+    correlation: float | None = None,
+) -> Study:
+    """The study that options ask for, in their words; `quarter`, `correlation`: see `chosen_car`.
+
+    Raises
+    ------
+    StudyError
+        A word that cannot be used.
+    ValueError
+        A value is out of its range.
+    """
+    which = chosen_car(car, quarter or {}, equal=equal, correlation=correlation)
+    return Study(
+        layouts=read_layouts(layout),
+        indices=indices,
+        stiffnesses=chosen_stiffnesses(stiffness, which, own_stiffness(car)),
+        series=read_series(series),
+        car=which,
+        road=road,
+        equal=equal,
+        fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
+        limits=read_pairs(limit, INDICES, "limit"),
+    )
 
 
 def linear_car(parts: CarParts) -> QuarterCar | Vehicle:

@@ -98,10 +98,9 @@ def optimize_command(
     as_json: AsJson = False,
 ) -> None:
     """Damping and inertance that minimise an index of a car, globally and exactly."""
-    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses, own_stiffness
-    from inerter.suspension.indices import INDICES
+    from inerter.suspension.car_options import study_asked
     from inerter.suspension.output import rows_json, write_sweep
-    from inerter.suspension.study import Study, read_indices, read_layouts, read_pairs, read_series
+    from inerter.suspension.study import read_indices
     from inerter.suspension.sweep import sweep
     from inerter.suspension.table import print_rows
 
@@ -112,17 +111,18 @@ def optimize_command(
             "unsprung_mass": unsprung_mass,
             "tyre_stiffness": tyre_stiffness,
         }
-        which = chosen_car(car, quarter, equal=equal, correlation=correlation)
-        study = Study(
-            layouts=read_layouts(layout),
+        study = study_asked(
+            car=car,
+            layout=layout,
             indices=read_indices(index),
-            stiffnesses=chosen_stiffnesses(stiffness, which, own_stiffness(car)),
-            series=read_series(series),
-            car=which,
+            stiffness=stiffness,
+            series=series,
             road=Road(velocity=velocity, roughness=roughness),
             equal=equal,
-            fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
-            limits=read_pairs(limit, INDICES, "limit"),
+            hold=hold,
+            limit=limit,
+            quarter=quarter,
+            correlation=correlation,
         )
         with progress_bar("optimising", as_json) as progress:
             rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)

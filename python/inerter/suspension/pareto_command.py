@@ -50,34 +50,26 @@ def pareto_command(
     from rich.table import Table
 
     from inerter.folder import json_text, write_files
-    from inerter.suspension.car_options import chosen_car, chosen_stiffnesses, own_stiffness
+    from inerter.suspension.car_options import study_asked
     from inerter.suspension.indices import INDICES
     from inerter.suspension.pareto import front, front_csv
     from inerter.suspension.pareto_picture import front_picture
-    from inerter.suspension.study import (
-        Study,
-        StudyError,
-        read_indices,
-        read_layouts,
-        read_pairs,
-        read_series,
-    )
+    from inerter.suspension.study import StudyError, read_indices
 
     with refusing(out_dir, "pareto.json", "pareto.csv", "pareto.png"):
         indices = read_indices(index)
         if len(indices) != 2:
             raise StudyError(f"index {index!r}: a front is of two, as in J1w,J3")
-        which = chosen_car(car, {}, equal=equal)
-        study = Study(
-            layouts=read_layouts(layout),
+        study = study_asked(
+            car=car,
+            layout=layout,
             indices=indices[:1],
-            stiffnesses=chosen_stiffnesses(stiffness, which, own_stiffness(car)),
-            series=read_series(series),
-            car=which,
+            stiffness=stiffness,
+            series=series,
             road=Road(velocity=velocity, roughness=roughness),
             equal=equal,
-            fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
-            limits=read_pairs(limit, INDICES, "limit"),
+            hold=hold,
+            limit=limit,
         )
         with progress_bar("front", as_json) as progress:
             found = front(study, indices[1], points, out_dir, progress)

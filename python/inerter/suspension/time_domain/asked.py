@@ -48,7 +48,7 @@ def car_named(name: str) -> Asked:
     if name.lower().endswith(".toml"):
         return _own(name)
     raise ValueError(
-        f"car {name!r} has no MuJoCo model here: take quarter or half, or a file car.toml"
+        f"car {name!r}: take quarter or half, or a file car.toml; full goes with --layout own"
     )
 
 
@@ -57,7 +57,10 @@ def _own(name: str) -> Asked:
     car = linear_car(parts)
     stiffness = parts.front.strut.wheel_rate
     if isinstance(car, FullCar):
-        raise ValueError(f"{name}: a full car is not evaluated over roads; give one side, a half")
+        raise ValueError(
+            f"{name}: cases and designs are of quarter- and half-cars; a full car is driven as its "
+            "file states it, --layout own"
+        )
     quarter = isinstance(car, QuarterCar)
     return Asked(car, stiffness, *((1000.0, 4.0) if quarter else (2000.0, 10.0)))
 

@@ -12,12 +12,17 @@ from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
 
 def evaluate_command(
     layout: Annotated[
-        str, typer.Option(help="S1, S2, S3 (SW1, SW3, SW5), with commas.")
+        str,
+        typer.Option(
+            help="S1, S2, S3 (SW1, SW3, SW5), with commas; or own: the car as its file states it, "
+            "any layout, half or full, with damper tables and stops."
+        ),
     ] = "S1,S2,S3",
     car: Annotated[
         str,
         typer.Option(
-            help="quarter, or half: heave and pitch, two struts; or a file car.toml of either."
+            help="quarter, or half: heave and pitch, two struts; or a file car.toml of either; "
+            "full with --layout own."
         ),
     ] = "quarter",
     stiffness: Annotated[
@@ -40,7 +45,13 @@ def evaluate_command(
         typer.Option(help="device.toml of a measured device: the case named device."),
     ] = None,
     index: Annotated[str, typer.Option(help="J1, J3, J5, with commas.")] = "J1,J3,J5",
-    road: Annotated[str, typer.Option(help="paper, or iso:A to iso:H.")] = "paper",
+    road: Annotated[
+        str,
+        typer.Option(
+            help="paper, or iso:A to iso:H. With --layout own also bump:HEIGHT/LENGTH [m], or a "
+            "file road.csv with the columns distance and height (or height_left, height_right) [m]."
+        ),
+    ] = "paper",
     speed: Annotated[float, number("m/s", "Speed [m/s].")] = 25.0,
     seeds: Annotated[int, typer.Option(help="Number of roads, each with its own phases.")] = 20,
     reoptimise: Annotated[
@@ -115,11 +126,23 @@ def evaluate_command(
         print_evaluation,
         write_evaluation,
     )
+    from inerter.suspension.time_domain.own_command import OWN, own_command
     from inerter.suspension.time_domain.plan import Plan
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
     from inerter.suspension.vehicle.cars import HalfCar
 
+    if layout.strip().lower() == OWN:
+        others = {
+            "--case": case, "--device": device, "--stiffness": stiffness, "--damping": damping,
+            "--inertance": inertance, "--amplitude": amplitude, "--scheduler": scheduler,
+            "--reoptimise": reoptimise or None,
+        }  # fmt: skip
+        own_command(
+            car=car, road=road, speed=speed, seeds=seeds, tyre=tyre, step=step, settle=settle,
+            jobs=jobs or 0, others=others, out_dir=out_dir, as_json=as_json,
+        )  # fmt: skip
+        return
     with refusing(out_dir, "evaluation.json", "evaluation.csv"):
         asked = car_named(car)
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)

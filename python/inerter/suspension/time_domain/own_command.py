@@ -1,0 +1,121 @@
+"""`inerter suspension evaluate --layout own`: the car as its file states it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from inerter.cars.parts import CarParts
+from inerter.cars.read import read_car, shipped_car
+from inerter.console import out, progress_bar, refusing
+from inerter.folder import json_text, write_files
+from inerter.suspension.car_options import CARS
+from inerter.suspension.time_domain.asked import tyre_named
+from inerter.suspension.time_domain.own_struts import UNITS, OwnEvaluation, evaluate_own
+from inerter.suspension.time_domain.profile import Profile, profile_named
+from inerter.suspension.time_domain.road import road_named
+from inerter.suspension.time_domain.simulate import RunSettings
+
+OWN = "own"
+"""What --layout is where the struts are those of the car's file."""
+
+_SETTLE = 4.0
+
+
+def own_command(
+    *,
+    car: str,
+    road: str,
+    speed: float,
+    seeds: int,
+    tyre: str | None,
+    step: float,
+    settle: float | None,
+    jobs: int,
+    others: Mapping[str, Any],
+    out_dir: Path,
+    as_json: bool,
+) -> None:
+    """Work it out, print it, write evaluation.json and .csv; `others`: options that do not fit."""
+    with refusing(out_dir, "evaluation.json", "evaluation.csv"):
+        for name, value in others.items():
+            if value is not None:
+                raise ValueError(f"{name}: with --layout own the car's file states it; change it")
+        parts = _car(car)
+        chosen = profile_named(road, speed) or road_named(road, speed)
+        one_sided = tyre_named(tyre)
+        with progress_bar("driving", as_json) as progress:
+            found = evaluate_own(
+                parts,
+                chosen,
+                seeds,
+                RunSettings(step=step, settle=settle or _SETTLE, jobs=jobs),
+                one_sided=road != "paper" if one_sided is None else one_sided,
+                keep_settle=settle is not None,
+                progress=progress,
+            )
+        document = _document(parts, chosen.name, speed, found)
+        files = {"evaluation.json": json_text(document), "evaluation.csv": _csv(found)}
+        written = write_files(out_dir, files)
+    if as_json:
+        print(json_text(document), end="")
+        return
+    profile = isinstance(chosen, Profile)
+    what = chosen.name if profile else f"{found.roads} roads {chosen.name}"
+    out.print(f"{parts.name} as its file states it, {what}, {speed:g} m/s", markup=False)
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    table.add_column("figure", no_wrap=True)
+    for name in ("value", *([] if profile else ["± 95 %", "linear, exact"])):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for each in found.figures:
+        half = 0.5 * (each.high - each.low)
+        cells = [f"{half:.1g}" if half else "", _number(each.linear)]
+        shown = [each.name, _number(each.value), *([] if profile else cells), UNITS[each.name]]
+        table.add_row(*shown)
+    out.print(table)
+    for note in found.notes:
+        out.print(note, markup=False, soft_wrap=True)
+    out.print(f"Written to {out_dir}: {', '.join(written)}")
+
+
+def _car(name: str) -> CarParts:
+    if name.lower().endswith(".toml"):
+        return read_car(name)
+    if name.lower() in CARS:
+        return shipped_car(name.lower())
+    raise ValueError(f"car {name!r}: take {', '.join(CARS)}, or a file car.toml")
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.5g}"
+
+
+def _document(car: CarParts, road: str, speed: float, found: OwnEvaluation) -> dict[str, Any]:
+    return {
+        "schema": "inerter.suspension.own/1",
+        "car": asdict(car),
+        "road": road,
+        "speed": speed,
+        "roads": found.roads,
+        "road_period": found.road_period,
+        "settle": found.settle,
+        "figures": {each.name: asdict(each) | {"unit": UNITS[each.name]} for each in found.figures},
+        "notes": list(found.notes),
+    }
+
+
+def _csv(found: OwnEvaluation) -> str:
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(["figure", "unit", "value", "low", "high", "linear"])
+    for each in found.figures:
+        line = [each.value, each.low, each.high, "" if each.linear is None else each.linear]
+        writer.writerow([each.name, UNITS[each.name], *line])
+    return table.getvalue()

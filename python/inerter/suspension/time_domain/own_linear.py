@@ -1,0 +1,108 @@
+"""Exact J1, J1w, J3 and travel of a car file's linear part on the density of a random road.
+
+Damper tables count by their mean slope; stops and lifting tyres do not. Transfer functions are
+those of the linear study, not of the model that is stepped, so they check it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.cars.parts import AxleParts, CarParts, StrutParts
+from inerter.suspension.car_options import linear_car
+from inerter.suspension.comfort_weighting import weighting
+from inerter.suspension.indices import comfort_function, travel_function, tyre_function
+from inerter.suspension.layouts import LAYOUTS
+from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.vehicle.cars import Vehicle
+from inerter.suspension.vehicle.state_space import system
+from inerter.suspension.vehicle.strut import Branch, branch
+
+Array = NDArray[np.float64]
+_POINTS = 12_000
+
+
+def linear_figures(
+    car: CarParts, road: PeriodicRoad, *, on_sinusoids: bool = False
+) -> dict[str, float]:
+    """J1, J1w, J3, travel by name, SI units; `on_sinusoids`: of the road's own, not infinitely
+    close ones.
+    """
+    low, high = road.limits
+    f = road.frequencies
+    weights = np.full(f.size, road.spacing)
+    if not on_sinusoids:
+        # Simpson over log f
+        f = np.geomspace(max(low, 1e-3), high, 2 * _POINTS + 1)
+        weights = np.tile([2.0, 4.0], _POINTS + 1)[: f.size]
+        weights[[0, -1]] = 1.0
+        weights *= f * np.log(f[-1] / f[0]) / (6.0 * _POINTS)
+    gains = dict(_gains(car, road, f))
+    gains["J1w"] = gains["J1"] * np.abs(weighting()(2j * np.pi * f)) ** 2
+    # the road's velocity has an even density
+    return {
+        name: float(2.0 * np.pi * np.sqrt(road.strength * (weights @ gain)))
+        for name, gain in gains.items()
+    }
+
+
+def _gains(car: CarParts, road: PeriodicRoad, f: Array) -> Iterator[tuple[str, Array]]:
+    """Squared gain per velocity of the road, mean of the wheels, (n,)."""
+    s = 2j * np.pi * f
+    linear = linear_car(car)
+    if isinstance(linear, QuarterCar):
+        k, values = _values(car.front.strut)
+        network = LAYOUTS[car.front.strut.layout].stiffness(k, **values)
+        parts = {"J1": comfort_function, "J3": tyre_function, "travel": travel_function}
+        for name, function in parts.items():
+            yield name, np.abs(function(linear, network)(s)) ** 2
+        return
+    assert car.rear is not None
+    yield from _of_planes(linear, (_branch(car.front), _branch(car.rear)), road.speed, s).items()
+
+
+def _of_planes(
+    car: Vehicle, branches: tuple[Branch, Branch], speed: float, s: NDArray[Any]
+) -> dict[str, Array]:
+    later = np.exp(-s * car.wheelbase / speed)
+    warp = (later - 1.0) / s
+    total = {name: np.zeros(len(s)) for name in ("J1", "J3", "travel")}
+    for plane in car.planes:
+        m = system(plane, branches)
+        drive = m.front + later[:, None] * m.rear
+        if m.warp is not None:
+            drive = drive + warp[:, None] * m.warp
+        inverse = s[:, None, None] * np.eye(len(m.front)) - m.matrix
+        x = np.linalg.solve(inverse, drive[:, :, None])[:, :, 0]
+        bent = 0.0 if m.acceleration_warp is None else warp[:, None] * m.acceleration_warp
+        signals = {
+            "J1": x @ m.acceleration.T + bent,
+            "J3": x @ m.tyre.T,
+            "travel": x @ m.travel.T + warp[:, None] * m.travel_warp,
+        }
+        for name, signal in signals.items():
+            total[name] += plane.weight * np.mean(np.abs(signal) ** 2, axis=1)
+    return total
+
+
+def _branch(axle: AxleParts) -> Branch:
+    k, values = _values(axle.strut)
+    return branch(LAYOUTS[axle.strut.layout], k, **values)
+
+
+def _values(s: StrutParts) -> tuple[float, dict[str, Any]]:
+    """Stiffness of the whole strut, and the rest by the names of a layout, at the wheel."""
+    square = s.motion_ratio**2
+    values: dict[str, Any] = {"damping": square * s.mean_damping, "inertance": square * s.inertance}
+    if s.relaxation_stiffness:
+        values["relaxation_stiffness"] = square * s.relaxation_stiffness
+    if LAYOUTS[s.layout].centred:
+        k1, k2 = s.damper_stiffness, s.inerter_stiffness
+        values["centring_share"] = k1 * k2 / (k1 + k2) / s.stiffness
+        values["centring_ratio"] = k1 / k2
+    return s.wheel_rate, values

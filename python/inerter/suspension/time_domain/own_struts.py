@@ -1,0 +1,370 @@
+"""A car as its file states it, over roads: any layout, damper tables, stops, bars, a full car.
+
+The model is that of `inerter.cars.mjcf`, stepped by RK4 with the road held over each step. On a
+random road means are over one whole period, after what the slowest mode (of the model made linear
+at rest) needs to settle; roads are as fine as that mode asks for, see `resolution.py`. Of a full
+car the left and the right road are sums of two independent ones with the car's correlation.
+
+| figure | |
+| --- | --- |
+| J1, J1w [m/s^2] | rms acceleration of the body above the wheels, plain and weighted by Wk |
+| pitch, roll [rad/s^2] | rms angular acceleration of the body |
+| J3 [N], travel [m] | rms over wheels and struts |
+| *_peak | largest: acceleration at a point, force that presses a tyre, travel |
+| lift_off | share of time that a tyre is off the road, mean of the wheels |
+
+What a road does at once (to the tyre, and through a rigid inerter to the body) is put right at each
+instant with the road's own height there; of what is faster than the steps can follow that part is
+added in closed form. Over a `Profile` the figures are those from the first metre until the car is
+at rest again, and rms is over that time.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+from numpy.typing import NDArray
+
+from inerter.cars.mjcf import car_mjcf
+from inerter.cars.parts import CarParts
+from inerter.plugin import load_plugin
+from inerter.suspension.comfort_weighting import weighting
+from inerter.suspension.time_domain.profile import Profile
+from inerter.suspension.time_domain.resolution import ERROR, LONGEST
+from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.time_domain.samples import interval
+from inerter.suspension.time_domain.simulate import FADE, RunSettings
+
+Array = NDArray[np.float64]
+
+UNITS = {
+    "J1": "m/s^2", "J1w": "m/s^2", "pitch": "rad/s^2", "roll": "rad/s^2", "J3": "N", "travel": "m",
+    "lift_off": "", "acceleration_peak": "m/s^2", "tyre_peak": "N", "travel_peak": "m",
+}  # fmt: skip
+"""Figures of a run, with their units."""
+
+_SECOND_SEED = 1_000_003
+_SLOWEST = 1e-3
+_SMALL = 1e-6
+
+
+@dataclass(frozen=True)
+class OwnFigure:
+    """One figure: `value` with its 95 % interval, equal over a profile; `linear` beside or None."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    linear: float | None = None
+
+
+@dataclass(frozen=True)
+class OwnEvaluation:
+    """`figures` by name; `roads` driven, how long the road is [s], `settle` [s], `notes`."""
+
+    figures: tuple[OwnFigure, ...]
+    roads: int
+    road_period: float
+    settle: float
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    """The compiled car: corners as (control, joint of the wheel, kt, load, behind, x, y)."""
+
+    model: mujoco.MjModel
+    corners: tuple[tuple[int, int, float, float, float, float, float], ...]
+    tyres: tuple[int, ...]
+    travels: tuple[int, ...]
+    at_once: Array
+    one_sided: bool
+
+
+def evaluate_own(
+    car: CarParts,
+    road: PeriodicRoad | Profile,
+    seeds: int,
+    settings: RunSettings,
+    *,
+    one_sided: bool = True,
+    keep_settle: bool = False,
+    progress: Callable[[float], None] = lambda share: None,
+) -> OwnEvaluation:
+    """Every figure of a car with the struts of its file.
+
+    Parameters
+    ----------
+    car
+        Of a file, see `inerter.cars.read`.
+    road
+        Random, or a profile, which is driven once.
+    seeds
+        How many random roads, 2 or more.
+    settings
+        `step` [s], `settle` [s] at least, `jobs`.
+    one_sided
+        A tyre pulls by at most its static load.
+    keep_settle
+        The settling time of the settings, whatever the modes ask for.
+    progress
+        Called with the share that is done.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two seeds, a layout that has no model, or a step that diverges.
+    """
+    from inerter.suspension.time_domain.own_linear import linear_figures
+
+    built = _build(car, settings.step, one_sided)
+    slowest = _slowest(built.model)
+    faded = math.log(2.0 / ERROR) / max(slowest, _SLOWEST)
+    notes: list[str] = []
+    if isinstance(road, Profile):
+        after = min(faded, LONGEST)
+        found = [_over_profile(built, road, settings.step, after)]
+        period, settle, count = road.duration + after, 0.0, 1
+        linear: dict[str, float] = {}
+        missing = 0.0
+    else:
+        if seeds < 2:
+            raise ValueError(f"seeds is {seeds}: give 2 or more, for an interval")
+        if faded > LONGEST:
+            notes.append(
+                f"the slowest mode rings for more than {LONGEST:g} s, the longest road here"
+            )
+            faded = LONGEST
+        road = road.refined(max(1, math.ceil(faded / road.period - 1e-9)))
+        needed = FADE + 0.5 * faded
+        settle = settings.settle if keep_settle else max(settings.settle, needed)
+        if settle < needed:
+            notes.append(
+                f"--settle {settle:g}: the slowest mode needs {needed:.3g} s; what is left of the "
+                "start is in the means"
+            )
+        run = partial(_over_random, built, car, road, settings.step, settle)
+        found = []
+        with ThreadPoolExecutor(settings.jobs or os.cpu_count() or 1) as pool:
+            for n, one in enumerate(pool.map(run, range(seeds))):
+                found.append(one)
+                progress((n + 1) / seeds)
+        period, count = road.period, seeds
+        linear = linear_figures(car, road)
+        lines = linear_figures(car, road, on_sinusoids=True)
+        missing = max(abs(lines[name] / linear[name] - 1.0) for name in linear)
+    names = [name for name in UNITS if name in found[0]]
+    figures = []
+    for name in names:
+        values = np.array([each[name] for each in found])
+        if name.endswith("_peak"):
+            top = float(values.max())
+            figures.append(OwnFigure(name, top, top, top))
+            continue
+        mean, low, high = interval(values)
+        # what a finite road misses of its density
+        wider = missing * mean
+        figures.append(OwnFigure(name, mean, low - wider, high + wider, linear.get(name)))
+    lifted = next(each.value for each in figures if each.name == "lift_off")
+    if lifted > 0.0:
+        what = "off the road" if one_sided else "pulled on the road, where a real one would lift,"
+        notes.append(f"a tyre is {what} for {100.0 * lifted:.2g} % of the time")
+    return OwnEvaluation(tuple(figures), count, period, settle, tuple(notes))
+
+
+def _build(car: CarParts, step: float, one_sided: bool) -> _Model:
+    load_plugin()
+    spec: Any = mujoco.MjSpec.from_string(car_mjcf(car))
+    spec.option.timestep = step
+    # there are no contacts; looking for them takes time
+    spec.option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    roads = [a.name for a in spec.actuators if a.name == "road" or a.name.startswith("road_")]
+    if not one_sided:
+        for name in roads:
+            spec.actuator(name).forcelimited = False
+    model = spec.compile()
+    wheelbase = car.front.distance + car.rear.distance if car.rear else 0.0
+    corners, tyres, travels = [], [], []
+    for name in roads:
+        place = name.removeprefix("road")
+        rear = car.rear if "rear" in place and car.rear else None
+        axle = rear or car.front
+        x = -axle.distance if rear else axle.distance
+        y = {"left": 0.5, "right": -0.5}.get(place.rpartition("_")[2], 0.0) * car.track
+        load = car.static_loads["rear" if rear else "front"]
+        joint = int(model.joint(f"wheel{place}").qposadr[0])
+        control = int(model.actuator_ctrladr[model.actuator(name).id])
+        behind = wheelbase if rear else 0.0
+        corners.append((control, joint, axle.tyre_stiffness, load, behind, x, y))
+        tyres.append(int(model.sensor(f"tyre_force{place}").adr[0]))
+        travels.append(int(model.sensor(f"suspension_travel{place}").adr[0]))
+    return _Model(
+        model, tuple(corners), tuple(tyres), tuple(travels), _at_once(model, corners), one_sided
+    )
+
+
+def _at_once(model: mujoco.MjModel, corners: Sequence[tuple]) -> Array:
+    """Sensors per force of each tyre at rest, (wheels, sensors)."""
+    data, rows = mujoco.MjData(model), []
+    mujoco.mj_forward(model, data)
+    rest = data.sensordata.copy()
+    for control, _, stiffness, *_ in corners:
+        data.ctrl[:] = 0.0
+        data.ctrl[control] = 1.0 / stiffness
+        mujoco.mj_forward(model, data)
+        rows.append(data.sensordata - rest)
+    return np.array(rows)
+
+
+def _slowest(model: mujoco.MjModel) -> float:
+    """Rate [1/s] at which the slowest mode fades that the car has at rest and that is seen."""
+    data = mujoco.MjData(model)
+    size = model.nq + model.nv + model.na
+    kind = mujoco.mjtState.mjSTATE_PHYSICS
+    matrix = np.empty((size, size))
+    ends = np.empty((2, size))
+    for n in range(size):
+        for end, change in zip(ends, (_SMALL, -_SMALL), strict=True):
+            mujoco.mj_resetData(model, data)
+            mujoco.mj_setState(model, data, change * np.eye(size)[n], kind)
+            mujoco.mj_step(model, data)
+            mujoco.mj_getState(model, data, end, kind)
+        matrix[:, n] = (ends[0] - ends[1]) / (2.0 * _SMALL)
+    rates = -np.log(np.abs(np.linalg.eigvals(matrix)).clip(1e-12)) / model.opt.timestep
+    # an inerter in series with a damper may stand anywhere: that mode does not fade, nor is it felt
+    seen = rates[rates > _SLOWEST]
+    return float(seen.min()) if seen.size else _SLOWEST
+
+
+def _run(built: _Model, held: Array, heights: Array, skip: int) -> tuple[Array, Array]:
+    """Sensors (n, sensors) and dynamic tyre forces (n, wheels) after `skip` steps, put right.
+
+    `held`, `heights`: what stands over a step, and the road at its beginning, (n, wheels).
+    """
+    model = built.model
+    data = mujoco.MjData(model)
+    control = np.zeros((1, len(held), model.nu))
+    control[0][:, [corner[0] for corner in built.corners]] = held
+    start = np.zeros((1, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
+    mujoco.mj_getState(model, data, start[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    states, sensors = rollout.rollout(model, data, start, control)
+    # sensors are those of the beginning of a step, states those of its end; time stands first
+    before = np.vstack([start[0], states[0][:-1]])[skip:]
+    sensed = sensors[0][skip:]
+    wheels = before[:, [1 + corner[1] for corner in built.corners]]
+    if not np.isfinite(sensed).all() or abs(wheels).max(initial=0.0) > 100.0:
+        raise ValueError(f"the car diverges with steps of {model.opt.timestep:g} s: shorten --step")
+    stiffness = np.array([corner[2] for corner in built.corners])
+    forces = stiffness * (heights[skip:] - wheels)
+    if built.one_sided:
+        forces = np.maximum(forces, [-corner[3] for corner in built.corners])
+    return sensed + (forces - sensed[:, built.tyres]) @ built.at_once, forces
+
+
+def _over_random(
+    built: _Model, car: CarParts, road: PeriodicRoad, step: float, settle: float, seed: int
+) -> dict[str, float]:
+    """The figures of one road; `step` is that of the model, a period a whole number of them."""
+    count = round(road.period / step)
+    if not math.isclose(count * step, road.period, rel_tol=1e-9):
+        raise ValueError(
+            f"--step {step:g}: {road.period:g} s of road are no whole number of such steps; "
+            "take 1e-3 or 5e-4"
+        )
+    lead = round(settle / step)
+    both = car.kind == "full"
+    together, apart = (math.sqrt((1.0 + sign * car.correlation) / 2.0) for sign in (1.0, -1.0))
+    times = (np.arange(lead + count) - lead) % count
+    fade = np.clip((np.arange(lead + count) + 0.5) * step / FADE, 0.0, 1.0)
+    held, heights = [], []
+    for *_, behind, _, y in built.corners:
+        one, other = (function(seed, count, behind) for function in (road.held, road.instants))
+        if both:
+            side = math.copysign(apart, y)
+            one = together * one + side * road.held(seed + _SECOND_SEED, count, behind)
+            other = together * other + side * road.instants(seed + _SECOND_SEED, count, behind)
+        held.append(one[times] * fade)
+        heights.append(other[times])
+    sensed, forces = _run(built, np.array(held).T, np.array(heights).T, lead)
+    # what the steps cannot follow acts on the tyre, and through a rigid inerter on the body
+    missed = float(road.left_out(count)[0, 0])
+    stiffness = np.array([corner[2] for corner in built.corners])
+    return _figures(built, car, sensed, forces, step, missed * stiffness**2)
+
+
+def _over_profile(built: _Model, profile: Profile, step: float, after: float) -> dict[str, float]:
+    wheelbase = max(corner[4] for corner in built.corners)
+    seconds = profile.duration + wheelbase / profile.speed + after
+    times = step * np.arange(math.ceil(seconds / step), dtype=np.float64)
+
+    def at(shift: float) -> Array:
+        shifted: Array = np.asarray(times + shift, dtype=np.float64)
+        return np.array(
+            [profile.height(shifted, behind, y) for *_, behind, _, y in built.corners]
+        ).T
+
+    sensed, forces = _run(built, at(0.5 * step), at(0.0), 0)
+    return _figures(built, None, sensed, forces, step, np.zeros(len(built.corners)))
+
+
+def _figures(
+    built: _Model,
+    car: CarParts | None,
+    sensed: Array,
+    forces: Array,
+    step: float,
+    missed: Array,
+) -> dict[str, float]:
+    """See the module; `missed`: mean square of each tyre's force that the steps did not follow.
+
+    A run with a `car` is a whole period, another is followed by rest.
+    """
+    model = built.model
+    place = int(model.sensor("body_acceleration").adr[0]) + 2
+    columns = [sensed[:, place]] * len(built.corners)
+    rows = [built.at_once[:, place]] * len(built.corners)
+    names = {model.sensor(n).name for n in range(model.nsensor)}
+    found: dict[str, float] = {}
+    if "body_angular_acceleration" in names:
+        roll = int(model.sensor("body_angular_acceleration").adr[0])
+        arms = [(y, -x) for *_, x, y in built.corners]
+        turned = [sensed[:, roll + n] for n in range(2)]
+        columns = [columns[0] + a * turned[0] + b * turned[1] for a, b in arms]
+        hit = [built.at_once[:, roll + n] for n in range(2)]
+        rows = [rows[0] + a * hit[0] + b * hit[1] for a, b in arms]
+        found["pitch"] = _rms(turned[1])
+        if len(built.corners) == 4:
+            found["roll"] = _rms(turned[0])
+    points = np.array(columns)
+    extra = float(np.mean(np.array(rows) ** 2 @ missed))
+    size = points.shape[1] if car is not None else 2 * points.shape[1]
+    f = np.fft.rfftfreq(size, step)
+    felt = np.fft.irfft(np.fft.rfft(points, size) * weighting()(2j * np.pi * f), size)
+    felt = felt[:, : points.shape[1]]
+    travel = sensed[:, built.travels]
+    loads = np.array([corner[3] for corner in built.corners])
+    return {
+        **found,
+        "J1": math.sqrt(_rms(points) ** 2 + extra),
+        "J1w": _rms(felt),
+        "J3": math.sqrt(_rms(forces) ** 2 + float(missed.mean())),
+        "travel": _rms(travel),
+        "lift_off": float(np.mean(forces <= -loads)),
+        "acceleration_peak": float(abs(points).max()),
+        "tyre_peak": float(forces.max()),
+        "travel_peak": float(abs(travel).max()),
+    }
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
