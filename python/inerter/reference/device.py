@@ -22,17 +22,14 @@ Not modelled: masses of the terminals, several series elements.
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from .device_states import DeviceStates, at_command
 from .laws import (
     FRICTION,
-    DeviceParameters,
     Quantity,
     branches,
     channel,
@@ -41,53 +38,17 @@ from .laws import (
     gas,
     inertance,
     load,
-    maxwell_slip,
     parallel,
     series,
 )
 from .laws.series import Contact
 
-
-def _at_command(method: Callable[..., Any]) -> Callable[..., Any]:
-    """The method of the device at the value that its control commands; the last argument is z."""
-
-    @functools.wraps(method)
-    def wrapped(self: ReferenceDevice, *arguments: Any, **named: Any) -> Any:
-        if self.control == "force":
-            return method(self, *arguments, **named)
-        places = _PLACE_OF_STATES[method.__name__]
-        given = list(arguments)
-        if places < len(given):
-            present, given[places] = self._at_present(given[places])
-        else:
-            present, named["z"] = self._at_present(named.get("z", 0.0))
-        return method(present, *given, **named)
-
-    return wrapped
-
-
 MOST_ROUNDS = 200
 """In which the acceleration of a loaded bristle with a damper is found."""
 
-_PLACE_OF_STATES = {
-    "force": 3,
-    "branch": 2,
-    "inertance_force": 3,
-    "rest_force": 2,
-    "total_friction": 3,
-    "friction_force": 2,
-    "acceleration": 3,
-    "stored_energy": 2,
-    "dissipated_power": 3,
-    "gas_valid": 1,
-    "contact_of": 1,
-    "contact_guards": 1,
-}
-"""Where z stands among the arguments of the methods."""
-
 
 @dataclass(frozen=True, kw_only=True)
-class ReferenceDevice(DeviceParameters):
+class ReferenceDevice(DeviceStates):
     """One device: its parameters, and what follows from them.
 
     Arguments of the methods: x [m] the length, from which `rest_length` is taken, v [m/s],
@@ -98,41 +59,11 @@ class ReferenceDevice(DeviceParameters):
     """
 
     @property
-    def nstate(self) -> int:
-        """Number of states."""
-        return len(self.state_names)
-
-    @property
-    def state_names(self) -> tuple[str, ...]:
-        """Names of the states in their order."""
-        friction = ("friction_state",) if self.friction_states else ()
-        if self.friction == "maxwell_slip":
-            friction = tuple(f"friction_state_{i + 1}" for i in range(self.friction_states))
-        flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
-        gap = ("gap_position",) if self.backlash > 0.0 else ()
-        beside = tuple(f"branch_deflection_{i + 1}" for i in range(branches.count(self)))
-        return friction + flywheel + gap + beside + ("control_change",) * control.count(self)
-
-    @property
-    def friction_states(self) -> int:
-        """Number of states of the friction law."""
-        if self.friction == "maxwell_slip":
-            return maxwell_slip.count(self)
-        return FRICTION[self.friction].STATES
-
-    @property
     def total_inertance(self) -> float:
         """The inertance [kg]: `inertance`, or what the channel's geometry gives."""
         return self.inertance if self.channel_area == 0.0 else channel.inertance(self)
 
-    def state_argument(self, states: ArrayLike) -> Quantity:
-        """States of shape (..., nstate) in the form that the methods take as `z`."""
-        array = np.asarray(states, dtype=np.float64)
-        if self.nstate == 0:
-            return 0.0
-        return array[..., 0] if self.nstate == 1 else array
-
-    @_at_command
+    @at_command
     def force(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
@@ -143,7 +74,7 @@ class ReferenceDevice(DeviceParameters):
         along = self.load_friction_force(v, carried, z)
         return carried + along + self.rest_force(x, v, z, a=a)
 
-    @_at_command
+    @at_command
     def branch(
         self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> tuple[Quantity, Quantity]:
@@ -157,7 +88,7 @@ class ReferenceDevice(DeviceParameters):
         mass, rest = inertance.branch(self, self.total_inertance, stretch, v)
         return mass, rest + self._flywheel_side(stretch, v)
 
-    @_at_command
+    @at_command
     def inertance_force(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0, *, contact: Contact = None
     ) -> Quantity:
@@ -167,7 +98,7 @@ class ReferenceDevice(DeviceParameters):
         mass, rest = self.branch(x, v, z, contact=contact)
         return mass * a + rest
 
-    @_at_command
+    @at_command
     def rest_force(
         self, x: Quantity, v: Quantity, z: Quantity = 0.0, *, a: Quantity = 0.0
     ) -> Quantity:
@@ -176,7 +107,7 @@ class ReferenceDevice(DeviceParameters):
             return self._beside(x, v, z)
         return self._beside(x, v, z) + self.friction_force(x, v, z, a=a)
 
-    @_at_command
+    @at_command
     def total_friction(self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0) -> Quantity:
         """Friction law and load friction [N], on the side where they act."""
         speed = self._states(z)[2] if self.rubs_flywheel else v
@@ -184,7 +115,7 @@ class ReferenceDevice(DeviceParameters):
         along = self.load_friction_force(speed, carried, z)
         return self.friction_force(x, v, z, a=a) + along
 
-    @_at_command
+    @at_command
     def friction_force(
         self,
         x: Quantity,
@@ -235,7 +166,7 @@ class ReferenceDevice(DeviceParameters):
         """The device without the damper of LuGre."""
         return self if self.bristle_damping == 0.0 else self._with_value("bristle_damping", 0.0)
 
-    @_at_command
+    @at_command
     def acceleration(
         self, x: Quantity, v: Quantity, force: Quantity, z: Quantity = 0.0
     ) -> Quantity:
@@ -317,29 +248,6 @@ class ReferenceDevice(DeviceParameters):
             return FRICTION[self.friction].stored_energy(unit, place, rate, friction)
         return 0.0 * np.asarray(v)
 
-    def _change(self, z: Quantity) -> Quantity:
-        """The control's own state."""
-        array = np.asarray(z, dtype=np.float64)
-        return array if self.nstate == 1 or array.ndim == 0 else array[..., -1]
-
-    def _with_value(self, name: str, value: Quantity) -> ReferenceDevice:
-        """The device, already checked, with a value, perhaps of many moments, of a parameter."""
-        found = object.__new__(type(self))
-        found.__dict__.update(self.__dict__)
-        object.__setattr__(found, name, value)
-        return found
-
-    def _at_present(self, z: Quantity) -> tuple[ReferenceDevice, Quantity]:
-        """The device at the value of its control, without a state of it; its states."""
-        found = self._with_value(self.control, control.value(self, self._change(z)))
-        object.__setattr__(found, "control", "force")
-        array = np.asarray(z, dtype=np.float64)
-        if not control.count(self) or array.ndim == 0:
-            return found, z if self.nstate > control.count(self) else 0.0
-        if self.nstate == 1:
-            return found, 0.0
-        return found, array[..., 0] if self.nstate == 2 else array[..., :-1]
-
     def _own_rate(
         self, x: Quantity, v: Quantity, z: Quantity, a: Quantity, contact: Contact
     ) -> Quantity:
@@ -386,7 +294,7 @@ class ReferenceDevice(DeviceParameters):
             rates.append(series.gap_rate(self, deflection, series_rate, gap, contact))
         return np.stack(np.broadcast_arrays(*rates), axis=-1)
 
-    @_at_command
+    @at_command
     def stored_energy(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Kinetic, spring, bristle, stop and gas energy [J]."""
         friction, deflection, speed, gap = self._states(z)
@@ -405,7 +313,7 @@ class ReferenceDevice(DeviceParameters):
             energy = energy + series.stored_energy(self, deflection, gap)
         return energy + branches.stored_energy(self, self._split(z)[1])
 
-    @_at_command
+    @at_command
     def dissipated_power(
         self, x: Quantity, v: Quantity, a: Quantity, z: Quantity = 0.0
     ) -> Quantity:
@@ -431,27 +339,23 @@ class ReferenceDevice(DeviceParameters):
         flywheel = self.flywheel_viscous * speed * speed
         return heat + flywheel + channel.dissipated_power(self, speed)
 
-    @_at_command
+    @at_command
     def gas_valid(self, x: Quantity, z: Quantity = 0.0) -> bool | NDArray[np.bool_]:
         """Whether the gas law is inside its validity; true without gas."""
         deflection = self._states(z)[1]
         return gas.valid(self, x - self.rest_length - deflection)
 
-    @_at_command
+    @at_command
     def contact_of(self, v: float, z: Quantity) -> int:
         """The contact of the backlash that the states mean: +1, -1 or 0 (in the gap)."""
         _, deflection, speed, gap = self._states(z)
         return series.contact_of(self, float(deflection), v - float(speed), float(gap))
 
-    @_at_command
+    @at_command
     def contact_guards(self, v: float, z: Quantity, contact: int) -> list[tuple[float, int]]:
         """What ends the contact, see `series.guards`."""
         _, deflection, speed, gap = self._states(z)
         return series.guards(self, float(deflection), v - float(speed), float(gap), contact)
-
-    def parameters(self) -> dict[str, float | str]:
-        """Every parameter by name, defaults included; NaN for one that is not given."""
-        return {name: value for name, value in asdict(self).items() if name != "command"}
 
     def _damper(self, stretch: Quantity, v: Quantity) -> Quantity:
         """Force [N] of what damps between the terminals."""
@@ -488,34 +392,3 @@ class ReferenceDevice(DeviceParameters):
         """G [N]: damper, pipe and gas between the flywheel and terminal 1."""
         pipe = channel.force(self, velocity)
         return self.flywheel_viscous * velocity + pipe + gas.force(self, displacement)
-
-    def _split(self, z: Quantity) -> tuple[Quantity, NDArray[np.float64]]:
-        """The states without those of the branches, in the form of `z`; deflections (..., n)."""
-        count, array = branches.count(self), np.asarray(z, dtype=np.float64)
-        if not count:
-            return z, np.zeros(0)
-        if array.ndim == 0 and array == 0.0:
-            return 0.0, np.zeros(count)
-        if self.nstate == 1:
-            return 0.0, array[..., np.newaxis]
-        inner, beside = array[..., :-count], array[..., -count:]
-        size = self.nstate - count
-        return (inner[..., 0] if size == 1 else inner if size else 0.0), beside
-
-    def _states(self, z: Quantity) -> tuple[Quantity, Quantity, Quantity, Quantity]:
-        """Friction state, s, w, gap; zero where there is none."""
-        z = self._split(z)[0]
-        if not self.has_series:
-            return z, 0.0, 0.0, 0.0
-        array: NDArray[np.float64] = np.asarray(z, dtype=np.float64)
-        if array.ndim == 0 and array == 0.0:
-            return 0.0, 0.0, 0.0, 0.0
-        if array.ndim == 0 or array.shape[-1] != self.nstate - branches.count(self):
-            raise ValueError(
-                f"z: shape {array.shape}, but this device has the states "
-                f"{', '.join(self.state_names)} along the last axis"
-            )
-        first = self.friction_states
-        friction = array[..., :first] if first > 1 else array[..., 0] if first else 0.0
-        gap = array[..., first + 2] if self.backlash > 0.0 else 0.0
-        return friction, array[..., first], array[..., first + 1], gap
