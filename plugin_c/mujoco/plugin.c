@@ -209,14 +209,6 @@ static void reset(const mjModel* m, mjtNum* plugin_state, void* plugin_data, int
 
 //------------------------------ forward pass ------------------------------------------------------
 
-// rates of the states, at an acceleration, where the engine asked for them
-static void rate_states(const mjModel* m, Instance* self, mjtNum a, mjtNum* rate) {
-  mjtNum x = self->rate_x, v = self->rate_v;
-  inerter_state_rate(&self->device, x, v, a, self->rate_state, self->rate);
-  mju_copy(rate, self->rate, inerter_nstate(&self->device));
-  watch_bristle(m, self, x, v, a, self->rate_state, rate);
-}
-
 static void act_dot(const mjModel* m, mjData* d, int instance) {
   if (instance_absent(d, instance)) {
     return;
@@ -238,7 +230,7 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
     self->rate_x = instance_displacement(m, d, self);
     self->rate_v = d->actuator_velocity[m->actuator_outadr[self->actuator]];
     mju_copy(self->rate_state, d->act + address, nstate);
-    rate_states(m, self, 0, rate);
+    watch_rates(m, self, 0, rate);
   }
 }
 
@@ -324,7 +316,7 @@ static void compute_forces(const mjModel* m, mjData* d, int instance, Instance* 
     Instance* each = instance_of(d, k);
     if (each->solved && inerter_load_bends(&each->device) && !instance_idle(m, d, each)) {
       // the load on the bristle is known only now
-      rate_states(m, each, each->acceleration, d->act_dot + instance_act(m, each));
+      watch_rates(m, each, each->acceleration, d->act_dot + instance_act(m, each));
     }
     watch_force(m, each, d->actuator_force[m->actuator_outadr[each->actuator]] - each->detour);
     if (each->sensed && !instance_sees_falling_asleep(m, d)) {

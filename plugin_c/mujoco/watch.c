@@ -82,8 +82,8 @@ static void watch_age(const mjModel* m, Instance* self, double x, double v, cons
   instance_complain(m, self, COMPLAINT_BRISTLE, message);
 }
 
-void watch_bristle(const mjModel* m, Instance* self, double x, double v, double a,
-                   const mjtNum* state, mjtNum* rate) {
+static void watch_bristle(const mjModel* m, Instance* self, double x, double v, double a,
+                          const mjtNum* state, mjtNum* rate) {
   const InerterDevice* device = &self->device;
   if (m->opt.integrator != mjINT_RK4 || !instance_has_bristle(device)) {
     return;
@@ -132,6 +132,13 @@ void watch_bristle(const mjModel* m, Instance* self, double x, double v, double 
            "integrator=\"implicitfast\", which steps it exactly, or shorten the timestep",
            w, inerter_friction_name(device->friction), 1 / decay, m->opt.timestep);
   instance_complain(m, self, COMPLAINT_BRISTLE, message);
+}
+
+void watch_rates(const mjModel* m, Instance* self, mjtNum a, mjtNum* rate) {
+  mjtNum x = self->rate_x, v = self->rate_v;
+  inerter_state_rate(&self->device, x, v, a, self->rate_state, self->rate);
+  mju_copy(rate, self->rate, inerter_nstate(&self->device));
+  watch_bristle(m, self, x, v, a, self->rate_state, rate);
 }
 
 //------------------------------ stiffness ---------------------------------------------------------

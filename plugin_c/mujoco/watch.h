@@ -27,11 +27,11 @@ void watch_stiffness(const mjModel* m, Instance* self);
 // Say that the sites of a tendon meet: there is no direction then.
 void watch_sites(const mjModel* m, const mjData* d, Instance* self);
 
-// Keep the rate of a friction state to what the stages of RK4 resolve. At speed v a bristle relaxes
+// Rates of the states at an acceleration, where the engine asked for them. The rate of a friction
+// state is kept to what the stages of RK4 resolve. At speed v a bristle relaxes
 // towards sliding at a rate of sigma0 |v| / g, which is easily beyond the stability of explicit
 // stages. There it is slowed to the fastest that is stable: sliding then sets in within a step
 // instead of at once, at the same level.
-void watch_bristle(const mjModel* m, Instance* self, double x, double v, double a,
-                   const mjtNum* state, mjtNum* rate);
+void watch_rates(const mjModel* m, Instance* self, mjtNum a, mjtNum* rate);
 
 #endif  // INERTER_MUJOCO_WATCH_H_

@@ -100,7 +100,9 @@ class DeviceInModel:
         # the plugin's own mark (placement.c); behind a series element the flywheel is a state
         if model.actuator_gainprm[self.actuator, -1] <= 0:
             return {}
-        held = {"viscous": float(model.actuator_damping[self.actuator])}
+        damping = float(model.actuator_damping[self.actuator])
+        # damping that bends is the plugin's as a whole
+        held = {"viscous": damping} if damping or not self._bends() else {}
         series = self.device.series_stiffness > 0 or self.device.series_damping > 0
         if not (series or _CHANNEL & self.live.keys()):
             held["inertance"] = float(model.actuator_armature[self.actuator])
@@ -109,6 +111,12 @@ class DeviceInModel:
             for key, value in held.items()
             if value != getattr(self.device, key) and key != self.device.control
         }
+
+    def _bends(self) -> bool:
+        known = self.device
+        return known.damping_asymmetry != 0 or (
+            known.damping_knee > 0 and known.damping_beyond != 1
+        )
 
     def stated(self, model: mujoco.MjModel) -> dict[str, float | str]:
         """What configuration and live parameters state, by name, SI units."""

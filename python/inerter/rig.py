@@ -110,7 +110,8 @@ def simulate_along(
     which advances the states: at constant velocity by the laws' own steps (Euler), or with a series
     element along the cubic through both samples, by stages of RK4 short enough for it. This is what
     `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far below
-    the table's 1e12 kg), with a series element to the error of its second-order steps.
+    the table's 1e12 kg), with a series element to the error of its second-order steps, with load
+    friction on a bristle to that of first-order ones.
 
     Parameters
     ----------

@@ -92,7 +92,8 @@ def test_only_what_comes_near_the_best_is_followed_to_its_end() -> None:
     found = Trials(given).fit_all(trials, fit)
     errors = [each.rmse(given.masks) for _, each in found]
     # what is near: damping, and what can be damping; the others stay as a few steps left them
-    assert found[0][0].effect in ("viscous_friction", "coulomb_friction", "stribeck_friction")
+    near = ("viscous_friction", "coulomb_friction", "stribeck_friction")
+    assert found[0][0].effect in (*near, "asymmetric_damping", "digressive_damping")
     far = [each for (_, each), error in zip(found, errors, strict=True) if error > 2 * errors[0]]
     assert len(far) > 3
     assert all(each.evaluations <= FEW for each in far)

@@ -23,7 +23,8 @@ def device(law: str) -> Device:
         inertance=113,
         viscous=40,
         stiffness=500,
-        load_friction=0.03,
+        # the level of a bristle that follows the load is stepped with the acceleration of the step
+        load_friction=0.0 if Device(friction=law, **FRICTION[law]).nstate else 0.03,
         inertance_gradient=20,
         friction=law,
         **FRICTION[law],

@@ -257,7 +257,7 @@ _ALL = (
         experiment="repeat at twice the amplitude", rivals=("viscous_friction",),
     ),
     Effect(
-        name="damper_asymmetry", rank=10, coordinates=("damping_asymmetry",),
+        name="asymmetric_damping", rank=10, coordinates=("damping_asymmetry",),
         reported=("viscous", "damping_asymmetry"),
         plain="damping that differs between the two directions",
         meaning="c v (1 + kappa sgn(v))",

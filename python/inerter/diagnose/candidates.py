@@ -249,7 +249,7 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 _SPECIAL: dict[str, Build] = {
     "sensor_filter": _filter,
-    "damper_asymmetry": _damper,
+    "asymmetric_damping": _damper,
     "digressive_damping": _damper,
     "inertance_error": _inertance,
     "parallel_stiffness": _stiffness,

@@ -111,7 +111,7 @@ def width(model: Model) -> dict[str, float]:
 
 LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
 """The effect that each friction law is named as."""
-_DAMPERS = ("damper_asymmetry", "digressive_damping")
+_DAMPERS = ("asymmetric_damping", "digressive_damping")
 """Effects that bend a viscous damping, which belongs to them."""
 _LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")
 

@@ -28,7 +28,7 @@ EFFECTS = (
     "sensor_saturation",
     "periodic_disturbance",
     "sensor_filter",
-    "damper_asymmetry",
+    "asymmetric_damping",
     "digressive_damping",
 )
 """Every effect that a bench record can hide."""
@@ -45,7 +45,7 @@ LEVEL_CHANGES = ("asymmetric_friction", "position_dependent_friction", "friction
 NEEDS_LEVEL = LEVEL_CHANGES[:2]
 
 # these are all of one viscous damping
-DAMPERS = ("viscous_friction", "damper_asymmetry", "digressive_damping")
+DAMPERS = ("viscous_friction", "asymmetric_damping", "digressive_damping")
 
 # an inertance has one series element, and a gap comes with its own
 _SERIES = ("backlash", "series_elasticity")

@@ -225,7 +225,7 @@ _SIZES = {
 UNITS: dict[str, Callable[[Generator, ReferenceDevice, list[Situation]], Unit]] = {
     "stribeck_friction": _stribeck,
     "asymmetric_friction": _asymmetric,
-    "damper_asymmetry": _uneven_damper,
+    "asymmetric_damping": _uneven_damper,
     "digressive_damping": _digressive,
     "position_dependent_friction": _position,
     "friction_drift": _friction_drift,
