@@ -87,21 +87,24 @@ def draw_levels(rng: np.random.Generator) -> Parameters:
 
 def draw_branches(rng: np.random.Generator, wide: float = 1.0) -> Parameters:
     """Everything beside the friction law; springs of either sign."""
-    return {
+    drawn: Parameters = {
         "inertance": around(rng, 100.0, wide),
         "inertance_gradient": float(rng.normal(0.0, 5.0)),
         "inertance_curvature": float(rng.normal(0.0, 50.0)),
         "viscous": around(rng, 50.0, wide),
         "quadratic_damping": around(rng, 50.0, wide),
-        "damping_asymmetry": float(rng.uniform(-0.9, 0.9)) * float(rng.random() < 0.5),
-        "damping_knee": around(rng, 0.1, wide) * float(rng.random() < 0.5),
-        "damping_beyond": float(rng.uniform(0.0, 3.0)),
         "stiffness": around(rng, 1e4, wide) * float(rng.choice([-1.0, 1.0])),
         "stiffness_cubic": around(rng, 1e6, wide) * float(rng.choice([-1.0, 1.0])),
         "rest_length": float(rng.normal(0.0, 0.05)),
         "force_offset": float(rng.normal(0.0, 30.0)),
         "load_friction": float(rng.uniform(0.0, 0.9)),
     }
+    # by a generator of its own, so that the other draws stay
+    shape = np.random.default_rng(int(1e6 * float(drawn["viscous"])))
+    drawn["damping_asymmetry"] = float(shape.uniform(-0.9, 0.9)) * float(shape.random() < 0.5)
+    drawn["damping_knee"] = around(shape, 0.1, wide) * float(shape.random() < 0.5)
+    drawn["damping_beyond"] = float(shape.uniform(0.0, 3.0))
+    return drawn
 
 
 def draw_flywheel(rng: np.random.Generator, channel: bool, gas: bool) -> Parameters:
