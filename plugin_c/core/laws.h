@@ -217,8 +217,10 @@ double load_on_bristle(const InerterDevice* p, double v, double carried);
 
 // force of a law with a bristle without its damper
 static inline double bristle_spring(const InerterDevice* p, double x, double v, const double* z) {
-  return p->friction == INERTER_FRICTION_lugre ? p->bristle_stiffness * bristle_deflection(p, z[0])
-                                               : friction_force(p, x, v, z, 0);
+  if (p->friction == INERTER_FRICTION_lugre) {
+    return z ? p->bristle_stiffness * bristle_deflection(p, z[0]) : 0;
+  }
+  return friction_force(p, x, v, z, 0);
 }
 
 // wheel_friction.c: N, of the force F_s that the series element bears and of the friction law's

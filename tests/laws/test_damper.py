@@ -58,7 +58,8 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
         "damping_knee": around(rng, 0.1, 1.0), "damping_beyond": float(rng.uniform(0, 4)),
     }  # fmt: skip
     found = force(**values)
-    expected = [ReferenceDevice(**values).force(0.0, v, 0.0) for v in SPEEDS]
+    reference = ReferenceDevice(**values)  # pyright: ignore[reportArgumentType]
+    expected = [reference.force(0.0, v, 0.0) for v in SPEEDS]
     np.testing.assert_allclose(found, expected, rtol=1e-13)
     assert np.all(found * SPEEDS >= 0)
     device = Device(**values)
@@ -71,4 +72,4 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
 )
 def test_a_value_out_of_range_is_refused_by_name(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=name):
-        Device(viscous=10.0, **{name: value})
+        Device(**{"viscous": 10.0, name: value})  # pyright: ignore[reportArgumentType]

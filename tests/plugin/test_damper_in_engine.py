@@ -39,7 +39,7 @@ def end(model: mujoco.MjModel, time: float = 0.5) -> float:
 
 
 def exact(time: float = 0.5) -> float:
-    device = ReferenceDevice(**(DEVICE | SHAPE | {"inertance": 0.0}))
+    device = ReferenceDevice(**(DEVICE | SHAPE | {"inertance": 0.0}))  # pyright: ignore[reportArgumentType]
 
     def rate(_: float, y: np.ndarray) -> list[float]:
         return [y[1], -float(device.force(y[0], y[1], 0.0)) / 5.0]

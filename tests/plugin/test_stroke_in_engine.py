@@ -192,7 +192,7 @@ def test_a_passive_map_brings_a_mass_to_rest_whatever_its_numbers(integrator: st
     body.add_joint(name="travel", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0])
     body.add_geom(size=[0.1, 0, 0], mass=1.0)
     added = add_device(
-        spec, joint="travel", force_map=steep, force_map_columns=6, force_map_passive=1,
+        spec, joint="travel", force_map=steep.tolist(), force_map_columns=6, force_map_passive=1,
         force_map_lower=-0.1, force_map_upper=0.1, force_map_speed=0.5, stiffness=100.0,
         live=("force_map",),
     )  # fmt: skip

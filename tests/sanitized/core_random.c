@@ -20,14 +20,13 @@ static double moderate(void) {
 
 // whether a parameter belongs to a part that a tame device leaves out; bits:
 // series element, backlash, stops, gas, channel
-static int left_out(const char *name, unsigned parts, int slips, int branches) {
+static int left_out(const char* name, unsigned parts, int slips, int branches) {
   // of several alike the first ones
   if (!strncmp(name, "slip_", 5) || !strncmp(name, "branch_", 7)) {
     return atoi(strrchr(name, '_') + 1) > (*name == 's' ? slips : branches);
   }
-  const char *const starts[] = {"series_", "backlash", "stop_",
-                                "gas_",    "channel_", "fluid_",
-                                "piston_", "minor_",   "coil_"};
+  const char* const starts[] = {"series_", "backlash", "stop_",  "gas_", "channel_",
+                                "fluid_",  "piston_",  "minor_", "coil_"};
   const int bits[] = {0, 1, 2, 3, 4, 4, 4, 4, 4};
   for (int i = 0; i < 9; i++) {
     if (!strncmp(name, starts[i], strlen(starts[i]))) {
@@ -38,20 +37,20 @@ static int left_out(const char *name, unsigned parts, int slips, int branches) {
   if (!strncmp(name, "control_", 8)) {
     return 1;
   }
-  return (!strcmp(name, "inertance") && parts >> 4 & 1) ||
-         !strncmp(name, "curve_", 6) || !strncmp(name, "force_map_", 10);
+  return (!strcmp(name, "inertance") && parts >> 4 & 1) || !strncmp(name, "curve_", 6) ||
+         !strncmp(name, "force_map_", 10);
 }
 
 // a control that sets a parameter around its value, or any, with a lag or
 // without
-static void random_control(InerterDevice *device, int tame, int channel) {
+static void random_control(InerterDevice* device, int tame, int channel) {
   char message[INERTER_MESSAGE_SIZE], text[64];
   const char *name = NULL, *law = inerter_friction_name(device->friction);
   for (int fits = 0; !fits;) {
     name = inerter_control_name(below(&source, INERTER_NCONTROL));
     fits = 1;
     for (int i = 0; tame && i < INERTER_NPARAMETER; i++) {
-      const InerterParameter *p = inerter_parameter(i);
+      const InerterParameter* p = inerter_parameter(i);
       fits &= strcmp(p->name, name) || !*p->laws || strstr(p->laws, law);
     }
     fits &= !tame || strcmp(name, channel ? "inertance" : "minor_loss");
@@ -63,13 +62,10 @@ static void random_control(InerterDevice *device, int tame, int channel) {
     return;
   }
   int parameter = inerter_controlled(device);
-  double value = *(const double *)((const char *)device +
-                                   inerter_parameter(parameter)->offset);
-  double lower = isnan(value) ? 1 : value - 0.5 * fabs(value),
-         upper = value + fabs(value) + 1e-3;
-  const char *keys[] = {"control_lower", "control_upper", "control_lag"};
-  double values[] = {lower, upper,
-                     below(&source, 8) ? 1e-3 + fabs(moderate()) : 0};
+  double value = *(const double*)((const char*)device + inerter_parameter(parameter)->offset);
+  double lower = isnan(value) ? 1 : value - 0.5 * fabs(value), upper = value + fabs(value) + 1e-3;
+  const char* keys[] = {"control_lower", "control_upper", "control_lag"};
+  double values[] = {lower, upper, below(&source, 8) ? 1e-3 + fabs(moderate()) : 0};
   for (int i = 0; i < 3; i++) {
     snprintf(text, sizeof(text), "%.17g", tame ? values[i] : any(&source));
     inerter_set(device, keys[i], text, message);
@@ -78,13 +74,12 @@ static void random_control(InerterDevice *device, int tame, int channel) {
 
 // a device with random keys; returns 0 where the core refused it, always with a
 // message
-static int random_device(InerterDevice *device, int tame) {
+static int random_device(InerterDevice* device, int tame) {
   char message[INERTER_MESSAGE_SIZE];
   char text[64];
   inerter_default(device);
   // the law with the most states more often
-  int law = below(&source, 2) ? below(&source, INERTER_NFRICTION)
-                              : INERTER_FRICTION_maxwell_slip;
+  int law = below(&source, 2) ? below(&source, INERTER_NFRICTION) : INERTER_FRICTION_maxwell_slip;
   if (inerter_set(device, "friction", inerter_friction_name(law), message)) {
     abort();
   }
@@ -93,48 +88,38 @@ static int random_device(InerterDevice *device, int tame) {
     parts &= ~2u;
   }
   // as many as there can be of either, or fewer
-  int slips =
-      below(&source, 2) ? INERTER_MAXSLIP : 1 + below(&source, INERTER_MAXSLIP);
-  int branches = below(&source, 2) ? below(&source, 2) * INERTER_MAXBRANCH
-                                   : below(&source, INERTER_MAXBRANCH);
+  int slips = below(&source, 2) ? INERTER_MAXSLIP : 1 + below(&source, INERTER_MAXSLIP);
+  int branches =
+      below(&source, 2) ? below(&source, 2) * INERTER_MAXBRANCH : below(&source, INERTER_MAXBRANCH);
   if (tame ? parts >> 3 & 1 : below(&source, 8) == 0) {
-    if (inerter_set(device, "gas_law",
-                    inerter_gas_law_name(below(&source, INERTER_NGAS)),
+    if (inerter_set(device, "gas_law", inerter_gas_law_name(below(&source, INERTER_NGAS)),
                     message)) {
       abort();
     }
   }
   if (below(&source, 3) == 0 &&
       inerter_set(device, "friction_side",
-                  inerter_friction_side_name(below(&source, INERTER_NSIDE)),
-                  message)) {
+                  inerter_friction_side_name(below(&source, INERTER_NSIDE)), message)) {
     abort();
   }
   for (int i = 0; i < INERTER_NPARAMETER; i++) {
-    const InerterParameter *p = inerter_parameter(i);
+    const InerterParameter* p = inerter_parameter(i);
     int read = !*p->laws || strstr(p->laws, inerter_friction_name(law));
-    int numbered =
-        !strncmp(p->name, "slip_", 5) || !strncmp(p->name, "branch_", 7);
+    int numbered = !strncmp(p->name, "slip_", 5) || !strncmp(p->name, "branch_", 7);
     if (tame ? !read || left_out(p->name, parts, slips, branches) ||
                    (!numbered && below(&source, 16) == 0)
              : below(&source, 6)) {
       continue;
     }
     double value = tame ? fabs(moderate()) : any(&source);
-    if (tame && numbered)
-      value += 1e-3;
-    if (tame && !strcmp(p->name, "stop_lower"))
-      value = -value;
-    if (tame && !strcmp(p->name, "coil_diameter"))
-      value += 1e3;
-    if (tame && value < p->lower)
-      value = p->lower;
-    if (tame && value > p->upper)
-      value = p->upper;
+    if (tame && numbered) value += 1e-3;
+    if (tame && !strcmp(p->name, "stop_lower")) value = -value;
+    if (tame && !strcmp(p->name, "coil_diameter")) value += 1e3;
+    if (tame && value < p->lower) value = p->lower;
+    if (tame && value > p->upper) value = p->upper;
     snprintf(text, sizeof(text), "%.17g", value);
     memset(message, 0, sizeof(message));
-    if (inerter_set(device, p->name, text, message) &&
-        !strstr(message, p->name)) {
+    if (inerter_set(device, p->name, text, message) && !strstr(message, p->name)) {
       abort();
     }
   }
@@ -142,34 +127,28 @@ static int random_device(InerterDevice *device, int tame) {
     random_control(device, tame, (int)(parts >> 4 & 1));
   }
   for (int i = 0; i < INERTER_NLIST; i++) {
-    const InerterList *list = inerter_list(i);
-    if (below(&source, tame ? 3 : 6) ||
-        (law == INERTER_FRICTION_none && *list->laws) ||
-        (tame && i / 2 == INERTER_STROKE_friction_back &&
-         device->friction_asymmetry != 0)) {
+    const InerterList* list = inerter_list(i);
+    if (below(&source, tame ? 3 : 6) || (law == INERTER_FRICTION_none && *list->laws) ||
+        (tame && i / 2 == INERTER_STROKE_friction_back && device->friction_asymmetry != 0)) {
       continue;
     }
     double values[INERTER_MAXCURVE];
-    int count = list->periods ? 3 * (1 + below(&source, INERTER_MAXPERIOD))
-                              : 2 + below(&source, 63);
+    int count =
+        list->periods ? 3 * (1 + below(&source, INERTER_MAXPERIOD)) : 2 + below(&source, 63);
     for (int k = 0; k < count; k++) {
       values[k] = tame ? fmod(moderate(), 0.05) : any(&source);
-      if (tame && i / 2 == INERTER_STROKE_viscous)
-        values[k] = list->periods ? 0 : 0.01;
-      if (tame && list->periods && k % 3 == 0)
-        values[k] = 1e-3 + fabs(values[k]);
+      if (tame && i / 2 == INERTER_STROKE_viscous) values[k] = list->periods ? 0 : 0.01;
+      if (tame && list->periods && k % 3 == 0) values[k] = 1e-3 + fabs(values[k]);
     }
     if (tame && i == INERTER_LIST_force_map) {
       // three rows of four
-      const char *const keys[] = {"force_map_lower", "force_map_upper",
-                                  "force_map_speed", "force_map_columns"};
-      const char *const texts[] = {"-0.5", "0.75", "2", "4"};
+      const char* const keys[] = {"force_map_lower", "force_map_upper", "force_map_speed",
+                                  "force_map_columns"};
+      const char* const texts[] = {"-0.5", "0.75", "2", "4"};
       count = 12;
-      for (int k = 0; k < 12; k++)
-        values[k] = fmod(moderate(), 50);
+      for (int k = 0; k < 12; k++) values[k] = fmod(moderate(), 50);
       for (int k = 0; k < 4; k++) {
-        if (inerter_set(device, keys[k], texts[k], message))
-          abort();
+        if (inerter_set(device, keys[k], texts[k], message)) abort();
       }
     } else if (tame && !list->periods) {
       // every curve has its range
@@ -179,8 +158,7 @@ static int random_device(InerterDevice *device, int tame) {
       }
     }
     memset(message, 0, sizeof(message));
-    if (inerter_set_list(device, i, count, values, message) &&
-        !strstr(message, list->name)) {
+    if (inerter_set_list(device, i, count, values, message) && !strstr(message, list->name)) {
       abort();
     }
   }
@@ -194,18 +172,13 @@ static int random_device(InerterDevice *device, int tame) {
 
 // texts that a configuration file might hold
 static void awkward_texts(void) {
-  const char *texts[] = {"",       " ",
-                         "nan",    "inf",
-                         "-",      "1e",
-                         "1e999",  "1e-999",
-                         "0x",     "0x1p4",
-                         "1.5.2",  "\xff\xfe",
-                         "%s%n%d", "12345678901234567890",
-                         "1,5"};
-  const char *keys[] = {"inertance", "friction", "gas_law",   "",
-                        "inertanc",  "%s%n",     "stop_lower"};
+  const char* texts[] = {
+      "",       " ",  "nan",   "inf",   "-",        "1e",     "1e999",
+      "1e-999", "0x", "0x1p4", "1.5.2", "\xff\xfe", "%s%n%d", "12345678901234567890",
+      "1,5"};
+  const char* keys[] = {"inertance", "friction", "gas_law", "", "inertanc", "%s%n", "stop_lower"};
   char message[INERTER_MESSAGE_SIZE];
-  char *endless = malloc(100000);
+  char* endless = malloc(100000);
   if (!endless) {
     abort();
   }
@@ -215,8 +188,7 @@ static void awkward_texts(void) {
     InerterDevice device;
     inerter_default(&device);
     for (size_t i = 0; i < sizeof(texts) / sizeof(*texts); i++) {
-      if (inerter_set(&device, keys[k], texts[i], message) &&
-          strlen(message) < 10) {
+      if (inerter_set(&device, keys[k], texts[i], message) && strlen(message) < 10) {
         abort();
       }
     }
@@ -230,36 +202,22 @@ static void awkward_texts(void) {
 int main(void) {
   enum { N = 64, DEVICES = 3, WIDE = INERTER_MAXSTATE };
   long calls = 0, by_states[WIDE + 1] = {0};
-  static double x[N], v[N], a[N], z[WIDE * N], rates[WIDE * N], result[6 * N],
-      many[DEVICES * N];
+  static double x[N], v[N], a[N], z[WIDE * N], rates[WIDE * N], result[6 * N], many[DEVICES * N];
   awkward_texts();
 
   // past either end of the lists
   for (int i = -2; i < 100; i++) {
     int known = i >= 0 && i < INERTER_NFRICTION;
-    if (known != (inerter_friction_name(i) != NULL))
-      abort();
-    if (known != (inerter_friction_meaning(i) != NULL))
-      abort();
-    if (known != (inerter_friction_nstate(i) >= 0))
-      abort();
-    if ((i >= 0 && i < INERTER_NPARAMETER) != (inerter_parameter(i) != NULL))
-      abort();
-    if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_name(i) != NULL))
-      abort();
-    if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_meaning(i) != NULL))
-      abort();
-    if ((i >= 0 && i < INERTER_NCONTROL) != (inerter_control_name(i) != NULL))
-      abort();
-    if ((i >= 0 && i < INERTER_NCONTROL) !=
-        (inerter_control_meaning(i) != NULL))
-      abort();
-    if ((i >= 0 && i < INERTER_NSIDE) !=
-        (inerter_friction_side_name(i) != NULL))
-      abort();
-    if ((i >= 0 && i < INERTER_NSIDE) !=
-        (inerter_friction_side_meaning(i) != NULL))
-      abort();
+    if (known != (inerter_friction_name(i) != NULL)) abort();
+    if (known != (inerter_friction_meaning(i) != NULL)) abort();
+    if (known != (inerter_friction_nstate(i) >= 0)) abort();
+    if ((i >= 0 && i < INERTER_NPARAMETER) != (inerter_parameter(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_name(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NGAS) != (inerter_gas_law_meaning(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NCONTROL) != (inerter_control_name(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NCONTROL) != (inerter_control_meaning(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_name(i) != NULL)) abort();
+    if ((i >= 0 && i < INERTER_NSIDE) != (inerter_friction_side_meaning(i) != NULL)) abort();
   }
 
   // devices with many states are seldom: after the first rounds only such as
@@ -284,79 +242,64 @@ int main(void) {
     calls++;
     by_states[nstate]++;
     for (int i = -1; i <= WIDE; i++) {
-      if ((i >= 0 && i < nstate) != (inerter_state_name(&device, i) != NULL))
-        abort();
+      if ((i >= 0 && i < nstate) != (inerter_state_name(&device, i) != NULL)) abort();
     }
 
     // one by one; exactly as many states as there are, so that a look beyond
     // them is reported
-    double *own = malloc(sizeof(double) * (size_t)(nstate + 1));
-    double *end = malloc(sizeof(double) * (size_t)(nstate + 1));
-    if (!own || !end)
-      abort();
-    double *states = own + 1;
+    double* own = malloc(sizeof(double) * (size_t)(nstate + 1));
+    double* end = malloc(sizeof(double) * (size_t)(nstate + 1));
+    if (!own || !end) abort();
+    double* states = own + 1;
     memcpy(states, z, sizeof(double) * (size_t)nstate);
     inerter_state_step(&device, x[0], v[0], a[0], states, h);
-    inerter_state_of_force(&device, x[1], v[1], a[1],
-                           tame ? moderate() : any(&source), end + 1);
+    inerter_state_of_force(&device, x[1], v[1], a[1], tame ? moderate() : any(&source), end + 1);
     for (int i = 0; tame && i < nstate; i++) {
       int bounded = device.friction != INERTER_FRICTION_bouc_wen || i > 0;
       if (bounded && h < 1 && (!isfinite(states[i]) || !isfinite(end[i + 1]))) {
-        fprintf(stderr, "round %d: state %d: step %g, of force %g\n", round, i,
-                states[i], end[i + 1]);
+        fprintf(stderr, "round %d: state %d: step %g, of force %g\n", round, i, states[i],
+                end[i + 1]);
         return 1;
       }
     }
     memcpy(states, z, sizeof(double) * (size_t)nstate);
-    inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h),
-                            fabs(any(&source)), end + 1);
-    inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h), 0,
-                            NULL);
+    inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h), fabs(any(&source)),
+                            end + 1);
+    inerter_force_over_step(&device, x[2], v[2], a[2], states, fabs(h), 0, NULL);
     if (tame && h < 1 && h > 1e-7) {
       // never falls beyond the friction law's own fall; see the Python tests
       // for the laws
-      InerterForce low = inerter_force_over_step(&device, x[2], v[2], -1e9,
-                                                 states, h, 1, NULL);
-      InerterForce high =
-          inerter_force_over_step(&device, x[2], v[2], 1e9, states, h, 1, NULL);
+      InerterForce low = inerter_force_over_step(&device, x[2], v[2], -1e9, states, h, 1, NULL);
+      InerterForce high = inerter_force_over_step(&device, x[2], v[2], 1e9, states, h, 1, NULL);
       if (!(high.inertance >= low.inertance)) {
-        fprintf(stderr, "round %d: %g falls to %g\n", round, low.inertance,
-                high.inertance);
+        fprintf(stderr, "round %d: %g falls to %g\n", round, low.inertance, high.inertance);
         return 4;
       }
     }
     char message[INERTER_MESSAGE_SIZE] = "";
-    if (!inerter_valid(&device, x[3], states, message) && strlen(message) < 20)
-      abort();
+    if (!inerter_valid(&device, x[3], states, message) && strlen(message) < 20) abort();
     double rest;
-    if (!(inerter_inertance(&device, x[4], v[4], &rest) >= 0) && tame)
-      abort();
+    if (!(inerter_inertance(&device, x[4], v[4], &rest) >= 0) && tame) abort();
     inerter_inertance(&device, x[4], v[4], NULL);
     inerter_evaluate(&device, N, x, v, a, z, result, rates);
 
     // at commands; whatever they are, the value stays within its bounds
-    inerter_evaluate_commanded(&device, N, x, v, a, tame ? a : v, z, result,
-                               rates);
-    inerter_along_commanded(&device, N, fabs(h), x, v, a, v, states, result,
-                            result + N, rates);
+    inerter_evaluate_commanded(&device, N, x, v, a, tame ? a : v, z, result, rates);
+    inerter_along_commanded(&device, N, fabs(h), x, v, a, v, states, result, result + N, rates);
     int controlled = inerter_controlled(&device);
     if (controlled >= 0) {
       InerterDevice present = device;
-      inerter_command(&present, any(&source),
-                      below(&source, 2) ? states : NULL);
-      double value = *(const double *)((const char *)&present +
-                                       inerter_parameter(controlled)->offset);
-      if (!(value >= device.control_lower && value <= device.control_upper))
-        return 6;
+      inerter_command(&present, any(&source), below(&source, 2) ? states : NULL);
+      double value =
+          *(const double*)((const char*)&present + inerter_parameter(controlled)->offset);
+      if (!(value >= device.control_lower && value <= device.control_upper)) return 6;
     }
     memcpy(states, z, sizeof(double) * (size_t)nstate);
 
     // along a motion; n = 0 and missing outputs are allowed
-    inerter_along(&device, N, fabs(h), x, v, a, states, result, result + N,
-                  rates);
+    inerter_along(&device, N, fabs(h), x, v, a, states, result, result + N, rates);
     inerter_along(&device, N, fabs(h), x, v, a, NULL, NULL, NULL, NULL);
-    inerter_along(&device, 0, fabs(h), NULL, NULL, NULL, states, NULL, NULL,
-                  NULL);
+    inerter_along(&device, 0, fabs(h), NULL, NULL, NULL, states, NULL, NULL, NULL);
     free(own);
     free(end);
     InerterDevice devices[DEVICES] = {device, device, device};
