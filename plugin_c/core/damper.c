@@ -12,9 +12,9 @@
 #include "laws.h"
 
 double damper_shaped(const InerterDevice* p, double viscous, double v) {
-  double ratio = 0, bent = v;
+  double bent = v;
   if (p->damping_knee > 0) {
-    ratio = v / p->damping_knee;
+    double ratio = v / p->damping_knee;
     bent = p->damping_beyond * v + (1 - p->damping_beyond) * v / sqrt(1 + ratio * ratio);
   }
   double force = viscous * bent + p->quadratic_damping * fabs(v) * v;
