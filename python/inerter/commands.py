@@ -14,6 +14,7 @@ from inerter.blind_test.command import blind_test_command
 from inerter.console import (
     AsJson,
     Commands,
+    Filters,
     Folder,
     Jobs,
     number,
@@ -104,15 +105,7 @@ def diagnose_command(
     holdout: Annotated[
         list[str] | None, typer.Option(help="Name of a run to hold out; may be given again.")
     ] = None,
-    filters: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--filter",
-            metavar="CHANNEL=KIND:HZ",
-            help="A low-pass that the force or the displacement went through: force=bessel:50, "
-            "displacement=butterworth:60:2 (order; 4 where it is left out). May be given again.",
-        ),
-    ] = None,
+    filters: Filters = None,
     carry: Annotated[
         Literal["any", "passive", "nothing"],
         typer.Option(

@@ -37,6 +37,15 @@ EVERY, EVERY_VARIABLE = 10, "INERTER_PROGRESS"
 
 Folder = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the JSON result alone on stdout.")]
+Filters = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--filter",
+        metavar="CHANNEL=KIND:HZ",
+        help="A low-pass that the force or the displacement went through: force=bessel:50, "
+        "displacement=butterworth:60:2 (order; 4 where it is left out). May be given again.",
+    ),
+]
 Jobs = Annotated[
     int | None, typer.Option("--jobs", min=1, help="Processes; default: one per processor.")
 ]

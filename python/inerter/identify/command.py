@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from inerter.console import AsJson, Folder, out, progress_bar, refusing
+from inerter.console import AsJson, Filters, Folder, out, progress_bar, refusing
 from inerter.core import WORDS
 from inerter.records.options import told_reading, with_reading
 
@@ -37,15 +37,7 @@ def identify_command(
     holdout: Annotated[
         list[str] | None, typer.Option(help="Name of a run to judge on; may be given again.")
     ] = None,
-    filters: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--filter",
-            metavar="CHANNEL=KIND:HZ",
-            help="A low-pass that the force or the displacement went through: force=bessel:50, "
-            "displacement=butterworth:60:2 (order; 4 where it is left out). May be given again.",
-        ),
-    ] = None,
+    filters: Filters = None,
     loss: Annotated[
         str, typer.Option(help="linear; or soft_l1, huber, cauchy: outliers count less.")
     ] = "linear",
