@@ -69,9 +69,9 @@ static int check_slip(const InerterDevice* device, char* message) {
     }
     if (stiffness > 0 && i >= count) {
       return refuse(message,
-                    "slip_stiffness_%d is %g N/m, but slip_stiffness_%d is 0 N/m; number the "
-                    "elements from 1 without a gap",
-                    i + 1, stiffness, count + 1);
+                    "slip_stiffness_%d is %g N/m, but slip_stiffness_%d is 0 N/m: elements "
+                    "are numbered from 1 without a gap; give slip_stiffness_%d > 0 N/m",
+                    i + 1, stiffness, count + 1, count + 1);
     }
   }
   return count ? 0
@@ -164,9 +164,9 @@ static int check_branches(const InerterDevice* device, char* message) {
     }
     if (stiffness > 0 && i >= count) {
       return refuse(message,
-                    "branch_stiffness_%d is %g N/m, but branch_stiffness_%d is 0 N/m; number the "
-                    "branches from 1 without a gap",
-                    i + 1, stiffness, count + 1);
+                    "branch_stiffness_%d is %g N/m, but branch_stiffness_%d is 0 N/m: "
+                    "branches are numbered from 1 without a gap; give branch_stiffness_%d > 0 N/m",
+                    i + 1, stiffness, count + 1, count + 1);
     }
   }
   return 0;
@@ -287,7 +287,7 @@ static int check_channel(InerterDevice* device, char* message) {
   if (!isfinite(inertance) || inertance == 0) {
     return refuse(message,
                   "inertance is %g kg from fluid_density, channel_length, piston_area and "
-                  "channel_area: out of range; correct them",
+                  "channel_area: out of range; give values that make it finite and > 0",
                   inertance);
   }
   device->inertance = inertance;

@@ -96,6 +96,8 @@ def test_every_door_takes_and_refuses_the_same(values: Values, tmp_path: Path) -
 
 @SETTINGS
 @given(values=anything())
+@example(values={"branch_stiffness_2": 1.0, "branch_damping_2": 1.0})
+@example(values={"friction": "maxwell_slip", "slip_stiffness_2": 1.0, "slip_force_2": 1.0})
 def test_a_refusal_names_a_key_and_what_to_do(values: Values) -> None:
     told = by_python(values)
     assume(isinstance(told, str))

@@ -258,7 +258,7 @@ class DeviceParameters(FrictionParameters):
             if there and not last:
                 raise ValueError(
                     f"branch_stiffness_{i}: {pair[0]} N/m comes after branch {i - 1}, which is not "
-                    "there; number the branches from 1 without a gap"
+                    "there; give it too: branches are numbered from 1 without a gap"
                 )
             last = there
 

@@ -197,7 +197,7 @@ class FrictionParameters(StrokeParameters):
             if there and not last:
                 raise ValueError(
                     f"slip_stiffness_{i}: {pair[0]} N/m comes after element {i - 1}, which is not "
-                    "there; number the elements from 1 without a gap"
+                    "there; give it too: elements are numbered from 1 without a gap"
                 )
             last = there
         if self.slip_stiffness_1 == 0.0:
