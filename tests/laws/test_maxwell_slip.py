@@ -188,7 +188,7 @@ def test_the_state_of_a_force_holds_it() -> None:
         ({"slip_force_1": 2.0}, "slip_force_1 is 2 N, but slip_stiffness_1 is 0; give both"),
         (
             {"slip_stiffness_2": 1e4, "slip_force_2": 1.0},
-            "slip_stiffness_2 is 10000 N/m, but slip_stiffness_1 is 0 N/m; number the elements",
+            "slip_stiffness_2 is 10000 N/m, but slip_stiffness_1 is 0 N/m: elements are numbered",
         ),
     ],
 )

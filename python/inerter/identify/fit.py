@@ -10,16 +10,13 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.coordinates import (
     CHANNEL_UNITS,
-    COORDINATES,
-    ENTANGLED,
     parameters_of,
-    search_range,
 )
 from inerter.catalogue.scales import Scales
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
 from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.estimation.variables import Variables
-from inerter.identify.channel import clips, delayed
+from inerter.identify.columns import Columns
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.runs import BenchRun, scales
@@ -79,19 +76,23 @@ class Problem:
         self.runs = list(runs)
         self.masks = [mask & run.inner for mask, run in zip(masks, runs, strict=True)]
         self.scales = sizes or scales(runs)
+        self._derivatives = Columns(self)
 
     def with_masks(self, masks: Masks) -> Problem:
         """The same runs with other samples counting."""
         return Problem(self.runs, masks, self.scales)
 
-    def residual(self, model: Model) -> list[Array]:
+    def residual(self, model: Model, pressed: float = 0.0) -> list[Array]:
         """Errors as they count against noise, of every run [N]."""
-        return self.weighted(self.errors(model), model.shaft)
+        return self.weighted(self.errors(model, pressed), model.shaft)
 
-    def errors(self, model: Model) -> list[Array]:
-        """Measured minus predicted force of every run [N]."""
+    def errors(self, model: Model, pressed: float = 0.0) -> list[Array]:
+        """Measured minus predicted force of every run [N].
+
+        States begin where a first force puts them that is the measured one and `pressed` [N].
+        """
         return [
-            settled(model, run, run.force - force_along(model, run), mask)
+            settled(model, run, run.force - force_along(model, run, pressed), mask)
             for run, mask in zip(self.runs, self.masks, strict=True)
         ]
 
@@ -104,34 +105,6 @@ class Problem:
         """What counts of arrays of every run, one run after another."""
         return masked(arrays, self.masks)
 
-    def _column(self, name: str, model: Model, point: Array, base: list[Array]) -> Array:
-        """Derivative of the residual by one search variable, over all samples of all runs."""
-        index = model.free.index(name)
-        how = search_range(name, self.scales)
-        linear = COORDINATES[name].column
-        if (
-            linear
-            # a state begins where the first force puts it, and so hangs on every term
-            and not model.device().nstate
-            and not clips(model.values)
-            and all(np.isinf(run.far) for run in self.runs)
-            and not any(other in model.values for other in ENTANGLED.get(name, ()))
-        ):
-            rest = model.values.get("rest_length", 0.0)
-            columns = []
-            for run in self.runs:
-                stretch = run.displacement - rest
-                column = linear(stretch, run.velocity, run.acceleration, run.elapsed)
-                columns.append(-delayed(column, model.delay, run.spacing) * how.size)
-            return np.concatenate(self.weighted(columns))
-        step = 1e-4
-        if point[index] + step > how.bounds[1]:
-            step = -step
-        moved = point.copy()
-        moved[index] += step
-        there = self.residual(self._decode(model, moved))
-        return (np.concatenate(there) - np.concatenate(base)) / step
-
     def variables(self, model: Model) -> Variables:
         """The search variables of the model's free coordinates."""
         return Variables.of(model.free, self.scales)
@@ -141,16 +114,22 @@ class Problem:
 
         `names` are the free coordinates asked for, by default all.
         """
-        here, base = self.variables(model).encode(model.values), self.residual(model)
+        here = self.variables(model).encode(model.values)
         wanted = model.free if names is None else names
-        return self._columns(model, here, base, wanted)
+        return self._columns(model, here, wanted, lambda p: self.residual(self._decode(model, p)))
 
     def _columns(
-        self, model: Model, point: Array, base: list[Array], names: Sequence[str]
+        self,
+        model: Model,
+        point: Array,
+        names: Sequence[str],
+        residual: Callable[[Array], list[Array]],
     ) -> Array:
         selected = np.concatenate(self.masks)
-        columns = [self._column(name, model, point, base)[selected] for name in names]
-        return np.column_stack(columns) if columns else np.zeros((int(selected.sum()), 0))
+        columns = self._derivatives.of(model, point, names, residual)
+        if not columns:
+            return np.zeros((int(selected.sum()), 0))
+        return np.column_stack([column[selected] for column in columns])
 
     def moved(self, model: Model, step: Array) -> Model:
         """The model with its search variables moved, within their bounds."""
@@ -190,8 +169,7 @@ class Problem:
             return cache[key]
 
         def jacobian(point: Array) -> Array:
-            base, here = at(point), self._decode(model, point)
-            return self._columns(here, point, base, model.free) / size
+            return self._columns(self._decode(model, point), point, model.free, at) / size
 
         def hopeless(done: int, error: float) -> bool:
             return bool(give_up and give_up(done, size * error))

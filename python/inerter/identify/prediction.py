@@ -23,19 +23,20 @@ _TELLING = 0.1
 RUNAWAY = 1e30
 
 
-def first_state(device: Device, run: BenchRun, place: float = 0.0) -> float | Array:
+def first_state(
+    device: Device, run: BenchRun, place: float = 0.0, pressed: float = 0.0
+) -> float | Array:
     """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
     A force near 0 does not tell where in a free play before the friction a run begins: that is
     `place`, -1 ... 1 of half the play. A number for a device with at most one state, else an array
-    (nstate,).
+    (nstate,). `pressed` [N] is added to the force.
     """
     if device.nstate == 0:
         return 0.0
     i = run.first
-    state = device.state_of_force(
-        run.displacement[i], run.velocity[i], run.acceleration[i], run.first_force
-    )
+    force = run.first_force + pressed
+    state = device.state_of_force(run.displacement[i], run.velocity[i], run.acceleration[i], force)
     if not device.friction_backlash:
         return state
     bent, side = _bent(device, float(np.atleast_1d(state)[0]))
@@ -60,15 +61,17 @@ def _held(device: Device) -> float:
     return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
 
 
-def force_along(model: Model, run: BenchRun) -> Array:
+def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     """Force that the model predicts for a run's force channel, shape (n,).
+
+    States begin where the run's first force and `pressed` [N] put them.
 
     What is not smooth in the motion has to pass the low-pass of the measured force: only what it
     adds to the smooth terms, so that these carry the same noise of the motion in every model.
     """
     device = model.device()
     run, values = with_late_motion(model, run)
-    state = first_state(device, run, values.get("friction_place", 0.0))
+    state = first_state(device, run, values.get("friction_place", 0.0), pressed)
     rough = model.has_jumps or device.friction != "none" or device.has_load_friction
     drift = values.get("friction_drift", 0.0)
     if np.isinf(run.cutoff) or not rough:
