@@ -15,6 +15,18 @@ def gas(values: Values) -> None:
     values["gas_volume"] = values.pop("gas_reach") * area
 
 
+def branch(values: Values) -> None:
+    """Relaxation times in the place of the dashpots of viscoelastic branches."""
+    for i in (1, 2):
+        if (time := values.pop(f"branch_time_{i}", None)) is not None:
+            values[f"branch_damping_{i}"] = values[f"branch_stiffness_{i}"] * time
+
+
+def rate(values: Values) -> None:
+    steady = values.pop("steady_effect")
+    values["rate_effect"] = max(steady + values.get("age_effect", 0.0), 0.0)
+
+
 def shaft(values: Values) -> None:
     rate, inertance = 2 * np.pi * values.pop("series_frequency"), values["inertance"]
     values["series_stiffness"] = inertance * rate**2

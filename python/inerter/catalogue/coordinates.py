@@ -4,6 +4,7 @@ Most coordinates are parameters. Where a parameter's effect depends on another o
 is the combination that the data see:
 
     static_excess   static_force - coulomb_force                     [N]
+    steady_effect   rate_effect - age_effect, the rise of the steady level per ln(v)            [-]
     presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
     bw_level        largest hysteretic Bouc-Wen force (alpha = 1)                      [N]
     bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
@@ -11,6 +12,7 @@ is the combination that the data see:
     series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
     gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
+    branch_time_1, _2  branch_damping / branch_stiffness, in which a branch relaxes              [s]
     friction_place  where in the free play before the friction a run begins, where its first force
                     does not tell: -1 ... 1 of half the play   [-], not a device parameter
 
@@ -26,7 +28,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from inerter.catalogue import combinations
+from inerter.catalogue import along_stroke, combinations
 from inerter.catalogue.combinations import Values
 from inerter.catalogue.coordinate import Coordinate
 from inerter.catalogue.scales import Range, Scales
@@ -60,6 +62,25 @@ def _low_pass(channel: str) -> tuple[Coordinate, ...]:
         ),
         Coordinate(name=f"{name}_order", unit="1", belongs_to="channel", none=None),
         Coordinate(name=f"{name}_bessel", unit="1", belongs_to="channel", none=None),
+    )  # fmt: skip
+
+
+def _branch(number: int) -> tuple[Coordinate, ...]:
+    """Stiffness of a viscoelastic branch, and the time in which it relaxes."""
+    stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
+    return (
+        Coordinate(
+            name=stiffness, unit="N/m", words={stiffness: f"stiffness of branch {number}"},
+            size=lambda s: s.force / s.displacement,
+            lower=lambda s: 1e-6 * s.force / s.displacement,
+        ),
+        Coordinate(
+            name=time, unit="s", words={f"branch_damping_{number}": f"damping of branch {number}"},
+            logarithmic=True, none=None, size=lambda s: 1 / s.frequency,
+            lower=lambda s: 1e-3 / s.frequency, upper=lambda s: s.elapsed,
+            to_parameters=combinations.branch,
+            of_device=lambda d: getattr(d, f"branch_damping_{number}") / getattr(d, stiffness),
+        ),
     )  # fmt: skip
 
 
@@ -142,8 +163,9 @@ _ALL = (
         start=(1e-3, 0.3), start_unit=lambda s: s.force / s.velocity,
     ),
     Coordinate(
-        name="rate_effect", unit="1", words={"rate_effect": "rise of the level per ln(v), A"},
-        size=lambda s: 0.02, lower=_zero, upper=lambda s: 0.5, start=(3e-3, 0.1),
+        name="steady_effect", unit="1", words={"rate_effect": "rise of the level per ln(v), A"},
+        size=lambda s: 0.02, lower=lambda s: -0.4, upper=lambda s: 0.4, start=(-0.05, 0.05),
+        to_parameters=combinations.rate, of_device=lambda d: d.rate_effect - d.age_effect,
     ),
     Coordinate(
         name="age_effect", unit="1", words={"age_effect": "rise of the level per ln(age), B"},
@@ -184,7 +206,9 @@ _ALL = (
         lower=lambda s: 1.0, upper=lambda s: 6.0, start=(1.05, 2.5), none=None,
     ),
     Coordinate(
-        name="friction_backlash", unit="m", size=lambda s: s.displacement, logarithmic=True,
+        name="friction_backlash", unit="m",
+        words={"friction_backlash": "half of the free play before the friction"},
+        size=lambda s: s.displacement, logarithmic=True,
         lower=lambda s: 1e-5 * s.displacement, upper=lambda s: 2 * s.displacement,
         start=(1e-3, 0.3), start_unit=lambda s: s.displacement,
     ),
@@ -262,6 +286,9 @@ _ALL = (
         upper=lambda s: 2 * s.displacement, logarithmic=True, jumps=True,
         start=(1e-3, 0.3), start_unit=lambda s: s.displacement,
     ),
+    *_branch(1),
+    *_branch(2),
+    *along_stroke.COORDINATES,
     # stops
     Coordinate(
         name="stop_lower", unit="m", words={"stop_lower": "lower stop"}, jumps=True,
@@ -328,6 +355,10 @@ _ALL = (
         belongs_to="channel", size=lambda s: 1 / s.elapsed, lower=lambda s: LOWEST_TONE,
     ),
     Coordinate(
+        name="viscous_drift", unit="1/s", words={"viscous_drift": "drift of the viscous damping"},
+        size=lambda s: 0.5 / s.elapsed, lower=lambda s: -0.95 / s.elapsed, belongs_to="channel",
+    ),
+    Coordinate(
         name="friction_drift", unit="1/s", words={"friction_drift": "drift of the friction level"},
         size=lambda s: 0.5 / s.elapsed, lower=lambda s: -0.95 / s.elapsed, belongs_to="channel",
     ),
@@ -338,7 +369,15 @@ COORDINATES: Mapping[str, Coordinate] = MappingProxyType({each.name: each for ea
 
 # a level that breaks away is told from the distance of a bristle before that is taken
 _CONVERTED = tuple(
-    COORDINATES[name] for name in ("gas_push", "series_frequency", "static_excess", "presliding")
+    COORDINATES[name]
+    for name in (
+        "gas_push",
+        "series_frequency",
+        "static_excess",
+        "presliding",
+        "branch_time_1",
+        "steady_effect",
+    )
 )
 
 CHANNEL_UNITS: Mapping[str, str] = MappingProxyType(
@@ -380,7 +419,14 @@ def parameters_of(coordinates: Mapping[str, float]) -> Values:
             each.to_parameters(values)
     # of a law that is there no more
     values.pop("bw_level", None)
+    along_stroke.told(values)
     return values
+
+
+def device_values(coordinates: Mapping[str, float]) -> dict[str, float | str]:
+    """What a device is made of: parameters, and lists as texts."""
+    values = {name: float(value) for name, value in parameters_of(coordinates).items()}
+    return {**along_stroke.lists(values), **values}
 
 
 def parameter_names(coordinate: str) -> tuple[str, ...]:

@@ -10,8 +10,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from inerter.catalogue.along_stroke import QUANTITIES
 from inerter.catalogue.coordinates import COORDINATES
-from inerter.catalogue.friction import LAW_COORDINATES
+from inerter.catalogue.friction import LAW_COORDINATES, PLAY_COORDINATES
+
+_ALONG = {quantity.effect: quantity for quantity in QUANTITIES}
+_FORCE = _ALONG["position_force"]
+_RATIO = _ALONG["variable_inertance"]
+_LEVEL = _ALONG["position_dependent_friction"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +127,27 @@ _ALL = (
         rivals=("parallel_stiffness", "backlash"),
     ),
     Effect(
+        name="rate_state_friction", rank=15, kind="law",
+        coordinates=("coulomb_force", "steady_effect", "age_effect", "age_distance"),
+        telling=("steady_effect", "age_effect"), far=True,
+        plain="friction that goes with the logarithm of speed and ages at rest",
+        meaning="f_c (1 + A ln(v / v_0) + B ln(v_0 theta / L)) sign(v), theta' = 1 - v theta / L",
+        cause="contacts that creep together while they touch: dry metal, plastic and rubber slides",
+        taken_for="Coulomb with viscous friction",
+        experiment="hold still for 1, 10 and 100 s, the peak of the next start grows with each",
+        rivals=("coulomb_friction", "viscous_friction", "stribeck_friction"),
+    ),
+    Effect(
+        name="friction_play", rank=18, coordinates=PLAY_COORDINATES,
+        reported=("friction_backlash",), telling=("friction_backlash",), far=True,
+        plain="free play before the friction",
+        meaning="after each reversal the friction sets in only when 2 eps are used up",
+        cause="a friction ring or seal with room in its groove",
+        taken_for="a softer bristle or backlash of the drive",
+        experiment="repeat with strokes within the suspected play, there is no friction",
+        rivals=("hysteretic_friction", "backlash"),
+    ),
+    Effect(
         name="asymmetric_friction", rank=10, kind="level", coordinates=("friction_asymmetry",),
         reported=("coulomb_force", "friction_asymmetry"),
         plain="friction that differs between the two directions",
@@ -131,8 +158,9 @@ _ALL = (
     ),
     Effect(
         name="position_dependent_friction", rank=12, kind="level",
-        coordinates=("friction_gradient", "friction_curvature"),
-        reported=("coulomb_force", "friction_gradient", "friction_curvature"),
+        coordinates=("friction_gradient", "friction_curvature", *_LEVEL.coordinates),
+        telling=("friction_gradient", "friction_curvature", *_LEVEL.amplitudes), tells_law=True,
+        reported=("coulomb_force", "friction_gradient", "friction_curvature", *_LEVEL.reported),
         plain="friction that changes along the stroke",
         meaning="friction level changes along the stroke",
         cause="a bent screw, tight guides, wear at mid-stroke", taken_for="parallel stiffness",
@@ -175,6 +203,16 @@ _ALL = (
         rivals=("hardening_stiffness",),
     ),
     Effect(
+        name="position_force", rank=15, coordinates=_FORCE.coordinates,
+        telling=_FORCE.amplitudes, reported=_FORCE.reported, tells_law=True, unlike_friction=True,
+        plain="a force of the place along the stroke",
+        meaning="a curve F(x), or a sum of sines of x",
+        cause="magnets and teeth that lock at places, detents, cams, a misaligned guide",
+        taken_for="a spring that is not straight, or friction that changes along the stroke",
+        experiment="move slowly both ways, this force does not change sign with the direction",
+        rivals=("hardening_stiffness", "position_dependent_friction"),
+    ),
+    Effect(
         name="force_drift", rank=15, coordinates=("force_drift",), unlike_friction=True,
         of_channel=True, plain="a force offset that grows in time",
         meaning="an offset that grows steadily",
@@ -206,6 +244,25 @@ _ALL = (
             "grows eightfold"
         ),
         rivals=("sensor_delay",),
+    ),
+    Effect(
+        name="viscous_drift", rank=16, coordinates=("viscous_drift",),
+        reported=("viscous", "viscous_drift"), plain="viscous damping that changes with time",
+        meaning="c (1 + d t) v", cause="oil and grease that warm up and thin",
+        taken_for="a friction level that changes with time",
+        experiment="repeat the first run last", rivals=("friction_drift", "viscous_friction"),
+    ),
+    Effect(
+        name="viscoelasticity", rank=17,
+        coordinates=(
+            "branch_stiffness_1", "branch_time_1", "branch_stiffness_2", "branch_time_2",
+        ),
+        telling=("branch_stiffness_1", "branch_stiffness_2"),
+        plain="a spring that relaxes", meaning="springs K, each with a dashpot C in series with it",
+        cause="rubber mounts, seals, plastic bushes, a gas that gives its heat away",
+        taken_for="a spring with viscous friction, or friction with memory",
+        experiment="hold at an end of the stroke, the force fades while nothing moves",
+        rivals=("parallel_stiffness", "hysteretic_friction"),
     ),
     Effect(
         name="load_dependent_friction", rank=9, coordinates=("load_friction",), on_table=True,
@@ -278,11 +335,19 @@ _ALL = (
     ),
     Effect(
         name="variable_inertance", rank=13,
-        coordinates=("inertance_gradient", "inertance_curvature", "inertance_speed_gradient"),
+        coordinates=(
+            "inertance_gradient", "inertance_curvature", "inertance_speed_gradient",
+            *_RATIO.coordinates,
+        ),
+        telling=(
+            "inertance_gradient", "inertance_curvature", "inertance_speed_gradient",
+            *_RATIO.amplitudes,
+        ),
         reported=(
             "inertance", "inertance_gradient", "inertance_curvature",
-            "inertance_speed_gradient",
+            "inertance_speed_gradient", *_RATIO.reported,
         ),
+        tells_law=True,
         unlike_friction=True, plain="an inertance that is not constant",
         meaning="b depends on displacement, b(x) a + b'(x) v^2 / 2, or on speed",
         cause="a ratio that varies along the stroke: rack and pinion, eccentric gear, moving fluid",

@@ -147,26 +147,30 @@ _ALL = (
         memory=True, varies=False,
     ),
     FrictionLaw(
-        name="rate_state", words="rate-and-state", effect="coulomb_friction", level="",
-        constants=("rate_effect", "age_effect", "rate_velocity", "age_distance"),
-        smoothed=True, memory=True, varies=False, contains=("none", "coulomb"),
+        name="rate_state", words="rate-and-state",
+        meaning="rate-and-state friction, which ages at rest", effect="rate_state_friction",
+        coordinates=("coulomb_force", "steady_effect", "age_effect", "age_distance"),
+        constants=("rate_velocity",), spread=("age_distance", "age_effect", "steady_effect"),
+        smoothed=True, memory=True, contains=("none", "coulomb"), simpler=("coulomb",),
+        tried_on=("none", "coulomb"), grid={"age_distance": (1e-3, 0.03)},
+        begin={"steady_effect": 0.01, "age_effect": 0.02},
     ),
 )  # fmt: skip
 
 FRICTION: Mapping[str, FrictionLaw] = MappingProxyType({law.name: law for law in _ALL})
 """Every friction law by its name."""
 
-LAW_CONSTANTS = tuple(
-    dict.fromkeys((*(name for law in _ALL for name in law.constants), "friction_backlash"))
-)
+LAW_CONSTANTS = tuple(dict.fromkeys(name for law in _ALL for name in law.constants))
 """What a user may state of a friction law and no fit changes."""
 LAW_COORDINATES = tuple(
     dict.fromkeys((*(name for law in _ALL for name in law.coordinates), *LAW_CONSTANTS))
 )
 """What belongs to a friction law and leaves with it."""
+PLAY_COORDINATES = ("friction_backlash", "friction_place")
+"""Of a free play before the friction, which a law with a bristle can have."""
 LEVEL_COORDINATES = ("friction_asymmetry", "friction_gradient", "friction_curvature")
 """Of a level that differs with direction and position; a drift is the record's, and every law's."""
-BRISTLES = tuple(law.name for law in _ALL if law.memory and law.level)
+BRISTLES = tuple(law.name for law in _ALL if "presliding" in law.coordinates)
 """Friction laws with a bristle that a fit can vary."""
 LEVEL_LAWS = tuple(law.name for law in _ALL if law.varies)
 """Laws whose level can differ with the direction and along the stroke."""

@@ -15,6 +15,7 @@ import numpy as np
 from inerter.catalogue.coordinates import COORDINATES, FRICTION_SHARE
 from inerter.catalogue.effects import EFFECTS, Effect
 from inerter.catalogue.friction import (
+    BRISTLES,
     FRICTION,
     LAW_COORDINATES,
     LEVEL_COORDINATES,
@@ -119,7 +120,10 @@ def _bouc_wen(starts: Sequence[Model], bare: Model, sizes: Scales) -> tuple[Mode
 
 def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
-    names = effect.coordinates
+    along = effect.name == "position_dependent_friction"
+    names = ("friction_gradient", "friction_curvature") if along else effect.coordinates
+    if along and any(name.startswith("friction_node") for name in model.values):
+        return
     zero = dict.fromkeys(names, 0.0)
     if model.friction == "none":
         zero |= {"coulomb_force": _level_of(model, sizes), **width(model)}
@@ -205,7 +209,8 @@ def _saturation(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candida
 
 
 def _variable_inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    yield from _free(effect.name, ("inertance_gradient", "inertance_curvature"), model, sizes)
+    if not any(name.startswith("inertance_node") for name in model.values):
+        yield from _free(effect.name, ("inertance_gradient", "inertance_curvature"), model, sizes)
     if "inertance_speed_gradient" not in model.free:
         yield Candidate(effect.name, "speed", (model.adding(inertance_speed_gradient=0.0),))
 
@@ -221,7 +226,7 @@ def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if all(name in model.free for name in effect.coordinates):
         return
     linear = model.values.get("viscous", 0.0) or 0.5 * sizes.force / sizes.velocity
-    starts: list[dict[str, float]] = [{"viscous": linear, "damping_asymmetry": 0.0}]
+    starts = [{"viscous": linear, effect.coordinates[0]: 0.0}]
     if effect.name == "digressive_damping":
         starts = [
             {"viscous": slope * linear, "damping_knee": knee * sizes.velocity,
@@ -237,8 +242,33 @@ def _inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidat
         yield Candidate(effect.name, None, (model.adding(inertance=start),))
 
 
+def _play_of_friction(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    if model.friction in BRISTLES and "friction_backlash" not in model.values:
+        starts = tuple(
+            model.adding(None, friction_backlash=ratio * sizes.displacement, friction_place=0.0)
+            for ratio in (0.003, 0.02, 0.1, 0.3)
+        )
+        yield Candidate(effect.name, None, starts)
+
+
+def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A branch, or a second one beside it, that relaxes within a period or over many."""
+    number = 2 if "branch_time_1" in model.values else 1
+    if f"branch_stiffness_{number}" in model.values:
+        return
+    stiffness = 0.05 * sizes.force / sizes.displacement
+    starts = tuple(
+        model.adding(
+            None,
+            **{f"branch_stiffness_{number}": stiffness, f"branch_time_{number}": time},
+        )
+        for time in (0.03 / sizes.frequency, 0.2 / sizes.frequency, 1.5 / sizes.frequency)
+    )
+    yield Candidate(effect.name, None, starts)
+
+
 def _tone(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    # read off the residual's spectrum by the search
+    # read off the residual by the search, see `tone` and `along_stroke`
     return iter(())
 
 
@@ -249,6 +279,10 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 _SPECIAL: dict[str, Build] = {
     "sensor_filter": _filter,
+    "position_force": _tone,
+    "friction_play": _play_of_friction,
+    "viscoelasticity": _relaxing,
+    "viscous_drift": _damper,
     "asymmetric_damping": _damper,
     "digressive_damping": _damper,
     "inertance_error": _inertance,

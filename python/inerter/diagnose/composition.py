@@ -9,9 +9,16 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from inerter.catalogue.along_stroke import QUANTITIES
 from inerter.catalogue.coordinates import search_range
 from inerter.catalogue.effects import EFFECTS
-from inerter.catalogue.friction import FRICTION, LAW_COORDINATES, LEVEL_COORDINATES
+from inerter.catalogue.friction import (
+    BRISTLES,
+    FRICTION,
+    LAW_COORDINATES,
+    LEVEL_COORDINATES,
+    PLAY_COORDINATES,
+)
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.decision import CRITERIA
 from inerter.identify.fit import Fit, parameter_errors
@@ -111,8 +118,8 @@ def width(model: Model) -> dict[str, float]:
 
 LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
 """The effect that each friction law is named as."""
-_DAMPERS = ("asymmetric_damping", "digressive_damping")
-"""Effects that bend a viscous damping, which belongs to them."""
+_DAMPERS = ("asymmetric_damping", "digressive_damping", "viscous_drift")
+"""Effects that change a viscous damping, which belongs to them."""
 _LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")
 
 
@@ -140,8 +147,23 @@ def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
         else:
             there = not added.isdisjoint(effect.coordinates)
         if there:
-            found.append((name, model.friction if effect.tells_law else None))
+            found.append((name, law_of(name, model, added)))
     return found
+
+
+def law_of(effect: str, model: Model, added: set[str]) -> str | None:
+    """By which law a model has an effect, given the coordinates that came with it, if it says."""
+    if not EFFECTS[effect].tells_law:
+        return None
+    if EFFECTS[effect].kind == "law":
+        return model.friction
+    quantity = next(each for each in QUANTITIES if each.effect == effect)
+    if form := quantity.form(added):
+        return form
+    return "speed" if added & set(EFFECTS[effect].coordinates) <= _SPEED else "polynomial"
+
+
+_SPEED = {"inertance_speed_gradient"}
 
 
 def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
@@ -158,10 +180,23 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         along, speed = ("inertance_gradient", "inertance_curvature"), ("inertance_speed_gradient",)
         if {*along, *speed} <= set(model.free):
             return [model.without(speed), model.without(along), without]
+    if EFFECTS[effect].kind != "level" and (fewer := _fewer_periods(model, effect)):
+        return [*fewer, without]
+    if effect == "viscoelasticity" and "branch_time_2" in model.free:
+        return [model.without(("branch_stiffness_2", "branch_time_2")), without]
     if effect in (*_LEVELS, *_DAMPERS):
         # the variation of the level, the bend of the damping alone
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
+
+
+def _fewer_periods(model: Model, effect: str) -> list[Model]:
+    """The model with one period along the stroke less, the last; none where there are not two."""
+    for quantity in QUANTITIES:
+        numbers = [i for i in (1, 2, 3) if quantity.period(i)[0] in model.free]
+        if quantity.effect == effect and len(numbers) > 1:
+            return [model.without(quantity.period(numbers[-1]))]
+    return []
 
 
 def stripped(model: Model, effect: str, baseline: Model) -> Model:
@@ -193,10 +228,13 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
         names.update(LAW_COORDINATES)
         if not all(carries(baseline.friction, name) for name in kept_levels):
             # without its law, a level that varies needs Coulomb friction to act on
+            names.update(PLAY_COORDINATES)
             others = names.difference(LAW_COORDINATES)
             bare = _restored(model.without(tuple(names), "none"), others, baseline)
             return bare.adding("coulomb", coulomb_force=level, **width(bare))
         friction = baseline.friction
+        if friction not in BRISTLES:
+            names.update(PLAY_COORDINATES)
         names.update(n for each in _LEVELS if not carries(friction, each) for n in _of_level(each))
     return _restored(model.without(tuple(names), friction), names, baseline)
 
@@ -270,7 +308,8 @@ def simpler_laws(model: Model) -> list[Model]:
         law = FRICTION[name]
         names = (*law.coordinates, *(width(model) if law.smoothed else ()))
         if all(each in known for each in names):
-            simpler.append(bare.adding(name, **{each: known[each] for each in names}))
+            kept = bare if name in BRISTLES else bare.without(PLAY_COORDINATES)
+            simpler.append(kept.adding(name, **{each: known[each] for each in names}))
     return simpler
 
 

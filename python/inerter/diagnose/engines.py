@@ -16,6 +16,7 @@ from inerter.identify.model import Model
 from inerter.identify.prediction import (
     first_state,
     settled,
+    warming,
     with_friction_drift,
     with_late_motion,
 )
@@ -65,6 +66,7 @@ def _error(
 
         drift = values.get("friction_drift", 0.0)
         force = with_friction_drift(device, drift, forces, run.elapsed)
+        force = force + warming(device, values, moved.velocity, run.elapsed)
         if not np.all(np.isfinite(force)):
             raise ValueError("the force is not finite")
         shown = through_channel(values, force, run.elapsed, run.spacing)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose import along_stroke
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
@@ -240,6 +241,7 @@ class Search:
         self._refused = []
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
         trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
+        trials += along_stroke.candidates(self.problem, current.fit)
         fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None
@@ -256,6 +258,8 @@ class Search:
         near = floor * (1 + 5 * CRITERIA.tolerated_loss)
         shortlist = worthy[: CRITERIA.shortlist]
         shortlist += [pair for pair in worthy[CRITERIA.shortlist :] if pair[1].rmse(masks) < near]
+        # what stands on a friction level must not keep the level alone from being asked
+        shortlist += [p for p in worthy if p[0].effect == "coulomb_friction" and p not in shortlist]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 

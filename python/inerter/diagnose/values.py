@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inerter.catalogue.along_stroke import REPORTED_UNITS
 from inerter.catalogue.coordinates import CHANNEL_UNITS, parameter_names
 from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, parameters
@@ -13,7 +14,9 @@ from inerter.motion_units import TRANSLATION, Kind, parameter_unit, unit
 def parameter_units(motion: Kind) -> dict[str, str]:
     """Units of every parameter of a device and of its channels."""
     device = {n: parameter_unit(motion, n, entry.unit) for n, entry in parameters().items()}
-    return device | {name: unit(motion, each) for name, each in CHANNEL_UNITS.items()}
+    return device | {
+        name: unit(motion, each) for name, each in {**CHANNEL_UNITS, **REPORTED_UNITS}.items()
+    }
 
 
 def parameter_values(

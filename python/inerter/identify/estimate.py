@@ -242,7 +242,7 @@ class _Data:
         typical = float(np.median(inflation)) if inflation.size else 1.0
         judge = partial(self._figures, typical)
         model = better.model
-        device = Device(friction=law.friction, **parameters_of(model.values), **model.texts)
+        device = model.device()
         return Identified(
             law=law.name,
             device=_bare(device),

@@ -13,6 +13,7 @@ from inerter.catalogue.coordinates import (
     parameters_of,
 )
 from inerter.catalogue.scales import Scales
+from inerter.core import DeviceError
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
 from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.estimation.variables import Variables
@@ -91,6 +92,11 @@ class Problem:
 
         States begin where a first force puts them that is the measured one and `pressed` [N].
         """
+        try:
+            model.device()
+        except DeviceError:
+            # a search may try what no device can be: an inertance below 0 at a place, say
+            return [np.full(run.force.size, np.inf) for run in self.runs]
         return [
             settled(model, run, run.force - force_along(model, run, pressed), mask)
             for run, mask in zip(self.runs, self.masks, strict=True)

@@ -61,12 +61,6 @@ _ALL = (
         name="bouc_wen_any", meaning="Bouc-Wen hysteresis, softening or hardening",
         friction="bouc_wen", linear=("viscous", "bw_stiffness"), others=("bw_beta", "bw_gamma"),
     ),
-    # its level at rate_velocity enters in proportion; a diagnosis does not try it
-    Part(
-        name="rate_state", meaning="rate-and-state friction, which ages at rest",
-        friction="rate_state", linear=("viscous", "coulomb_force"),
-        others=("age_distance", "age_effect", "rate_effect"),
-    ),
     Part(
         name="series", meaning="spring and damper in series with the inertance",
         others=("series_frequency", "series_loss"),

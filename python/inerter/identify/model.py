@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
-from inerter.catalogue.coordinates import JUMPS, NUISANCES, parameters_of
+from inerter.catalogue.coordinates import JUMPS, NUISANCES, device_values
 from inerter.catalogue.friction import FRICTION
-from inerter.core import Device, DeviceError, parameters
+from inerter.core import Device, DeviceError, lists, parameters
 from inerter.identify.channel import clips
 from inerter.records.motion import Shaft
 
@@ -61,14 +61,16 @@ class Model:
     # worked out once, for all runs
     @cached_property
     def _device(self) -> Device:
-        values = {name: float(value) for name, value in parameters_of(self.values).items()}
-        return Device(friction=self.friction, **values, **self.texts)
+        values = {**self.texts, **device_values(self.values)}
+        return Device(friction=self.friction, **_with_ends(values))
 
     @cached_property
     def _smooth_device(self) -> Device:
-        whole, known = self._device.given, parameters()
-        names = [n for n in whole if n in known and not known[n].laws and n not in JUMPS]
-        return Device(**{n: whole[n] for n in names}, **self.texts)
+        whole, known = self._device.given, parameters() | lists()
+        rough = (*JUMPS, "mu_forward", "mu_backward")
+        names = [n for n in whole if n not in known or not known[n].laws]
+        kept = {n: whole[n] for n in names if n != "friction" and n not in rough}
+        return Device(**_with_ends(kept))
 
     @cached_property
     def has_jumps(self) -> bool:
@@ -129,6 +131,12 @@ def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
     given = {name: value for name, value in device.given.items() if name != "friction"}
     words = {name: value for name, value in given.items() if isinstance(value, str)}
     return {name: float(value) for name, value in given.items() if name not in words}, words
+
+
+def _with_ends(values: Mapping[str, float | str]) -> dict[str, float | str]:
+    """What a device is made of, with the ends of its curves where it has one."""
+    ends = () if any(name.endswith("_curve") for name in values) else ("curve_lower", "curve_upper")
+    return {name: value for name, value in values.items() if name not in ends}
 
 
 def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:

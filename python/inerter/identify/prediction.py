@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -80,11 +80,13 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
             return forces_along(each, run.spacing, run.followed, state, run.force.size)
 
         total = with_friction_drift(device, drift, along, run.elapsed)
+        total = total + warming(device, values, run.velocity, run.elapsed)
         return through_channel(values, total, run.elapsed, run.spacing)
 
     part = model.smooth_part()
     rest = _states_of(part, device, state)
     smooth = forces_along(part, run.spacing, run.followed, rest, run.force.size)["total"]
+    smooth = smooth + warming(device, values, run.velocity, run.elapsed)
     found = run.at_measured_rate(device, state)
     if not abs(found["friction"][-1]) < RUNAWAY:
         # hysteresis that hardens without end: nothing that could be low-passed
@@ -99,9 +101,12 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         return through_channel(values, total, run.elapsed, run.spacing)
     times, spacing = run.fine_elapsed, run.spacing / run.thinned
     total = found["total"] + drift * times * law if drift else found["total"]
+    plain, less = without_limits(values), run.at_measured_rate(part, rest)["total"]
+    if run.measured is not None:
+        warmed = warming(device, values, run.measured[1], times)
+        total, less = total + warmed, less + warmed
     whole = through_channel(values, total, times, spacing)
-    plain = without_limits(values)
-    less = through_channel(plain, run.at_measured_rate(part, rest)["total"], times, spacing)
+    less = through_channel(plain, less, times, spacing)
     return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(whole - less)
 
 
@@ -172,6 +177,14 @@ def with_friction_drift(
         return found["total"]
     law = along(_without_load(device)) if device.has_load_friction else found
     return found["total"] + drift * elapsed * law["friction"]
+
+
+def warming(
+    device: Device, values: Mapping[str, float], velocity: Array, elapsed: Array
+) -> Array | float:
+    """What viscous damping that changes with time adds to the force [N], shape (n,)."""
+    drift = values.get("viscous_drift", 0.0)
+    return drift * elapsed * device.viscous * velocity if drift else 0.0
 
 
 def _without_load(device: Device) -> Device:

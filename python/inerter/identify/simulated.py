@@ -23,7 +23,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.catalogue.coordinates import NOT_OF_DEVICE, parameters_of
+from inerter.catalogue.coordinates import NOT_OF_DEVICE
 from inerter.catalogue.scales import Scales
 from inerter.core import Device, DeviceError
 from inerter.device_in_model import device_of
@@ -358,4 +358,4 @@ def start_from(model: Model) -> Model:
 
 def device_from(fit: SimulatedFit) -> Device:
     """The device of a fit."""
-    return Device(friction=fit.model.friction, **parameters_of(fit.model.values), **fit.model.texts)
+    return fit.model.device()

@@ -153,8 +153,8 @@ def hide_effect(
     realistic
         On a bench with a measuring chain of its own, see `bench_realistic.py`.
 
-    Runs with friction_drift share one clock: each starts some seconds after another. All others
-    start at zero.
+    Runs with friction_drift or viscous_drift share one clock: each starts some seconds after
+    another. All others start at zero.
 
     Raises
     ------
@@ -174,7 +174,7 @@ def hide_effect(
     law = _law(choose, effects, law)
 
     ideal = ReferenceDevice(inertance=rounded(np.exp(draw.uniform(np.log(20.0), np.log(400.0)))))
-    one_clock = "friction_drift" in effects
+    one_clock = bool({"friction_drift", "viscous_drift"} & set(effects))
     runs = draw_situations(move, more, ideal.inertance, one_clock, realistic=realistic)
 
     # size each effect as if alone, the first by the numbers it would have alone

@@ -41,6 +41,7 @@ class Channel:
 
     delay: float = 0.0
     friction_drift: float = 0.0
+    viscous_drift: float = 0.0
     force_drift: float = 0.0
     disturbance_amplitude: float = 0.0
     disturbance_frequency: float = 0.0
@@ -83,6 +84,7 @@ def answers(
         force = (
             truth.force
             + channel.friction_drift * elapsed * friction
+            + channel.viscous_drift * elapsed * device.viscous * truth.velocity
             + channel.force_drift * elapsed
             + channel.disturbance_amplitude * tone
         )

@@ -14,7 +14,7 @@ smallest stroke; a shaft whose resonance lies at 1.5 to 6 times, a low-pass whos
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.random import Generator
@@ -63,12 +63,19 @@ def draw_effect(
     share = draw.uniform(*unit.share)
     size = min(_size_for_share(share, ideal, unit, runs), unit.largest)
     sized = {
-        key: rounded(getattr(unit.device if hasattr(ideal, key) else unit.channel, key) * size)
+        key: _times(getattr(unit.device if hasattr(ideal, key) else unit.channel, key), size)
         for key in unit.scaling
     }
     device = replace(unit.device, **{k: v for k, v in sized.items() if hasattr(ideal, k)})
     channel = replace(unit.channel, **{k: v for k, v in sized.items() if not hasattr(ideal, k)})
     return Drawn(_differences(device, ideal), _differences(channel, Channel()), unit.names)
+
+
+def _times(value: float | tuple[float, ...], size: float) -> float | tuple[float, ...]:
+    """A parameter times a size; of periods along the stroke their amplitudes."""
+    if isinstance(value, tuple):
+        return tuple(rounded(v * size) if i % 3 == 1 else v for i, v in enumerate(value))
+    return rounded(value * size)
 
 
 def joined(effects: tuple[str, ...], drawn: list[Drawn], ideal: ReferenceDevice) -> Drawn:
@@ -195,5 +202,6 @@ def _size_for_share(
 
 def _differences(one: object, other: object) -> dict:
     """Fields in which two of a kind differ; NaN counts as equal to NaN."""
-    values = {name: (value, vars(other)[name]) for name, value in vars(one).items()}
+    names = (each.name for each in fields(one))  # type: ignore[arg-type]
+    values = {name: (getattr(one, name), getattr(other, name)) for name in names}
     return {k: a for k, (a, b) in values.items() if a != b and not (a != a and b != b)}

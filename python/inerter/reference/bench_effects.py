@@ -30,13 +30,22 @@ EFFECTS = (
     "sensor_filter",
     "asymmetric_damping",
     "digressive_damping",
+    "viscous_drift",
+    "viscoelasticity",
+    "rate_state_friction",
+    "position_force",
 )
 """Every effect that a bench record can hide."""
 
 HYSTERETIC_LAWS = ("dahl", "lugre", "bouc_wen")
 
 # a device has one friction law; these say what it is
-FRICTION_LAWS = ("coulomb_friction", "stribeck_friction", "hysteretic_friction")
+FRICTION_LAWS = (
+    "coulomb_friction",
+    "stribeck_friction",
+    "hysteretic_friction",
+    "rate_state_friction",
+)
 
 # these change a law's level, and bring a Coulomb level along where there is no law
 LEVEL_CHANGES = ("asymmetric_friction", "position_dependent_friction", "friction_drift")
@@ -45,7 +54,7 @@ LEVEL_CHANGES = ("asymmetric_friction", "position_dependent_friction", "friction
 NEEDS_LEVEL = LEVEL_CHANGES[:2]
 
 # these are all of one viscous damping
-DAMPERS = ("viscous_friction", "asymmetric_damping", "digressive_damping")
+DAMPERS = ("viscous_friction", "asymmetric_damping", "digressive_damping", "viscous_drift")
 
 # an inertance has one series element, and a gap comes with its own
 _SERIES = ("backlash", "series_elasticity")

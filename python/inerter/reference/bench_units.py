@@ -85,6 +85,11 @@ def _digressive(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) 
 
 
 def _position(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
+    if draw.integers(0, 4) == 3:
+        row = _draw_period(draw, runs, rounded(draw.uniform(0.3, 0.8)))
+        bent = replace(ideal, friction="coulomb", coulomb_force=1.0, friction_periods=row)
+        names = ("coulomb_force",)
+        return Unit(device=bent, channel=Channel(), scaling=names, names=names)
     gradient, curvature = _draw_level(draw, travel_of(runs))
     unit = replace(
         ideal,
@@ -109,6 +114,56 @@ def _friction_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situatio
         scaling=("coulomb_force",),
         names=("coulomb_force", "friction_drift"),
     )
+
+
+def _viscous_drift(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
+    # 30 to 100 % over the whole set; a damping that falls keeps a twentieth
+    change = draw.uniform(0.3, 1.0) * draw.choice([-1.0, 1.0])
+    whole = runs[-1].start + float(runs[-1].drive.time[-1])
+    return Unit(
+        device=replace(ideal, viscous=1.0),
+        channel=Channel(viscous_drift=rounded(max(change, -0.95) / whole)),
+        scaling=("viscous",),
+        names=("viscous", "viscous_drift"),
+    )
+
+
+def _relaxing(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
+    # relaxes between a tenth and twice the time in which the motion turns by one radian
+    x, v = (
+        np.concatenate([np.asarray(getattr(r.drive.motion, name)(r.drive.time)) for r in runs])
+        for name in ("displacement", "velocity")
+    )
+    time = rms(x - np.mean(x)) / rms(v) * float(np.exp(draw.uniform(np.log(0.1), np.log(2.0))))
+    names = ("branch_stiffness_1", "branch_damping_1")
+    unit = replace(ideal, branch_stiffness_1=1.0, branch_damping_1=rounded(time))
+    return Unit(device=unit, channel=Channel(), scaling=names, names=names)
+
+
+def _rate_state(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
+    unit = replace(
+        ideal,
+        friction="rate_state",
+        coulomb_force=1.0,
+        rate_effect=rounded(draw.uniform(0.01, 0.06)),
+        age_effect=rounded(draw.uniform(0.01, 0.06)),
+        age_distance=rounded(travel_of(runs) * np.exp(draw.uniform(np.log(2e-3), np.log(2e-2)))),
+    )
+    names = ("coulomb_force", "rate_effect", "age_effect", "age_distance")
+    return Unit(device=unit, channel=Channel(), scaling=names[:1], names=names, share=(0.15, 0.40))
+
+
+def _cogging(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
+    row = _draw_period(draw, runs, 1.0)
+    unit = replace(ideal, force_periods=row)
+    return Unit(device=unit, channel=Channel(), scaling=("force_periods",), names=())
+
+
+def _draw_period(draw: Generator, runs: list[Situation], amplitude: float) -> tuple[float, ...]:
+    """Length [m], amplitude and phase [rad] of a sine of the place: 3 to 12 along the stroke."""
+    x = np.concatenate([run.drive.displacement for run in runs])
+    length = float(np.ptp(x)) / draw.uniform(3.0, 12.0)
+    return rounded(length), amplitude, rounded(draw.uniform(-np.pi, np.pi))
 
 
 def _gas(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
@@ -146,8 +201,15 @@ def _end_stop(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
 
 
 def _variable(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:
-    kind = int(draw.integers(0, 4))
+    kind = int(draw.integers(0, 5))
     sign = float(draw.choice([-1.0, 1.0]))
+    if kind == 4:
+        # a tooth's error or an eccentric gear
+        unit = replace(ideal, inertance_periods=_draw_period(draw, runs, 0.02))
+        return Unit(
+            device=unit, channel=Channel(), scaling=("inertance_periods",), names=(),
+            share=(0.05, 0.30), largest=7.0,
+        )  # fmt: skip
     names = (
         ("inertance_gradient",),
         ("inertance_curvature",),
@@ -229,6 +291,10 @@ UNITS: dict[str, Callable[[Generator, ReferenceDevice, list[Situation]], Unit]] 
     "digressive_damping": _digressive,
     "position_dependent_friction": _position,
     "friction_drift": _friction_drift,
+    "viscous_drift": _viscous_drift,
+    "viscoelasticity": _relaxing,
+    "rate_state_friction": _rate_state,
+    "position_force": _cogging,
     "gas_spring": _gas,
     "end_stop": _end_stop,
     "variable_inertance": _variable,

@@ -1,0 +1,194 @@
+"""Coordinates of what changes along the stroke: periods and free curves of a device's lists.
+
+    force_period_1, _cosine_1, _sine_1     length [m] and amplitudes [N] of a force of the place
+    force_node_1 ... force_node_33         that force at evenly spaced places [N], curve_lower to
+                                           curve_upper, with a smooth curve between them
+    friction_..., inertance_...            the same of the friction level and of the inertance,
+                                           relative to what they are
+
+A device has them as lists (`force_periods`: length, amplitude, phase of each; `force_curve`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from inerter.catalogue.combinations import Values
+from inerter.catalogue.coordinate import Coordinate, OfScales
+
+PERIODS, NODES = 3, 33
+"""Largest numbers of periods and of nodes that a fit has."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What changes along the stroke.
+
+    Attributes
+    ----------
+    name
+        First word of its parameters.
+    effect
+        The effect that it is named as.
+    unit, words
+        Of its amplitude.
+    size, bound
+        Typical size of an amplitude, and the largest; both of the sizes of the data.
+    stands_for
+        Coordinates whose part in the force curves have too, and that go where one comes.
+    nodes_zero
+        Coordinates by which nodes of a curve are held at 0: the middle one by the first, the last
+        one by the second.
+    """
+
+    name: str
+    effect: str
+    unit: str
+    words: str
+    size: OfScales
+    bound: OfScales
+    stands_for: tuple[str, ...] = ()
+    nodes_zero: tuple[str, ...] = ()
+
+    def period(self, number: int) -> tuple[str, str, str]:
+        """Coordinates of a period: length, amplitude of the cosine and of the sine."""
+        name = self.name
+        return f"{name}_period_{number}", f"{name}_cosine_{number}", f"{name}_sine_{number}"
+
+    def node(self, number: int) -> str:
+        """Coordinate of a curve's node, from 1 on."""
+        return f"{self.name}_node_{number}"
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Every coordinate."""
+        periods = (name for i in range(1, PERIODS + 1) for name in self.period(i))
+        return (*periods, *(self.node(i) for i in range(1, NODES + 1)))
+
+    @property
+    def amplitudes(self) -> tuple[str, ...]:
+        """Coordinates that are 0 where nothing changes."""
+        return tuple(name for name in self.coordinates if "_period_" not in name)
+
+    @property
+    def reported(self) -> tuple[str, ...]:
+        """What a finding reports."""
+        words = ("period", "amplitude", "phase")
+        periods = (f"{self.name}_{word}_{i}" for i in range(1, PERIODS + 1) for word in words)
+        return (*periods, *(self.node(i) for i in range(1, NODES + 1)))
+
+    def form(self, names: set[str]) -> str | None:
+        """What some coordinates are of it: "curve", "period" or nothing."""
+        if any(name.startswith(f"{self.name}_node_") for name in names):
+            return "curve"
+        return "period" if self.period(1)[0] in names else None
+
+
+QUANTITIES = (
+    Quantity(
+        "force", "position_force", "N", "force",
+        lambda s: 0.05 * s.force, lambda s: 3 * s.force, ("stiffness_cubic",),
+        ("force_offset", "stiffness"),
+    ),
+    # with three periods at their bounds there is still some left
+    Quantity(
+        "inertance", "variable_inertance", "1", "inertance",
+        lambda s: 0.02, lambda s: 0.2, ("inertance_gradient", "inertance_curvature"),
+        ("inertance",),
+    ),
+    Quantity(
+        "friction", "position_dependent_friction", "1", "friction level",
+        lambda s: 0.1, lambda s: 0.6, ("friction_gradient", "friction_curvature"),
+        ("coulomb_force",),
+    ),
+)  # fmt: skip
+"""What can change along the stroke."""
+
+
+def _of(quantity: Quantity) -> tuple[Coordinate, ...]:
+    n, bound = quantity.name, quantity.bound
+    how = {
+        "unit": quantity.unit, "size": quantity.size, "entangled": n == "inertance",
+        "lower": lambda s: -bound(s), "upper": bound,
+    }  # fmt: skip
+    found = []
+    for i in range(1, PERIODS + 1):
+        length, *amplitudes = quantity.period(i)
+        found.append(
+            Coordinate(
+                name=length,
+                unit="m",
+                logarithmic=True,
+                none=None,
+                size=lambda s: s.displacement,
+                lower=lambda s: 1e-4 * s.displacement,
+                upper=lambda s: 30 * s.displacement,
+                words={
+                    length: f"period of the {quantity.words} along the stroke",
+                    f"{n}_amplitude_{i}": "its amplitude",
+                    f"{n}_phase_{i}": "its phase",
+                },
+            )
+        )
+        found += [Coordinate(name=name, **how) for name in amplitudes]
+    nodes = (quantity.node(i) for i in range(1, NODES + 1))
+    return (*found, *(Coordinate(name=n, words={n: n.replace("_", " ")}, **how) for n in nodes))
+
+
+COORDINATES = tuple(each for quantity in QUANTITIES for each in _of(quantity))
+"""Every coordinate of a change along the stroke."""
+
+REPORTED_UNITS: Mapping[str, str] = {
+    name: unit
+    for q in QUANTITIES
+    for name, unit in (
+        *((q.node(i), q.unit) for i in range(1, NODES + 1)),
+        *(
+            pair
+            for i in range(1, PERIODS + 1)
+            for pair in (
+                (q.period(i)[0], "m"),
+                (f"{q.name}_amplitude_{i}", q.unit),
+                (f"{q.name}_phase_{i}", "rad"),
+            )
+        ),
+    )
+}
+"""Units of what findings report of it and no device has a parameter for."""
+
+
+def told(values: Values) -> None:
+    """Amplitude and phase in the place of cosine and sine."""
+    for quantity in QUANTITIES:
+        for i in range(1, PERIODS + 1):
+            _, cosine, sine = quantity.period(i)
+            if cosine in values and sine in values:
+                c, s = values.pop(cosine), values.pop(sine)
+                values[f"{quantity.name}_amplitude_{i}"] = float(np.hypot(c, s))
+                values[f"{quantity.name}_phase_{i}"] = float(np.arctan2(c, s))
+
+
+def lists(values: Values) -> dict[str, str]:
+    """Lists of a device that told parameters stand for; these are taken out of the values.
+
+    Where no curve is left its ends go too.
+    """
+    found = {}
+    for quantity in QUANTITIES:
+        rows = []
+        for i in range(1, PERIODS + 1):
+            names = [f"{quantity.name}_{word}_{i}" for word in ("period", "amplitude", "phase")]
+            row = [values.pop(name, 0.0) for name in names]
+            if row[1]:
+                rows += row
+        if rows:
+            found[f"{quantity.name}_periods"] = " ".join(map(repr, rows))
+        nodes = [values.pop(quantity.node(i), None) for i in range(1, NODES + 1)]
+        if any(nodes):
+            last = max(i for i, node in enumerate(nodes) if node is not None)
+            curve = [float(node or 0.0) for node in nodes[: last + 1]]
+            found[f"{quantity.name}_curve"] = " ".join(map(repr, curve))
+    return found
