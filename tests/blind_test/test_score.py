@@ -40,8 +40,8 @@ OUTCOMES = [
     outcome("pairs", (A, B), ((B, 0.98), (A, 0.98)), seed=30, gain=0.9),
     outcome("pairs", (A, C), ((C, 0.85), (B, 0.3)), seed=31, laws=("dahl", "dahl"), gain=0.6),
     outcome("triples", (A, B, "force_offset"), ((A, 0.9),), seed=40, gain=0.3),
-    outcome("unknown", kind="cogging", unexplained=True, seed=50),
-    outcome("unknown", (), ((A, 0.95),), kind="cogging", unexplained=True, seed=51),
+    outcome("unknown", kind="beating", unexplained=True, seed=50),
+    outcome("unknown", (), ((A, 0.95),), kind="beating", unexplained=True, seed=51),
     outcome("unknown", (), ((A, 0.5),), kind="squeal", unexplained=True, seed=52),
     outcome("unknown", kind="squeal", unexplained=False, seed=53),
 ]  # fmt: skip
@@ -103,7 +103,7 @@ def test_clean_sets_and_unknown(result: dict) -> None:
     assert (triples["all_found"], triples["any_found"], triples["with_extras"]) == (0.0, 1.0, 0.0)
     unknown = result["unknown"]
     assert (unknown["significant"], unknown["wrong_claim"]) == (0.75, 0.25)
-    assert unknown["kinds"]["cogging"] == {
+    assert unknown["kinds"]["beating"] == {
         "cases": 2, "significant": 1.0, "wrong_claim": 0.5, "named": {A: 1},
     }  # fmt: skip
 

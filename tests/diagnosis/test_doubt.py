@@ -9,8 +9,9 @@ from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import doubted, stand_ins, trust, warning
 from inerter.diagnose.result import Finding
-from inerter.reference import NoiseLevels, hide_effect, hide_unknown
+from inerter.reference import NoiseLevels, hide_effect
 from inerter.report.page import render_report
+from unknown_forces import pulsing_friction, unknown_records
 
 QUIET = NoiseLevels(0.0, 0.01, 1e-6)
 # explains 3 N of 5
@@ -58,9 +59,9 @@ def test_warning_names_only_what_may_stand_in() -> None:
 
 @pytest.mark.long
 def test_a_stand_in_for_an_unnamed_friction_is_doubted() -> None:
-    """Friction that waxes and wanes along the stroke: Coulomb friction is its mean."""
-    case = hide_unknown(20261121, "periodic_friction", QUIET)
-    found = diagnose_bench(records_of(case))
+    """Friction that waxes and wanes with time: Coulomb friction is its mean."""
+    records, _ = unknown_records(20261121, pulsing_friction, 0.2)
+    found = diagnose_bench(records)
     assert found.unexplained.significant
     stand_in = next(each for each in found.findings if each.effect == "coulomb_friction")
     # of 1 + sin the mean is sqrt(2) times the rms of the rest

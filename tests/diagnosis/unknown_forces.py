@@ -76,6 +76,11 @@ def periodic_friction(m: Along) -> Array:
     return np.sign(m.v) * (1 + 0.8 * np.sin(2 * np.pi * m.x / (0.4 * m.stroke)))
 
 
+def pulsing_friction(m: Along) -> Array:
+    """Friction whose level comes and goes with time."""
+    return np.sign(m.v) * (1 + np.sin(2 * np.pi * 0.7 * m.time))
+
+
 def fading(m: Along) -> Array:
     """Inertance that fades in the course of each run."""
     return -m.a * (1 - np.exp(-m.time / 5.0))

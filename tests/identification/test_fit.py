@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from inerter import Device
 from inerter.catalogue.coordinates import search_range
-from inerter.identify.fit import Problem, delayed, parameter_errors, rms
+from inerter.identify.channel import delayed
+from inerter.identify.fit import Problem, parameter_errors, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
 from three_sines import TIME, H, N, motion, run_of

@@ -116,4 +116,4 @@ def test_a_case_follows_from_its_seed_and_holds_what_was_hidden() -> None:
     assert len(rates) > 2
     assert rates <= set(RATES)
     assert hide_effect(7, "viscous_friction").chain is None
-    assert hide_unknown(7, "cogging", realistic=True).chain is not None
+    assert hide_unknown(7, "beating", realistic=True).chain is not None

@@ -22,11 +22,6 @@ def branch(values: Values) -> None:
             values[f"branch_damping_{i}"] = values[f"branch_stiffness_{i}"] * time
 
 
-def rate(values: Values) -> None:
-    steady = values.pop("steady_effect")
-    values["rate_effect"] = max(steady + values.get("age_effect", 0.0), 0.0)
-
-
 def shaft(values: Values) -> None:
     rate, inertance = 2 * np.pi * values.pop("series_frequency"), values["inertance"]
     values["series_stiffness"] = inertance * rate**2

@@ -4,7 +4,6 @@ Most coordinates are parameters. Where a parameter's effect depends on another o
 is the combination that the data see:
 
     static_excess   static_force - coulomb_force                     [N]
-    steady_effect   rate_effect - age_effect, the rise of the steady level per ln(v)            [-]
     presliding      coulomb_force / bristle_stiffness, the distance over which a bristle yields [m]
     bw_level        largest hysteretic Bouc-Wen force (alpha = 1)                      [N]
     bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
@@ -163,9 +162,8 @@ _ALL = (
         start=(1e-3, 0.3), start_unit=lambda s: s.force / s.velocity,
     ),
     Coordinate(
-        name="steady_effect", unit="1", words={"rate_effect": "rise of the level per ln(v), A"},
-        size=lambda s: 0.02, lower=lambda s: -0.4, upper=lambda s: 0.4, start=(-0.05, 0.05),
-        to_parameters=combinations.rate, of_device=lambda d: d.rate_effect - d.age_effect,
+        name="rate_effect", unit="1", words={"rate_effect": "rise of the level per ln(v), A"},
+        size=lambda s: 0.02, lower=_zero, upper=lambda s: 0.5, start=(3e-3, 0.1),
     ),
     Coordinate(
         name="age_effect", unit="1", words={"age_effect": "rise of the level per ln(age), B"},
@@ -370,14 +368,7 @@ COORDINATES: Mapping[str, Coordinate] = MappingProxyType({each.name: each for ea
 # a level that breaks away is told from the distance of a bristle before that is taken
 _CONVERTED = tuple(
     COORDINATES[name]
-    for name in (
-        "gas_push",
-        "series_frequency",
-        "static_excess",
-        "presliding",
-        "branch_time_1",
-        "steady_effect",
-    )
+    for name in ("gas_push", "series_frequency", "static_excess", "presliding", "branch_time_1")
 )
 
 CHANNEL_UNITS: Mapping[str, str] = MappingProxyType(

@@ -128,8 +128,8 @@ _ALL = (
     ),
     Effect(
         name="rate_state_friction", rank=15, kind="law",
-        coordinates=("coulomb_force", "steady_effect", "age_effect", "age_distance"),
-        telling=("steady_effect", "age_effect"), far=True,
+        coordinates=("coulomb_force", "rate_effect", "age_effect", "age_distance"),
+        telling=("rate_effect", "age_effect"), far=True,
         plain="friction that goes with the logarithm of speed and ages at rest",
         meaning="f_c (1 + A ln(v / v_0) + B ln(v_0 theta / L)) sign(v), theta' = 1 - v theta / L",
         cause="contacts that creep together while they touch: dry metal, plastic and rubber slides",

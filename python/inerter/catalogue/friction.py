@@ -149,11 +149,11 @@ _ALL = (
     FrictionLaw(
         name="rate_state", words="rate-and-state",
         meaning="rate-and-state friction, which ages at rest", effect="rate_state_friction",
-        coordinates=("coulomb_force", "steady_effect", "age_effect", "age_distance"),
-        constants=("rate_velocity",), spread=("age_distance", "age_effect", "steady_effect"),
+        coordinates=("coulomb_force", "rate_effect", "age_effect", "age_distance"),
+        constants=("rate_velocity",), spread=("age_distance", "age_effect", "rate_effect"),
         smoothed=True, memory=True, contains=("none", "coulomb"), simpler=("coulomb",),
         tried_on=("none", "coulomb"), grid={"age_distance": (1e-3, 0.03)},
-        begin={"steady_effect": 0.01, "age_effect": 0.02},
+        begin={"rate_effect": 0.02, "age_effect": 0.03},
     ),
 )  # fmt: skip
 

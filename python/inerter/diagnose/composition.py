@@ -52,7 +52,21 @@ def is_distinct(
         return stiffness > required * error
     errors = _errors(fit)
     known = [name for name in EFFECTS[effect].amplitudes if name in errors]
+    if EFFECTS[effect].kind == "law" and len(known) > 1 and _together(fit, known) > required:
+        return True
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+
+
+def _together(fit: Fit, names: Sequence[str]) -> float:
+    """Standard errors by which some coordinates together differ from none.
+
+    Where only their difference is seen, as of friction that rises with speed and falls with it,
+    none alone does.
+    """
+    places = [fit.model.free.index(name) for name in names]
+    values = np.array([fit.model.values[name] for name in names])
+    inverse = np.linalg.pinv(fit.covariance[np.ix_(places, places)], hermitian=True)
+    return float(np.sqrt(max(values @ inverse @ values, 0.0)))
 
 
 def bristle_is_known(fit: Fit) -> bool:

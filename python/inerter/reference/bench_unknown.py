@@ -2,17 +2,16 @@
 
 A force along the motion of an ideal inerter, sized to 5 to 30 % of the force rms:
 
-    cogging              sin(2 pi x / l + p): magnets or teeth that lock at places
+    beating              sin(2 pi x / l) sin(2 pi t / T): magnets that lock at places, and turn
     coupling             x v^2 alone, without the x^2 a that an inertance would bring
-    viscoelastic         Maxwell elements side by side, relaxation from 20 ms to 2 s
-    logarithmic_friction tanh(v / v_t) ln(1 + |v| / v_0)
-    periodic_friction    tanh(v / v_t) (1 + sin(2 pi x / l)): a bent or toothed guide
+    softening            x (1 - m / max|x|), m the largest |x| so far: rubber that was new
+    lagging_drag         q, q' = (v |v| - q) / T: a flow that takes time to build up
+    catching             tanh(v / v_t) where |v| is above v_0: a clutch that flies out
     fading_inertance     -b a (t / T): what is engaged is lost as time goes on
     square_wave          of time alone, a controller that switches
-    ageing_friction      tanh(v / v_t) ln(1 + q / q_0), q' = 1 - |v| q / D: grows at rest
     squeal               a decaying oscillation after each reversal
     dead_band            the force channel is silent near zero
-Sources: ageing: Dieterich's law of rate-and-state friction, J. Geophys. Res. 84, 1979.
+Sources: softening: Mullins, Rubber Chem. Technol. 42, 1969, as a linear spring.
 """
 
 from __future__ import annotations
@@ -117,11 +116,14 @@ def _stroke(bare: list[Response]) -> float:
     return max(float(np.ptp(one.displacement)) for one in bare)
 
 
-def _cogging(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
+def _beating(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
     length = rounded(_stroke(bare) * draw.uniform(0.12, 0.35))
-    phase = rounded(draw.uniform(0.0, 2.0 * np.pi))
-    found = [np.sin(2.0 * np.pi * one.displacement / length + phase) for one in bare]
-    return found, {"length": length, "phase": phase}
+    period = rounded(np.exp(draw.uniform(np.log(0.7), np.log(4.0))))
+    found = [
+        np.sin(2.0 * np.pi * one.displacement / length) * np.sin(2.0 * np.pi * one.time / period)
+        for one in bare
+    ]
+    return found, {"length": length, "period": period}
 
 
 def _coupling(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
@@ -129,35 +131,29 @@ def _coupling(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape
     return [sign * one.displacement * one.velocity**2 for one in bare], {}
 
 
-def _viscoelastic(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
-    times = np.exp(np.linspace(np.log(0.02), np.log(2.0), int(draw.integers(4, 7))))
-    weights = times ** -draw.uniform(0.3, 0.7)
+def _softening(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
+    largest = max(float(np.max(abs(one.displacement))) for one in bare)
+    found = [
+        one.displacement * (1.0 - np.maximum.accumulate(abs(one.displacement)) / (1.1 * largest))
+        for one in bare
+    ]
+    return found, {"largest": largest}
+
+
+def _lagging(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
+    lag = rounded(np.exp(draw.uniform(np.log(0.05), np.log(0.4))))
     found = []
     for one in bare:
         step = one.time[1] - one.time[0]
-        # z' = v - z / tau, v straight between the samples
-        middle = np.concatenate(([0.0], 0.5 * (one.velocity[1:] + one.velocity[:-1])))
-        total = np.zeros(one.time.size)
-        for tau, weight in zip(times, weights, strict=True):
-            keep = np.exp(-step / tau)
-            total += weight * lfilter([tau * (1.0 - keep)], [1.0, -keep], middle)
-        found.append(total)
-    return found, {"elements": float(times.size)}
+        keep = np.exp(-step / lag)
+        found.append(lfilter([1.0 - keep], [1.0, -keep], one.velocity * abs(one.velocity)))
+    return found, {"lag": lag}
 
 
-def _logarithmic(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
+def _catching(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
     middle = float(np.median([rms(one.velocity) for one in bare]))
-    speed = rounded(middle * np.exp(draw.uniform(np.log(0.005), np.log(0.05))))
-    found = [_direction(one) * np.log1p(abs(one.velocity) / speed) for one in bare]
-    return found, {"speed": speed}
-
-
-def _periodic_friction(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
-    length = rounded(_stroke(bare) * draw.uniform(0.12, 0.35))
-    found = [
-        _direction(one) * (1.0 + np.sin(2.0 * np.pi * one.displacement / length)) for one in bare
-    ]
-    return found, {"length": length}
+    speed = rounded(middle * draw.uniform(0.7, 1.3))
+    return [_direction(one) * (abs(one.velocity) > speed) for one in bare], {"speed": speed}
 
 
 def _fading(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
@@ -174,23 +170,6 @@ def _square_wave(draw: Generator, bare: list[Response]) -> tuple[list[Array], Sh
     return found, {"period": period}
 
 
-def _ageing(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
-    distance = rounded(_stroke(bare) * draw.uniform(0.005, 0.03))
-    young = rounded(np.exp(draw.uniform(np.log(1e-3), np.log(1e-2))))
-    found = []
-    for one in bare:
-        step = one.time[1] - one.time[0]
-        loss = abs(one.velocity) / distance
-        # exact where the speed stays the same over a step
-        keep = np.exp(-loss * step)
-        gain = np.where(loss * step > 1e-9, (1.0 - keep) / np.maximum(loss, 1e-12), step)
-        age = np.zeros(one.time.size)
-        for i in range(1, age.size):
-            age[i] = keep[i] * age[i - 1] + gain[i]
-        found.append(_direction(one) * np.log1p(age / young))
-    return found, {"distance": distance, "age": young}
-
-
 def _squeal(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
     frequency = rounded(draw.uniform(15.0, 40.0))
     decay = rounded(draw.uniform(0.05, 0.15))
@@ -205,14 +184,13 @@ def _squeal(draw: Generator, bare: list[Response]) -> tuple[list[Array], Shape]:
 
 
 _KINDS: dict[str, Force] = {
-    "cogging": _cogging,
+    "beating": _beating,
     "coupling": _coupling,
-    "viscoelastic": _viscoelastic,
-    "logarithmic_friction": _logarithmic,
-    "periodic_friction": _periodic_friction,
+    "softening": _softening,
+    "lagging_drag": _lagging,
+    "catching": _catching,
     "fading_inertance": _fading,
     "square_wave": _square_wave,
-    "ageing_friction": _ageing,
     "squeal": _squeal,
 }
 
