@@ -171,7 +171,15 @@ def _tell(
             **base, verdict="not told", reason="its force is below what is left",
             motion="faster reversals: a higher frequency or shorter ramps",
         )  # fmt: skip
-    return Tell(**base, verdict="bounded")
+    return Tell(
+        **base,
+        verdict="bounded",
+        motion={
+            "stiffness": "longer strokes, or rests at their ends",
+            "viscous friction": "faster strokes",
+            "dry friction": "slow strokes, in which little else acts",
+        }[name],
+    )
 
 
 def words(tell: Tell) -> str:
