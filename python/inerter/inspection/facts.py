@@ -15,6 +15,7 @@ from inerter.inspection.channel import ChannelFacts, channel_facts
 from inerter.inspection.motion import MotionFacts, motion_facts
 from inerter.inspection.tells import Tell, tells, words
 from inerter.motion_units import TRANSLATION, Kind
+from inerter.printable import in_digits
 from inerter.records import AnyRecord, Record, TimeRecord
 from inerter.records.motion import Motion, smooth, uniform_channels
 from inerter.records.units import QUANTITIES, quantity_in
@@ -128,7 +129,7 @@ def _smoothed(record: Record, channels: Sequence[ChannelFacts]) -> Motion | None
 def size(value: float, unit: str) -> str:
     """A value with a unit of its size."""
     factor, name = scale(value, unit)
-    return f"{value * factor:.3g} {name}"
+    return in_digits(f"{value * factor:.3g} {name}")
 
 
 def span(low: float, high: float, unit: str) -> str:
@@ -157,7 +158,7 @@ def clock_words(facts: Facts) -> str:
     if facts.jitter < 5e-4:
         text += "an even clock"
     else:
-        text += f"98 % of the intervals within {100 * facts.jitter:.2g} % of one"
+        text += f"98 % of the intervals within {100 * facts.jitter:.2g} % of the usual one"
     if facts.looked_at < facts.record.samples:
         text += f"; looked at: the first {facts.looked_at}"
     return text
