@@ -154,3 +154,21 @@ def test_a_range_is_in_one_unit() -> None:
     assert span(-0.0263, 0.105, "m") == "-26 to 105 mm"
     assert span(-710.4, 3004.0, "N") == "-710 to 3000 N"
     assert span(0.0, 0.0, "m") == "0 to 0 um"
+
+
+def test_a_linear_model_that_is_astray_bounds_nothing() -> None:
+    """Stops are all of the force; where noise is much of it, that is none of the model's."""
+    rng, t = np.random.default_rng(4), 1e-3 * np.arange(12_000)
+    x = 0.02 * np.sin(3 * t)
+    stops = 5e5 * (np.maximum(x - 0.015, 0) + np.minimum(x + 0.015, 0))
+    found = facts_of(Record(name="run", time=t, displacement=x, force=stops)).tells
+    assert {tell.verdict for tell in found} == {"not told"}
+    assert "a linear model leaves" in words(found[0])
+    a = -0.02 * 9 * np.sin(3 * t)
+    noisy = 60 * a + 900 * 0.06 * np.cos(3 * t) + rng.normal(0, 60, t.size)
+    told = {
+        x.name: x for x in facts_of(Record(name="run", time=t, displacement=x, force=noisy)).tells
+    }
+    viscous = told["viscous friction"]
+    assert viscous.reason != found[0].reason
+    assert abs(viscous.value - 900) < 4 * viscous.stderr
