@@ -122,7 +122,7 @@ def diagnose_command(
     quick: Annotated[bool, typer.Option("--quick", hidden=True)] = False,
     stated: Any = None,
 ) -> None:
-    """What does the simulation of a device get wrong, what is the cause, how much does it cost?
+    """Say what the simulation of a device gets wrong, by what cause, and how much that is.
 
     Writes diagnosis.json, report.html, device.toml and model.xml.
 

@@ -51,8 +51,31 @@ Jobs = Annotated[
 ]
 
 
+# what a user gives for an option, by its annotation
+_GIVEN = {str: "TEXT", list[str]: "TEXT", int: "NUMBER", float: "NUMBER", Path: "FILE"}
+
+
+def _plain_types(command: Any) -> Any:
+    """Name what each option takes in plain words; choices are listed as they are."""
+    for each in command.params:
+        given = _GIVEN.get(getattr(getattr(each, "type_descriptor", None), "annotation", None))
+        if given and each.metavar is None:
+            each.metavar = "FOLDER" if "--out" in each.opts else given
+            if each.param_type_name == "argument":
+                each.metavar = each.name.upper()
+        if each.param_type_name == "argument" and hasattr(each, "display_type_rich"):
+            # its help says what it is
+            each.display_type_rich = lambda ctx: ""
+    return command
+
+
 class Commands(TyperGroup):
-    """A list of commands with whole sentences, wrapped and never cut."""
+    """A list of commands with whole sentences, wrapped and never cut; plain types of options."""
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of a name."""
+        command = super().get_command(ctx, cmd_name)
+        return command if command is None else _plain_types(command)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write each command with the first sentence of its help."""
@@ -89,7 +112,7 @@ def number(unit: str, text: str, least: float | None = None, **more: Any) -> Any
             raise typer.BadParameter(f"{given} is out of range; give at least {least:g} {unit}")
         return value
 
-    return typer.Option(help=text, parser=read, metavar="<number>", **more)
+    return typer.Option(help=text, parser=read, metavar="NUMBER", **more)
 
 
 def refuse(message: str, status: int = UNUSABLE) -> NoReturn:

@@ -12,6 +12,8 @@ PLAIN = "inerter.plain"
 _TURNING = re.compile("[\u200e\u200f\u061c\u202a-\u202e\u2066-\u2069]")
 _TURNING_ESCAPED = re.compile(r"\\u(?:200[ef]|061c|202[a-e]|206[6-9])")
 
+_POWER = re.compile(r"(?<![\w.])\d(?:\.\d+)?e\+0[1-5](?!\d)")
+
 # signs of ours for which a terminal may have no character
 _OTHERWISE = {
     "\u2192": "->", "\u00d7": "x", "\u00b7": "*", "\u2212": "-", "\u2013": "-", "\u2014": "-",
@@ -24,6 +26,11 @@ _OTHERWISE = {
 def printable(text: str) -> str:
     """The text without control sequences; line breaks and the blanks of numbers stay."""
     return "".join(c if c.isprintable() or c in "\n\u00a0\u202f" else "\ufffd" for c in text)
+
+
+def in_digits(sentence: str) -> str:
+    """A sentence of ours with numbers below a million written out: 8840 for 8.84e+03."""
+    return _POWER.sub(lambda found: f"{float(found[0]):.0f}", sentence)
 
 
 def text_of(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from pathlib import Path
 
 import pytest
 from inerter.commands import app
@@ -41,11 +42,32 @@ def test_the_list_of_commands_is_cut_nowhere() -> None:
     assert "\n  bench " not in text
 
 
-@pytest.mark.parametrize("name", [name for name in commands() if name[0] != "suspension"])
+@pytest.mark.parametrize("name", commands())
 def test_every_help_has_an_example_in_80_columns(name: tuple[str, ...]) -> None:
     text = output(*name, "--help")
     assert max(map(len, text.splitlines())) <= 80
     assert f"inerter {' '.join(name)}" in text.split("Example")[1]
+    # what each option takes, in plain words
+    assert not {"<str>", "<path>", "<list[str]>", "<int", "<float"} & set(text.split())
+
+
+def test_names_of_before_are_understood(tmp_path: Path) -> None:
+    """--velocity of a suspension is --speed, --reoptimise --reoptimize; help shows the new ones."""
+    for words in (["optimize"], ["pareto"], ["network"]):
+        help_text = output("suspension", *words, "--help")
+        assert "--speed" in help_text
+        assert "--velocity" not in help_text
+    found = [
+        json.loads(
+            output("suspension", "optimize", "--layout=S1", "--index=J1", "--json", option, "20")
+        )
+        for option in ("--speed", "--velocity")
+    ]
+    assert found[0] == found[1]
+    assert "--reoptimise" not in output("suspension", "evaluate", "--help")
+    done = CliRunner().invoke(app, ["suspension", "evaluate", "--reoptimise", "--damping=3000",
+                                    "--inertance=30", f"--out={tmp_path}"])  # fmt: skip
+    assert "cannot be sought anew" in done.stderr
 
 
 def test_parameters_are_whole_in_a_pipe() -> None:

@@ -13,6 +13,7 @@ from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import by_weight
 from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival, StatedValue
 from inerter.diagnose.wording import departure, effect_in_words, evidence, verdict
+from inerter.printable import in_digits
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, sum_of_sines
 
@@ -28,6 +29,11 @@ from inerter.reference import ReferenceDevice, sum_of_sines
 )
 def test_departures_are_readable(value: float, stated: float, text: str) -> None:
     assert departure(StatedValue(value, 0.1, "N", stated)) == text
+
+
+def test_numbers_are_written_out() -> None:
+    said = "8.84e+03 N rms, 1e+05 N/m, 1.13e+06 N/m, 2e-05 m, run1e+03, 70 ± 2e+01"
+    assert in_digits(said) == "8840 N rms, 100000 N/m, 1.13e+06 N/m, 2e-05 m, run1e+03, 70 ± 20"
 
 
 def test_what_is_stated_and_other_is_called_so() -> None:

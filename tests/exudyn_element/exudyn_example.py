@@ -1,7 +1,8 @@
 """Runs one of Exudyn's own examples with a device put into it, and prints what came of it as JSON.
 
-    python exudyn_example.py SCRIPT
+    python exudyn_example.py SCRIPT [FINER]
 
+FINER: by how much the steps are finer than the script's own.
 Between the ground and the first body that an inerter takes; the first dynamic solution is cut to
 some hundred steps. The velocity v is worked out from Exudyn's own sensors of the body. Printed:
 
@@ -94,6 +95,7 @@ def compare(name: str, grown: Any, time: Any, rate: Any) -> dict[str, float]:
 
 def main() -> None:
     install()
+    finer = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     devices: dict[int, Any] = {}
     assemble, solve = exu.MainSystem.Assemble, exu.MainSystem.SolveDynamic
 
@@ -129,6 +131,7 @@ def main() -> None:
         step = integration.endTime / integration.numberOfSteps
         integration.numberOfSteps = min(STEPS, integration.numberOfSteps)
         integration.endTime = step * integration.numberOfSteps
+        integration.numberOfSteps *= finer
         integration.verboseMode = 0
         integration.simulateInRealtime = False
         settings.solution.sensors.writePeriod = 1e-12

@@ -352,6 +352,11 @@ def _arduino_labels() -> str:
 
 
 SELF_MADE: dict[str, Export] = {
+    "matlab_timetable.csv": Export(text("Time,Displacement_mm,Force_N", rows(
+        [f"{t:.9g} sec" for t in TIME], MM, FORCE))),
+    "adams.tab": Export(text('"Plot: PLOT_1"\n"A"\t"B"\t"C"\n"TIME (sec)"\t"strut.disp (mm)"\t'
+                             '"strut.force (newton)"',
+                             rows(TIME, MM, FORCE, separator="\t"))),
     "arduino_csv.log": Export(text("Booting...\nHX711 ready\nmillis,pos_mm,force_N",
                                    rows([f"{k}" for k in range(ROWS)], MM, FORCE))),
     "arduino_labels.txt": Export(text("setup done", _arduino_labels())),

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inerter.inspection.channel import channel_facts
-from inerter.inspection.facts import facts_of
+from inerter.inspection.facts import facts_of, span
 from inerter.inspection.tells import Tell, words
 from inerter.records import Record, check_records
+from inerter.records.steps import converter_step
 from numpy.typing import NDArray
 
 
@@ -94,3 +95,80 @@ def test_what_a_clipped_force_tells_is_not_told_wrong(most: float) -> None:
 def test_a_value_has_the_digits_of_its_error(value: float, error: float, said: str) -> None:
     tell = Tell(name="stiffness", value=value, stderr=error, unit="N/m", verdict="told")
     assert words(tell) == f"stiffness {said} N/m"
+
+
+@pytest.mark.parametrize("step", [1e-6, 2e-5, 1e-4])
+@pytest.mark.parametrize("noise", [0.0, 1e-6, 3e-5])
+@pytest.mark.parametrize("jitter", [0.0, 0.2])
+def test_a_step_is_told_where_there_is_one_alone(step: float, noise: float, jitter: float) -> None:
+    """As an encoder counts; also of few samples among many counts, and on an uneven clock."""
+    rng, count = np.random.default_rng(7), 4000
+    t = 1e-3 * (np.arange(count) + jitter * rng.uniform(-1, 1, count))
+    x = 0.02 * np.sin(8 * t) + 0.004 * np.sin(26 * t) + noise * rng.normal(size=count)
+    force = rng.normal(0, 2, count)
+    counted = Record(name="run", time=t, displacement=step * np.round(x / step), force=force)
+    told = facts_of(counted).channels[0].step
+    assert told == pytest.approx(step, rel=0.01)
+    assert [
+        c.step for c in facts_of(Record(name="run", time=t, displacement=x, force=force)).channels
+    ] == [None, None]
+
+
+def test_what_looks_like_steps_and_is_none() -> None:
+    """An even motion without noise, and numbers of so many digits each."""
+    t = 1e-3 * np.arange(8000)
+    assert converter_step(np.abs((0.1 * t + 0.01) % 0.04 - 0.02)) is None
+    assert converter_step(np.array([float(f"{x:.3e}") for x in 90 * np.sin(8 * t)])) is None
+    # and a slow motion in steps, a card of 16 bits whose volts a text rounds
+    slow = 2e-5 * np.round(1e-3 * t / 2e-5)
+    assert converter_step(slow) == pytest.approx(2e-5)
+    counts = np.round(3e3 * np.sin(8 * t) + 20 * np.random.default_rng(1).normal(size=t.size))
+    volts = np.round(counts * 20 / 65536, 5)
+    assert converter_step(50 * volts) == pytest.approx(50 * 20 / 65536, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("tones", "hum", "low", "high"),
+    [
+        ({0.5: 0.02, 1.9: 1e-3, 7.0: 1e-3}, 0.0, 7.0, 9.0),
+        ({0.5: 0.02, 5.0: 1e-3}, 1e-5, 5.0, 7.0),
+        ({50.0: 2e-3}, 0.0, 50.0, 52.0),
+        ({}, 0.0, 0.0, 0.0),
+    ],
+)
+def test_the_band_ends_with_the_motion(
+    tones: dict[float, float], hum: float, low: float, high: float
+) -> None:
+    """Tones far apart are one motion; a line of the mains is none, unless nothing else moves."""
+    t = 1e-3 * np.arange(20_000)
+    x = 1e-6 * np.random.default_rng(2).normal(size=t.size) + hum * np.sin(100 * np.pi * t)
+    for tone, size in tones.items():
+        x = x + size * np.sin(2 * np.pi * tone * t)
+    facts = channel_facts("displacement", "m", np.asarray(x, dtype=np.float64), 1e-3)
+    assert low <= facts.band <= high
+    assert [at for at, _ in facts.hum] == ([50.0] if hum else [])
+
+
+def test_a_range_is_in_one_unit() -> None:
+    assert span(-2.4e-6, 0.105, "m") == "0 to 105 mm"
+    assert span(-0.0263, 0.105, "m") == "-26 to 105 mm"
+    assert span(-710.4, 3004.0, "N") == "-710 to 3000 N"
+    assert span(0.0, 0.0, "m") == "0 to 0 um"
+
+
+def test_a_linear_model_that_is_astray_bounds_nothing() -> None:
+    """Stops are all of the force; where noise is much of it, that is none of the model's."""
+    rng, t = np.random.default_rng(4), 1e-3 * np.arange(12_000)
+    x = 0.02 * np.sin(3 * t)
+    stops = 5e5 * (np.maximum(x - 0.015, 0) + np.minimum(x + 0.015, 0))
+    found = facts_of(Record(name="run", time=t, displacement=x, force=stops)).tells
+    assert {tell.verdict for tell in found} == {"not told"}
+    assert "a linear model leaves" in words(found[0])
+    a = -0.02 * 9 * np.sin(3 * t)
+    noisy = 60 * a + 900 * 0.06 * np.cos(3 * t) + rng.normal(0, 60, t.size)
+    told = {
+        x.name: x for x in facts_of(Record(name="run", time=t, displacement=x, force=noisy)).tells
+    }
+    viscous = told["viscous friction"]
+    assert viscous.reason != found[0].reason
+    assert abs(viscous.value - 900) < 4 * viscous.stderr

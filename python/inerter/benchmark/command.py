@@ -20,7 +20,7 @@ def benchmark_command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """What a step with devices costs in MuJoCo, and a sample in the core, on this machine.
+    """Measure what a step with devices costs in MuJoCo, and a sample in the core.
 
     Plugin against MuJoCo's own elements, Python and no device: ratios, taken in turn.
 

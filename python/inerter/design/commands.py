@@ -17,7 +17,7 @@ from inerter.design.rack_pinion.inputs import INPUTS as RACK_PINION
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Inertance, losses and elasticity of a device from its geometry. "
+    help="Work out inertance, losses and elasticity of a device from its geometry. "
     'Values are plain numbers in SI units or carry a unit: 0.01, "10 mm", "45 deg", "30 degC".',
 )
 
@@ -43,7 +43,7 @@ def ball_screw_command(
     as_json: AsJson = False,
     **inputs: Any,
 ) -> None:
-    """Ball screw: sliding and rolling of the balls, inertance against load and frequency.
+    """Design a ball screw: sliding and rolling balls, inertance against load and frequency.
 
     \b
     Example:
@@ -70,7 +70,7 @@ def rack_pinion_command(
     as_json: AsJson = False,
     **inputs: Any,
 ) -> None:
-    """Rack and pinion with a gear train: inertance, play, elasticity of shafts, mesh losses.
+    """Design a rack and pinion with gears: inertance, play, elastic shafts, mesh losses.
 
     \b
     Example:
@@ -84,7 +84,7 @@ def rack_pinion_command(
 @app.command("fluid")
 @with_options(FLUID)
 def fluid_command(out_dir: Folder = None, as_json: AsJson = False, **inputs: Any) -> None:
-    """Fluid: inertance, losses of the channel, cavitation limit, compressibility, trapped air.
+    """Design a fluid inerter: inertance, losses, cavitation, compressibility, trapped air.
 
     \b
     Example:

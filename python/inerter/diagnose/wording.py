@@ -19,6 +19,7 @@ from inerter.diagnose.result import (
     StatedValue,
 )
 from inerter.motion_units import Kind, force_word, words
+from inerter.printable import in_digits
 
 MAINS = (50.0, 60.0)
 """Frequencies of the mains [Hz]."""
@@ -153,7 +154,7 @@ def evidence(finding: Finding) -> str:
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
-    return text + f"{_of_the_mains(finding)}."
+    return in_digits(text + f"{_of_the_mains(finding)}.")
 
 
 def _of_the_mains(finding: Finding) -> str:
@@ -183,7 +184,8 @@ def verdict(diagnosis: Diagnosis) -> str:
     tone = _ONE_TONE if diagnosis.method.get("one_tone") else ""
     notes = "".join(f" {note}" for note in diagnosis.notes)
     budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""
-    return doubts_of_records(diagnosis.records) + tone + _verdict(diagnosis) + budget + notes
+    said = tone + _verdict(diagnosis) + budget + notes
+    return doubts_of_records(diagnosis.records) + in_digits(said)
 
 
 # warnings that turn a verdict into nonsense: what they say comes first

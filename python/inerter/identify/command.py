@@ -24,11 +24,12 @@ def identify_command(
     law: Annotated[
         list[str],
         typer.Option(
+            show_default="ideal, viscous, coulomb, brown_mcphee, dahl, lugre, bouc_wen",
             help="Laws, with commas or given again; parts joined by + as in "
             "lugre+series+offset. Laws: ideal, "
             "viscous, coulomb, stribeck, brown_mcphee, dahl, lugre, bouc_wen, bouc_wen_any, "
             "rate_state, fluid; parts: series, backlash, offset, stiffness, hardening, quadratic, "
-            "load, asymmetry, position, variable, delay, play."
+            "load, asymmetry, position, variable, delay, play.",
         ),
     ] = ["ideal,viscous,coulomb,brown_mcphee,dahl,lugre,bouc_wen"],  # noqa: B006
     fix: Annotated[
@@ -66,7 +67,7 @@ def identify_command(
     as_json: AsJson = False,
     stated: Any = None,
 ) -> None:
-    """Parameters of a device with errors and intervals, laws compared on held-out data.
+    """Find the parameters of a device, with errors, and compare laws on held-out data.
 
     Writes identification.json, identification.png, device.toml and model.xml of the best law.
 

@@ -66,15 +66,12 @@ def inspect_command(
 
 
 def _print(facts: Any) -> None:
-    from inerter.inspection.facts import motion_words
+    from inerter.inspection.facts import clock_words, motion_words
     from inerter.inspection.page import CHANNEL_HEADER, channel_rows
     from inerter.inspection.tells import words
 
     record = facts.record
-    clock = ""
-    if facts.rate is not None:
-        clock = f", {facts.rate:.6g} per second, {facts.duration:.5g} s, jitter {facts.jitter:.1%}"
-    out.print(f"{record.name}: {record.samples} samples{clock}", style="bold", highlight=False)
+    out.print(f"{record.name}: {clock_words(facts)}", style="bold", highlight=False)
     table = Table(Column(CHANNEL_HEADER[0], no_wrap=True, min_width=12), *CHANNEL_HEADER[1:])
     for row in channel_rows(facts):
         table.add_row(*row)

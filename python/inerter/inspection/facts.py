@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +15,7 @@ from inerter.inspection.channel import ChannelFacts, channel_facts
 from inerter.inspection.motion import MotionFacts, motion_facts
 from inerter.inspection.tells import Tell, tells, words
 from inerter.motion_units import TRANSLATION, Kind
+from inerter.printable import in_digits
 from inerter.records import AnyRecord, Record, TimeRecord
 from inerter.records.motion import Motion, smooth, uniform_channels
 from inerter.records.units import QUANTITIES, quantity_in
@@ -21,7 +23,7 @@ from inerter.records.units import QUANTITIES, quantity_in
 SCHEMA = "inerter.inspection/1"
 MOST = 1_000_000  # samples that are looked at of a record
 # cut-off of the motion, times the band in which the displacement stands above its noise
-WITHIN = 1.0
+WITHIN = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,8 +80,11 @@ def facts_of(record: AnyRecord) -> Facts:
             record=record, rate=None, duration=None, jitter=None, channels=plain, smoothed=None,
             motion=None, tells=(), looked_at=part.samples,
         )  # fmt: skip
-    spacing, even = uniform_channels(part.time, part.channels())
-    channels = tuple(channel_facts(n, unit.get(n, ""), v, spacing) for n, v in even.items())
+    written = part.channels()
+    spacing, even = uniform_channels(part.time, written)
+    channels = tuple(
+        channel_facts(n, unit.get(n, ""), v, spacing, written[n]) for n, v in even.items()
+    )
     steps = np.diff(part.time)
     low, high = np.quantile(steps, (0.01, 0.99))
     codes = {warning.code for warning in record.warnings}
@@ -123,11 +128,40 @@ def _smoothed(record: Record, channels: Sequence[ChannelFacts]) -> Motion | None
 
 def size(value: float, unit: str) -> str:
     """A value with a unit of its size."""
-    if unit in ("m", "rad"):
-        for factor, name in ((1.0, unit), (1e3, f"m{unit}"), (1e6, f"u{unit}")):
-            if abs(value) * factor >= 1 or factor == 1e6:
-                return f"{value * factor:.3g} {name}"
-    return f"{value:.3g} {unit}".replace("*", " ")
+    factor, name = scale(value, unit)
+    return in_digits(f"{value * factor:.3g} {name}")
+
+
+def span(low: float, high: float, unit: str) -> str:
+    """From one value to another, in the unit of the larger one: "-3 to 105 mm"."""
+    factor, name = scale(max(abs(low), abs(high)), unit)
+    # a small end to the digits of the large one
+    digits = 2 - math.floor(math.log10(max(abs(low), abs(high)) * factor or 1.0))
+    ends = (f"{float(f'{round(end * factor, digits):.3g}') + 0.0:g}" for end in (low, high))
+    return f"{' to '.join(ends)} {name}"
+
+
+def scale(value: float, unit: str) -> tuple[float, str]:
+    """Factor and name of the unit in which a value of this size is shown."""
+    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "u")):
+        if unit in ("m", "rad") and (abs(value) * factor >= 1 or factor == 1e6):
+            return factor, f"{prefix}{unit}"
+    return 1.0, unit.replace("*", " ")
+
+
+def clock_words(facts: Facts) -> str:
+    """How many samples, how often, how evenly."""
+    text = f"{facts.record.samples} samples"
+    if facts.rate is None or facts.duration is None or facts.jitter is None:
+        return text
+    text += f", {facts.rate:.6g} per second, {facts.duration:.5g} s, "
+    if facts.jitter < 5e-4:
+        text += "an even clock"
+    else:
+        text += f"98 % of the intervals within {100 * facts.jitter:.2g} % of the usual one"
+    if facts.looked_at < facts.record.samples:
+        text += f"; looked at: the first {facts.looked_at}"
+    return text
 
 
 def short(facts: Facts) -> list[str]:
@@ -136,7 +170,8 @@ def short(facts: Facts) -> list[str]:
     if facts.rate is None or facts.duration is None:
         return [f"{record.name}: {record.samples} rows"]
     parts = [
-        f"{c.name} {size(c.low, c.unit)} to {size(c.high, c.unit)} (noise {size(c.noise, c.unit)})"
+        f"{c.name} {span(c.low, c.high, c.unit)} (noise {size(c.noise, c.unit)}"
+        + (f", in steps of {size(c.step, c.unit)})" if c.step is not None else ")")
         for c in facts.channels[:2]
     ]
     lines = [

@@ -6,7 +6,7 @@ import base64
 from collections.abc import Sequence
 from html import escape
 
-from inerter.inspection.facts import Facts, motion_words, size
+from inerter.inspection.facts import Facts, clock_words, motion_words, size, span
 from inerter.inspection.tells import Tell, words
 from inerter.printable import printable, upright
 
@@ -16,6 +16,8 @@ body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 72rem
 table { border-collapse: collapse; margin: .5rem 0 1.5rem; }
 th, td { text-align: left; padding: .25rem .9rem .25rem 0; border-bottom: 1px solid #dfe3e8; }
 img { width: 100%; } h2 { margin-top: 2.5rem; } .soft { color: #5b6571; }
+.warning { border-left: 4px solid #b3261e; padding-left: .7rem; overflow-wrap: anywhere; }
+table { display: block; overflow-x: auto; }
 """
 
 
@@ -47,15 +49,13 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 def _record(facts: Facts) -> list[str]:
     record = facts.record
-    clock = ""
-    if facts.rate is not None and facts.duration is not None and facts.jitter is not None:
-        clock = f", {facts.rate:.6g} per second, {facts.duration:.5g} s, jitter {facts.jitter:.1%}"
-    parts = [f"<h2>{_text(record.name)}</h2>", f"<p>{record.samples} samples{_text(clock)}"]
-    if facts.looked_at < record.samples:
-        parts.append(f"; looked at: the first {facts.looked_at}")
-    parts.append("</p>")
+    parts = [f"<h2>{_text(record.name)}</h2>", f"<p>{_text(clock_words(facts))}</p>"]
     if record.reading:
         parts.append(f"<p class='soft'>Read as: {_text(record.reading)}.</p>")
+    parts += [
+        f"<p class='warning'><b>Warning</b> ({_text(w.code)}): {_text(w.text)}</p>"
+        for w in record.warnings
+    ]
     parts.append(_table(CHANNEL_HEADER, channel_rows(facts)))
     if facts.motion is not None:
         parts.append(f"<p>Motion: {_text(motion_words(facts.motion, facts.record.motion))}.</p>")
@@ -66,11 +66,10 @@ def _record(facts: Facts) -> list[str]:
             "<p class='soft'>A first look by a linear model; <code>inerter diagnose</code> judges "
             "on held-out data.</p>"
         )
-    parts += [f"<p>Warning, {_text(w.code)}: {_text(w.text)}</p>" for w in record.warnings]
     return parts
 
 
-CHANNEL_HEADER = ("channel", "range", "noise (rms)", "step", "band", "seen in the spectrum")
+CHANNEL_HEADER = ("channel", "range", "noise (rms)", "in steps of", "band", "in the spectrum")
 
 
 def channel_rows(facts: Facts) -> list[tuple[str, ...]]:
@@ -79,11 +78,11 @@ def channel_rows(facts: Facts) -> list[tuple[str, ...]]:
     for c in facts.channels:
         seen = [f"{at:.0f} Hz, {size(rms, c.unit)} rms" for at, rms in c.hum]
         if c.corner is not None:
-            seen.append(f"bends down at {c.corner:.3g} Hz as behind a low-pass")
+            seen.append(f"bends down at {c.corner:.3g} Hz: a low-pass, or the end of the motion")
         rows.append(
             (
                 c.name,
-                f"{size(c.low, c.unit)} to {size(c.high, c.unit)}",
+                span(c.low, c.high, c.unit),
                 size(c.noise, c.unit) if facts.rate is not None else "-",
                 size(c.step, c.unit) if c.step is not None else "-",
                 f"to {c.band:.3g} Hz" if c.band else "-",

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from inerter.inspection.channel import spectrum
-from inerter.inspection.facts import Facts, size
+from inerter.inspection.facts import Facts, scale, size
 from inerter.motion_units import force_word, unit, words
 from inerter.pictures.palette import LIGHT
 from inerter.pictures.png import png
@@ -49,15 +49,16 @@ def _over_time(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
         axes = figure.add_subplot(grid[row + k, 0])
         values = record.channels()[channel.name][: facts.looked_at]
         at = extremes(values, _THIN)
-        axes.plot(time[at], values[at], color=LIGHT["measured"], lw=0.8)
-        _style(axes, f"{channel.name} [{channel.unit.replace('*', ' ')}]")
+        factor, name = scale(max(abs(channel.low), abs(channel.high)), channel.unit)
+        axes.plot(time[at], factor * values[at], color=LIGHT["measured"], lw=0.8)
+        _style(axes, f"{channel.name} [{name}]")
         if k == 0:
             axes.set_title(
                 f"{record.name}: {record.samples} samples, {facts.rate:.5g} per second",
-                loc="left", fontsize=10, color=LIGHT["text"],
+                loc="left", fontsize=11, color=LIGHT["text"],
             )  # fmt: skip
         if k == 1 or len(facts.channels) == 1:
-            axes.set_xlabel("time from the start [s]", fontsize=8, color=LIGHT["soft"])
+            axes.set_xlabel("time from the start [s]", fontsize=9, color=LIGHT["soft"])
 
 
 def _loops(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
@@ -74,7 +75,7 @@ def _loops(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
         axes = figure.add_subplot(grid[row + k, 1])
         axes.plot(x[inner], motion.force[inner], color=LIGHT["measured"], lw=0.5)
         _style(axes, f"{force_word(kind)} [{words(kind, 'N')}]")
-        axes.set_xlabel(title, fontsize=8, color=LIGHT["soft"])
+        axes.set_xlabel(title, fontsize=9, color=LIGHT["soft"])
 
 
 def _spectra(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
@@ -95,20 +96,20 @@ def _spectra(figure: Figure, grid: Any, row: int, facts: Facts) -> None:
                 axes.axvline(place, color=LIGHT["soft"], lw=0.8, ls="--")
                 axes.text(
                     place, 0.04 if text[0] == "a" else 0.14, f" {text}",
-                    transform=axes.get_xaxis_transform(), fontsize=7, color=LIGHT["text"],
+                    transform=axes.get_xaxis_transform(), fontsize=8, color=LIGHT["text"],
                     ha="right" if place > frequency[-1] / 30 else "left",
                 )  # fmt: skip
         for place, level in channel.hum:
             axes.text(
                 place, 0.95, f"{place:.0f} Hz: {size(level, channel.unit)}", rotation=90, va="top",
-                transform=axes.get_xaxis_transform(), fontsize=7, color=LIGHT["text"],
+                transform=axes.get_xaxis_transform(), fontsize=8, color=LIGHT["text"],
             )  # fmt: skip
-        axes.set_xlabel("frequency [Hz]", fontsize=8, color=LIGHT["soft"])
+        axes.set_xlabel("frequency [Hz]", fontsize=9, color=LIGHT["soft"])
 
 
 def _style(axes: Any, title: str) -> None:
-    axes.set_ylabel(title, fontsize=8, color=LIGHT["soft"])
-    axes.tick_params(labelsize=7, colors=LIGHT["soft"])
+    axes.set_ylabel(title, fontsize=9, color=LIGHT["soft"])
+    axes.tick_params(labelsize=8, colors=LIGHT["soft"])
     axes.set_facecolor(LIGHT["page"])
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)

@@ -17,12 +17,13 @@ from scipy.ndimage import binary_dilation, median_filter
 
 from inerter.inspection.motion import MotionFacts
 from inerter.motion_units import words as in_words
-from inerter.records.motion import Motion, lowpass
+from inerter.records.motion import Motion, lowpass, white_noise
 
 Array = NDArray[np.float64]
 
 OWN = 0.1  # least share of a column that the others do not explain
 SURE = 0.1  # of a standard error in its value
+ASTRAY = 0.3  # of the force, left by the linear model: its errors and bounds hold no more
 LEAST_SHARE = 0.2  # of the samples that have to be neither clipped nor spikes
 TIMES = 3.0  # standard errors that are seen
 
@@ -82,6 +83,15 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
     scaled = matrix / scale
     weights, *_ = np.linalg.lstsq(scaled, force, rcond=1e-10)
     rest = force - scaled @ weights
+    if _astray(rest, force, motion):
+        return [
+            Tell(
+                name=name, value=0.0, stderr=math.inf, unit=units[name], verdict="not told",
+                reason=f"a linear model leaves {100 * np.std(rest) / np.std(force):.0f} % of the "
+                "force", motion="the laws of `inerter diagnose`",
+            )
+            for name in names
+        ]  # fmt: skip
     variance = float(np.var(rest)) * _correlated(rest, motion)
     inverse = np.linalg.pinv(scaled.T @ scaled)
     stderrs = np.sqrt(np.maximum(np.diag(inverse) * variance, 0))
@@ -90,6 +100,12 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
               _own_share(scaled[:, :-1], k), facts, _closest(scaled[:, :-1], k, names))
         for k, name in enumerate(names)
     ]  # fmt: skip
+
+
+def _astray(rest: Array, force: Array, motion: Motion) -> bool:
+    """Whether more is left than a linear model may leave, the white noise of the force apart."""
+    noise = white_noise(motion.force) ** 2 * min(1.0, 2 * motion.cutoff * motion.spacing)
+    return bool(np.var(rest) - noise > ASTRAY**2 * np.var(force))
 
 
 def _spoilt(motion: Motion, warned: Collection[str]) -> NDArray[np.bool_]:
@@ -171,7 +187,15 @@ def _tell(
             **base, verdict="not told", reason="its force is below what is left",
             motion="faster reversals: a higher frequency or shorter ramps",
         )  # fmt: skip
-    return Tell(**base, verdict="bounded")
+    return Tell(
+        **base,
+        verdict="bounded",
+        motion={
+            "stiffness": "longer strokes, or rests at their ends",
+            "viscous friction": "faster strokes",
+            "dry friction": "slow strokes, in which little else acts",
+        }[name],
+    )
 
 
 def words(tell: Tell) -> str:

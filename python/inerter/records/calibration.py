@@ -15,13 +15,15 @@ import numpy as np
 from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.unit_text import parse_unit, split_quantity, unit_registry
 
-from .header import bare_name, bench_unit, split_header
+from .header import bare_name, bench_unit, named_as, split_header
 from .raw_table import listed
 from .record import Array, RecordError
 from .turning import OWN_NAMES, UNITS, turns
 from .units import _GRAVITY, QUANTITIES, TURNING, motion_of_unit, si_factor
 
 ROLES = ("measured", "leave out")
+LETTERS = ("u", "x")  # that stand for the values of the column itself
+VOLTS = ("V", "mV")
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = rf"{_NUMBER}\s*[^\d\s()*][^()]*?|{_NUMBER}"
 _LEFT = re.compile(
@@ -194,9 +196,23 @@ def is_there(stated: Statement, header: tuple[str, ...]) -> bool:
     return any(bare_name(text).casefold() == wanted for text in header if text.strip())
 
 
+def own_column(stated: Statement, header: tuple[str, ...], name: str) -> str | None:
+    """The column that the letter u or x of a formula means, where no column is called so.
+
+    The one that is called as its quantity, else the only one in volts; None where there is none.
+    """
+    if stated.column.casefold() not in LETTERS or is_there(stated, header):
+        return None
+    texts = [text for text in header if text.strip()]
+    called = [text for text in texts if named_as(text) == name]
+    if not called:
+        called = [t for t in texts if split_header(t)[1] in VOLTS and named_as(t) is None]
+    return called[0] if len(called) == 1 else None
+
+
 def column_of(stated: Statement, header: tuple[str, ...], name: str, path: Any) -> int:
     """Index of the column that a statement names; RecordError where there is none."""
-    wanted = stated.column
+    wanted = own_column(stated, header, name) or stated.column
     tries = (
         lambda text: text.strip() == wanted,
         lambda text: bare_name(text) == wanted,

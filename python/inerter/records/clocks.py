@@ -24,18 +24,27 @@ _STAMP = (
 )
 
 
+# a duration with its unit behind it, as MATLAB writes timetables
+_WITH_UNIT = r"^\s*([+-]?\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s*(ms|s|sec|min|hr)\s*$"
+_OF_UNIT = {"ms": 1e-3, "s": 1.0, "sec": 1.0, "min": 60.0, "hr": 3600.0}
+
+
 def clock_seconds(column: pl.Series) -> Array | None:
-    """Seconds of times of day, from one midnight on where dates are given.
+    """Seconds of times of day, from one midnight on where dates are given, or of durations.
 
     None where a cell is neither a time nor empty. Of hh:mm, mm:ss.fff is meant where there is a
     fraction. A time of day without a date goes back at midnight: see `without_day_breaks`.
     """
     if column.dtype != pl.String or not len(column):
         return None
+    empty = column.is_null() | (column.str.strip_chars() == "")
+    spans = column.str.extract_groups(_WITH_UNIT).struct.unnest()
+    if bool((spans["2"].is_not_null() | empty).all()):
+        factor = spans["2"].replace_strict(_OF_UNIT, return_dtype=pl.Float64)
+        return (spans["1"].cast(pl.Float64) * factor).to_numpy()
     parts = column.str.extract_groups(_STAMP)
     names = [f"g{i}" for i in range(1, 9)]
     frame = parts.struct.rename_fields(names).struct.unnest()
-    empty = column.is_null() | (column.str.strip_chars() == "")
     if not bool((frame["g5"].is_not_null() | empty).all()):
         return None
     first, minute = (frame[name].cast(pl.Float64) for name in ("g4", "g5"))

@@ -233,6 +233,12 @@ def guess(header: str) -> tuple[str, int] | None:
     return (quantity, 1) if unit is not None else None
 
 
+def named_as(header: str) -> str | None:
+    """The quantity that a name is a usual one of, whatever its unit; None for no one."""
+    name = split_header(header)[0]
+    return name if name in _UNITS else OWN_NAMES.get(name) or _best_guess(bare_name(header))
+
+
 def is_wanted(header: str) -> bool:
     """Whether a name says that it is a set point, an error or a summary: nothing measured."""
     return not _WANTED.isdisjoint(_words(bare_name(header)))

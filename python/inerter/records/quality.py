@@ -358,7 +358,10 @@ def find_inconsistent_motion(record: Record) -> Record:
             continue
         ratio = float(np.std(measured) / np.std(derived))
         if together < 0.0:
-            text = f"{name!r} has the sign opposite to the change of 'displacement'"
+            text = (
+                f"{name!r} has the sign opposite to the change of 'displacement': give "
+                f"{record.turned_round(name)}, or the displacement so"
+            )
             record = record.warn("sign_flip", text)
         if not 1.0 / 3.0 < ratio < 3.0:
             text = (
@@ -412,7 +415,10 @@ def find_sign_flip(record: Record) -> Record:
             if negative
             else f"it feeds energy into the bench (loss ratio {loss:.2f})"
         )
-        text = f"'force' or 'displacement' has the wrong sign: {how}; tension and longer are +"
+        text = (
+            f"'force' or 'displacement' has the wrong sign: {how}; tension and longer are +: give "
+            f"{record.turned_round('force')}, or the displacement so"
+        )
         record = record.warn("sign_flip", text)
     return record
 

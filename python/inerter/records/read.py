@@ -16,7 +16,7 @@ from inerter.motion_units import Kind as Motion
 from inerter.printable import text_of
 
 from .bounds import Wanted, everything
-from .calibration import Statement, applied, is_there
+from .calibration import Statement, applied, is_there, own_column
 from .channels import corrected
 from .columns import (
     Columns,
@@ -28,6 +28,7 @@ from .columns import (
     turns_by_name,
 )
 from .files import record_files
+from .header import bare_name, guess, split_header
 from .integrate import with_displacement
 from .quality import check_records
 from .raw_table import RawTable, explain_cell
@@ -135,10 +136,12 @@ def _read_file(path: Path, kind: Kind | None, others: bool, stated: Stated) -> l
     if stated.partner is not None:
         here, there = _by_file(table.header, stated.columns)
     found = recognise(table, kind, here)
-    values, notes, motions = si_values(table, found)
     both = slice(None)
     if stated.partner is not None:
+        # first, for it may lack a column that is stated
         other_path, other, theirs = _partner(stated.partner, there)
+    values, notes, motions = si_values(table, found)
+    if stated.partner is not None:
         motions = theirs | motions
         others_values, both, note = joined(path, values, other_path, other, stated.lag)
         for name in others_values:
@@ -170,6 +173,7 @@ def _read_file(path: Path, kind: Kind | None, others: bool, stated: Stated) -> l
         text = "; ".join(each for each in (table.told, *said) if each)
         fields: dict[str, Any] = {"extra": rest, "comments": table.comments, **columns}
         fields["motion"] = motion
+        fields["headers"] = _headers(table, found, cls)
         record = cls(name=name, source=path, reading=text, **fields)
         for note in losses:
             record = record.warn("missing_samples", note)
@@ -179,12 +183,22 @@ def _read_file(path: Path, kind: Kind | None, others: bool, stated: Stated) -> l
     return records
 
 
+def _headers(table: RawTable, found: Columns, cls: type[AnyRecord]) -> dict[str, str]:
+    """What a user writes to name each column: its header, or what was stated of it."""
+    names = [n for n in (*cls.required, *cls.optional) if n in found.own]
+    headers = {n: table.header[found.own[n]].strip() for n in names if found.own[n] >= 0}
+    stated = {n: found.stated[n].text for n in names if n in found.stated and found.stated[n].text}
+    return headers | {n: text for n, text in stated.items() if not text.startswith("{")}
+
+
 def _by_file(
     header: tuple[str, ...], stated: Mapping[str, Statement]
 ) -> tuple[dict[str, Statement], dict[str, Statement]]:
     """Statements about columns of this file, and those about columns of its partner."""
     here = {
-        name: each for name, each in stated.items() if not each.column or is_there(each, header)
+        name: each
+        for name, each in stated.items()
+        if not each.column or is_there(each, header) or own_column(each, header, name)
     }
     return here, {name: each for name, each in stated.items() if name not in here}
 
@@ -238,7 +252,8 @@ def si_values(
     for name, index in found.own.items():
         if name in QUANTITIES and name not in found.stated:
             where = f"{table.path}: column {table.header[index].strip()!r}"
-            factors[name] = si_factor(name, found.units[name], where)
+            column = bare_name(table.header[index])
+            factors[name] = si_factor(name, found.units[name], where, column)
             told = motion_of_unit(name, found.units[name])
             if told is None and name in TURNING and turns_by_name(table.header[index]):
                 told = ROTATION
@@ -261,7 +276,8 @@ def si_values(
     motion = next(iter(motions.values()), None) or TRANSLATION
     for name, index in found.own.items():
         if name in QUANTITIES:
-            notes.append(_of_column(name, table.header[index].strip(), found, motion))
+            told = _of_column(name, table.header[index].strip(), found, motion)
+            notes.append(told + _rather_than(name, table.header[index].strip(), found, told))
     counted = found.stated.get("time")
     if counted is not None and counted.interval is not None:
         step = counted.interval * table.decimated
@@ -282,6 +298,21 @@ def _of_column(name: str, header: str, found: Columns, motion: Motion) -> str:
     if unit is None and name != "time":
         return f"{name} = {header!r} (no unit: taken as {quantity_in(motion, name).unit})"
     return f"{name} = {header!r}"
+
+
+def _rather_than(name: str, header: str, found: Columns, told: str) -> str:
+    """The other columns that may hold the same quantity, where there are any."""
+    if name in found.stated:
+        return ""
+    others = [
+        other
+        for other in found.extra
+        if split_header(other)[0] == name or (guess(other) or ("",))[0] == name
+    ]
+    if not others:
+        return ""
+    shown = " or ".join(repr(other) for other in others[:4])
+    return ("" if told else f"{name} = {header!r}") + f", not {shown}"
 
 
 def _further(table: RawTable, found: Columns, left: dict[str, Array]) -> dict[str, Array]:

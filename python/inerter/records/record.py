@@ -65,6 +65,7 @@ class Columns:
     motion: what its device does; in rotation read rad for m, N m for N, kg m^2 for kg.
     comments: the lines that stood above the header, without a ``#``.
     reading: how the file was read, where anything of it is out of the ordinary.
+    headers: by name, the header of the file's column, or the formula that was stated of it.
     Raises ValueError when columns are not one-dimensional and equally long.
     """
 
@@ -73,6 +74,7 @@ class Columns:
     extra: Mapping[str, Array] = field(default_factory=dict)
     comments: tuple[str, ...] = ()
     reading: str = ""
+    headers: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[RecordWarning, ...] = ()
     motion: Kind = TRANSLATION
 
@@ -114,6 +116,12 @@ class Columns:
         """The measured columns that are present, without time (or frequency), by name."""
         names = (*self.required[1:], *self.optional)
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def turned_round(self, name: str) -> str:
+        """What to type to have a column with the opposite sign."""
+        given = self.headers.get(name, name)
+        turned = f"{given[1:].lstrip()}" if given.startswith("-") else f"-1 * {given}"
+        return f"--column {name}={turned!r}"
 
     def warn(self, code: str, text: str) -> Self:
         """The same record with one more warning."""

@@ -56,7 +56,7 @@ READERS: Mapping[str, Callable[[Path, Wanted, Stated], RawTable]] = {
     "MDF4": _isolated("mdf"),
     "HDF5": _isolated("hdf5"),
 }
-_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn", ".log")
+_TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".tra", ".prn", ".tab", ".log")
 _KINDS: Mapping[str, str] = {
     **dict.fromkeys(_TEXT, "text"),
     ".parquet": "parquet",
@@ -70,7 +70,7 @@ _KINDS: Mapping[str, str] = {
 EXTENSIONS = tuple(_KINDS)
 # in a folder that is named as a whole, texts of other kinds stand beside records
 OF_FOLDERS = tuple(
-    suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn", ".log")
+    suffix for suffix in EXTENSIONS if suffix not in (".txt", ".dat", ".prn", ".tab", ".log")
 )
 
 # how a file begins whose format shows itself

@@ -71,7 +71,7 @@ def joined(
     elif stated is None:
         lag = find_lag(path, mine, other_path, theirs)
         told = (
-            f"{other_path.name} joined: its clock + {lag.value:.6g} s ± {lag.stderr:.2g} s, by the "
+            f"{other_path.name} joined: its clock {lag.value:+.6g} s ± {lag.stderr:.2g} s, by the "
             f"motion of both (correlation {lag.correlation:.3f})"
         )
         if abs(lag.ratio - 1) > 0.1:
@@ -81,7 +81,7 @@ def joined(
             told += f"; the clocks drift apart by {drift:.3g} ± {error:.2g} ppm"
         value = lag.value
     else:
-        value, told = stated, f"{other_path.name} joined: its clock + {stated:g} s, as stated"
+        value, told = stated, f"{other_path.name} joined: its clock {stated:+g} s, as stated"
     time, clock = values["time"], theirs["time"] + value
     inside = (time >= clock[0]) & (time <= clock[-1])
     if inside.sum() < 50:
@@ -132,7 +132,8 @@ def find_lag(path: Path, mine: dict[str, Array], other: Path, theirs: dict[str, 
     if r[best] < 0:
         raise RecordError(
             f"{path}: {other} shows the same motion with the opposite sign (correlation "
-            f"{r[best]:.2f}); turn one of them round, such as --column velocity='-1 * NAME'"
+            f"{r[best]:.2f}); turn the sign of one, such as --column velocity='-1 * NAME', or "
+            "-20 where '20 mm/turn * NAME' is stated"
         )
     offset = float(theirs["time"][0] - mine["time"][0])
     _refuse_several(path, other, lags, r, best, step, offset)

@@ -87,12 +87,12 @@ def motion_of_unit(name: str, unit: str | None) -> Kind | None:
     return TRANSLATION if along else None
 
 
-def si_factor(name: str, unit: str | None, where: str) -> float:
+def si_factor(name: str, unit: str | None, where: str, column: str = "NAME") -> float:
     """Factor from `unit` to the SI unit of the quantity `name` (a key of `QUANTITIES`).
 
     Of a device that turns, units of angles and torques are as good, see `TURNING`.
 
-    where: file and column as they should stand in the error text.
+    where: file and column as they should stand in the error text; column: its name alone.
     Raises RecordError for a unit that is unknown or belongs to another quantity.
     """
     quantity = QUANTITIES[name]
@@ -109,7 +109,7 @@ def si_factor(name: str, unit: str | None, where: str) -> float:
     if parsed.dimensionality == parse_unit("V").dimensionality:
         raise RecordError(
             f"{where}: {name} is in {unit}; state its calibration, such as --column "
-            f"{name}='200 {quantity.unit}/{unit} * NAME'"
+            f"{name}='200 {quantity.unit}/{unit} * {column}'"
         )
     if turns(name, parsed):
         return float((1 * parsed).to_base_units().magnitude)

@@ -10,7 +10,7 @@ from inerter.studies.hysteresis.command import hysteresis_command
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Published studies rebuilt: data, figures and tables made anew, statements checked.",
+    help="Rebuild published studies: make data, figures and tables anew, check statements.",
 )
 
 

@@ -18,7 +18,7 @@ from inerter.suspension.time_domain.command import evaluate_command
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="How much an inerter gains in a suspension, and what its nonlinearities take back.",
+    help="Find how much an inerter gains in a suspension, and what its nonlinearities take back.",
 )
 
 app.command("evaluate")(evaluate_command)
@@ -84,8 +84,13 @@ def optimize_command(
         float | None,
         number("N/m", "Quarter: kt [N/m].", show_default=f"{QUARTER_CAR.tyre_stiffness:g}"),
     ] = None,
-    velocity: Annotated[float, number("m/s", "V [m/s].")] = _ROAD.velocity,
-    roughness: Annotated[float, number("m^3/cycle", "kappa [m^3/cycle].")] = _ROAD.roughness,
+    speed: Annotated[float, number("m/s", "Speed of the car [m/s].")] = _ROAD.velocity,
+    velocity: Annotated[
+        float | None, number("m/s", "The name of --speed before.", hidden=True)
+    ] = None,
+    roughness: Annotated[
+        float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")
+    ] = _ROAD.roughness,
     jobs: Jobs = None,
     scheduler: Annotated[
         str | None,
@@ -97,7 +102,14 @@ def optimize_command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Damping and inertance that minimise an index of a car, globally and exactly."""
+    """Find the damping and inertance that minimise an index of a car, globally and exactly.
+
+    \b
+    Examples:
+      inerter suspension optimize
+      inerter suspension optimize --layout S3 --index J3 --stiffness 6e4:15e4:10
+      inerter suspension optimize --car half --series soft --json
+    """
     from inerter.suspension.car_options import study_asked
     from inerter.suspension.output import rows_json, write_sweep
     from inerter.suspension.study import read_indices
@@ -117,7 +129,7 @@ def optimize_command(
             indices=read_indices(index),
             stiffness=stiffness,
             series=series,
-            road=Road(velocity=velocity, roughness=roughness),
+            road=Road(velocity=speed if velocity is None else velocity, roughness=roughness),
             equal=equal,
             hold=hold,
             limit=limit,

@@ -36,12 +36,16 @@ if __name__ == "__main__":
 
 
 def model_command(
-    car: Annotated[Path, typer.Argument(help="car.toml.")],
+    car: Annotated[Path, typer.Argument(help="The car: a file car.toml.")],
     out_dir: Folder = Path("out/car"),
 ) -> None:
     """Write a car file as models: model.xml for MuJoCo, model.py for Exudyn, and the file itself.
 
     Exudyn has no damper behind a relaxation spring (SR, S5, SW8): then model.xml alone.
+
+    \b
+    Example:
+      inerter suspension model car.toml --out out/car
     """
     from inerter.cars.equations import car_equations
     from inerter.cars.mjcf import car_mjcf

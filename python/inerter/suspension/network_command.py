@@ -23,17 +23,26 @@ def network_command(
     limit: Annotated[
         str | None, typer.Option(help="Not above: INDEX=VALUE in SI, with commas.")
     ] = None,
-    velocity: Annotated[float, number("m/s", "V [m/s].")] = _ROAD.velocity,
-    roughness: Annotated[float, number("m^3/cycle", "kappa [m^3/cycle].")] = _ROAD.roughness,
+    speed: Annotated[float, number("m/s", "Speed of the car [m/s].")] = _ROAD.velocity,
+    velocity: Annotated[
+        float | None, number("m/s", "The name of --speed before.", hidden=True)
+    ] = None,
+    roughness: Annotated[
+        float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")
+    ] = _ROAD.roughness,
     as_json: AsJson = False,
 ) -> None:
-    """Values of a network of springs, dampers and inerters that minimise an index of a quarter-car.
+    """Find the values of a network of springs, dampers and inerters that minimise an index.
 
     \b
-    Example of a netlist:
+    A netlist of a quarter-car:
       spring  k  body wheel 25e3
       damper  c  body a     ?
       inerter b  a    wheel ?
+
+    \b
+    Example:
+      inerter suspension network strut.net --index J3
     """
     import numpy as np
 
@@ -61,7 +70,7 @@ def network_command(
         try:
             problem = NetworkProblem(
                 car=which,
-                road=Road(velocity=velocity, roughness=roughness),
+                road=Road(velocity=speed if velocity is None else velocity, roughness=roughness),
                 index=chosen,
                 limits=read_pairs(limit, INDICES, "limit"),
                 netlist=read_netlist(lines),

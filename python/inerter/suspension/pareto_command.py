@@ -37,15 +37,25 @@ def pareto_command(
         bool, typer.Option("--equal", help="Half, full: the same struts at both axles.")
     ] = False,
     points: Annotated[int, typer.Option(min=2, help="Designs of each layout.")] = 9,
-    velocity: Annotated[float, number("m/s", "V [m/s].")] = _ROAD.velocity,
-    roughness: Annotated[float, number("m^3/cycle", "kappa [m^3/cycle].")] = _ROAD.roughness,
+    speed: Annotated[float, number("m/s", "Speed of the car [m/s].")] = _ROAD.velocity,
+    velocity: Annotated[
+        float | None, number("m/s", "The name of --speed before.", hidden=True)
+    ] = None,
+    roughness: Annotated[
+        float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")
+    ] = _ROAD.roughness,
     out_dir: Folder = Path("out/suspension"),
     as_json: AsJson = False,
 ) -> None:
-    """Compromises of two indices: for each layout the designs none of which is better in both.
+    """Find the compromises of two indices: designs of which none is better in both.
 
     Writes pareto.json, pareto.csv and pareto.png. Run again with the same words and --out, it goes
     on where it was interrupted.
+
+    \b
+    Examples:
+      inerter suspension pareto --layout S1,S3 --points 7
+      inerter suspension pareto --index J1,J3 --limit travel=0.02 --out out/front
     """
     from rich.table import Table
 
@@ -66,7 +76,7 @@ def pareto_command(
             indices=indices[:1],
             stiffness=stiffness,
             series=series,
-            road=Road(velocity=velocity, roughness=roughness),
+            road=Road(velocity=speed if velocity is None else velocity, roughness=roughness),
             equal=equal,
             hold=hold,
             limit=limit,

@@ -141,7 +141,9 @@ def _settings(exu: Any, case: Case, integrator: str, step: float) -> Any:
     integration.initialStepSize = step if adaptive else 0.0
     integration.absoluteTolerance = TOLERANCE * case.setup.scale
     integration.relativeTolerance = 0.0
-    integration.minimumStepSize = 1e-9
+    # where damped teeth meet the force jumps: a step that stays too wrong at the least one is tried
+    # again without end
+    integration.minimumStepSize = 1e-12
     # no damping of its own; where a contact starts and stops Newton cannot get below its jump and
     # would cut the step again and again
     integration.generalizedAlpha.spectralRadius = 1.0

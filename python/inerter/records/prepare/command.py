@@ -18,7 +18,7 @@ def prepare_command(
     record: Annotated[
         list[str],
         typer.Argument(
-            metavar="RECORD", help="Records: files, folders or globs; CSV, Parquet, .mat."
+            metavar="RECORD", help="Records: files, folders or globs; any known format."
         ),
     ],
     denoise: Annotated[str, typer.Option(help="emd, savgol, lowpass, spline or none.")] = "none",
@@ -53,7 +53,7 @@ def prepare_command(
     as_json: AsJson = False,
     stated: Any = None,
 ) -> None:
-    """Clock, channel delay, denoising, derivatives, resampling of records; a picture of each.
+    """Even out the clock of records, take out a delay, denoise, derive, resample; draw each.
 
     Writes NAME.csv (SI units), NAME.png and preparation.json. A diagnosis wants the records as
     measured: denoise for the eye, not for a fit.

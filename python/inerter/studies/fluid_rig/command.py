@@ -25,7 +25,7 @@ def fluid_rig_command(
     out_dir: Folder = Path("out/fluid_rig"),
     as_json: AsJson = False,
 ) -> None:
-    """The fluid inerter's experiment: its sweeps simulated, disturbed, identified, drawn.
+    """Rebuild the fluid inerter's experiment: simulate, disturb, identify and draw its sweeps.
 
     Writes fluid_rig.json, fluid_rig.html, dry.png, complete.png and levels.png.
 

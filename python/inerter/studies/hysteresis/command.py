@@ -36,7 +36,7 @@ def hysteresis_command(
     out_dir: Folder = Path("out/hysteresis"),
     as_json: AsJson = False,
 ) -> None:
-    """Dahl, LuGre and Bouc-Wen on virtual bench tests of a ball-screw inerter, as in the paper.
+    """Rebuild the virtual bench tests of a ball-screw inerter with Dahl, LuGre and Bouc-Wen.
 
     Takes about a quarter of an hour on two processors, --quick some minutes. Writes
     hysteresis.json, hysteresis.html and pictures.

@@ -55,10 +55,11 @@ def evaluate_command(
     speed: Annotated[float, number("m/s", "Speed [m/s].")] = 25.0,
     seeds: Annotated[int, typer.Option(help="Number of roads, each with its own phases.")] = 20,
     reoptimise: Annotated[
-        bool, typer.Option("--reoptimise", help="Seek c and b anew for every nonlinear case.")
+        bool, typer.Option("--reoptimize", help="Seek c and b anew for every nonlinear case.")
     ] = False,
+    reoptimised: Annotated[bool, typer.Option("--reoptimise", hidden=True)] = False,
     search_seeds: Annotated[
-        int, typer.Option(help="Roads that the search of --reoptimise uses.")
+        int, typer.Option(help="Roads that the search of --reoptimize uses.")
     ] = 4,
     damping: Annotated[
         str | None,
@@ -107,9 +108,15 @@ def evaluate_command(
     out_dir: Folder = Path("out/suspension"),
     as_json: AsJson = False,
 ) -> None:
-    """Indices of a car whose inerters have friction, elasticity, play, with error bars.
+    """Work out indices of a car whose inerters have friction, elasticity, play; error bars.
 
     Runs the MuJoCo models over many random roads. Writes evaluation.json and evaluation.csv.
+
+    \b
+    Examples:
+      inerter suspension evaluate --layout S2 --case ideal,friction --seeds 10
+      inerter suspension evaluate --device device.toml --road iso:C --speed 20
+      inerter suspension evaluate --layout own --car car.toml --road bump:0.05/0.5
     """
     from inerter.suspension.time_domain.asked import (
         car_named,
@@ -132,11 +139,13 @@ def evaluate_command(
     from inerter.suspension.time_domain.simulate import RunSettings
     from inerter.suspension.vehicle.cars import HalfCar
 
+    # --reoptimise: the name of --reoptimize before
+    reoptimise = reoptimise or reoptimised
     if layout.strip().lower() == OWN:
         others = {
             "--case": case, "--device": device, "--stiffness": stiffness, "--damping": damping,
             "--inertance": inertance, "--amplitude": amplitude, "--scheduler": scheduler,
-            "--reoptimise": reoptimise or None,
+            "--reoptimize": reoptimise or None,
         }  # fmt: skip
         own_command(
             car=car, road=road, speed=speed, seeds=seeds, tyre=tyre, step=step, settle=settle,
