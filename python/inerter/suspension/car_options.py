@@ -13,6 +13,7 @@ from inerter.suspension.study import (
     Study,
     StudyError,
     read_axle_stiffnesses,
+    read_catalogue,
     read_layouts,
     read_names,
     read_pairs,
@@ -21,6 +22,7 @@ from inerter.suspension.study import (
 )
 from inerter.suspension.vehicle.cars import Axle, FullCar, HalfCar, Vehicle, full_car, half_car
 
+_HELD = ("damping", "inertance", "relaxation_stiffness")
 CARS = ("quarter", "half", "full")
 
 
@@ -85,6 +87,7 @@ def study_asked(
     limit: str | None,
     quarter: Mapping[str, float | None] | None = None,
     correlation: float | None = None,
+    catalogue: str | None = None,
 ) -> Study:
     """The study that options ask for, in their words; `quarter`, `correlation`: see `chosen_car`.
 
@@ -104,7 +107,8 @@ def study_asked(
         car=which,
         road=road,
         equal=equal,
-        fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
+        fixed=read_pairs(hold, _HELD, "hold"),
+        catalogue=read_catalogue(catalogue, _HELD),
         limits=read_pairs(limit, INDICES, "limit"),
     )
 

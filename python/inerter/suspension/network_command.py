@@ -18,7 +18,9 @@ def network_command(
         Path,
         typer.Argument(help="Lines KIND NAME NODE NODE VALUE between body and wheel; ? is sought."),
     ],
-    index: Annotated[str, typer.Option(help="One of J1, J1w, J3, travel.")] = "J1",
+    index: Annotated[
+        str, typer.Option(help="One of J1, J1w, J3, travel, or file.toml, file.py:FUNCTION.")
+    ] = "J1",
     car: Annotated[str, typer.Option(help="quarter, or a file car.toml of one.")] = "quarter",
     limit: Annotated[
         str | None, typer.Option(help="Not above: INDEX=VALUE in SI, with commas.")

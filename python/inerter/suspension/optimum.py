@@ -81,7 +81,7 @@ class Optimum:
 
 def optimise(problem: SuspensionProblem) -> Optimum:
     """Minimise an index over all designs of a layout."""
-    if problem.limits:
+    if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     best, value, point = problem, *best_point(problem)
     # without inertance, or another part, counts as a design where the strut still is one
@@ -139,6 +139,9 @@ def _described(
 @lru_cache(maxsize=256)
 def best_point(problem: SuspensionProblem) -> tuple[float, Array]:
     """Value and point of the global minimum, every variable of the layout in play."""
+    if not problem.variables:
+        alone = np.empty(0)
+        return float(np.ravel(problem.value(alone[None]))[0]), alone
     polish = polish_smooth if problem.objective.smooth else polish_peaks
     best, at = np.inf, np.empty(0)
     starts = [*starting_points(problem)]

@@ -8,6 +8,7 @@ Bounds are relative to the car, with m = ms + mu: damping 1e-3 ... 1e3 times sqr
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -22,6 +23,8 @@ from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.rational import Rational
 
 Array = NDArray[np.float64]
+
+Catalogue = tuple[tuple[str, tuple[float, ...]], ...]
 
 _COMPLEX_STEP = 1e-30
 
@@ -52,6 +55,8 @@ class SuspensionProblem:
         Variables that are not free, with their values [SI].
     limits
         Indices that may not be higher than a value, see `limited`.
+    catalogue
+        Variables that have one of some values [SI], see `picked`.
     """
 
     car: QuarterCar
@@ -63,6 +68,7 @@ class SuspensionProblem:
     massless: bool = False
     fixed: tuple[tuple[str, float], ...] = ()
     limits: tuple[tuple[str, float], ...] = ()
+    catalogue: Catalogue = ()
 
     @property
     def network(self) -> Layout:
@@ -107,6 +113,16 @@ class SuspensionProblem:
     def without(self) -> SuspensionProblem:
         """The same without inertance."""
         return replace(self, massless=True)
+
+    def picked(self) -> list[SuspensionProblem]:
+        """The problem with each choice from its catalogue fixed; itself without a catalogue."""
+        plain = replace(self, catalogue=())
+        free = [(name, values) for name, values in self.catalogue if name in self.variables]
+        names = [name for name, _ in free]
+        return [
+            replace(plain, fixed=(*self.fixed, *zip(names, chosen, strict=True)))
+            for chosen in itertools.product(*(values for _, values in free))
+        ]
 
     def variants(self) -> list[SuspensionProblem]:
         """The problem, then those in which what may be absent is."""

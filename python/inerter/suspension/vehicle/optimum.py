@@ -92,7 +92,7 @@ def vehicle_optimum(
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
     """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
-    if problem.limits:
+    if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     notes = []
     best, value, point = problem, *start_point(problem, more)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
-from inerter.suspension.problem import Array, SuspensionProblem, in_limit
+from inerter.suspension.problem import Array, Catalogue, SuspensionProblem, in_limit
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
@@ -49,6 +49,8 @@ class VehicleProblem:
         Front, rear: variables that are not free, with their values [SI].
     limits
         Indices that may not be higher than a value, see `limited`.
+    catalogue
+        Variables that have one of some values [SI] at each axle, see `picked`.
     """
 
     car: Vehicle
@@ -61,6 +63,7 @@ class VehicleProblem:
     massless: tuple[bool, bool] = (False, False)
     fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ())
     limits: tuple[tuple[str, float], ...] = ()
+    catalogue: Catalogue = ()
 
     @property
     def network(self) -> Layout:
@@ -106,14 +109,16 @@ class VehicleProblem:
         return np.array([(front, rear)[axle][name] for axle, name in self.variables])
 
     def corners(self) -> tuple[SuspensionProblem, SuspensionProblem]:
-        """The problems of the quarter-cars at the axles."""
+        """The problems of the quarter-cars at the axles; where they turn, of their comfort."""
         cars = self.car.side.corners()
+        own = self.objective
+        turns = {"pitch", "roll"} & {self.index, own.signal, *own.parts}
         front, rear = (
             SuspensionProblem(
                 car=car,
                 road=self.road,
                 layout=self.layout,
-                index=self.index,
+                index="J1" if turns else self.index,
                 stiffness=k,
                 pair=self.pair,
                 massless=no_inerter,
@@ -128,6 +133,15 @@ class VehicleProblem:
     def without(self, massless: tuple[bool, bool]) -> VehicleProblem:
         """The same without inertance in front, at the rear or at both."""
         return replace(self, massless=massless)
+
+    def picked(self) -> list[VehicleProblem]:
+        """The problem with each choice from its catalogue fixed; itself without a catalogue."""
+        front, rear = (replace(each, catalogue=self.catalogue).picked() for each in self.corners())
+        if self.equal:
+            pairs = [(one.fixed, one.fixed) for one in front]
+        else:
+            pairs = [(one.fixed, other.fixed) for one in front for other in rear]
+        return [replace(self, catalogue=(), fixed=pair) for pair in pairs]
 
     def variants(self) -> list[VehicleProblem]:
         """The problem, then those in which what may be absent at an axle or both is."""
