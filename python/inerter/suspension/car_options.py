@@ -20,6 +20,7 @@ from inerter.suspension.study import (
     read_series,
     read_stiffnesses,
 )
+from inerter.suspension.variations import OF_CAR, OF_PARTS
 from inerter.suspension.vehicle.cars import Axle, FullCar, HalfCar, Vehicle, full_car, half_car
 
 _HELD = ("damping", "inertance", "relaxation_stiffness")
@@ -88,6 +89,7 @@ def study_asked(
     quarter: Mapping[str, float | None] | None = None,
     correlation: float | None = None,
     catalogue: str | None = None,
+    vary: str | None = None,
 ) -> Study:
     """The study that options ask for, in their words; `quarter`, `correlation`: see `chosen_car`.
 
@@ -109,6 +111,7 @@ def study_asked(
         equal=equal,
         fixed=read_pairs(hold, _HELD, "hold"),
         catalogue=read_catalogue(catalogue, _HELD),
+        vary=read_catalogue(vary, (*OF_CAR, *OF_PARTS), "vary"),
         limits=read_pairs(limit, INDICES, "limit"),
     )
 

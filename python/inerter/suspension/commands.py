@@ -75,6 +75,14 @@ def optimize_command(
             "inertance=60/80/113,damping=900/1200; names as for --hold."
         ),
     ] = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(
+            help="The best over all combinations of factors: NAME=FACTOR/FACTOR/..., as in "
+            "body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, tyre_stiffness, "
+            "inertance, relaxation_stiffness."
+        ),
+    ] = None,
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
     ] = False,
@@ -132,6 +140,7 @@ def optimize_command(
             hold=hold,
             limit=limit,
             catalogue=catalogue,
+            vary=vary,
             quarter=quarter,
             correlation=correlation,
         )

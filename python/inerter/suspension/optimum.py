@@ -21,6 +21,7 @@ import numpy as np
 
 from inerter.suspension.coarse_search import starting_points
 from inerter.suspension.layouts import springs_of
+from inerter.suspension.limited import scene_notes
 from inerter.suspension.polish_peaks import local_peaks, polish_peaks
 from inerter.suspension.polish_smooth import polish_smooth
 from inerter.suspension.problem import Array, SuspensionProblem
@@ -124,7 +125,7 @@ def _described(
         for limit in problem.network.limits
         if limit[0] in problem.variables and limit[0] not in best.variables
     ]
-    notes += _at_bounds(best, point)
+    notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return Optimum(
         value=value,
         damping=design["damping"],

@@ -174,6 +174,7 @@ def _settings(study: Study, second: str, points: int) -> dict[str, Any]:
                 "limits": study.limits,
                 "fixed": study.fixed,
                 "catalogue": study.catalogue,
+                "vary": study.vary,
             }
         )
     )

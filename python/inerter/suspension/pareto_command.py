@@ -44,6 +44,14 @@ def pareto_command(
             "inertance=60/80/113,damping=900/1200; names as for --hold."
         ),
     ] = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(
+            help="The best over all combinations of factors: NAME=FACTOR/FACTOR/..., as in "
+            "body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, tyre_stiffness, "
+            "inertance, relaxation_stiffness."
+        ),
+    ] = None,
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same struts at both axles.")
     ] = False,
@@ -81,6 +89,7 @@ def pareto_command(
             hold=hold,
             limit=limit,
             catalogue=catalogue,
+            vary=vary,
         )
         with progress_bar("front", as_json) as progress:
             found = front(study, indices[1], points, out_dir, progress)

@@ -13,6 +13,7 @@ from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, SeriesPair
 from inerter.suspension.own_index import is_own
 from inerter.suspension.problem import Catalogue, SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
+from inerter.suspension.variations import scenes_of
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.problem import VehicleProblem
 
@@ -43,8 +44,9 @@ class Case:
 class Study:
     """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
 
-    `fixed` variables have a value, those of a `catalogue` one of some; `limits` are kept. A half- or full
-    car has `stiffnesses` of front and rear, and struts that may be `equal` but for those.
+    `fixed` variables have a value, those of a `catalogue` one of some; `limits` are kept. What may
+    `vary` by factors is averaged over. A half- or full car has `stiffnesses` of front and rear, and
+    struts that may be `equal` but for those.
     """
 
     layouts: tuple[str, ...]
@@ -57,9 +59,12 @@ class Study:
     fixed: tuple[tuple[str, float], ...] = ()
     limits: tuple[tuple[str, float], ...] = ()
     catalogue: Catalogue = ()
+    vary: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse an index that the car has not."""
+        """Refuse an index that the car, or what varies, has not."""
+        if self.vary and "J5" in (*self.indices, *dict(self.limits)):
+            raise StudyError("J5 with --vary: a largest value has no mean; take another index")
         sides = None if isinstance(self.car, QuarterCar) else self.car.sides
         for name in (*self.indices, *dict(self.limits)):
             own = INDICES[name]
@@ -98,6 +103,7 @@ class Study:
                 fixed=self.fixed,
                 limits=self.limits,
                 catalogue=self.catalogue,
+                scenes=scenes_of(self.car, self.road, dict(self.vary)),
             )
             _refuse_many(problem)
             return Case(
@@ -116,6 +122,7 @@ class Study:
             fixed=(self.fixed, self.fixed),
             limits=self.limits,
             catalogue=self.catalogue,
+            scenes=scenes_of(self.car, self.road, dict(self.vary)),
         )
         _refuse_many(problem)
         return Case(
@@ -148,7 +155,7 @@ def _refuse_many(problem: SuspensionProblem | VehicleProblem) -> None:
         )
 
 
-def read_catalogue(text: str | None, known: Iterable[str]) -> Catalogue:
+def read_catalogue(text: str | None, known: Iterable[str], what: str = "catalogue") -> Catalogue:
     """NAME=VALUE/VALUE/... with commas between names, SI units.
 
     Raises
@@ -157,12 +164,12 @@ def read_catalogue(text: str | None, known: Iterable[str]) -> Catalogue:
         A name that is not known, or values that are not positive.
     """
     found: dict[str, tuple[float, ...]] = {}
-    for word in _words(text, "catalogue") if text else []:
+    for word in _words(text, what) if text else []:
         name, sign, values = word.partition("=")
         if not sign:
-            raise StudyError(f"catalogue {word!r}: write NAME=VALUE/VALUE, as in inertance=60/80")
-        (own,) = read_names(name, known, "catalogue")
-        sizes = {_positive(each, f"catalogue of {own}") for each in values.split("/")}
+            raise StudyError(f"{what} {word!r}: write NAME=VALUE/VALUE, as in damping=0.8/1.2")
+        (own,) = read_names(name, known, what)
+        sizes = {_positive(each, f"{what} of {own}") for each in values.split("/")}
         found[own] = tuple(sorted(sizes))
     return tuple(found.items())
 

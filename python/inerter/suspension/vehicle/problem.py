@@ -17,6 +17,7 @@ from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
 from inerter.suspension.problem import Array, Catalogue, SuspensionProblem, in_limit
 from inerter.suspension.quarter_car import Road
+from inerter.suspension.variations import Scene
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
 from inerter.suspension.vehicle.load import Load
@@ -51,6 +52,8 @@ class VehicleProblem:
         Indices that may not be higher than a value, see `limited`.
     catalogue
         Variables that have one of some values [SI] at each axle, see `picked`.
+    scenes
+        What the index is a root mean square over, see `variations`; without, of the car itself.
     """
 
     car: Vehicle
@@ -64,6 +67,7 @@ class VehicleProblem:
     fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ())
     limits: tuple[tuple[str, float], ...] = ()
     catalogue: Catalogue = ()
+    scenes: tuple[Scene, ...] = ()
 
     @property
     def network(self) -> Layout:
@@ -219,6 +223,9 @@ class VehicleProblem:
 
     def value(self, points: NDArray[Any]) -> Array:
         """The index of each point, exactly, one after another."""
+        if self.scenes:
+            values = [self.at(scene).value(points + self._shift(scene)) for scene in self.scenes]
+            return np.sqrt(np.mean(np.square(values), axis=0))
         if self.index == "J5":
             return np.array([largest_gain(self.load(point)) for point in points])
         return np.array(
@@ -229,14 +236,37 @@ class VehicleProblem:
         )
 
     def quick(self, points: Array) -> Array:
-        """J1 or J3 of each point, good enough for a search."""
+        """A smooth index of each point, good enough for a search."""
+        if self.scenes:
+            values = [self.at(scene).quick(points + self._shift(scene)) for scene in self.scenes]
+            return np.sqrt(np.mean(np.square(values), axis=0))
         return quick_rms_index(self.index, self.car, self.road, self.branches(points))
 
     def logarithm(self, point: Array) -> tuple[float, Array]:
-        """Logarithm of J1 or J3 at one point and its gradient, exact."""
+        """Logarithm of a smooth index at one point and its gradient, exact."""
+        if self.scenes:
+            found = [self.at(one).logarithm(point + self._shift(one)) for one in self.scenes]
+            squares = np.exp(2.0 * np.array([value for value, _ in found]))
+            slope = squares @ np.array([slope for _, slope in found]) / squares.sum()
+            return 0.5 * float(np.log(squares.mean())), slope
         perturbed = self.branches(self._perturbed(point))
         value, slope = rms_index(self.index, self.car, self.road, perturbed, _COMPLEX_STEP)
         return float(np.log(value)), slope / value
+
+    def at(self, scene: Scene) -> VehicleProblem:
+        """The problem in one scene; its points are shifted by what the free parts are off."""
+        front, rear = map(scene.fixed, self.fixed)
+        return replace(self, car=scene.car, road=scene.road, fixed=(front, rear), scenes=())
+
+    def _shift(self, scene: Scene) -> Array:
+        return np.array([scene.shift(name) for _, name in self.variables])
+
+    def in_scenes(self, point: Array) -> list[float]:
+        """The index of one point in each scene."""
+        return [
+            float(self.at(scene).value((point + self._shift(scene))[None])[0])
+            for scene in self.scenes
+        ]
 
     def load(self, points: Array) -> Load:
         """zc/F of each point."""
