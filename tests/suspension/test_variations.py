@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -93,3 +95,9 @@ def test_bad_words_are_told(words: list[str], told: str) -> None:
     answer = CliRunner().invoke(app, ["optimize", "--index", "J1", *words], catch_exceptions=False)
     assert answer.exit_code == 2
     assert told in answer.output.replace("\n", " ")
+
+
+@pytest.mark.parametrize("first", ["limited", "optimum", "vehicle.problem", "problem"])
+def test_a_worker_may_import_any_module_first(first: str) -> None:
+    """A process that is handed a problem imports what it is made of, in no order of ours."""
+    subprocess.run([sys.executable, "-c", f"import inerter.suspension.{first}"], check=True)

@@ -86,16 +86,6 @@ def best_within(problem: Problem, starts: Sequence[Array] = ()) -> Limited:
     return best
 
 
-def scene_notes(problem: Problem, point: Array) -> list[str]:
-    """What a reader should know of the scenes of a design."""
-    if not problem.scenes:
-        return []
-    values = problem.in_scenes(point)
-    worst, best = int(np.argmax(values)), int(np.argmin(values))
-    ends = [f"{values[n]:.5g} ({problem.scenes[n].name})" for n in (best, worst)]
-    return [f"root mean square over {len(values)} variations, from {ends[0]} to {ends[1]}"]
-
-
 def values_of(problem: Problem, point: Array) -> dict[str, float]:
     """Every index of one design, the problem's own and those of its limits too."""
     sides = problem.car.sides if isinstance(problem, VehicleProblem) else None

@@ -21,10 +21,10 @@ import numpy as np
 
 from inerter.suspension.coarse_search import starting_points
 from inerter.suspension.layouts import springs_of
-from inerter.suspension.limited import scene_notes
 from inerter.suspension.polish_peaks import local_peaks, polish_peaks
 from inerter.suspension.polish_smooth import polish_smooth
 from inerter.suspension.problem import Array, SuspensionProblem
+from inerter.suspension.variations import scene_notes
 
 # relative: what counts as equal to the lower bound of J5
 _EQUAL = 1e-9

@@ -62,6 +62,16 @@ def scenes_of(car: Any, road: Road, factors: Mapping[str, tuple[float, ...]]) ->
     return tuple(found)
 
 
+def scene_notes(problem: Any, point: Any) -> list[str]:
+    """What a reader should know of the scenes of a design, a point of a problem with scenes."""
+    if not problem.scenes:
+        return []
+    values = problem.in_scenes(point)
+    order = sorted(range(len(values)), key=lambda n: values[n])
+    ends = [f"{values[n]:.5g} ({problem.scenes[n].name})" for n in (order[0], order[-1])]
+    return [f"root mean square over {len(values)} variations, from {ends[0]} to {ends[1]}"]
+
+
 def _changed(car: Any, factors: Mapping[str, float]) -> Any:
     """The car with masses and tyres off; a payload adds to the inertias as to the mass."""
     body, wheel, tyre = (factors.get(name, 1.0) for name in OF_CAR[:3])

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from inerter.suspension.layouts import SeriesPair, springs_of
-from inerter.suspension.limited import scene_notes
 from inerter.suspension.optimum import LIMITS, finite
 from inerter.suspension.problem import Array
 from inerter.suspension.quarter_car import Road
+from inerter.suspension.variations import scene_notes
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.load_bound import NEAR, softest_at_bound, start_point
 from inerter.suspension.vehicle.load_peaks import peaks
