@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 from inerter.suspension.comfort_weighting import weighting
-from inerter.suspension.indices import weighted_comfort
+from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import LAYOUTS, SeriesPair, springs_of
 from inerter.suspension.optimum import Optimum, optimise
 from inerter.suspension.problem import SuspensionProblem
@@ -114,7 +114,7 @@ def test_fixed_inertance_is_kept_and_the_rest_is_best() -> None:
     assert found.value > best("S2", "J1", 30e3).value
     for c in (0.99 * found.damping, 1.01 * found.damping):
         strut = LAYOUTS["S2"].stiffness(30e3, c, 25.0)
-        assert weighted_comfort(CAR, Road(), strut) > 0.0
+        assert INDICES["J1w"].evaluate(CAR, Road(), strut) > 0.0
         one = SuspensionProblem(
             car=CAR, road=Road(), layout="S2", index="J1", stiffness=30e3,
             fixed=(("inertance", 25.0),),
@@ -146,7 +146,7 @@ def test_weighted_comfort_is_the_integral() -> None:
 
     parts = [(0.0, 0.7), (0.7, 2.0), (2.0, 15.0), (15.0, 2e4)]
     total = sum(quad(density, a, b, limit=500, epsrel=1e-11)[0] for a, b in parts)
-    found = float(weighted_comfort(CAR, road, strut))
+    found = float(INDICES["J1w"].evaluate(CAR, road, strut))
     assert found == pytest.approx(road.slope * np.sqrt(2.0 * total), rel=1e-7)
 
 
@@ -154,7 +154,9 @@ def test_a_half_car_of_two_quarter_cars_is_felt_as_they_are() -> None:
     axle = Axle(distance=1.3, wheel_mass=35.0, tyre_stiffness=150e3, stiffness=30e3)
     car = HalfCar(body_mass=500.0, pitch_inertia=500.0 * 1.69, front=axle, rear=axle)
     strut = VehicleStrut(30e3, 1500.0, 60.0, 200e3)
-    single = weighted_comfort(CAR, Road(), LAYOUTS["S5"].stiffness(30e3, 1500.0, 60.0, 200e3))
+    single = INDICES["J1w"].evaluate(
+        CAR, Road(), LAYOUTS["S5"].stiffness(30e3, 1500.0, 60.0, 200e3)
+    )
     found = vehicle_index("J1w", car, "S5", (strut, strut))
     assert found == pytest.approx(float(single), rel=1e-8)
 

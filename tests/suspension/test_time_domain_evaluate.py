@@ -122,7 +122,7 @@ def test_table(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["--layout", "S9"], "layout 'S9' has no MuJoCo model: take S1, S2, S3"),
+        (["--layout", "S9"], "layout 'S9' is not known: take S1, S2, S3"),
         (["--case", "rust"], "case 'rust': there are ideal, friction"),
         (["--index", "J2"], "index 'J2': there are J1, J3, J5"),
         (["--stiffness", "12O"], "--stiffness is '12O': give numbers"),

@@ -213,7 +213,7 @@ def test_what_cannot_be_carried_is_named(values: dict, said: str) -> None:
         ("--damping 3000 --inertance x", "--inertance is 'x': give a number"),
         ("--damping 3000 --inertance -1", "inertance is -1 kg"),
         ("--damping 3000 --inertance 30 --reoptimise", "cannot be sought anew"),
-        ("--car lorry", "car 'lorry': take quarter or half, or a file car.toml; full goes"),
+        ("--car lorry", "car 'lorry': take quarter, half or full, or a file car.toml"),
         ("--settle 0.1", "settle is 0.1 s"),
     ],
 )

@@ -83,7 +83,7 @@ def car_equations(car: CarParts) -> CarEquations:
     Raises
     ------
     ValueError
-        A layout whose damper is behind a relaxation spring.
+        A layout whose damper is behind a relaxation spring, or an inerter with friction or play.
     """
     corners = _corners(car)
     body = {"heave": car.body_mass}
@@ -134,6 +134,11 @@ def _corners(car: CarParts) -> list[tuple[str, AxleParts, float, float]]:
 def _add_strut(found: CarEquations, axle: AxleParts, x: Array, y: Array | None) -> None:
     s = axle.strut
     tables = (s.damper_bump, s.damper_rebound)
+    if s.device:
+        raise ValueError(
+            "device: friction, play and shafts of the inerter are the plugin's; take the MuJoCo "
+            "model, or leave device out"
+        )
     if s.layout in ("SR", "S5", "SW8"):
         raise ValueError(
             f"layout {s.layout}: its damper is behind a relaxation spring and has a state of its "

@@ -8,6 +8,7 @@ not bend. Names are those of the shipped cars: controls `road`, `road_front` ...
 | --- | --- |
 | node between damper and inerter (S3 ... SW8) | body without mass on the wheel, its joint the device's displacement: the device's inertance is its inertia |
 | damper behind a relaxation spring (SR, S5, SW8) | a viscoelastic branch of a device: its state in place of a node without mass |
+| friction, play, shaft of the inerter | the plugin's, in the device |
 | damper table, bump stop | actuators whose force is linear and clipped, one for each piece |
 | tyre | position actuator with a force range: it pulls by at most its static load |
 """  # noqa: E501
@@ -16,14 +17,17 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from xml.etree import ElementTree as ET
 
 from inerter.cars.parts import AxleParts, CarParts, StrutParts
+from inerter.core import Device
 
-_FAR = 1e9
+FAR = 1e9
+"""A force that no tyre and no stop reaches [N]."""
 _HEIGHT, _WHEEL = 0.55, 0.31
-_NODES = ("S3", "S4", "S5", "S6", "SW7", "SW8")
+NODES = ("S3", "S4", "S5", "S6", "SW7", "SW8")
+"""Layouts with a node between damper and inerter."""
 _BEHIND_SPRING = ("SR", "S5", "SW8")
 
 Coefficients = dict[str, float]
@@ -154,9 +158,9 @@ class _Corner:
         )  # fmt: skip
         ET.SubElement(
             parts["actuator"], "position", name=f"road{place}", joint=f"wheel{place}",
-            kp=f"{self.axle.tyre_stiffness:.10g}", forcerange=f"{-load:.10g} {_FAR:.0f}",
+            kp=f"{self.axle.tyre_stiffness:.10g}", forcerange=f"{-load:.10g} {FAR:.0f}",
         )  # fmt: skip
-        if self.strut.layout in _NODES:
+        if self.strut.layout in NODES:
             node = ET.SubElement(body, "body", name=f"node{place}")
             joint = ET.SubElement(node, "joint", name=self.node, type="slide", axis="0 0 1")
             ET.SubElement(node, "inertial", pos="0 0 0", mass="1e-9", diaginertia="1e-9 1e-9 1e-9")
@@ -183,7 +187,7 @@ class _Corner:
             damped = ("joint", self.node)
             stiffness = s.relaxation_stiffness
             self._tendon(tendons, f"damper{place}", behind, stiffness=stiffness)
-        elif s.layout in _NODES:
+        elif s.layout in NODES:
             damped = ("tendon", f"damper{place}")
             tendon = self._tendon(tendons, f"damper{place}", behind, stiffness=_over_damper(s))
             if s.layout not in _BEHIND_SPRING:
@@ -192,11 +196,10 @@ class _Corner:
             k, c = _branch(s)
             config = {"branch_stiffness_1": k, "branch_damping_1": c}
             self._device(parts, f"relaxation{place}", damped, config, states=1)
-        if s.layout == "S2":
-            self._device(parts, f"strut{place}", damped, {"inertance": s.inertance})
-        elif s.layout in _NODES:
-            where = ("joint", self.node)
-            self._device(parts, f"strut{place}", where, {"inertance": s.inertance})
+        if s.layout == "S2" or s.layout in NODES:
+            where = damped if s.layout == "S2" else ("joint", self.node)
+            device: dict[str, float | str] = {"inertance": s.inertance, **dict(s.device)}
+            self._device(parts, f"strut{place}", where, device, Device(**device).nstate)
         for sign, table in ((1.0, s.damper_rebound), (-1.0, s.damper_bump)):
             self._add_table(parts["actuator"], damped, sign, table)
 
@@ -223,12 +226,13 @@ class _Corner:
         parts: dict[str, ET.Element],
         name: str,
         where: tuple[str, str],
-        config: dict[str, float],
+        config: Mapping[str, float | str],
         states: int = 0,
     ) -> None:
         instance = ET.Element("instance", name=name)
         for key, value in config.items():
-            ET.SubElement(instance, "config", key=key, value=f"{value:.10g}")
+            text = value if isinstance(value, str) else f"{value:.10g}"
+            ET.SubElement(instance, "config", key=key, value=text)
         self.devices.append(instance)
         values = {"name": name, "plugin": "inerter.device", "instance": name, where[0]: where[1]}
         if states:
@@ -246,7 +250,7 @@ class _Corner:
             slope = (f1 - f0) / (v1 - v0)
             if not slope:
                 continue
-            most = _FAR if n == len(table) - 1 else f1 - f0
+            most = FAR if n == len(table) - 1 else f1 - f0
             limits = (-most, 0.0) if sign > 0.0 else (0.0, most)
             bias = (sign * slope * v0, 0.0, -slope)
             _clipped(actuators, f"{word}_{n + 1}{self.place}", where, bias, limits)
@@ -254,10 +258,10 @@ class _Corner:
     def _add_stops(self, actuators: ET.Element) -> None:
         s, where = self.strut, ("tendon", f"spring{self.place}")
         if k := s.bump_stop_stiffness:
-            bias, limits = (-k * s.bump_stop_gap, -k, 0.0), (0.0, _FAR)
+            bias, limits = (-k * s.bump_stop_gap, -k, 0.0), (0.0, FAR)
             _clipped(actuators, f"bump_stop{self.place}", where, bias, limits)
         if k := s.rebound_stop_stiffness:
-            bias, limits = (k * s.rebound_stop_gap, -k, 0.0), (-_FAR, 0.0)
+            bias, limits = (k * s.rebound_stop_gap, -k, 0.0), (-FAR, 0.0)
             _clipped(actuators, f"rebound_stop{self.place}", where, bias, limits)
 
 

@@ -31,6 +31,9 @@ class StrutParts:
         Tables ([m/s], [N]) in place of c.
     motion_ratio
         Travel of the strut per travel of the wheel.
+    device
+        What the inerter has beside its inertance, by the keys of a device.toml (SI): friction,
+        play, a shaft.
     bump_stop_gap, bump_stop_stiffness, rebound_stop_gap, rebound_stop_stiffness
         Stops after so much travel of the strut [m] with [N/m]; no stop at stiffness 0.
     """
@@ -45,6 +48,7 @@ class StrutParts:
     damper_bump: Table = ()
     damper_rebound: Table = ()
     motion_ratio: float = 1.0
+    device: tuple[tuple[str, float | str], ...] = ()
     bump_stop_gap: float = 0.0
     bump_stop_stiffness: float = 0.0
     rebound_stop_gap: float = 0.0

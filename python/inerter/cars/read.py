@@ -13,6 +13,7 @@ layout = "S2"
 stiffness_kN_per_m = 19.96
 damping_N_s_per_m = 1290
 inertance_kg = 30
+device = "rack.toml"                 # friction, play, shaft of the inerter; its inertance too
 [rear] ...
 
 Units stand in the names, see `keys`. A quarter-car has [front] alone.
@@ -28,6 +29,8 @@ from typing import Any
 
 from inerter.cars.keys import AXLE_KEYS, CAR_KEYS, STRUT_KEYS, UNITS, Key
 from inerter.cars.parts import AxleParts, CarParts, StrutParts, Table
+from inerter.cars.strut_device import strut_device
+from inerter.device_file import read_bench_device
 from inerter.input_file import read_toml
 
 KINDS = ("quarter", "half", "full")
@@ -70,7 +73,7 @@ def read_car(path: str | Path) -> CarParts:
     except ValueError as error:
         raise CarError(str(error)) from None
     try:
-        return _car(content, path.stem)
+        return _car(content, path)
     except CarError as error:
         raise CarError(f"{path}: {error}") from None
 
@@ -80,7 +83,7 @@ def shipped_car(kind: str) -> CarParts:
     return read_car(SHIPPED / f"{kind}.toml")
 
 
-def _car(content: Mapping[str, Any], name: str) -> CarParts:
+def _car(content: Mapping[str, Any], path: Path) -> CarParts:
     extra = set(content) - {"schema", "car", "front", "rear"}
     if extra:
         raise CarError(f"table [{min(extra)}] is not known: there are [car], [front], [rear]")
@@ -88,7 +91,7 @@ def _car(content: Mapping[str, Any], name: str) -> CarParts:
     kind = table.pop("kind", None)
     if kind not in KINDS:
         raise CarError(f"[car] kind is {kind!r}: give one of {', '.join(KINDS)}")
-    name = str(table.pop("name", name))
+    name = str(table.pop("name", path.stem))
     unusual = table.pop("unusual", [])
     if not isinstance(unusual, list) or not all(isinstance(each, str) for each in unusual):
         raise CarError('[car] unusual: give a list of names, as in ["front.tyre_stiffness"]')
@@ -99,20 +102,22 @@ def _car(content: Mapping[str, Any], name: str) -> CarParts:
             raise CarError(
                 f"[car] {CAR_KEYS[key].spellings(key)[0]} is missing: a {kind} car has it"
             )
-    front = _axle("front", _table(content, "front"), unusual, kind)
+    front = _axle("front", _table(content, "front"), unusual, kind, path.parent)
     if kind == "quarter":
         if "rear" in content:
             raise CarError("[rear]: a quarter-car has one wheel, [front]")
         rear = None
     else:
-        rear = _axle("rear", _table(content, "rear"), unusual, kind)
+        rear = _axle("rear", _table(content, "rear"), unusual, kind, path.parent)
     every: dict[str, Any] = dict(values)
     car = CarParts(kind=kind, name=name, front=front, rear=rear, **every)
     _refuse_sagging(car, unusual)
     return car
 
 
-def _axle(name: str, table: dict[str, Any], unusual: list[str], kind: str) -> AxleParts:
+def _axle(
+    name: str, table: dict[str, Any], unusual: list[str], kind: str, folder: Path
+) -> AxleParts:
     strut = table.pop("strut", None)
     if not isinstance(strut, dict):
         raise CarError(
@@ -124,10 +129,10 @@ def _axle(name: str, table: dict[str, Any], unusual: list[str], kind: str) -> Ax
     if kind != "full" and values.get("anti_roll_stiffness"):
         raise CarError(f"[{name}] anti_roll_stiffness: a {kind} car does not roll; give a full car")
     every: dict[str, Any] = dict(values)
-    return AxleParts(strut=_strut(f"{name}.strut", dict(strut), unusual), **every)
+    return AxleParts(strut=_strut(f"{name}.strut", dict(strut), unusual, folder), **every)
 
 
-def _strut(name: str, table: dict[str, Any], unusual: list[str]) -> StrutParts:
+def _strut(name: str, table: dict[str, Any], unusual: list[str], folder: Path) -> StrutParts:
     layout = str(table.pop("layout", "S1"))
     layout = SAME.get(layout, layout)
     if layout not in NEEDS:
@@ -138,6 +143,11 @@ def _strut(name: str, table: dict[str, Any], unusual: list[str]) -> StrutParts:
             if f"{key}_{unit}" in table:
                 where = f"[{name}] {key}_{unit}"
                 tables[key] = _damper(where, table.pop(f"{key}_{unit}"), factor)
+    device: dict[str, float | str] = {}
+    if "device" in table:
+        own, device = _device(name, layout, table.pop("device"), folder)
+        if own and not any(key.startswith("inertance_") for key in table):
+            table["inertance_kg"] = own
     values = _values(name, table, STRUT_KEYS, unusual)
     for key in NEEDS[layout]:
         if not values.get(key):
@@ -153,7 +163,22 @@ def _strut(name: str, table: dict[str, Any], unusual: list[str]) -> StrutParts:
     if not tables and not values.get("damping"):
         raise CarError(f"[{name}] damping_N_s_per_m is missing, or two damper tables")
     every: dict[str, Any] = {**values, **tables}
-    return StrutParts(layout=layout, **every)
+    return StrutParts(layout=layout, device=tuple(device.items()), **every)
+
+
+def _device(
+    name: str, layout: str, file: Any, folder: Path
+) -> tuple[float, dict[str, float | str]]:
+    """Inertance [kg] of a device's file, 0 where it states none, and what else it has."""
+    if not isinstance(file, str):
+        raise CarError(f"[{name}] device is {file!r}: give the name of its file, device.toml")
+    if "inertance" not in NEEDS[layout]:
+        raise CarError(f"[{name}] device: layout {layout} has no inerter; choose another layout")
+    try:
+        device = read_bench_device(folder / file)
+        return float(device.given.get("inertance", 0.0)), strut_device(device)
+    except ValueError as error:
+        raise CarError(f"[{name}] device = {file!r}: {error}") from None
 
 
 def _values(

@@ -13,14 +13,17 @@ from inerter.suspension.study import (
     Study,
     StudyError,
     read_axle_stiffnesses,
+    read_catalogue,
     read_layouts,
     read_names,
     read_pairs,
     read_series,
     read_stiffnesses,
 )
+from inerter.suspension.variations import OF_CAR, OF_PARTS
 from inerter.suspension.vehicle.cars import Axle, FullCar, HalfCar, Vehicle, full_car, half_car
 
+_HELD = ("damping", "inertance", "relaxation_stiffness")
 CARS = ("quarter", "half", "full")
 
 
@@ -85,6 +88,8 @@ def study_asked(
     limit: str | None,
     quarter: Mapping[str, float | None] | None = None,
     correlation: float | None = None,
+    catalogue: str | None = None,
+    vary: str | None = None,
 ) -> Study:
     """The study that options ask for, in their words; `quarter`, `correlation`: see `chosen_car`.
 
@@ -104,7 +109,9 @@ def study_asked(
         car=which,
         road=road,
         equal=equal,
-        fixed=read_pairs(hold, ("damping", "inertance", "relaxation_stiffness"), "hold"),
+        fixed=read_pairs(hold, _HELD, "hold"),
+        catalogue=read_catalogue(catalogue, _HELD),
+        vary=read_catalogue(vary, (*OF_CAR, *OF_PARTS), "vary"),
         limits=read_pairs(limit, INDICES, "limit"),
     )
 

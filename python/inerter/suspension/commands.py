@@ -36,7 +36,10 @@ def optimize_command(
     ] = "S1,S2,S3",
     index: Annotated[
         str,
-        typer.Option(help="J1 comfort, J1w as felt, J3 tyre load, J5 load carrying; with commas."),
+        typer.Option(
+            help="J1 comfort, J1w as felt, J3 tyre load, J5 load carrying, travel, pitch, roll, or "
+            "your own: file.toml, file.py:FUNCTION; with commas."
+        ),
     ] = "J1,J3,J5",
     stiffness: Annotated[
         str | None,
@@ -64,6 +67,21 @@ def optimize_command(
     hold: Annotated[
         str | None,
         typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
+    ] = None,
+    catalogue: Annotated[
+        str | None,
+        typer.Option(
+            help="One of some values each: NAME=VALUE/VALUE/... in SI, as in "
+            "inertance=60/80/113,damping=900/1200; names as for --hold."
+        ),
+    ] = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(
+            help="The best over all combinations of factors: NAME=FACTOR/FACTOR/..., as in "
+            "body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, tyre_stiffness, "
+            "inertance, relaxation_stiffness."
+        ),
     ] = None,
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
@@ -133,6 +151,8 @@ def optimize_command(
             equal=equal,
             hold=hold,
             limit=limit,
+            catalogue=catalogue,
+            vary=vary,
             quarter=quarter,
             correlation=correlation,
         )

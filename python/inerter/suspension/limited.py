@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from inerter.suspension.h_infinity_norm import gain_squared
-from inerter.suspension.indices import INDICES
+from inerter.suspension.indices import indices_of
 from inerter.suspension.polish_peaks import local_peaks
 from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.vehicle.load_peaks import peaks as vehicle_peaks
@@ -64,9 +64,14 @@ def best_within(problem: Problem, starts: Sequence[Array] = ()) -> Limited:
         No design was found that keeps the limits: says how low each index can be.
     """
     best: Limited | None = None
-    for one in problem.variants():
-        own = starts if one is problem else ()
-        found = _search(one, own)
+    picked = [one for choice in problem.picked() for one in choice.variants()]
+    for one in picked:
+        if not one.variables:
+            found = _alone_within(one)
+        elif not one.limits:
+            found = Limited(one, *_best_alone(one), ())
+        else:
+            found = _search(one, [x for x in starts if len(x) == len(one.variables)])
         # a part that may be absent is, where that costs nothing
         if found is not None and (best is None or found.value < best.value * (1.0 - 1e-9)):
             best = found
@@ -82,16 +87,40 @@ def best_within(problem: Problem, starts: Sequence[Array] = ()) -> Limited:
 
 
 def values_of(problem: Problem, point: Array) -> dict[str, float]:
-    """Every index of one design."""
+    """Every index of one design, the problem's own and those of its limits too."""
+    sides = problem.car.sides if isinstance(problem, VehicleProblem) else None
+    own = (problem.index, *(name for name, _ in problem.limits))
+    shown = dict.fromkeys((*indices_of(sides), *own))
     return {
-        name: float(replace(problem, index=name, limits=()).value(point[None])[0])
-        for name in INDICES
+        name: float(np.ravel(replace(problem, index=name, limits=()).value(point[None]))[0])
+        for name in shown
     }
 
 
+def _alone_within(problem: Problem) -> Limited | None:
+    """The one design of a problem in which nothing is free, if it keeps the limits."""
+    point = np.empty(0)
+    values = {
+        name: float(np.ravel(replace(problem, index=name, limits=()).value(point[None]))[0])
+        for name in (problem.index, *dict(problem.limits))
+    }
+    if any(values[name] > most * (1.0 + _SLACK) for name, most in problem.limits):
+        return None
+    near = [name for name, most in problem.limits if values[name] >= most * (1.0 - 1e-4)]
+    value = values[problem.index]
+    return Limited(problem, value, point, tuple(near)) if np.isfinite(value) else None
+
+
 def _lowest(problem: Problem) -> float:
+    if problem.catalogue or not problem.variables:
+        every = map(_bare, problem.picked())
+        return min((found.value for found in every if found), default=np.inf)
     found = _search(problem, ())
     return np.inf if found is None else found.value
+
+
+def _bare(problem: Problem) -> Limited | None:
+    return _search(problem, ()) if problem.variables else _alone_within(problem)
 
 
 def _search(problem: Problem, starts: Sequence[Array]) -> Limited | None:
@@ -157,13 +186,18 @@ def _candidates(bare: Problem, others: list[Any], most: Array) -> list[Array]:
 
 def _alone(problem: Problem) -> Array:
     """The design that is best without limits."""
+    return _best_alone(problem)[1]
+
+
+def _best_alone(problem: Problem) -> tuple[float, Array]:
+    """Value and point of it."""
     if isinstance(problem, VehicleProblem):
         from inerter.suspension.vehicle.search import best_point
 
-        return best_point(problem)[1]
+        return best_point(problem)
     from inerter.suspension.optimum import best_point as best_quarter
 
-    return best_quarter(problem)[1]
+    return best_quarter(problem)
 
 
 def _quick(problem: Problem, points: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from inerter.console import AsJson, number, out, refusing
-from inerter.suspension.quarter_car import Road
+from inerter.suspension.quarter_car import QuarterCar, Road
 
 _ROAD = Road()
 
@@ -16,9 +16,14 @@ _ROAD = Road()
 def network_command(
     netlist: Annotated[
         Path,
-        typer.Argument(help="Lines KIND NAME NODE NODE VALUE between body and wheel; ? is sought."),
+        typer.Argument(
+            help="Lines KIND NAME NODE NODE VALUE between body and wheel; ? is sought. Or a "
+            "file.toml of an admittance, whose indices are told."
+        ),
     ],
-    index: Annotated[str, typer.Option(help="One of J1, J1w, J3, travel.")] = "J1",
+    index: Annotated[
+        str, typer.Option(help="One of J1, J1w, J3, travel, or file.toml, file.py:FUNCTION.")
+    ] = "J1",
     car: Annotated[str, typer.Option(help="quarter, or a file car.toml of one.")] = "quarter",
     limit: Annotated[
         str | None, typer.Option(help="Not above: INDEX=VALUE in SI, with commas.")
@@ -53,17 +58,19 @@ def network_command(
     from inerter.suspension.netlist import NetlistError, read_netlist
     from inerter.suspension.network_problem import NetworkProblem
     from inerter.suspension.optimum import best_point
-    from inerter.suspension.quarter_car import QuarterCar
     from inerter.suspension.study import StudyError, read_indices, read_pairs
 
     with refusing(None):
+        which = chosen_car(car, {})
+        if not isinstance(which, QuarterCar):
+            raise StudyError(f"--car {car}: a network is sought for a quarter-car")
+        if netlist.suffix.lower() == ".toml":
+            _tell_admittance(netlist, which, Road(velocity=velocity, roughness=roughness), as_json)
+            return
         try:
             lines = netlist.read_text(encoding="utf-8").splitlines()
         except (OSError, UnicodeDecodeError):
             raise StudyError(f"{netlist}: cannot be read; give a text file") from None
-        which = chosen_car(car, {})
-        if not isinstance(which, QuarterCar):
-            raise StudyError(f"--car {car}: a network is sought for a quarter-car")
         (chosen, *more) = read_indices(index)
         if more:
             raise StudyError(f"index {index!r}: give one")
@@ -96,3 +103,41 @@ def network_command(
         out.print(f"  {each.kind} {each.name}: {size:.6g} {units[each.kind]}{end}", markup=False)
     for name in reached:
         out.print(f"held back by the limit of {name}", markup=False)
+
+
+def _tell_admittance(path: Path, car: QuarterCar, road: Road, as_json: bool) -> None:
+    """Indices of an admittance, and the network that has it where one is known."""
+    import numpy as np
+
+    from inerter.folder import json_text
+    from inerter.suspension.admittance import ladder, read_admittance, stiffness_of
+    from inerter.suspension.indices import INDICES, indices_of
+
+    admittance = read_admittance(path)
+    strut, network = stiffness_of(admittance), ladder(admittance)
+    values = {
+        name: float(np.squeeze(INDICES[name].evaluate(car, road, strut)))
+        for name in indices_of(None)
+    }
+    rest = float(strut.numerator[0] / strut.denominator[0])
+    elements = [] if network is None else list(network.elements)
+    if as_json:
+        plain = [
+            {"kind": e.kind, "name": e.name, "nodes": list(e.nodes), "value": e.value}
+            for e in elements
+        ]
+        document = {
+            "positive_real": True,
+            "stiffness": rest,
+            "values": {n: x if np.isfinite(x) else None for n, x in values.items()},
+            "network": plain or None,
+        }
+        print(json_text(document), end="")
+        return
+    out.print(f"positive real; {rest:.6g} N/m at rest", markup=False)
+    for name, value in values.items():
+        out.print(f"{name} = {value:.6g} {INDICES[name].unit}", markup=False)
+    if network is None:
+        out.print("no network of few elements is known here; it was used as it is", markup=False)
+    for e in elements:
+        out.print(f"{e.kind} {e.name} {' '.join(e.nodes)} {e.value:.6g}", markup=False)

@@ -24,6 +24,7 @@ from inerter.suspension.layouts import springs_of
 from inerter.suspension.polish_peaks import local_peaks, polish_peaks
 from inerter.suspension.polish_smooth import polish_smooth
 from inerter.suspension.problem import Array, SuspensionProblem
+from inerter.suspension.variations import scene_notes
 
 # relative: what counts as equal to the lower bound of J5
 _EQUAL = 1e-9
@@ -81,7 +82,7 @@ class Optimum:
 
 def optimise(problem: SuspensionProblem) -> Optimum:
     """Minimise an index over all designs of a layout."""
-    if problem.limits:
+    if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     best, value, point = problem, *best_point(problem)
     # without inertance, or another part, counts as a design where the strut still is one
@@ -124,7 +125,7 @@ def _described(
         for limit in problem.network.limits
         if limit[0] in problem.variables and limit[0] not in best.variables
     ]
-    notes += _at_bounds(best, point)
+    notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return Optimum(
         value=value,
         damping=design["damping"],
@@ -139,6 +140,9 @@ def _described(
 @lru_cache(maxsize=256)
 def best_point(problem: SuspensionProblem) -> tuple[float, Array]:
     """Value and point of the global minimum, every variable of the layout in play."""
+    if not problem.variables:
+        alone = np.empty(0)
+        return float(np.ravel(problem.value(alone[None]))[0]), alone
     polish = polish_smooth if problem.objective.smooth else polish_peaks
     best, at = np.inf, np.empty(0)
     starts = [*starting_points(problem)]

@@ -19,13 +19,13 @@ from typing import Any
 import numpy as np
 
 from inerter.folder import write_files
-from inerter.suspension.indices import INDICES
 from inerter.suspension.limited import Limited, LimitError, Problem, best_within, values_of
 from inerter.suspension.optimum import finite
 from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.study import Study, StudyError
 
 FILE = "pareto.json"
+Limits = tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True)
@@ -118,10 +118,12 @@ def _layout(
     layout: str, problem: Problem, second: str, points: int, known: Front, done: set[int]
 ) -> Iterator[FrontRow]:
     own = {row.step: row for row in known.rows if row.layout == layout}
-    low = own.get(0) or _row(layout, 0, best_within(replace(problem, index=second)))
+    # values of both indices stand in every row
+    both = (*problem.limits, (problem.index, np.inf), (second, np.inf))
+    low = own.get(0) or _row(layout, 0, best_within(replace(problem, index=second)), both)
     if 0 not in done:
         yield low
-    high = own.get(points - 1) or _row(layout, points - 1, best_within(problem))
+    high = own.get(points - 1) or _row(layout, points - 1, best_within(problem), both)
     if points - 1 not in done:
         yield high
     a, b = low.values[second], high.values[second]
@@ -133,12 +135,12 @@ def _layout(
         limits = (*(each for each in problem.limits if each[0] != second), (second, level))
         found = best_within(replace(problem, limits=limits), start)
         start = [found.point] if found.problem.variables == problem.variables else []
-        yield _row(layout, step, found)
+        yield _row(layout, step, found, both)
 
 
-def _row(layout: str, step: int, found: Limited) -> FrontRow:
+def _row(layout: str, step: int, found: Limited, asked: Limits) -> FrontRow:
     problem = found.problem
-    values = values_of(problem, found.point)
+    values = values_of(replace(problem, limits=asked), found.point)
     if isinstance(problem, SuspensionProblem):
         from inerter.suspension.layouts import springs_of
 
@@ -171,6 +173,8 @@ def _settings(study: Study, second: str, points: int) -> dict[str, Any]:
                 "points": points,
                 "limits": study.limits,
                 "fixed": study.fixed,
+                "catalogue": study.catalogue,
+                "vary": study.vary,
             }
         )
     )
@@ -206,12 +210,13 @@ def front_csv(found: Front, layouts: tuple[str, ...]) -> str:
     """The fronts as a table, SI units; designs of a half- or full car with the axle before."""
     rows = [row for layout in layouts for row in found.of(layout)]
     flat = [_flat(row.design) for row in rows]
+    indices = list(dict.fromkeys(name for row in rows for name in row.values))
     names = list(dict.fromkeys(name for design in flat for name in design))
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["layout", *INDICES, *names, "reached"])
+    writer.writerow(["layout", *indices, *names, "reached"])
     for row, design in zip(rows, flat, strict=True):
-        values = [row.values[name] for name in INDICES]
+        values = [row.values.get(name, "") for name in indices]
         parts = [design.get(name, "") for name in names]
         writer.writerow([row.layout, *values, *parts, " ".join(row.reached)])
     return table.getvalue()

@@ -16,7 +16,11 @@ _ROAD = Road()
 def pareto_command(
     layout: Annotated[str, typer.Option(help="Layouts, with commas.")] = "S1,S2,S3",
     index: Annotated[
-        str, typer.Option(help="Two of J1, J1w, J3, J5, travel: FIRST,SECOND.")
+        str,
+        typer.Option(
+            help="FIRST,SECOND: two of J1, J1w, J3, J5, travel, pitch, roll, file.toml, "
+            "file.py:FUNCTION."
+        ),
     ] = "J1w,J3",
     stiffness: Annotated[
         str | None,
@@ -32,6 +36,21 @@ def pareto_command(
     hold: Annotated[
         str | None,
         typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
+    ] = None,
+    catalogue: Annotated[
+        str | None,
+        typer.Option(
+            help="One of some values each: NAME=VALUE/VALUE/... in SI, as in "
+            "inertance=60/80/113,damping=900/1200; names as for --hold."
+        ),
+    ] = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(
+            help="The best over all combinations of factors: NAME=FACTOR/FACTOR/..., as in "
+            "body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, tyre_stiffness, "
+            "inertance, relaxation_stiffness."
+        ),
     ] = None,
     equal: Annotated[
         bool, typer.Option("--equal", help="Half, full: the same struts at both axles.")
@@ -61,7 +80,6 @@ def pareto_command(
 
     from inerter.folder import json_text, write_files
     from inerter.suspension.car_options import study_asked
-    from inerter.suspension.indices import INDICES
     from inerter.suspension.pareto import front, front_csv
     from inerter.suspension.pareto_picture import front_picture
     from inerter.suspension.study import StudyError, read_indices
@@ -80,6 +98,8 @@ def pareto_command(
             equal=equal,
             hold=hold,
             limit=limit,
+            catalogue=catalogue,
+            vary=vary,
         )
         with progress_bar("front", as_json) as progress:
             found = front(study, indices[1], points, out_dir, progress)
@@ -98,10 +118,11 @@ def pareto_command(
         print(json_text([row.json() for row in rows]), end="")
         return
     table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
-    for name in ("layout", *INDICES):
+    names = list(dict.fromkeys(name for row in rows for name in row.values))
+    for name in ("layout", *names):
         table.add_column(name, justify="left" if name == "layout" else "right", no_wrap=True)
     for row in rows:
-        table.add_row(row.layout, *(f"{row.values[name]:.5g}" for name in INDICES))
+        table.add_row(row.layout, *(f"{row.values[name]:.5g}" for name in names))
     out.print(table)
     for told in found.told:
         out.print(told, markup=False)

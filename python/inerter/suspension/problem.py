@@ -8,6 +8,7 @@ Bounds are relative to the car, with m = ms + mu: damping 1e-3 ... 1e3 times sqr
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -20,8 +21,11 @@ from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.rational import Rational
+from inerter.suspension.variations import Scene
 
 Array = NDArray[np.float64]
+
+Catalogue = tuple[tuple[str, tuple[float, ...]], ...]
 
 _COMPLEX_STEP = 1e-30
 
@@ -52,6 +56,10 @@ class SuspensionProblem:
         Variables that are not free, with their values [SI].
     limits
         Indices that may not be higher than a value, see `limited`.
+    catalogue
+        Variables that have one of some values [SI], see `picked`.
+    scenes
+        What the index is a root mean square over, see `variations`; without, of the car itself.
     """
 
     car: QuarterCar
@@ -63,6 +71,8 @@ class SuspensionProblem:
     massless: bool = False
     fixed: tuple[tuple[str, float], ...] = ()
     limits: tuple[tuple[str, float], ...] = ()
+    catalogue: Catalogue = ()
+    scenes: tuple[Scene, ...] = ()
 
     @property
     def network(self) -> Layout:
@@ -107,6 +117,16 @@ class SuspensionProblem:
     def without(self) -> SuspensionProblem:
         """The same without inertance."""
         return replace(self, massless=True)
+
+    def picked(self) -> list[SuspensionProblem]:
+        """The problem with each choice from its catalogue fixed; itself without a catalogue."""
+        plain = replace(self, catalogue=())
+        free = [(name, values) for name, values in self.catalogue if name in self.variables]
+        names = [name for name, _ in free]
+        return [
+            replace(plain, fixed=(*self.fixed, *zip(names, chosen, strict=True)))
+            for chosen in itertools.product(*(values for _, values in free))
+        ]
 
     def variants(self) -> list[SuspensionProblem]:
         """The problem, then those in which what may be absent is."""
@@ -154,7 +174,25 @@ class SuspensionProblem:
 
     def value(self, points: NDArray[Any]) -> NDArray[Any]:
         """The index of each point."""
+        if self.scenes:
+            values = [self.at(scene).value(points + self._shift(scene)) for scene in self.scenes]
+            return np.sqrt(sum(value**2 for value in values) / len(values))
         return self.objective.evaluate(self.car, self.road, self.strut(points))
+
+    def at(self, scene: Scene) -> SuspensionProblem:
+        """The problem in one scene; its points are shifted by what the free parts are off."""
+        fixed = scene.fixed(self.fixed)
+        return replace(self, car=scene.car, road=scene.road, fixed=fixed, scenes=())
+
+    def _shift(self, scene: Scene) -> Array:
+        return np.array([scene.shift(name) for name in self.variables])
+
+    def in_scenes(self, point: Array) -> list[float]:
+        """The index of one point in each scene."""
+        return [
+            float(np.ravel(self.at(scene).value((point + self._shift(scene))[None]))[0])
+            for scene in self.scenes
+        ]
 
     def logarithm(self, point: Array) -> tuple[float, Array]:
         """Logarithm of a smooth index at one point and its gradient, exact by a complex step."""

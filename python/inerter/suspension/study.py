@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from inerter.suspension.indices import INDICES
+from inerter.suspension.indices import INDICES, indices_of
 from inerter.suspension.layouts import HARD, LAYOUTS, SOFT, SeriesPair
-from inerter.suspension.problem import SuspensionProblem
+from inerter.suspension.own_index import is_own
+from inerter.suspension.problem import Catalogue, SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
+from inerter.suspension.variations import scenes_of
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.problem import VehicleProblem
 
@@ -42,8 +44,9 @@ class Case:
 class Study:
     """Every combination of layouts, indices, stiffnesses [N/m] and series pairs by name.
 
-    `fixed` variables have a value, `limits` of indices are kept. A half- or full car has
-    `stiffnesses` of front and rear, and struts that may be `equal` but for those.
+    `fixed` variables have a value, those of a `catalogue` one of some; `limits` are kept. What may
+    `vary` by factors is averaged over. A half- or full car has `stiffnesses` of front and rear, and
+    struts that may be `equal` but for those.
     """
 
     layouts: tuple[str, ...]
@@ -55,6 +58,20 @@ class Study:
     equal: bool = False
     fixed: tuple[tuple[str, float], ...] = ()
     limits: tuple[tuple[str, float], ...] = ()
+    catalogue: Catalogue = ()
+    vary: tuple[tuple[str, tuple[float, ...]], ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse an index that the car, or what varies, has not."""
+        if self.vary and "J5" in (*self.indices, *dict(self.limits)):
+            raise StudyError("J5 with --vary: a largest value has no mean; take another index")
+        sides = None if isinstance(self.car, QuarterCar) else self.car.sides
+        for name in (*self.indices, *dict(self.limits)):
+            own = INDICES[name]
+            for each in (name, own.signal, *own.parts):
+                if each in ("pitch", "roll") and each not in indices_of(sides):
+                    of = "a quarter-car has none" if sides is None else "it takes a full car"
+                    raise StudyError(f"index {name!r} is of {each}: {of}")
 
     def cases(self) -> Iterator[Case]:
         """The combinations in order. S1 has no inerter: its problem is the same in each series."""
@@ -85,7 +102,10 @@ class Study:
                 pair=pair,
                 fixed=self.fixed,
                 limits=self.limits,
+                catalogue=self.catalogue,
+                scenes=scenes_of(self.car, self.road, dict(self.vary)),
             )
+            _refuse_many(problem)
             return Case(
                 layout=layout, index=index, stiffness=stiffness, series=name, problem=problem
             )
@@ -101,7 +121,10 @@ class Study:
             equal=self.equal,
             fixed=(self.fixed, self.fixed),
             limits=self.limits,
+            catalogue=self.catalogue,
+            scenes=scenes_of(self.car, self.road, dict(self.vary)),
         )
+        _refuse_many(problem)
         return Case(
             layout=layout,
             index=index,
@@ -110,6 +133,45 @@ class Study:
             problem=problem,
             rear=stiffness[1],
         )
+
+
+MOST_CHOICES = (20_000, 400, 60)
+"""Choices from a catalogue that are tried: nothing else free; a quarter-car; two axles."""
+
+
+def _refuse_many(problem: SuspensionProblem | VehicleProblem) -> None:
+    sizes = {name: len(x) for name, x in problem.catalogue if name in problem.network.variables}
+    vehicle = isinstance(problem, VehicleProblem)
+    count = math.prod(sizes.values()) ** (2 if vehicle and not problem.equal else 1)
+    fixed = problem.fixed[0] if isinstance(problem, VehicleProblem) else problem.fixed
+    free = not set(problem.network.variables) <= {*sizes, *(name for name, _ in fixed)}
+    most = MOST_CHOICES[(2 if vehicle else 1) if free else 0]
+    if count > most:
+        raise StudyError(
+            f"catalogue: {count} choices for {problem.layout}, at most {most} are tried where "
+            f"{'the rest is sought' if free else 'nothing else is free'}; shorten it, --hold a "
+            "variable, or put all of them into the catalogue"
+            + (", or take --equal struts" if vehicle and not problem.equal else "")
+        )
+
+
+def read_catalogue(text: str | None, known: Iterable[str], what: str = "catalogue") -> Catalogue:
+    """NAME=VALUE/VALUE/... with commas between names, SI units.
+
+    Raises
+    ------
+    StudyError
+        A name that is not known, or values that are not positive.
+    """
+    found: dict[str, tuple[float, ...]] = {}
+    for word in _words(text, what) if text else []:
+        name, sign, values = word.partition("=")
+        if not sign:
+            raise StudyError(f"{what} {word!r}: write NAME=VALUE/VALUE, as in damping=0.8/1.2")
+        (own,) = read_names(name, known, what)
+        sizes = {_positive(each, f"{what} of {own}") for each in values.split("/")}
+        found[own] = tuple(sorted(sizes))
+    return tuple(found.items())
 
 
 def read_names(text: str, known: Iterable[str], what: str) -> tuple[str, ...]:
@@ -123,6 +185,9 @@ def read_names(text: str, known: Iterable[str], what: str) -> tuple[str, ...]:
     allowed = {name.lower(): name for name in known}
     words = _words(text, what)
     for word in words:
+        if what in ("index", "limit") and is_own(word):
+            # it is read now: what is wrong in it is said before the work
+            allowed[word.lower()] = INDICES[word].name
         if word.lower() not in allowed:
             raise StudyError(f"{what} {word!r} is not known: choose from {', '.join(known)}")
     return tuple(dict.fromkeys(allowed[word.lower()] for word in words))

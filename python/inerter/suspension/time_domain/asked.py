@@ -14,7 +14,7 @@ from inerter.suspension.study import stiffness_of
 from inerter.suspension.time_domain.cases import CASES, NUMBERED, Case, case_named
 from inerter.suspension.time_domain.device_case import NAME, read_case
 from inerter.suspension.time_domain.model import Car
-from inerter.suspension.vehicle.cars import FullCar, half_car
+from inerter.suspension.vehicle.cars import FullCar, HalfCar, full_car, half_car
 
 BEST = "best"
 """What --inertance is where the inertance of a device's file is not to be kept."""
@@ -33,7 +33,7 @@ class Asked:
 
 
 def car_named(name: str) -> Asked:
-    """The quarter-car of Wang and Su, or the published half-car, whose pitch rings for longer.
+    """The quarter-car of Wang and Su, the published half- or full car, or that of a file.
 
     Raises
     ------
@@ -42,27 +42,21 @@ def car_named(name: str) -> Asked:
     """
     if name == "quarter":
         return Asked(QuarterCar(), QUARTER_CAR.stiffness, 1000.0, 4.0)
-    if name == "half":
-        car = half_car()
-        return Asked(car, car.front.stiffness, 2000.0, 10.0)
+    if name in ("half", "full"):
+        car = half_car() if name == "half" else full_car()
+        return _of_two_axles(car)
     if name.lower().endswith(".toml"):
-        return _own(name)
-    raise ValueError(
-        f"car {name!r}: take quarter or half, or a file car.toml; full goes with --layout own"
-    )
+        parts = read_car(name)
+        own = linear_car(parts)
+        if isinstance(own, QuarterCar):
+            return Asked(own, parts.front.strut.wheel_rate, 1000.0, 4.0)
+        return _of_two_axles(own)
+    raise ValueError(f"car {name!r}: take quarter, half or full, or a file car.toml")
 
 
-def _own(name: str) -> Asked:
-    parts = read_car(name)
-    car = linear_car(parts)
-    stiffness = parts.front.strut.wheel_rate
-    if isinstance(car, FullCar):
-        raise ValueError(
-            f"{name}: cases and designs are of quarter- and half-cars; a full car is driven as its "
-            "file states it, --layout own"
-        )
-    quarter = isinstance(car, QuarterCar)
-    return Asked(car, stiffness, *((1000.0, 4.0) if quarter else (2000.0, 10.0)))
+def _of_two_axles(car: HalfCar | FullCar) -> Asked:
+    # pitch rings for longer; the load is one for each side
+    return Asked(car, car.front.stiffness, 2000.0 * car.sides, 10.0)
 
 
 def cases_asked(

@@ -1,7 +1,6 @@
 """What stands in the strut: the cases of Wang and Su's Tables 2 and 3, and laws beyond them.
 
-A `Case` is a device around the inertance; the inertance itself is of the design. The numbers of a
-case's parameters can be varied without compiling again, as long as none of them leaves or joins.
+A `Case` is a device around the inertance; the inertance itself is of the design.
 
 Tables 2 and 3 of Wang and Su, "Inerter nonlinearities and the impact on suspension control", ACC
 2008, are lost; their cases stand in the text of sections V.C and V.D. That case 1 is S1, that S2
@@ -26,6 +25,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from inerter.model_parameters import TEST_RIG
 from inerter.suspension.layouts import HARD, SOFT, SeriesPair
@@ -47,7 +47,7 @@ class Case:
     name: str
     meaning: str
     friction: str = "none"
-    parameters: Mapping[str, float] = field(default_factory=dict)
+    parameters: Mapping[str, Any] = field(default_factory=dict)
     stiff: bool = False
 
     @property

@@ -14,16 +14,13 @@ def evaluate_command(
     layout: Annotated[
         str,
         typer.Option(
-            help="S1, S2, S3 (SW1, SW3, SW5), with commas; or own: the car as its file states it, "
-            "any layout, half or full, with damper tables and stops."
+            help="S1 ... S6, SR, SW1 ... SW8, with commas; or own: the car as its file states it, "
+            "with damper tables and stops."
         ),
     ] = "S1,S2,S3",
     car: Annotated[
         str,
-        typer.Option(
-            help="quarter, or half: heave and pitch, two struts; or a file car.toml of either; "
-            "full with --layout own."
-        ),
+        typer.Option(help="quarter, half (heave and pitch, two struts), full, or a file car.toml."),
     ] = "quarter",
     stiffness: Annotated[
         str | None,
@@ -84,7 +81,10 @@ def evaluate_command(
     ] = None,
     amplitude: Annotated[
         float | None,
-        number("newtons", "Sinusoidal load for J5 [N]; default 1000, of a half-car 2000."),
+        number(
+            "newtons",
+            "Sinusoidal load for J5 [N]; default 1000, of a half-car 2000, a full one 4000.",
+        ),
     ] = None,
     step: Annotated[float, number("seconds", "Largest time step [s].")] = 1e-3,
     settle: Annotated[
@@ -137,7 +137,6 @@ def evaluate_command(
     from inerter.suspension.time_domain.plan import Plan
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
-    from inerter.suspension.vehicle.cars import HalfCar
 
     # --reoptimise: the name of --reoptimize before
     reoptimise = reoptimise or reoptimised
@@ -167,9 +166,7 @@ def evaluate_command(
             seeds=seeds,
             search_seeds=search_seeds,
             reoptimise=reoptimise,
-            given=given_struts(
-                damping, inertance, own, "half" if isinstance(asked.car, HalfCar) else "quarter"
-            ),
+            given=given_struts(damping, inertance, own, getattr(asked.car, "name", "quarter")),
             one_sided=tyre_named(tyre),
             keep_settle=settle is not None,
             amplitude=asked.amplitude if amplitude is None else amplitude,

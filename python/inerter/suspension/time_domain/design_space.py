@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.time_domain.design import Design
+from inerter.suspension.layouts import LAYOUTS
+from inerter.suspension.time_domain.design import Design, both
 from inerter.suspension.time_domain.linear import SMALLEST_INERTANCE
 
 Array = NDArray[np.float64]
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Space:
     """What is free of a design: logarithms of c, and of b where there is an inerter, per strut.
+
+    Inner springs stay those of the start.
 
     `held`: "damping" or "inertance" that stay as they are at the start.
     """
@@ -27,7 +30,7 @@ class Space:
 
     @property
     def _free(self) -> list[int]:
-        names = ("damping",) if self.layout == "S1" else ("damping", "inertance")
+        names = ("damping", "inertance")[: 1 + LAYOUTS[self.layout].has_inerter]
         return [n for n, name in enumerate(names) if name not in self.held]
 
     @property
@@ -38,7 +41,7 @@ class Space:
 
     def values(self, points: Array) -> Array:
         """Values of c and b, shape (designs, struts, 2)."""
-        own = [(s.damping, 0.0 if self.layout == "S1" else s.inertance) for s in self.start.struts]
+        own = [(s.damping, s.inertance) for s in self.start.struts]
         each = np.tile(np.array(own), (len(points), 1, 1))
         each[:, :, self._free] = np.exp(points).reshape(len(points), len(own), -1)
         return each
@@ -49,7 +52,7 @@ class Space:
             replace(strut, damping=float(c), inertance=float(b))
             for strut, (c, b) in zip(self.start.struts, values, strict=True)
         ]
-        return replace(struts[0], rear=struts[1] if len(struts) == 2 else None)
+        return both([replace(strut, rear=None) for strut in struts])
 
 
 def each_or_one_by_one(

@@ -10,34 +10,15 @@ device model's default, a tenth of it, is not felt by a strut but asks for short
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+from inerter.cars.strut_device import strut_device
 from inerter.core import Device
 from inerter.device_file import read_bench_device
 from inerter.suspension.time_domain.cases import TRANSITION_VELOCITY, Case
 
 NAME = "device"
 
-_FLUID = "gives the inertance by geometry; state the inertance of `inerter design fluid` instead"
-_GAS = "is of a gas spring; the study has one spring beside the device, linear: --stiffness"
-_REFUSED = {
-    "force_offset": "moves the ride height, in S3 without end; leave it out",
-    **dict.fromkeys(
-        (
-            "piston_area",
-            "channel_area",
-            "channel_length",
-            "fluid_density",
-            "fluid_viscosity",
-            "channel_roughness",
-            "minor_loss",
-        ),
-        _FLUID,
-    ),
-    **dict.fromkeys(
-        ("gas_pressure", "gas_area", "gas_volume", "gas_exponent", "gas_law"),
-        _GAS,
-    ),
-}
 # laws whose friction follows sign(v)
 _SIGN = ("coulomb", "stribeck")
 # speed of a strut on a rough road [m/s], and the rate at which RK4 ends
@@ -69,30 +50,14 @@ def case_of(device: Device, step: float) -> tuple[Case, float]:
     ValueError
         A key that the study cannot carry: named, with what to do.
     """
-    given = device.given
-    for key, value in given.items():
-        if key in _REFUSED and value not in (0.0, ""):
-            raise ValueError(f"{key} = {value} {_REFUSED[key]}")
-    values = {
-        key: float(value)
-        for key, value in given.items()
-        if not isinstance(value, str) and key not in {*_REFUSED, "inertance", "rest_length"}
+    values: dict[str, Any] = {
+        key: value for key, value in strut_device(device).items() if key != "friction"
     }
-    if values.get("stiffness", 0.0) < 0.0:
-        raise ValueError(
-            f"stiffness = {values['stiffness']:g} is negative: behind a damper it has no "
-            "equilibrium; leave it out, and lower --stiffness by as much"
-        )
-    # what is 0 is not there
-    absent = ("series_stiffness", "series_damping", "backlash", "stiffness", "force_offset")
-    values = {key: value for key, value in values.items() if value or key not in absent}
-    if "backlash" in values and not {"series_stiffness", "series_damping"} & set(values):
-        raise ValueError("backlash without series_stiffness: state the stiffness of the contact")
     if device.friction in _SIGN or "load_friction" in values:
         values.setdefault("transition_velocity", TRANSITION_VELOCITY)
     meaning = f"the device: {', '.join([device.friction, *values])}"
     case = Case(NAME, meaning, device.friction, values, stiff=_stiff(device, values, step))
-    return case, float(given.get("inertance", 0.0))
+    return case, float(device.given.get("inertance", 0.0))
 
 
 def _stiff(device: Device, values: dict[str, float], step: float) -> bool:

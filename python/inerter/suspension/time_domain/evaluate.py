@@ -184,6 +184,8 @@ def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
         rear_stiffness=None if rear is None else rear.stiffness,
         rear_damping=None if rear is None else rear.damping,
         rear_inertance=None if rear is None else rear.inertance,
+        springs=design.springs,
+        rear_springs={} if rear is None else rear.springs,
         numbers=numbers_of(piece.layout, case.name) if plan.car == QuarterCar() else "",
         value=value,
         low=low,

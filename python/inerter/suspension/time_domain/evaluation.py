@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
+
+from inerter.suspension.optimum import finite
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -13,11 +16,13 @@ class Evaluation:
     Attributes
     ----------
     layout, case, index, road, stiffness, damping, inertance
-        What was evaluated; of a half-car the front strut.
+        What was evaluated; of a half- or full car the front strut.
     rear_stiffness, rear_damping, rear_inertance
-        Of a half-car's rear strut; None else.
+        Of the rear strut; None of a quarter-car.
+    springs, rear_springs
+        Inner springs of the layout [N/m] by name, inf for a rigid one.
     car
-        "quarter" or "half".
+        "quarter", "half" or "full".
     numbers
         The case in the paper, "2.3" for case 3 of Table 2.
     value, low, high
@@ -77,16 +82,21 @@ class Evaluation:
     lift_off: float | None = None
     tyre_peak: float | None = None
     pulling: float | None = None
+    springs: Mapping[str, float] = field(default_factory=dict)
+    rear_springs: Mapping[str, float] = field(default_factory=dict)
     peaks: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = ()
 
     def json(self) -> dict[str, Any]:
-        """Plain data: of a half-car the struts as "front" and "rear"."""
+        """Plain data: of a half- or full car the struts as "front" and "rear"."""
         row = asdict(self)
+        springs, behind = (finite(row.pop(name)) for name in ("springs", "rear_springs"))
         rear = {name: row.pop(f"rear_{name}") for name in ("stiffness", "damping", "inertance")}
         if self.rear_stiffness is not None:
             row["front"] = {"stiffness": self.stiffness} | {
                 name: row.pop(name) for name in ("damping", "inertance")
             }
-            row["rear"] = rear
-        return row
+            row["front"] |= springs
+            row["rear"] = rear | behind
+            return row
+        return row | springs

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.indices import INDICES, comfort_function, tyre_function
+from inerter.suspension.comfort_weighting import weighting
+from inerter.suspension.indices import INDICES, comfort_function, travel_function, tyre_function
 from inerter.suspension.layouts import LAYOUTS, SeriesPair
 from inerter.suspension.optimum import optimise
 from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.quarter_car import QuarterCar, Road
-from inerter.suspension.time_domain.design import Design
+from inerter.suspension.time_domain.design import Design, both
 from inerter.suspension.time_domain.model import Car
 from inerter.suspension.time_domain.road import PeriodicRoad
-from inerter.suspension.vehicle.strut import VehicleStrut, branch
+from inerter.suspension.vehicle.cars import Vehicle
+from inerter.suspension.vehicle.state_space import system
+from inerter.suspension.vehicle.strut import Branch, VehicleStrut, branch
 
 Array = NDArray[np.float64]
 
@@ -32,7 +37,7 @@ def spectrum(road: PeriodicRoad) -> Road:
 
 
 def stiffnesses_of(car: Car, stiffness: float) -> tuple[float, ...]:
-    """Of every strut [N/m]: a half-car's rear one has the ratio to the front of the car's own."""
+    """Of every strut [N/m]: the rear one has the ratio to the front of the car's own."""
     if isinstance(car, QuarterCar):
         return (stiffness,)
     return stiffness, stiffness * car.rear.stiffness / car.front.stiffness
@@ -45,10 +50,12 @@ def exact_index(
     if not isinstance(car, QuarterCar):
         from inerter.suspension.vehicle.indices import vehicle_index
 
-        front, rear = (VehicleStrut(s.stiffness, s.damping, s.inertance) for s in design.struts)
-        return float(vehicle_index(index, car, layout, (front, rear), pair, road))
+        struts = [
+            VehicleStrut(s.stiffness, s.damping, s.inertance, **s.more) for s in design.struts
+        ]
+        return float(vehicle_index(index, car, layout, (struts[0], struts[1]), pair, road))
     network = LAYOUTS[layout].stiffness(
-        design.stiffness, design.damping, design.inertance, pair=pair
+        design.stiffness, design.damping, design.inertance, **design.more, pair=pair
     )
     return float(np.squeeze(INDICES[index].evaluate(car, road, network)))
 
@@ -67,18 +74,15 @@ def linear_optimum(
 
     `given`: (c, b) of every strut that are not free, None where they are.
     """
+    names = LAYOUTS[layout].variables
     fixed = tuple(
         tuple(
             (name, x)
             for name, x in zip(("damping", "inertance"), pair_given, strict=True)
-            if x is not None and (layout != "S1" or name == "damping")
+            if x is not None and name in names
         )
         for pair_given in given
     )
-
-    def inertance(found: float) -> float:
-        return 0.0 if layout == "S1" else max(found, SMALLEST_INERTANCE)
-
     if not isinstance(car, QuarterCar):
         from inerter.suspension.vehicle.optimum import optimise_vehicle
         from inerter.suspension.vehicle.problem import VehicleProblem
@@ -95,13 +99,7 @@ def linear_optimum(
                 fixed=(fixed[0], fixed[-1]) if fixed else ((), ()),
             )
         )
-        front, rear = best.struts
-        return Design(
-            front.stiffness,
-            front.damping,
-            inertance(front.inertance),
-            rear=Design(rear.stiffness, rear.damping, inertance(rear.inertance)),
-        )
+        return both([_design(layout, s.stiffness, s.layout_values()) for s in best.struts])
     found = optimise(
         SuspensionProblem(
             car=car,
@@ -113,7 +111,29 @@ def linear_optimum(
             fixed=fixed[0] if fixed else (),
         )
     )
-    return Design(stiffness, found.damping, inertance(found.inertance))
+    values = {"damping": found.damping, "inertance": found.inertance}
+    if found.relaxation_stiffness is not None:
+        values["relaxation_stiffness"] = found.relaxation_stiffness
+    if found.springs:
+        k1, k2 = found.springs["damper_stiffness"], found.springs["inerter_stiffness"]
+        values |= centring_of(stiffness, k1, k2)
+    return _design(layout, stiffness, values)
+
+
+def centring_of(stiffness: float, k1: float, k2: float) -> dict[str, float]:
+    """Share and ratio of centring springs k_1, k_2 in a strut of that stiffness [N/m]."""
+    if k1 == 0.0 or k2 == 0.0:
+        return {"centring_share": 0.0, "centring_ratio": 1.0}
+    return {"centring_share": k1 * k2 / (k1 + k2) / stiffness, "centring_ratio": k1 / k2}
+
+
+def _design(layout: str, stiffness: float, values: Mapping[str, float]) -> Design:
+    own: dict[str, Any] = {
+        name: values[name] for name in LAYOUTS[layout].variables if name in values
+    }
+    if LAYOUTS[layout].has_inerter:
+        own["inertance"] = max(values.get("inertance", 0.0), SMALLEST_INERTANCE)
+    return Design(stiffness, **own)
 
 
 def linear_indices(
@@ -136,7 +156,7 @@ def linear_indices(
         front, rear = _branches(layout, start, values, pair)
         return np.asarray(quick_rms_index(index, car, road, (front, rear)))
     network = LAYOUTS[layout].stiffness(
-        start.stiffness, values[:, 0, 0], values[:, 0, 1], pair=pair
+        start.stiffness, values[:, 0, 0], values[:, 0, 1], **start.more, pair=pair
     )
     return np.asarray(INDICES[index].evaluate(car, road, network))
 
@@ -149,12 +169,12 @@ def linear_gains(
     Designs as in `linear_indices`.
     """
     if not isinstance(car, QuarterCar):
-        from inerter.suspension.vehicle.load import Load
+        from inerter.suspension.vehicle.indices import load_of
 
         front, rear = _branches(layout, start, values, pair)
-        return np.asarray(Load(car, (front, rear)).gain(2.0 * np.pi * f))
+        return np.asarray(load_of(car, (front, rear)).gain(2.0 * np.pi * f))
     network = LAYOUTS[layout].stiffness(
-        start.stiffness, values[:, None, 0, 0], values[:, None, 0, 1], pair=pair
+        start.stiffness, values[:, None, 0, 0], values[:, None, 0, 1], **start.more, pair=pair
     )
     return np.abs(car.body_per_load(network)(2j * np.pi * f))
 
@@ -168,35 +188,60 @@ def road_density(
     speed: float,
     f: Array,
 ) -> Array:
-    """Squared gain of J1's or J3's signal per velocity of the road, at frequencies [Hz], (n,).
+    """Squared gain of an index's signal per velocity of the road, at frequencies [Hz], (n,).
 
-    Of a half-car the mean over both axles, the rear one on the same road later.
+    J1, J1w, J3 or travel, of several wheels the mean, the rear ones on the same road later.
     """
     s = 2j * np.pi * f
+    weight = np.abs(weighting()(s)) ** 2 if index == "J1w" else 1.0
+    signal = "J1" if index == "J1w" else index
     if isinstance(car, QuarterCar):
         network = LAYOUTS[layout].stiffness(
-            design.stiffness, design.damping, design.inertance, pair=pair
+            design.stiffness, design.damping, design.inertance, **design.more, pair=pair
         )
-        signal = comfort_function if index == "J1" else tyre_function
-        return np.abs(signal(car, network)(s)) ** 2
-    from inerter.suspension.vehicle.state_space import system
-
+        function = {"J1": comfort_function, "J3": tyre_function, "travel": travel_function}[signal]
+        return weight * np.abs(function(car, network)(s)) ** 2
     front, rear = (
-        branch(LAYOUTS[layout], x.stiffness, x.damping, x.inertance, pair=pair)
+        branch(LAYOUTS[layout], x.stiffness, x.damping, x.inertance, **x.more, pair=pair)
         for x in design.struts
     )
-    (plane,) = car.planes
-    matrices = system(plane, (front, rear))
-    rows = matrices.acceleration if index == "J1" else matrices.tyre
+    return weight * plane_densities(car, (front, rear), speed, s)[signal]
+
+
+def plane_densities(
+    car: Vehicle, branches: tuple[Branch, Branch], speed: float, s: NDArray[Any]
+) -> dict[str, Array]:
+    """J1, J3, travel of a half- or full car: squared gains, means over its wheels, (n,) each."""
     later = np.exp(-s * car.wheelbase / speed)
-    drive = matrices.front + later[:, None] * matrices.rear
-    inverse = s[:, None, None] * np.eye(len(matrices.front)) - matrices.matrix
-    states = np.linalg.solve(inverse, drive[:, :, None])
-    return np.mean(np.abs(rows @ states)[:, :, 0] ** 2, axis=1)
+    warp = (later - 1.0) / s
+    total = {name: np.zeros(len(s)) for name in ("J1", "J3", "travel")}
+    for plane in car.planes:
+        m = system(plane, branches)
+        drive = m.front + later[:, None] * m.rear
+        if m.warp is not None:
+            drive = drive + warp[:, None] * m.warp
+        inverse = s[:, None, None] * np.eye(len(m.front)) - m.matrix
+        x = np.linalg.solve(inverse, drive[:, :, None])[:, :, 0]
+        bent = 0.0 if m.acceleration_warp is None else warp[:, None] * m.acceleration_warp
+        signals = {
+            "J1": x @ m.acceleration.T + bent,
+            "J3": x @ m.tyre.T,
+            "travel": x @ m.travel.T + warp[:, None] * m.travel_warp,
+        }
+        for name, signal in signals.items():
+            total[name] += plane.weight * np.mean(np.abs(signal) ** 2, axis=1)
+    return total
 
 
 def _branches(layout: str, start: Design, values: Array, pair: SeriesPair | None) -> list:
     return [
-        branch(LAYOUTS[layout], strut.stiffness, values[:, i, 0], values[:, i, 1], pair=pair)
+        branch(
+            LAYOUTS[layout],
+            strut.stiffness,
+            values[:, i, 0],
+            values[:, i, 1],
+            **strut.more,
+            pair=pair,
+        )
         for i, strut in enumerate(start.struts)
     ]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from inerter.folder import write_files
+from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.plan import Plan
@@ -22,7 +24,8 @@ from inerter.suspension.time_domain.samples import CONFIDENCE
 SCHEMA = "inerter.suspension.evaluation/1"
 
 _SCALE = {"J1": (1.0, "m/s^2"), "J3": (1.0, "N"), "J5": (1e5, "1e-5 m/N")}
-_FLAT = [f.name for f in fields(Evaluation) if f.name not in ("peaks", "notes")]
+_NOT_FLAT = ("peaks", "notes", "springs", "rear_springs")
+_FLAT = [f.name for f in fields(Evaluation) if f.name not in _NOT_FLAT]
 
 
 def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
@@ -50,8 +53,16 @@ def write_evaluation(plan: Plan, rows: Sequence[Evaluation], folder: Path) -> li
     """
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(_FLAT)
-    writer.writerows([getattr(row, name) for name in _FLAT] for row in rows)
+    springs = [
+        {**row.springs, **{f"rear_{name}": k for name, k in row.rear_springs.items()}}
+        for row in rows
+    ]
+    more = list(dict.fromkeys(name for each in springs for name in each))
+    writer.writerow([*_FLAT, *more])
+    for row, own in zip(rows, springs, strict=True):
+        values = [getattr(row, name) for name in _FLAT]
+        shown = ["rigid" if own.get(name) == math.inf else own.get(name, "") for name in more]
+        writer.writerow([*values, *shown])
     texts = {"evaluation.json": json_text(plan, rows), "evaluation.csv": table.getvalue()}
     return write_files(folder, texts)
 
@@ -73,7 +84,9 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
         quarter = plan.car == QuarterCar()
         for name in ("strut", "case", *(["paper"] if quarter else [])):
             table.add_column(name, no_wrap=True)
-        for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
+        inner = any(row.springs for row in rows)
+        heads = (f"{index} ± 95 %", "exact", "loss %", "c", "b", *(["springs"] if inner else []))
+        for name in heads:
             table.add_column(name, justify="right", no_wrap=True)
         digits = ".4g" if quarter else ".3g"
         for row in rows:
@@ -89,15 +102,18 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
                 "" if ideal else _change(row),
                 _both(f"{row.damping:.0f}", row.rear_damping, ".0f"),
                 _both(f"{row.inertance:{digits}}", row.rear_inertance, digits)
-                if row.layout != "S1"
+                if LAYOUTS[row.layout].has_inerter
                 else "",
+                *([_springs(row)] if inner else []),
             )
         console.print(table, "", sep="\n")
     console.print(
         ("paper: table.case of Wang and Su. " if plan.car == QuarterCar() else "")
         + "exact: norm of the transfer function; in brackets, that of the same design without "
         "friction and play. loss: against the ideal inerter at its own optimum, road by road. "
-        "c [N s/m], b [kg]" + ("; front/rear." if plan.car_name == "half" else "."),
+        "c [N s/m], b [kg]"
+        + (", springs k_b or k_1, k_2, k_b [kN/m]" if any(row.springs for row in rows) else "")
+        + ("; front/rear." if plan.car_name != "quarter" else "."),
         markup=False,
     )
     for note in dict.fromkeys(note for row in rows for note in row.notes):
@@ -109,6 +125,17 @@ def _exact(row: Evaluation, scale: float) -> str:
     if row.exact is not None:
         return f"{scale * row.exact:.5g}"
     return "" if row.linear is None else f"({scale * row.linear:.5g})"
+
+
+def _springs(row: Evaluation) -> str:
+    """Inner springs in kN/m, without what stands beside them."""
+    names = ("damper_stiffness", "inerter_stiffness", "relaxation_stiffness")
+
+    def text(springs: Mapping[str, float]) -> str:
+        own = [springs[name] for name in names if name in springs]
+        return ", ".join("rigid" if k == math.inf else f"{k / 1e3:.3g}" for k in own)
+
+    return "/".join(text(each) for each in (row.springs, row.rear_springs) if each)
 
 
 def _both(front: str, rear: float | None, form: str) -> str:

@@ -18,9 +18,8 @@ from inerter.suspension.comfort_weighting import weighting
 from inerter.suspension.indices import comfort_function, travel_function, tyre_function
 from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.time_domain.linear import centring_of, plane_densities
 from inerter.suspension.time_domain.road import PeriodicRoad
-from inerter.suspension.vehicle.cars import Vehicle
-from inerter.suspension.vehicle.state_space import system
 from inerter.suspension.vehicle.strut import Branch, branch
 
 Array = NDArray[np.float64]
@@ -63,31 +62,8 @@ def _gains(car: CarParts, road: PeriodicRoad, f: Array) -> Iterator[tuple[str, A
             yield name, np.abs(function(linear, network)(s)) ** 2
         return
     assert car.rear is not None
-    yield from _of_planes(linear, (_branch(car.front), _branch(car.rear)), road.speed, s).items()
-
-
-def _of_planes(
-    car: Vehicle, branches: tuple[Branch, Branch], speed: float, s: NDArray[Any]
-) -> dict[str, Array]:
-    later = np.exp(-s * car.wheelbase / speed)
-    warp = (later - 1.0) / s
-    total = {name: np.zeros(len(s)) for name in ("J1", "J3", "travel")}
-    for plane in car.planes:
-        m = system(plane, branches)
-        drive = m.front + later[:, None] * m.rear
-        if m.warp is not None:
-            drive = drive + warp[:, None] * m.warp
-        inverse = s[:, None, None] * np.eye(len(m.front)) - m.matrix
-        x = np.linalg.solve(inverse, drive[:, :, None])[:, :, 0]
-        bent = 0.0 if m.acceleration_warp is None else warp[:, None] * m.acceleration_warp
-        signals = {
-            "J1": x @ m.acceleration.T + bent,
-            "J3": x @ m.tyre.T,
-            "travel": x @ m.travel.T + warp[:, None] * m.travel_warp,
-        }
-        for name, signal in signals.items():
-            total[name] += plane.weight * np.mean(np.abs(signal) ** 2, axis=1)
-    return total
+    branches = (_branch(car.front), _branch(car.rear))
+    yield from plane_densities(linear, branches, road.speed, s).items()
 
 
 def _branch(axle: AxleParts) -> Branch:
@@ -102,7 +78,5 @@ def _values(s: StrutParts) -> tuple[float, dict[str, Any]]:
     if s.relaxation_stiffness:
         values["relaxation_stiffness"] = square * s.relaxation_stiffness
     if LAYOUTS[s.layout].centred:
-        k1, k2 = s.damper_stiffness, s.inerter_stiffness
-        values["centring_share"] = k1 * k2 / (k1 + k2) / s.stiffness
-        values["centring_ratio"] = k1 / k2
+        values |= centring_of(s.stiffness, s.damper_stiffness, s.inerter_stiffness)
     return s.wheel_rate, values

@@ -34,13 +34,14 @@ import numpy as np
 from mujoco import rollout
 from numpy.typing import NDArray
 
-from inerter.cars.mjcf import car_mjcf
+from inerter.cars.mjcf import NODES, car_mjcf
 from inerter.cars.parts import CarParts
 from inerter.plugin import load_plugin
 from inerter.suspension.comfort_weighting import weighting
+from inerter.suspension.time_domain.model import step_matrix
 from inerter.suspension.time_domain.profile import Profile
 from inerter.suspension.time_domain.resolution import ERROR, LONGEST
-from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.time_domain.road import PeriodicRoad, track
 from inerter.suspension.time_domain.samples import interval
 from inerter.suspension.time_domain.simulate import FADE, RunSettings
 
@@ -52,9 +53,7 @@ UNITS = {
 }  # fmt: skip
 """Figures of a run, with their units."""
 
-_SECOND_SEED = 1_000_003
 _SLOWEST = 1e-3
-_SMALL = 1e-6
 
 
 @dataclass(frozen=True)
@@ -184,6 +183,13 @@ def evaluate_own(
 
 def _build(car: CarParts, step: float, one_sided: bool) -> _Model:
     load_plugin()
+    for axle in car.axles.values():
+        shaft = {"series_stiffness", "series_damping"} & set(dict(axle.strut.device))
+        if shaft and axle.strut.layout in NODES:
+            raise ValueError(
+                f"layout {axle.strut.layout} with the shaft of its device: RK4 cannot step the "
+                f"node between them; take --layout {axle.strut.layout} --device in place of own"
+            )
     spec: Any = mujoco.MjSpec.from_string(car_mjcf(car))
     spec.option.timestep = step
     # there are no contacts; looking for them takes time
@@ -228,18 +234,7 @@ def _at_once(model: mujoco.MjModel, corners: Sequence[tuple]) -> Array:
 
 def _slowest(model: mujoco.MjModel) -> float:
     """Rate [1/s] at which the slowest mode fades that the car has at rest and that is seen."""
-    data = mujoco.MjData(model)
-    size = model.nq + model.nv + model.na
-    kind = mujoco.mjtState.mjSTATE_PHYSICS
-    matrix = np.empty((size, size))
-    ends = np.empty((2, size))
-    for n in range(size):
-        for end, change in zip(ends, (_SMALL, -_SMALL), strict=True):
-            mujoco.mj_resetData(model, data)
-            mujoco.mj_setState(model, data, change * np.eye(size)[n], kind)
-            mujoco.mj_step(model, data)
-            mujoco.mj_getState(model, data, end, kind)
-        matrix[:, n] = (ends[0] - ends[1]) / (2.0 * _SMALL)
+    matrix = step_matrix(model)
     rates = -np.log(np.abs(np.linalg.eigvals(matrix)).clip(1e-12)) / model.opt.timestep
     # an inerter in series with a damper may stand anywhere: that mode does not fade, nor is it felt
     seen = rates[rates > _SLOWEST]
@@ -282,19 +277,13 @@ def _over_random(
             "take 1e-3 or 5e-4"
         )
     lead = round(settle / step)
-    both = car.kind == "full"
-    together, apart = (math.sqrt((1.0 + sign * car.correlation) / 2.0) for sign in (1.0, -1.0))
     times = (np.arange(lead + count) - lead) % count
     fade = np.clip((np.arange(lead + count) + 0.5) * step / FADE, 0.0, 1.0)
     held, heights = [], []
     for *_, behind, _, y in built.corners:
-        one, other = (function(seed, count, behind) for function in (road.held, road.instants))
-        if both:
-            side = math.copysign(apart, y)
-            one = together * one + side * road.held(seed + _SECOND_SEED, count, behind)
-            other = together * other + side * road.instants(seed + _SECOND_SEED, count, behind)
-        held.append(one[times] * fade)
-        heights.append(other[times])
+        side = round(math.copysign(1.0, y)) if car.kind == "full" else 0
+        for f, into, rising in ((road.held, held, fade), (road.instants, heights, 1.0)):
+            into.append(track(f, seed, count, behind, side, car.correlation)[times] * rising)
     sensed, forces = _run(built, np.array(held).T, np.array(heights).T, lead)
     # what the steps cannot follow acts on the tyre, and through a rigid inerter on the body
     missed = float(road.left_out(count)[0, 0])

@@ -5,10 +5,11 @@ A piece knows everything that it needs and gives the same digits wherever it is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from inerter.suspension.layouts import LAYOUTS, Layout
 from inerter.suspension.time_domain.cases import Case
-from inerter.suspension.time_domain.design import Design
+from inerter.suspension.time_domain.design import Design, both
 from inerter.suspension.time_domain.linear import linear_optimum, spectrum, stiffnesses_of
 from inerter.suspension.time_domain.model import compiled
 from inerter.suspension.time_domain.plan import Plan
@@ -63,15 +64,18 @@ def work(piece: Piece) -> Found:
         A design that cannot be simulated with the step of the settings.
     """
     plan, index, layout, case = piece.plan, piece.index, piece.layout, piece.case
-    model = compiled(layout, case, plan.car, one_sided=plan.leaves and index != "J5")
     searched = plan.reoptimise and not case.linear and not piece.own
     design = linear_design(piece)
+    step = plan.settings.step
+    leaves = plan.leaves and index != "J5"
+    model = compiled(layout, case, plan.car, one_sided=leaves, design=design, step=step)
     if searched:
         design = reoptimised(plan, model, index, design)
     found = samples(plan, model, index, design, plan.seeds)
     pulling = None
     if plan.leaves and found.beside.get("lift_off", 0.0) > NOTED:
-        pulling = samples(plan, compiled(layout, case, plan.car), index, design, plan.seeds)
+        never = compiled(layout, case, plan.car, design=design, step=step)
+        pulling = samples(plan, never, index, design, plan.seeds)
     return Found(design, found, searched, pulling)
 
 
@@ -85,24 +89,25 @@ def linear_design(piece: Piece) -> Design:
     """
     plan = piece.plan
     given = () if piece.own else plan.given
-    if given and None not in [x for pair in given for x in pair]:
-        return _given(plan, piece.layout, piece.stiffness)
-    if piece.layout == "S1" and any(c is not None for c, _ in given):
-        pairs = tuple((c, 0.0) for c, _ in given)
-        return _given(replace(plan, given=pairs), piece.layout, piece.stiffness)
-    if piece.layout == "S3" and any(b == 0.0 for _, b in given):
-        raise ValueError("S3: inertance is 0; give one, or take layout S1")
+    layout = LAYOUTS[piece.layout]
+    known: list[dict[str, float | None]] = [
+        dict(zip(("damping", "inertance"), pair, strict=True)) for pair in given
+    ]
+    if known and all(pair.get(name) is not None for pair in known for name in layout.variables):
+        return _given(plan, layout, piece.stiffness)
+    if layout.has_inerter and any(b == 0.0 for _, b in given):
+        raise ValueError(f"{piece.layout}: inertance is 0; give one, or take a layout without")
     road, pair = spectrum(plan.road), piece.case.pair
     return linear_optimum(piece.index, piece.layout, piece.stiffness, pair, plan.car, road, given)
 
 
-def _given(plan: Plan, layout: str, stiffness: float) -> Design:
-    """The design that the plan states, without inertance in S1."""
+def _given(plan: Plan, layout: Layout, stiffness: float) -> Design:
+    """The design that the plan states, without inertance where there is no inerter."""
     springs = stiffnesses_of(plan.car, stiffness)
     pairs = plan.given * (len(springs) if len(plan.given) == 1 else 1)
-    struts = [
-        Design(k, c or 0.0, 0.0 if layout == "S1" else b or 0.0)
-        for k, (c, b) in zip(springs, pairs, strict=True)
-    ]
-    rear = struts[1] if len(struts) == 2 else None
-    return Design(struts[0].stiffness, struts[0].damping, struts[0].inertance, rear=rear)
+    return both(
+        [
+            Design(k, c or 0.0, (b or 0.0) if layout.has_inerter else 0.0)
+            for k, (c, b) in zip(springs, pairs, strict=True)
+        ]
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.cases import CASES, Case
-from inerter.suspension.time_domain.model import Car, compiled
+from inerter.suspension.time_domain.model import LAYOUTS, Car
 from inerter.suspension.time_domain.road import PeriodicRoad, paper_road
 from inerter.suspension.time_domain.simulate import RunSettings
 
@@ -21,14 +21,15 @@ class Plan:
     Attributes
     ----------
     layouts, cases, indices, stiffnesses
-        Every combination is a row; S1 has the ideal case only. Stiffness [N/m] of the front strut.
+        Every combination is a row; layouts without inerter have the ideal case only.
+        Stiffness [N/m] of the front strut.
     road
         Of which `seeds` roads are drawn; `search_seeds` of them are those of a search.
     reoptimise
         Seek c and b for every case that is not linear.
     given
         (c [N s/m], b [kg]) of every strut, front first, in place of an optimum; one pair counts
-        for both struts of a half-car. None for the one that is sought.
+        for both struts of a half- or full car. None for the one that is sought.
     one_sided
         A tyre leaves the road where it would have to pull by more than its static load. If not
         told: everywhere but on the paper's road, whose study has tyres that pull.
@@ -76,7 +77,7 @@ class Plan:
             raise ValueError(f"amplitude is {self.amplitude:g} N: give a positive number")
         if self.reoptimise and any(None not in pair for pair in self.given):
             raise ValueError("a given damping and inertance cannot be sought anew: take one of two")
-        if len(self.given) not in (0, 1, 1 if self.car_name == "quarter" else 2):
+        if len(self.given) not in (0, 1, 1 if isinstance(self.car, QuarterCar) else 2):
             raise ValueError(f"{len(self.given)} struts given, but the car is a {self.car_name}")
         for damping, inertance in self.given:
             if damping is not None and not 0.0 < damping < math.inf:
@@ -84,14 +85,17 @@ class Plan:
             if inertance is not None and not 0.0 <= inertance < math.inf:
                 raise ValueError(f"inertance is {inertance:g} kg: give a number that is 0 or above")
         for layout in self.layouts:
-            compiled(layout, CASES["ideal"], self.car)
+            if layout not in LAYOUTS:
+                raise ValueError(f"layout {layout!r} is not known: take {', '.join(LAYOUTS)}")
         if not self.rows:
-            raise ValueError("layout S1 has no inerter: nothing but the case ideal is one of it")
+            raise ValueError(
+                f"layout {self.layouts[0]} has no inerter: nothing but the case ideal is one of it"
+            )
 
     @property
     def car_name(self) -> str:
-        """Name of the car, quarter or half."""
-        return "quarter" if isinstance(self.car, QuarterCar) else "half"
+        """Name of the car: quarter, half or full."""
+        return "quarter" if isinstance(self.car, QuarterCar) else self.car.name
 
     @property
     def leaves(self) -> bool:
@@ -115,5 +119,5 @@ class Plan:
             for index in self.indices
             for layout in self.layouts
             for case in self.cases
-            if layout != "S1" or case.ideal
+            if LAYOUTS[layout].has_inerter or case.ideal
         ]

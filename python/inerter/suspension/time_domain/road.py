@@ -23,7 +23,7 @@ Not modelled: discrete events, changes along the road.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -39,6 +39,8 @@ SPACING = 0.1
 
 REFERENCE_FREQUENCY = 0.1
 """n0 of ISO 8608 [cycles/m]."""
+
+_SECOND_SEED = 1_000_003
 
 ISO_RANGE = (0.01, 10.0)
 """Spatial frequencies of ISO roads [cycles/m]: the limits that ISO 8608 names for on-road use."""
@@ -176,6 +178,31 @@ class PeriodicRoad:
         lines[self.first : self.first + amplitudes.size] = amplitudes * np.exp(1j * phases)
         # the imaginary part of the sum of exponentials
         return 0.5 * count * np.fft.irfft(-1j * lines, count)
+
+
+def track(
+    make: Callable[[int, int, float], Array],
+    seed: int,
+    count: int,
+    behind: float,
+    side: int,
+    correlation: float,
+) -> Array:
+    """What `make` (`instants` or `held` of a road) gives under a wheel, (count,).
+
+    Left (`side` 1) and right (-1) are sums of two independent roads with that correlation; 0 is the
+    one track of a car that has no other.
+    """
+    one = make(seed, count, behind)
+    if side == 0:
+        return one
+    together, apart = (math.sqrt((1.0 + sign * correlation) / 2.0) for sign in (1.0, -1.0))
+    return together * one + side * apart * make(seed + _SECOND_SEED, count, behind)
+
+
+def correlations(sides: Sequence[int], correlation: float) -> Array:
+    """Of the roads under wheels on those sides, (wheels, wheels)."""
+    return np.where(np.equal.outer(sides, sides), 1.0, correlation)
 
 
 def paper_road(roughness: Roughness | None = None) -> PeriodicRoad:

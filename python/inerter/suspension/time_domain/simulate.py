@@ -38,7 +38,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.suspension.time_domain.car_model import CarModel
 from inerter.suspension.time_domain.design import Design
-from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.time_domain.road import PeriodicRoad, correlations, track
 from inerter.suspension.time_domain.stepping import step_all
 
 Array = NDArray[np.float64]
@@ -215,9 +215,16 @@ def _road_squares(
     make = road.instants if car.implicit else road.held
     behind = [wheel.behind for wheel in car.wheels]
     # shape (roads, count, wheels)
-    shown = np.array([[road.instants(seed, count, x) for x in behind] for seed in seen])
-    driven = np.array([[make(seed, count, x) for x in behind] for seed in seen])
-    shown, driven = np.moveaxis(shown, 1, 2), np.moveaxis(driven, 1, 2)
+    sides, shared = [wheel.side for wheel in car.wheels], getattr(car.car, "correlation", 1.0)
+    places = list(zip(behind, sides, strict=True))
+    shown, driven = (
+        np.moveaxis(
+            np.array([[track(f, seed, count, x, s, shared) for x, s in places] for seed in seen]),
+            1,
+            2,
+        )
+        for f in (road.instants, make)
+    )
     which = [seen.index(seed) for seed in seeds]
     kt = np.array([wheel.tyre_stiffness for wheel in car.wheels])
     # accelerations per height of the road, (simulations, points, wheels)
@@ -253,7 +260,7 @@ def _road_squares(
         highest = [-force.min(axis=(1, 2)), np.abs(chunk.travels[:, skip:]).max(axis=(1, 2))]
         peaks = np.maximum(peaks, highest)
     # sinusoids too quick for the step move nothing; they press the tyres
-    rest = road.left_out(count, behind)
+    rest = road.left_out(count, behind) * correlations(sides, shared)
     quick = np.einsum("spw,wv,spv->s", at_once, rest, at_once)
     points, wheels = at_once.shape[1:]
     return np.array(

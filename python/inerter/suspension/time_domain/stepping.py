@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from inerter.engine_batch import batch
 from inerter.simulate.checks import engine_warnings
-from inerter.suspension.time_domain.car_model import CarModel
+from inerter.suspension.time_domain.car_model import FIELDS, CarModel
 from inerter.suspension.time_domain.design import Design
 
 Array = NDArray[np.float64]
@@ -125,21 +125,12 @@ def _worlds(car: CarModel, designs: Sequence[Design], steps: Array, threads: int
         integrators.mjINT_DISCRETE if car.implicit else integrators.mjINT_RK4
     )
     worlds.expand("opt.timestep")[:] = steps
-    for i, place in enumerate(car.struts):
-        struts = [design.struts[i] for design in designs]
-        worlds.expand("tendon_stiffness")[:, place.spring] = [s.stiffness for s in struts]
-        worlds.expand("tendon_damping")[:, place.damper] = [s.damping for s in struts]
-        if place.device is None:
-            continue
-        live = place.device.live
-        inertances = [s.inertance for s in struts]
-        if "inertance" in live:
-            worlds.expand("numeric_data")[:, live["inertance"]] = inertances
-        else:
-            worlds.expand("actuator_armature")[:, place.device.actuator] = inertances
-        for key, value in car.case.parameters.items():
-            column = [s.parameters.get(key, value) for s in struts]
-            worlds.expand("numeric_data")[:, live[key]] = column
+    # designs are alike on many roads
+    models = {id(design): car.of(design) for design in designs}
+    chosen = [models[id(design)] for design in designs]
+    for name in FIELDS:
+        if getattr(model, name).size:
+            worlds.expand(name)[:] = [getattr(each, name) for each in chosen]
     worlds.set_const()
     return worlds
 

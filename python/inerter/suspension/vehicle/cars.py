@@ -66,6 +66,8 @@ class Plane:
         Its share in mean squares over the wheels.
     bars
         Stiffness beside the struts, front and rear [N/m]: anti-roll bars.
+    turn
+        Angle per displacement [rad/m]: pitch per rise of the rear above the front, roll per rise.
     """
 
     inertia: tuple[tuple[float, ...], ...]
@@ -73,6 +75,7 @@ class Plane:
     tyre_stiffnesses: tuple[float, float]
     weight: float = 1.0
     bars: tuple[float, float] = (0.0, 0.0)
+    turn: float = 0.0
 
     @property
     def shape(self) -> NDArray[np.float64]:
@@ -134,6 +137,7 @@ class HalfCar:
             (self.front.wheel_mass, self.rear.wheel_mass),
             (self.front.tyre_stiffness, self.rear.tyre_stiffness),
             weight,
+            turn=1.0 / self.wheelbase,
         )
 
     @property
@@ -227,6 +231,7 @@ class FullCar:
             side.tyre_stiffnesses,
             apart,
             (self.front.anti_roll_stiffness, self.rear.anti_roll_stiffness),
+            turn=2.0 / self.track,
         )
         return (side, roll) if apart > 0.0 else (side,)
 

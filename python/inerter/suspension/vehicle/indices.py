@@ -6,6 +6,7 @@ half-car indices. Each becomes theirs where the car is two or four equal quarter
 - J1w: the same, weighted by ISO 2631's Wk
 - J3: root of the mean over the 2 (4) wheels of the mean square of the dynamic tyre force [N]
 - travel: root of the mean over the 2 (4) struts of the mean square of the travel [m]
+- pitch, roll: root of the mean square of the body's angular acceleration [rad/s^2]
 - J5: largest displacement of the centre of mass per vertical load on it [m/N] over all frequencies
 
 The rear wheels feel the road of their own side later by wheelbase / V. The density of the road is
@@ -22,6 +23,7 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
+from inerter.suspension.own_index import combined, is_own, slopes
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.load import Load
@@ -63,7 +65,7 @@ def vehicle_index(
     ValueError
         The index or the layout is not known.
     """
-    if index not in INDICES:
+    if index not in INDICES and not is_own(index):
         raise ValueError(f"index {index!r} is not known: choose from {', '.join(INDICES)}")
     if isinstance(layout, str) and layout not in LAYOUTS:
         raise ValueError(f"layout {layout!r} is not known: choose from {', '.join(LAYOUTS)}")
@@ -90,7 +92,16 @@ def load_of(car: Vehicle, branches: Branches) -> Load:
 def rms_index(
     index: str, car: Vehicle, road: Road, branches: Branches, step: float | None = None
 ) -> tuple[float, NDArray[Any]]:
-    """J1 or J3 of one design, and with a complex `step` the gradient, see `mean_square`."""
+    """A smooth index of one design, with a complex `step` its gradient, see `mean_square`."""
+    own = INDICES[index]
+    if own.function is not None:
+        parts = {part: rms_index(part, car, road, branches, step) for part in own.parts}
+        values = {part: np.asarray(value) for part, (value, _) in parts.items()}
+        found = float(combined(index, own.function, values))
+        if not math.isfinite(found) or step is None:
+            return found, 0.0 * parts[own.parts[0]][1]
+        change = slopes(index, own.function, {part: value for part, (value, _) in parts.items()})
+        return found, sum((change[part] * slope for part, (_, slope) in parts.items()), np.zeros(1))
     delay = car.wheelbase / road.velocity
     total, gradient = 0.0, np.zeros(0)
     for plane in car.planes:
@@ -104,7 +115,11 @@ def rms_index(
 
 
 def quick_rms_index(index: str, car: Vehicle, road: Road, branches: Branches) -> NDArray[Any]:
-    """J1 or J3 of arrays of designs, good enough for a search."""
+    """A smooth index of arrays of designs, good enough for a search."""
+    own = INDICES[index]
+    if own.function is not None:
+        values = {part: quick_rms_index(part, car, road, branches) for part in own.parts}
+        return np.asarray(combined(index, own.function, values))
     delay = car.wheelbase / road.velocity
     total = sum(
         plane.weight * quick_mean_square(system(plane, branches), index, delay)

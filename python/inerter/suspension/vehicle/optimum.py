@@ -16,6 +16,7 @@ from inerter.suspension.layouts import SeriesPair, springs_of
 from inerter.suspension.optimum import LIMITS, finite
 from inerter.suspension.problem import Array
 from inerter.suspension.quarter_car import Road
+from inerter.suspension.variations import scene_notes
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.load_bound import NEAR, softest_at_bound, start_point
 from inerter.suspension.vehicle.load_peaks import peaks
@@ -92,7 +93,7 @@ def vehicle_optimum(
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
     """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
-    if problem.limits:
+    if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     notes = []
     best, value, point = problem, *start_point(problem, more)
@@ -126,7 +127,7 @@ def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
     for limit in problem.network.limits:
         free = [any(limit[0] == n for _, n in one.variables) for one in (problem, best)]
         notes += [f"best {LIMITS[limit]}"] if free == [True, False] else []
-    notes += _at_bounds(best, point)
+    notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return VehicleOptimum(
         value=value,
         struts=best.struts(point),
@@ -146,7 +147,7 @@ def _limited(problem: VehicleProblem) -> VehicleOptimum:
         value=found.value,
         struts=best.struts(found.point),
         peaks=_peaks(best, found.point) if problem.index == "J5" else (),
-        notes=(*notes, *_at_bounds(best, found.point)),
+        notes=(*notes, *_at_bounds(best, found.point), *scene_notes(best, found.point)),
     )
 
 

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
-from inerter.suspension.problem import Array, SuspensionProblem, in_limit
+from inerter.suspension.problem import Array, Catalogue, SuspensionProblem, in_limit
 from inerter.suspension.quarter_car import Road
+from inerter.suspension.variations import Scene
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
 from inerter.suspension.vehicle.load import Load
@@ -49,6 +50,10 @@ class VehicleProblem:
         Front, rear: variables that are not free, with their values [SI].
     limits
         Indices that may not be higher than a value, see `limited`.
+    catalogue
+        Variables that have one of some values [SI] at each axle, see `picked`.
+    scenes
+        What the index is a root mean square over, see `variations`; without, of the car itself.
     """
 
     car: Vehicle
@@ -61,6 +66,8 @@ class VehicleProblem:
     massless: tuple[bool, bool] = (False, False)
     fixed: tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]] = ((), ())
     limits: tuple[tuple[str, float], ...] = ()
+    catalogue: Catalogue = ()
+    scenes: tuple[Scene, ...] = ()
 
     @property
     def network(self) -> Layout:
@@ -106,14 +113,16 @@ class VehicleProblem:
         return np.array([(front, rear)[axle][name] for axle, name in self.variables])
 
     def corners(self) -> tuple[SuspensionProblem, SuspensionProblem]:
-        """The problems of the quarter-cars at the axles."""
+        """The problems of the quarter-cars at the axles; where they turn, of their comfort."""
         cars = self.car.side.corners()
+        own = self.objective
+        turns = {"pitch", "roll"} & {self.index, own.signal, *own.parts}
         front, rear = (
             SuspensionProblem(
                 car=car,
                 road=self.road,
                 layout=self.layout,
-                index=self.index,
+                index="J1" if turns else self.index,
                 stiffness=k,
                 pair=self.pair,
                 massless=no_inerter,
@@ -128,6 +137,15 @@ class VehicleProblem:
     def without(self, massless: tuple[bool, bool]) -> VehicleProblem:
         """The same without inertance in front, at the rear or at both."""
         return replace(self, massless=massless)
+
+    def picked(self) -> list[VehicleProblem]:
+        """The problem with each choice from its catalogue fixed; itself without a catalogue."""
+        front, rear = (replace(each, catalogue=self.catalogue).picked() for each in self.corners())
+        if self.equal:
+            pairs = [(one.fixed, one.fixed) for one in front]
+        else:
+            pairs = [(one.fixed, other.fixed) for one in front for other in rear]
+        return [replace(self, catalogue=(), fixed=pair) for pair in pairs]
 
     def variants(self) -> list[VehicleProblem]:
         """The problem, then those in which what may be absent at an axle or both is."""
@@ -205,6 +223,9 @@ class VehicleProblem:
 
     def value(self, points: NDArray[Any]) -> Array:
         """The index of each point, exactly, one after another."""
+        if self.scenes:
+            values = [self.at(scene).value(points + self._shift(scene)) for scene in self.scenes]
+            return np.sqrt(np.mean(np.square(values), axis=0))
         if self.index == "J5":
             return np.array([largest_gain(self.load(point)) for point in points])
         return np.array(
@@ -215,14 +236,37 @@ class VehicleProblem:
         )
 
     def quick(self, points: Array) -> Array:
-        """J1 or J3 of each point, good enough for a search."""
+        """A smooth index of each point, good enough for a search."""
+        if self.scenes:
+            values = [self.at(scene).quick(points + self._shift(scene)) for scene in self.scenes]
+            return np.sqrt(np.mean(np.square(values), axis=0))
         return quick_rms_index(self.index, self.car, self.road, self.branches(points))
 
     def logarithm(self, point: Array) -> tuple[float, Array]:
-        """Logarithm of J1 or J3 at one point and its gradient, exact."""
+        """Logarithm of a smooth index at one point and its gradient, exact."""
+        if self.scenes:
+            found = [self.at(one).logarithm(point + self._shift(one)) for one in self.scenes]
+            squares = np.exp(2.0 * np.array([value for value, _ in found]))
+            slope = squares @ np.array([slope for _, slope in found]) / squares.sum()
+            return 0.5 * float(np.log(squares.mean())), slope
         perturbed = self.branches(self._perturbed(point))
         value, slope = rms_index(self.index, self.car, self.road, perturbed, _COMPLEX_STEP)
         return float(np.log(value)), slope / value
+
+    def at(self, scene: Scene) -> VehicleProblem:
+        """The problem in one scene; its points are shifted by what the free parts are off."""
+        front, rear = map(scene.fixed, self.fixed)
+        return replace(self, car=scene.car, road=scene.road, fixed=(front, rear), scenes=())
+
+    def _shift(self, scene: Scene) -> Array:
+        return np.array([scene.shift(name) for _, name in self.variables])
+
+    def in_scenes(self, point: Array) -> list[float]:
+        """The index of one point in each scene."""
+        return [
+            float(self.at(scene).value((point + self._shift(scene))[None])[0])
+            for scene in self.scenes
+        ]
 
     def load(self, points: Array) -> Load:
         """zc/F of each point."""

@@ -19,6 +19,9 @@ EQUAL = 1e-9
 @lru_cache(maxsize=256)
 def best_point(problem: VehicleProblem, more: int = 1) -> tuple[float, Array]:
     """Value and point of the global minimum; `more` as in `starting_points`."""
+    if not problem.variables:
+        alone = np.empty(0)
+        return float(problem.value(alone[None])[0]), alone
     polish = polish_peaks if problem.index == "J5" else polish_smooth
     best, at = np.inf, np.empty(0)
     # what a layout contains is a design of it: so it is never worse

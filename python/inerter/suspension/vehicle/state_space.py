@@ -44,6 +44,8 @@ class System:
         Input column (..., n) of a force on the body's coordinates, for each of them: (..., n, q).
     travel, travel_warp
         Elongations of the struts [m]: rows (2, n), per p (2,).
+    turn
+        As of the plane.
     height
         Displacement of the body above the axles on a flat road: rows (2, n).
     """
@@ -59,6 +61,7 @@ class System:
     height: NDArray[np.float64]
     travel: NDArray[np.float64]
     travel_warp: NDArray[np.float64]
+    turn: float = 0.0
 
 
 def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
@@ -143,6 +146,7 @@ def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
         height=elongation + deflection,
         travel=elongation,
         travel_warp=by_warp,
+        turn=plane.turn,
     )
 
 

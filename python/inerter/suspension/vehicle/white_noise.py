@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm, get_lapack_funcs, schur
 
+from inerter.suspension.indices import INDICES
 from inerter.suspension.vehicle.state_space import System, balanced
 from inerter.suspension.vehicle.weighting import weighted
 
@@ -39,8 +40,8 @@ def mean_square(
         One design, or along the first axis the design and then one with an imaginary `step` in
         each variable.
     index
-        "J1", acceleration of the body above the axles, "J1w", the same weighted by Wk, "J3",
-        tyre forces, or "travel", elongations of the struts.
+        "J1", acceleration of the body above the axles, "J3", tyre forces, "travel", elongations of
+        the struts, "pitch", "roll" angular accelerations, or one of them filtered, as "J1w".
     delay
         tau [s].
     step
@@ -52,9 +53,7 @@ def mean_square(
         Infinite and zero where the design is not stable, or its least damped pole has a damping
         ratio below 1e-10, which leaves the covariance no digits.
     """
-    if index == "J1w":
-        system = weighted(system)
-    rows, by_warp = _signals(system, index)
+    system, rows, by_warp = _outputs(system, index)
     # states of like size
     a, scale = balanced(_now(system.matrix, step))
     c = _now(rows, step)
@@ -114,9 +113,7 @@ def mean_square(
 
 def quick_mean_square(system: System, index: str, delay: float) -> Array:
     """The value of `mean_square` for arrays of real designs, to about 1e-6."""
-    if index == "J1w":
-        system = weighted(system)
-    c, c_warp = _signals(system, index)
+    system, c, c_warp = _outputs(system, index)
     a = system.matrix
     eigen: Any = np.linalg.eig(a)
     values, vectors = eigen
@@ -138,14 +135,25 @@ def quick_mean_square(system: System, index: str, delay: float) -> Array:
         total = ((out @ covariance) * np.conj(out)).sum(axis=(-2, -1)).real
         with_warp = (out @ (-(later - front) / values)[..., None])[..., 0].real
         total = total + 2.0 * (left * with_warp).sum(axis=-1) + delay * (left * left).sum(axis=-1)
-        good = (values.real.max(axis=-1) < 0.0) & (total > 0.0)
-    return np.where(good, 0.5 * total, np.inf)
+        # an index of the other plane has no signal here
+        good = (values.real.max(axis=-1) < 0.0) & ((total > 0.0) | ~c.any(axis=(-2, -1)))
+    return np.where(good, 0.5 * np.maximum(total, 0.0), np.inf)
+
+
+def _outputs(system: System, index: str) -> tuple[System, Array, Array | None]:
+    """The system, with a filter's states where the index has one, and its signals."""
+    own = INDICES[index]
+    if own.filter is None:
+        return system, *_signals(system, index)
+    return weighted(system, *_signals(system, own.signal), own.filter)
 
 
 def _signals(system: System, index: str) -> tuple[Array, Array | None]:
     """Output rows (..., 2, n) and outputs per warp (..., 2)."""
-    if index in ("J1", "J1w"):
+    if index == "J1":
         return system.acceleration, system.acceleration_warp
+    if index in ("pitch", "roll"):
+        return _turning(system, index)
     shape = system.matrix.shape[:-2]
     if index == "travel":
         rows = np.broadcast_to(system.travel, (*shape, *system.travel.shape))
@@ -153,6 +161,17 @@ def _signals(system: System, index: str) -> tuple[Array, Array | None]:
         return rows, None if system.warp is None else warped
     rows = np.broadcast_to(system.tyre, (*shape, *system.tyre.shape))
     return rows, None if system.warp is None else np.zeros((*shape, 2))
+
+
+def _turning(system: System, index: str) -> tuple[Array, Array | None]:
+    """The body's angular acceleration, twice, so that the mean over the axles is its own."""
+    a, warped = system.acceleration, system.acceleration_warp
+    if warped is None:
+        # heave and pitch
+        row = (a[..., 1:, :] - a[..., :1, :]) * (system.turn if index == "pitch" else 0.0)
+        return np.concatenate([row, row], axis=-2), None
+    factor = system.turn if index == "roll" else 0.0
+    return factor * a, factor * warped
 
 
 def _now(x: Array, step: float | None) -> Array:
