@@ -75,8 +75,9 @@ def test_two_dampers_between_the_same_bodies_are_not_told_apart() -> None:
     text = model_path("quarter_car", "model.xml").read_text(encoding="utf-8")
     for old, new in (
         ('key="viscous" value="3705.4"', 'key="viscous" value="2000"'),
-        ("</instance>", '</instance><instance name="twin"><config key="inertance" value="0"/><config key="viscous" value="1705.4"/>'
-         '<config key="rest_length" value="0.5"/></instance>'),
+        ("</instance>", '</instance><instance name="twin"><config key="inertance" value="0"/>'
+         '<config key="viscous" value="1705.4"/><config key="rest_length" value="0.5"/>'
+         "</instance>"),
         ("</actuator>", '<plugin name="twin" plugin="inerter.device" instance="twin" '
          'tendon="strut"/></actuator>'),
     ):  # fmt: skip
