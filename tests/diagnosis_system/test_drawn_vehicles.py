@@ -24,6 +24,15 @@ def test_a_drawn_effect_is_named(effect: str, effects_seed: int) -> None:
         share = abs(parameters[name].value / true - 1)
         assert share < CLOSE.get(name, USUAL), f"seed {case.seed}: {name}"
     assert found.extended.rmse < 0.7 * found.baseline.rmse, f"seed {case.seed}"
+    # on road that it was not fitted to, and with the model as it is written
+    assert found.engines["mujoco"] == pytest.approx(found.extended.rmse, rel=0.01)
+    if effect in OF_VEHICLE:
+        assert found.extended.rmse < 1.1 * found.noise_floor, f"seed {case.seed}"
+        assert not found.unexplained.significant, f"seed {case.seed}"
+    if effect == "spring_hardening":
+        # between the same two bodies: the records cannot know whose stiffness it is
+        rivals = {rival.effect for rival in found.findings[0].rivals}
+        assert "hardening_stiffness" in rivals, f"seed {case.seed}"
 
 
 @pytest.mark.long

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 from warnings import catch_warnings, simplefilter
@@ -11,11 +12,23 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 
 from inerter.blind_test.plan import Task
+from inerter.blind_test.vehicle import (
+    diagnose_vehicle,
+    name_in_vehicle,
+    vehicle_gain,
+    vehicle_parameters,
+)
 from inerter.core import Device
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.diagnose.parallel import serial
 from inerter.records import Record
-from inerter.reference import HiddenCase, hide_effect, hide_unknown
+from inerter.reference import (
+    HiddenCase,
+    HiddenVehicle,
+    hide_effect,
+    hide_in_vehicle,
+    hide_unknown,
+)
 
 # Bouc-Wen's parameters are redundant: other values draw the same loop
 UNCOUNTED_LAWS = ("bouc_wen",)
@@ -139,8 +152,12 @@ class Outcome:
         return self.effects[0] if self.named else "none"
 
 
-def hide(task: Task) -> HiddenCase:
+def hide(task: Task) -> HiddenCase | HiddenVehicle:
     """The records of a case."""
+    if task.bench == "vehicle":
+        return hide_in_vehicle(
+            task.seed, task.effects, law=task.law, noise=task.noise, unknown=task.kind
+        )
     realistic = task.bench == "realistic"
     if task.group == "unknown":
         return hide_unknown(task.seed, task.kind, task.levels, realistic=realistic)
@@ -160,16 +177,15 @@ def records_of(case: HiddenCase) -> list[Record]:
 
 def solve(task: Task) -> Outcome:
     """Hide, diagnose, compare; whatever goes wrong is told in the outcome."""
-    case = None
+    case: HiddenCase | HiddenVehicle | None = None
     start = time.perf_counter(), time.process_time()
     try:
         case = hide(task)
-        records = records_of(case)
-        device = None if case.stated is None else Device(**case.stated)
+        said = _diagnosis_of(case)
         start = time.perf_counter(), time.process_time()
         with np.errstate(all="ignore"), catch_warnings(), serial():
             simplefilter("ignore", RuntimeWarning)
-            diagnosis = diagnose_bench(records, device)
+            diagnosis = said()
         outcome = compare(task, case, diagnosis)
     except Exception as error:
         text = " ".join(f"{type(error).__name__}: {error}".split())
@@ -180,16 +196,36 @@ def solve(task: Task) -> Outcome:
     return replace(outcome, seconds=wall, processor_seconds=busy)
 
 
-def compare(task: Task, case: HiddenCase, diagnosis: Diagnosis) -> Outcome:
+def _diagnosis_of(case: HiddenCase | HiddenVehicle) -> Callable[[], Diagnosis]:
+    """What diagnoses a case's records."""
+    if isinstance(case, HiddenVehicle):
+        return functools.partial(diagnose_vehicle, case)
+    device = None if case.stated is None else Device(**case.stated)
+    return functools.partial(diagnose_bench, records_of(case), device)
+
+
+def compare(task: Task, case: HiddenCase | HiddenVehicle, diagnosis: Diagnosis) -> Outcome:
     """A diagnosis against the truth."""
+    if isinstance(case, HiddenVehicle):
+        names = tuple(name_in_vehicle(case, finding) for finding in diagnosis.findings)
+        errors = [ParameterError(*each) for each in vehicle_parameters(case, diagnosis.findings)]
+        gain, brings = vehicle_gain(case, diagnosis), ()
+    else:
+        names = tuple(finding.effect for finding in diagnosis.findings)
+        errors = parameter_errors(case, diagnosis)
+        gain = gain_on_truth(case, diagnosis)
+        brings = case.chain.brings if case.chain else ()
     return Outcome(
         task=task,
         law=case.law,
-        named=tuple(Named(f.effect, f.law, f.confidence, f.members) for f in diagnosis.findings),
-        brings=case.chain.brings if case.chain else (),
-        parameters=tuple(parameter_errors(case, diagnosis)),
+        named=tuple(
+            Named(name, f.law, f.confidence, f.members)
+            for name, f in zip(names, diagnosis.findings, strict=True)
+        ),
+        brings=brings,
+        parameters=tuple(errors),
         unexplained=diagnosis.unexplained.significant,
-        gain=gain_on_truth(case, diagnosis),
+        gain=gain,
         verdict=diagnosis.verdict,
         share=case.share,
         truth=case.parameters,

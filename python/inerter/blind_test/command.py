@@ -18,7 +18,9 @@ _AS_COUNT = "default: as --count, none with --effects"
 def blind_test_command(
     effects: Annotated[
         str | None,
-        typer.Option(help="Effects to hide, with commas; default: every effect of a bench record."),
+        typer.Option(
+            help="Effects to hide, with commas; default: every one of a bench or a vehicle."
+        ),
     ] = None,
     count: Annotated[int, typer.Option(min=0, help="Cases of each effect.")] = 40,
     noise: Annotated[
@@ -43,6 +45,14 @@ def blind_test_command(
             "quantisation, hum, drift, jitter, grip mass and ringing drawn for each case."
         ),
     ] = "ideal",
+    vehicle: Annotated[
+        bool,
+        typer.Option(
+            "--vehicle",
+            help="In vehicles, not on benches: quarter-, half-, full car or trailing arm, road, "
+            "speed, bumps and sensors drawn for each case; noise per channel's spread.",
+        ),
+    ] = False,
     seed: Annotated[
         int | None,
         typer.Option(min=0, help="Seed; default: $INERTER_SEED, else a new one. It is printed."),
@@ -62,21 +72,24 @@ def blind_test_command(
       inerter blind-test --count 3 --clean 0
       inerter blind-test --effects viscous_friction,end_stop --jobs 2
       inerter blind-test --bench realistic --count 2
+      inerter blind-test --vehicle --count 2
     """
     from inerter.blind_test.output import write_blind_test
-    from inerter.blind_test.plan import Plan
+    from inerter.blind_test.plan import BENCHES, VEHICLE, Plan
     from inerter.blind_test.run import run_tasks
     from inerter.blind_test.score import score
     from inerter.blind_test.table import print_blind_test
     from inerter.folder import json_text
-    from inerter.reference import EFFECTS
 
     usual = count if effects is None else 0
     numbers = {"clean": clean, "pairs": pairs, "triples": triples, "unknown": unknown}
-    names = EFFECTS if effects is None else tuple(n.strip() for n in effects.split(","))
+    names = () if effects is None else tuple(n.strip() for n in effects.split(","))
+    if vehicle and bench != BENCHES[0]:
+        refuse(f"--bench {bench}: a vehicle has no bench; leave --bench or --vehicle out")
     with refusing(folder, "blind_test.json", "confusion.png", "calibration.png"):
         plan = Plan(
-            effects=names, count=count, noise=noise, seed=_seed(seed), bench=bench,
+            effects=names, count=count, noise=noise, seed=_seed(seed),
+            bench=VEHICLE if vehicle else bench,
             **{name: usual if given is None else given for name, given in numbers.items()},
         )  # fmt: skip
         tasks = plan.tasks()

@@ -8,16 +8,33 @@ from zlib import crc32
 
 import numpy as np
 
-from inerter.reference import EFFECTS, HYSTERETIC_LAWS, UNKNOWN, NoiseLevels, compatible
+from inerter.reference import (
+    EFFECTS,
+    HYSTERETIC_LAWS,
+    UNKNOWN,
+    VEHICLE_EFFECTS,
+    VEHICLE_UNKNOWN,
+    NoiseLevels,
+    compatible,
+    compatible_in_vehicles,
+)
 
 BENCHES = ("ideal", "realistic")
+VEHICLE = "vehicle"
+VEHICLE_LAWS = ("dahl", "lugre")
+
+
+def effects_on(bench: str) -> tuple[str, ...]:
+    """Effects that can be hidden on a bench or in a vehicle."""
+    return VEHICLE_EFFECTS if bench == VEHICLE else EFFECTS
 
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
     """One case: `effects` that are hidden, empty for "clean"; for "unknown" its `kind`.
 
-    group: "single", "clean", "pairs", "triples" or "unknown"; bench: one of `BENCHES`.
+    group: "single", "clean", "pairs", "triples" or "unknown"; bench: one of `BENCHES`, or
+    `VEHICLE`.
     """
 
     group: str
@@ -49,7 +66,8 @@ class Plan:
     Attributes
     ----------
     effects
-        The effects that are hidden singly, and of which pairs and triples are made.
+        The effects that are hidden singly, and of which pairs and triples are made; none: all of
+        the bench.
     count
         Cases of each effect.
     clean, pairs, triples, unknown
@@ -60,7 +78,7 @@ class Plan:
         Everything follows from it.
     bench
         "ideal": white noise and nothing else; "realistic": motion and measuring chain of a bench
-        as it is, drawn for each case.
+        as it is, drawn for each case; "vehicle": vehicle, road and sensors drawn for each case.
 
     Raises
     ------
@@ -68,7 +86,7 @@ class Plan:
         An unknown effect, a number out of range, or no pair that goes together.
     """
 
-    effects: tuple[str, ...] = EFFECTS
+    effects: tuple[str, ...] = ()
     count: int = 40
     clean: int = 0
     pairs: int = 0
@@ -80,21 +98,23 @@ class Plan:
 
     def __post_init__(self) -> None:
         """See Raises."""
+        known_here = effects_on(self.bench)
+        object.__setattr__(self, "effects", self.effects or known_here)
         for name in self.effects:
-            if name not in EFFECTS:
-                known = ", ".join(EFFECTS)
+            if name not in known_here:
+                known = ", ".join(known_here)
                 raise ValueError(f"--effects: '{name}' is not one of {known}")
         if len(set(self.effects)) < len(self.effects):
             raise ValueError("--effects: one is given twice; give each once")
         for name in ("count", "clean", "pairs", "triples", "unknown", "seed"):
             if getattr(self, name) < 0:
                 raise ValueError(f"--{name}: {getattr(self, name)} is below 0")
-        if self.bench not in BENCHES:
+        if self.bench not in (*BENCHES, VEHICLE):
             raise ValueError(f"--bench: '{self.bench}' is not one of {', '.join(BENCHES)}")
         if not 0.0 <= self.noise <= 1.0:
             raise ValueError(f"--noise: {self.noise:g} is a share of the force rms, from 0 to 1")
         for name, size in (("pairs", 2), ("triples", 3)):
-            if getattr(self, name) and not _sets(self.effects, size):
+            if getattr(self, name) and not self._sets(size):
                 raise ValueError(
                     f"--{name}: of {', '.join(self.effects)} no {size} go together; give more "
                     "--effects"
@@ -108,11 +128,14 @@ class Plan:
         The effects take turns, so that a test that is broken off has some of each.
         """
         found: list[Task] = []
+        in_vehicle = self.bench == VEHICLE
+        laws = VEHICLE_LAWS if in_vehicle else HYSTERETIC_LAWS
+        unknown = VEHICLE_UNKNOWN if in_vehicle else UNKNOWN
         for i in range(self.count):
             for effect in self.effects:
                 # the laws take turns
                 hysteretic = effect == "hysteretic_friction"
-                law = HYSTERETIC_LAWS[i % len(HYSTERETIC_LAWS)] if hysteretic else None
+                law = laws[i % len(laws)] if hysteretic else None
                 found.append(self._task("single", effect, i, effects=(effect,), law=law))
         found += [self._task("clean", "clean", i) for i in range(self.clean)]
         for group, number, size in (("pairs", self.pairs, 2), ("triples", self.triples, 3)):
@@ -121,7 +144,7 @@ class Plan:
                 for i, effects in enumerate(self._drawn(group, size, number))
             ]
         for i in range(self.unknown):
-            kind = UNKNOWN[i % len(UNKNOWN)]
+            kind = unknown[i % len(unknown)]
             found.append(self._task("unknown", kind, i, kind=kind))
         return found
 
@@ -145,13 +168,13 @@ class Plan:
         """Sets of effects that go together, none twice before each had its turn."""
         if not number:
             return []
-        sets = _sets(self.effects, size)
+        sets = self._sets(size)
         draw = np.random.default_rng([self.seed, crc32(group.encode())])
         found: list[tuple[str, ...]] = []
         while len(found) < number:
             found += [sets[i] for i in draw.permutation(len(sets))]
         return found[:number]
 
-
-def _sets(effects: tuple[str, ...], size: int) -> list[tuple[str, ...]]:
-    return [chosen for chosen in combinations(effects, size) if compatible(chosen)]
+    def _sets(self, size: int) -> list[tuple[str, ...]]:
+        together = compatible_in_vehicles if self.bench == VEHICLE else compatible
+        return [chosen for chosen in combinations(self.effects, size) if together(chosen)]

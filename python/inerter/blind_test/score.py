@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from inerter.blind_test.case import Named, Outcome, ParameterError
-from inerter.blind_test.plan import Plan
-from inerter.reference import EFFECTS, HYSTERETIC_LAWS
+from inerter.blind_test.plan import VEHICLE, Plan, effects_on
+from inerter.reference import HYSTERETIC_LAWS
 
 SCHEMA = "inerter.blind_test/1"
 
@@ -49,7 +49,7 @@ def score(plan: Plan, outcomes: Sequence[Outcome], seconds: float = 0.0) -> dict
             "triples": plan.triples,
             "unknown": plan.unknown,
             "noise": plan.noise,
-            "displacement_noise": 1e-4 * plan.noise,
+            "displacement_noise": None if plan.bench == VEHICLE else 1e-4 * plan.noise,
             "bench": plan.bench,
         },
         "confusion": confusion(groups["single"] + groups["clean"]),
@@ -75,12 +75,13 @@ def score(plan: Plan, outcomes: Sequence[Outcome], seconds: float = 0.0) -> dict
 
 def confusion(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Counts of hidden (rows) by first named (columns), "none" in both, "failed" as a column."""
-    rows = [name for name in EFFECTS if any(name in one.task.effects for one in outcomes)]
+    effects = effects_on(outcomes[0].task.bench) if outcomes else ()
+    rows = [name for name in effects if any(name in one.task.effects for one in outcomes)]
     if any(one.task.group == "clean" for one in outcomes):
         rows.append("none")
     first = Counter((_hidden(one), one.first) for one in outcomes)
-    others = sorted({name for _, name in first} - {*EFFECTS, "none", "failed"})
-    columns = [n for n in EFFECTS if n in rows or any(c == n for _, c in first)]
+    others = sorted({name for _, name in first} - {*effects, "none", "failed"})
+    columns = [n for n in effects if n in rows or any(c == n for _, c in first)]
     columns += [*others, "none"]
     if any(name == "failed" for _, name in first):
         columns.append("failed")

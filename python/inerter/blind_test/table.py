@@ -9,13 +9,17 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from inerter.blind_test.plan import VEHICLE
+
 
 def print_blind_test(result: dict[str, Any], console: Console) -> None:
     """Print what `score` found."""
     noise = 100 * result["settings"]["noise"]
     bench = result["settings"]["bench"]
-    text = f"Blind test on {bench} benches, seed {result['seed']}, noise {noise:g} % of the force"
-    console.print(Text(f"{text} rms"))
+    where, of = f"on {bench} benches", "the force rms"
+    if bench == VEHICLE:
+        where, of = "in vehicles", "each channel's spread"
+    console.print(Text(f"Blind test {where}, seed {result['seed']}, noise {noise:g} % of {of}"))
     if result["effects"]:
         console.print(_effects(result))
     for line in _lines(result):

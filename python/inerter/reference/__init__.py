@@ -16,6 +16,8 @@ published numbers of the models, plain data, come from `inerter/model_parameters
     full_car.py      heave, pitch and roll on four struts
     tuned_inerter_damper.py   a shear frame with inerters between floors
     fluid_inerter.py the fluid inerter on its shaker
+    hidden_vehicle.py         vehicle records with hidden effects
+    drawn_vehicle.py, vehicle_roads.py, vehicle_draws.py   what it draws from
     bench.py         test records with hidden effects
     bench_motions.py, bench_effects.py, bench_devices.py, bench_channel.py   what it draws from
     bench_unknown.py test records with an effect that no name describes
@@ -40,6 +42,7 @@ from .bench_channel import Channel
 from .bench_effects import EFFECTS, HYSTERETIC_LAWS, compatible
 from .bench_unknown import UNKNOWN, hide_unknown
 from .device import ReferenceDevice
+from .drawn_vehicle import DrawnCorner, DrawnVehicle
 from .fluid_inerter import (
     FluidInerterResult,
     FluidInerterTest,
@@ -50,6 +53,7 @@ from .fluid_inerter import (
 )
 from .full_car import FullCar, FullCarResult
 from .half_car import HalfCar, HalfCarResult
+from .hidden_vehicle import HiddenVehicle, hide_in_vehicle
 from .laws import FRICTION_LAWS, GAS_LAWS, friction_level
 from .motion import Motion, Response, response, sine_motion
 from .motions import chirp, scaled, strokes, sum_of_sines, windowed_sines
@@ -67,6 +71,7 @@ from .tuned_inerter_damper import (
     frame_state_matrix,
 )
 from .vehicle import Corner, corner_of
+from .vehicle_draws import VEHICLE_EFFECTS, VEHICLE_UNKNOWN, compatible_in_vehicles
 from .wang_su import WANG_SU_DEVICE, WangSuBench, wang_su_bench, wang_su_motion
 
 __all__ = [
@@ -84,9 +89,13 @@ __all__ = [
     "SHAKER",
     "TEST_RIG",
     "UNKNOWN",
+    "VEHICLE_EFFECTS",
+    "VEHICLE_UNKNOWN",
     "WANG_SU_DEVICE",
     "Channel",
     "Corner",
+    "DrawnCorner",
+    "DrawnVehicle",
     "FloorDevice",
     "FluidInerterResult",
     "FluidInerterTest",
@@ -97,6 +106,7 @@ __all__ = [
     "HalfCarResult",
     "HiddenCase",
     "HiddenRun",
+    "HiddenVehicle",
     "Motion",
     "NoiseLevels",
     "QuarterCar",
@@ -110,6 +120,7 @@ __all__ = [
     "WangSuBench",
     "chirp",
     "compatible",
+    "compatible_in_vehicles",
     "complete_device",
     "corner_of",
     "dry_device",
@@ -118,6 +129,7 @@ __all__ = [
     "frame_state_matrix",
     "friction_level",
     "hide_effect",
+    "hide_in_vehicle",
     "hide_unknown",
     "receptance",
     "response",

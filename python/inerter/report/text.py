@@ -101,7 +101,9 @@ def effect_name(effect: str) -> str:
 
 
 def finding_name(finding: Finding) -> str:
-    """An effect in words, with its law."""
+    """An effect in words, with its law; everything that it may be, where data cannot tell."""
+    if finding.members:
+        return " or ".join(effect_name(member) for member in finding.members)
     if finding.effect in EFFECTS:
         return effect_in_words(finding)
     law = f" ({finding.law})" if finding.law else ""

@@ -6,6 +6,7 @@ parts.py       what is wheel, body, spring, damper and tyre
 model.py       a model as coordinates;  build.py  the same as an MjSpec
 simulate.py    many variants in one batch
 effects.py     what is tried;  problem.py  residual and fits;  search.py  selection
+members.py     causes that cannot be told apart
 diagnosis.py   the whole procedure;  outcome.py, values.py, remainder.py, wording.py  its result
 """
 

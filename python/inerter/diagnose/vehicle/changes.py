@@ -92,6 +92,7 @@ def change_tyre(spec: mujoco.MjSpec, tyre: Tyre, values: dict[str, float]) -> No
         extra = spec.add_actuator(
             name=rate_actuator(tyre),
             target=actuator.target,
+            refsite=actuator.refsite,
             trntype=actuator.trntype,
             gear=list(actuator.gear),
             gaintype=mujoco.mjtGain.mjGAIN_FIXED,

@@ -20,6 +20,7 @@ from inerter.diagnose.vehicle.curves import channel_curves
 from inerter.diagnose.vehicle.drive import RecordedDrive, make_drive
 from inerter.diagnose.vehicle.effects import Effects, Scale
 from inerter.diagnose.vehicle.mapping import Channels
+from inerter.diagnose.vehicle.members import exchangeable, with_members
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
 from inerter.diagnose.vehicle.polarity import polarity
@@ -280,12 +281,15 @@ class _System:
         for i, added in enumerate(final.model.effects):
             step = next((s for s in search.steps if s.chosen.model.effects[-1:] == (added,)), None)
             confidence, rivals = standing_of(step, added)
+            chosen, others = (step.chosen, step.others) if step is not None else (final, [])
             if step is not None and i + 1 < len(final.model.effects) and confidence < SURE:
                 # beside the effects found since, a rival may not be one any more
                 self.progress(f"comparing {added.effect} with what else could explain the data")
                 without, others = search.standing(final, i, step)
                 shares = win_shares([final.squares, without.squares, *(s.squares for s in others)])
                 confidence, rivals = standing_of(Step(without, final, others, shares), added)
+                chosen = final
+            same = exchangeable(chosen, added, others) if confidence < SURE else []
             finding = Finding(
                 effect=added.effect,
                 law=added.law,
@@ -300,6 +304,9 @@ class _System:
             kind, _, name = added.element.partition(":")
             place = (name or kind) if (several and kind != "body") or kind in NAMED else ""
             finding = replace(finding, evidence=wording.evidence(finding, place))
+            finding = with_members(
+                finding, [(s.model.effects[-1], parameter_values(self.user, s)[-1]) for s in same]
+            )
             found.append((finding, place))
         return sorted(found, key=lambda pair: -pair[0].gain)
 

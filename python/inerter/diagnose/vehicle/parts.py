@@ -211,21 +211,35 @@ def _direction(model: mujoco.MjModel, link: VehicleLink, wheel: int, body: int) 
 
 def _tyre(model: mujoco.MjModel, actuator: int) -> Tyre | None:
     gain, bias = model.actuator_gainprm[actuator], model.actuator_biasprm[actuator]
-    slide = (
-        model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_JOINT
-        and model.jnt_type[model.actuator_trnid[actuator, 0]] == mujoco.mjtJoint.mjJNT_SLIDE
-    )
     affine = model.actuator_biastype[actuator] == mujoco.mjtBias.mjBIAS_AFFINE
-    if not (slide and affine and gain[0] > 0 and np.isclose(gain[0], -bias[1])):
-        return None
-    joint = model.actuator_trnid[actuator, 0]
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    up = float(data.xaxis[joint][2] * model.actuator_gear[actuator, 0])
-    if abs(data.xaxis[joint][2]) < 0.7:
+    up = _upward(model, actuator)
+    if not (affine and gain[0] > 0 and np.isclose(gain[0], -bias[1])) or up is None:
         return None
     name = model.actuator(actuator).name or f"actuator {actuator}"
     return Tyre(name, actuator, float(gain[0]), 1.0 if up > 0 else -1.0)
+
+
+def _upward(model: mujoco.MjModel, actuator: int) -> float | None:
+    """How an actuator's length grows with the height of what it moves; None: it lifts nothing.
+
+    A slide that is nearly upright, or a site against one of the ground (`refsite`) along z alone.
+    """
+    kind, target = model.actuator_trntype[actuator], int(model.actuator_trnid[actuator, 0])
+    gear = model.actuator_gear[actuator]
+    if kind == mujoco.mjtTrn.mjTRN_SITE:
+        ground = int(model.actuator_trnid[actuator, 1])
+        if ground < 0 or model.site_bodyid[ground] != 0 or np.any(np.delete(gear, 2)):
+            return None
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+        height = float(data.site_xmat[ground].reshape(3, 3)[2, 2])
+        return float(gear[2]) * height if abs(height) > 0.7 else None
+    if kind != mujoco.mjtTrn.mjTRN_JOINT or model.jnt_type[target] != mujoco.mjtJoint.mjJNT_SLIDE:
+        return None
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    height = float(data.xaxis[target][2])
+    return height * float(gear[0]) if abs(height) > 0.7 else None
 
 
 def _driven_body(model: mujoco.MjModel, actuator: int) -> int:
@@ -262,12 +276,12 @@ def _tendon_ends(model: mujoco.MjModel, tendon: int) -> tuple[int, int] | None:
     if kinds[first] != _WRAP_JOINT:
         return None
     joints = [int(objects[i]) for i in range(first, last + 1)]
-    bodies = [int(model.jnt_bodyid[j]) for j in joints]
-    parents = [int(model.body_parentid[b]) for b in bodies]
-    if len(joints) == 1:
-        return bodies[0], parents[0]
-    # two joints on one parent: between the two bodies
-    if len(joints) == 2 and parents[0] == parents[1]:
+    bodies = sorted({int(model.jnt_bodyid[j]) for j in joints})
+    parents = {int(model.body_parentid[b]) for b in bodies}
+    if len(bodies) == 1 and len(joints) == 1:
+        return bodies[0], parents.pop()
+    # joints of two bodies on one parent, as heave and pitch of a body and its wheel: between them
+    if len(bodies) == 2 and len(parents) == 1:
         return bodies[0], bodies[1]
     return None
 

@@ -19,6 +19,13 @@ def in_words(effect: str, law: str | None = None) -> str:
     return f"{text} ({law})" if law else text
 
 
+def finding_in_words(finding: Finding) -> str:
+    """What was found, or everything that it may be."""
+    if finding.members:
+        return " or ".join(in_words(member) for member in finding.members)
+    return in_words(finding.effect, finding.law)
+
+
 def evidence(finding: Finding, place: str) -> str:
     """One sentence: values, stated ones beside them, and what the effect does to the error."""
     values = ", ".join(
@@ -71,9 +78,7 @@ def verdict(
         weighed = sorted(
             zip(findings, places, strict=True), key=lambda pair: explained(pair[0]), reverse=True
         )
-        names = [
-            in_words(f.effect, f.law) + (f" in {place}" if place else "") for f, place in weighed
-        ]
+        names = [finding_in_words(f) + (f" in {place}" if place else "") for f, place in weighed]
         others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
         text = (
             f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "

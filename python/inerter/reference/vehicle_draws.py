@@ -1,0 +1,421 @@
+"""What each hidden effect changes in a drawn vehicle or its channels, and by how much.
+
+Sizes are shares of what the stated vehicle does on its roads: of the force of inerter and damper,
+of its travel x, rate v and acceleration a (rms). `strength` 1 is the usual size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from .device import ReferenceDevice
+from .drawn_vehicle import Changed, DrawnVehicle
+from .sizes import rounded
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Of a corner on its roads: rms travel, rate, acceleration and force; SI units.
+
+    largest, smallest: travel; wheel_rate: of the wheel, rms; pull: with which the tyre would have
+    to pull on the road, at most [N].
+    """
+
+    x: float
+    v: float
+    a: float
+    force: float
+    largest: float
+    smallest: float
+    wheel_rate: float
+    pull: float
+
+
+@dataclass(kw_only=False)
+class Making:
+    """A vehicle with what has been hidden in it so far."""
+
+    stated: DrawnVehicle
+    body: float = 1.0
+    corners: dict[int, dict[str, float]] = field(default_factory=dict)
+    devices: dict[int, dict[str, Any]] = field(default_factory=dict)
+    guides: dict[int, dict[str, Any]] = field(default_factory=dict)
+    others: dict[int, dict[str, Any]] = field(default_factory=dict)
+    rider: tuple[float, float, float] | None = None
+    late: dict[str, float] = field(default_factory=dict)
+    patch: float = 0.0
+    gain: float = 1.0
+    lag: float = 0.0
+    on_body: Callable[[Array, int], Array] | None = None
+    on_wheel: Callable[[Array, int], Array] | None = None
+    names: dict[str, dict[str, float]] = field(default_factory=dict)
+    places: dict[str, str] = field(default_factory=dict)
+
+    def tell(self, effect: str, place: str, values: Mapping[str, float]) -> None:
+        """Keep what an effect's true parameters are."""
+        self.names[effect], self.places[effect] = dict(values), place
+
+    def built(self) -> DrawnVehicle:
+        """The vehicle that is driven."""
+        corners, changed = [], {}
+        for i, corner in enumerate(self.stated.corners):
+            own = replace(corner, **self.corners.get(i, {}))
+            corners.append(own)
+            device = replace(own.device, **self.devices[i]) if i in self.devices else None
+            guide = ReferenceDevice(**self.guides[i]) if i in self.guides else None
+            changed[i] = Changed(device=device, guide=guide, **self.others.get(i, {}))
+        return replace(
+            self.stated, corners=tuple(corners), changed=changed, rider=self.rider,
+            body_mass=self.stated.body_mass * self.body,
+            pitch_inertia=self.stated.pitch_inertia * self.body,
+            roll_inertia=self.stated.roll_inertia * self.body,
+        )  # fmt: skip
+
+    def felt(self, name: str, times: Array, values: Array) -> Array:
+        """A channel as its sensor shows it."""
+        if (late := self.late.get(name, 0.0)) != 0.0:
+            values = CubicSpline(times, values)(np.clip(times - late, times[0], times[-1]))
+        return values
+
+
+@dataclass(frozen=True)
+class _Draw:
+    """What the functions below need."""
+
+    making: Making
+    random: Generator
+    corner: int
+    size: Sizes
+    strength: float
+    columns: list[str]
+    spacing: float
+
+    @property
+    def stated(self) -> Any:
+        """The corner's numbers."""
+        return self.making.stated.corners[self.corner]
+
+    @property
+    def place(self) -> str:
+        """The corner's name."""
+        return self.making.stated.names[self.corner]
+
+    def between(self, low: float, high: float) -> float:
+        """A size that grows with the strength."""
+        return float(self.random.uniform(low, high)) * self.strength
+
+    def off(self, low: float, high: float) -> float:
+        """A factor above or below 1."""
+        share = min(self.between(low, high), 0.5)
+        return 1.0 + float(self.random.choice([-1.0, 1.0])) * share
+
+    def device(self, effect: str, told: Mapping[str, float] | None = None, **values: Any) -> None:
+        """Parameters of the corner's device; told: of them those to be found, all numbers else."""
+        kept = {k: rounded(v) if isinstance(v, float) else v for k, v in values.items()}
+        self.making.devices.setdefault(self.corner, {}).update(kept)
+        numbers = {k: v for k, v in kept.items() if isinstance(v, float)}
+        self.making.tell(effect, self.place, numbers if told is None else told)
+
+
+def _number(effect: str, name: str, told: str, low: float = 0.08, high: float = 0.2) -> None:
+    """A number of the corner that is wrong."""
+
+    def draw(d: _Draw) -> None:
+        value = rounded(getattr(d.stated, name) * d.off(low, high))
+        d.making.corners.setdefault(d.corner, {})[name] = value
+        d.making.tell(effect, d.place, {told: value})
+
+    _DRAWS[effect] = draw
+
+
+_DRAWS: dict[str, Callable[[_Draw], None]] = {}
+_number("inertance_error", "inertance", "inertance", 0.1, 0.3)
+_number("viscous_friction", "damping", "viscous", 0.1, 0.3)
+_number("parallel_stiffness", "stiffness", "stiffness", 0.1, 0.25)
+_number("tyre_stiffness_error", "tyre_stiffness", "tyre_stiffness")
+_number("wheel_mass_error", "wheel_mass", "wheel_mass", 0.1, 0.25)
+
+
+def _draws(effect: str) -> Callable[[Callable[[_Draw], None]], Callable[[_Draw], None]]:
+    def keep(function: Callable[[_Draw], None]) -> Callable[[_Draw], None]:
+        _DRAWS[effect] = function
+        return function
+
+    return keep
+
+
+@_draws("body_mass_error")
+def _body_mass(d: _Draw) -> None:
+    d.making.body = d.off(0.08, 0.2)
+    mass = d.making.stated.body_mass * d.making.body
+    d.making.tell("body_mass_error", "", {"body_mass": mass})
+
+
+def _sharp(d: _Draw) -> dict[str, float]:
+    return {"transition_velocity": rounded(0.01 * d.size.v)}
+
+
+@_draws("coulomb_friction")
+def _coulomb(d: _Draw) -> None:
+    level = rounded(d.between(0.06, 0.25) * d.size.force)
+    d.device("coulomb_friction", {"coulomb_force": level}, friction="coulomb",
+             coulomb_force=level, **_sharp(d))  # fmt: skip
+
+
+def _hysteretic(d: _Draw, law: str) -> None:
+    level = rounded(d.between(0.1, 0.3) * d.size.force)
+    stiffness = rounded(level / (d.size.x * d.random.uniform(0.03, 0.3)))
+    values: dict[str, Any] = {
+        "friction": law, "coulomb_force": level, "bristle_stiffness": stiffness,
+    }  # fmt: skip
+    if law == "lugre":
+        values["static_force"] = level * float(d.random.uniform(1.3, 1.8))
+        values["stribeck_velocity"] = d.size.v * float(d.random.uniform(0.15, 0.5))
+    told = {"coulomb_force": level, "bristle_stiffness": stiffness}
+    d.device("hysteretic_friction", told, **values)
+
+
+@_draws("quadratic_damping")
+def _quadratic(d: _Draw) -> None:
+    size = d.between(0.06, 0.25) * d.size.force / d.size.v**2
+    d.device("quadratic_damping", quadratic_damping=size)
+
+
+@_draws("load_dependent_friction")
+def _load(d: _Draw) -> None:
+    mu = rounded(min(d.between(0.1, 0.3), 0.6))
+    d.device("load_dependent_friction", {"load_friction": mu}, load_friction=mu, **_sharp(d))
+
+
+@_draws("end_stop")
+def _stop(d: _Draw) -> None:
+    upper = bool(d.random.integers(2))
+    reach = d.size.largest if upper else d.size.smallest
+    place = rounded(reach * d.random.uniform(0.35, 0.65) / d.strength)
+    stiffness = d.between(2.0, 8.0) * d.size.force / d.size.x
+    name = "stop_upper" if upper else "stop_lower"
+    d.device("end_stop", None, **{name: place, "stop_stiffness": stiffness})
+
+
+def _shaft(d: _Draw, low: float, high: float) -> dict[str, float]:
+    slow = float(np.sqrt(d.size.a / d.size.x))
+    omega = slow * float(d.random.uniform(low, high)) / d.strength**0.5
+    stiffness = d.stated.inertance * omega**2
+    loss = 2 * d.random.uniform(0.05, 0.3) * np.sqrt(stiffness * d.stated.inertance)
+    return {"series_stiffness": rounded(stiffness), "series_damping": rounded(loss)}
+
+
+@_draws("series_elasticity")
+def _series(d: _Draw) -> None:
+    d.device("series_elasticity", None, **_shaft(d, 1.5, 4.0))
+
+
+@_draws("backlash")
+def _backlash(d: _Draw) -> None:
+    gap = rounded(d.between(0.1, 0.5) * d.size.x)
+    d.device("backlash", {"backlash": gap}, backlash=gap, **_shaft(d, 4.0, 8.0))
+
+
+@_draws("variable_inertance")
+def _variable(d: _Draw) -> None:
+    size = min(d.between(0.08, 0.2), 0.3) / d.size.x * float(d.random.choice([-1, 1]))
+    d.device("variable_inertance", inertance_gradient=size)
+
+
+@_draws("spring_hardening")
+def _hardening(d: _Draw) -> None:
+    size = d.between(0.15, 0.5) * d.stated.stiffness / (3 * d.size.x**2)
+    d.device("spring_hardening", stiffness_cubic=size)
+
+
+@_draws("damper_asymmetry")
+def _asymmetry(d: _Draw) -> None:
+    rebound = d.stated.damping * (1 + min(d.between(0.15, 0.5), 1.0))
+    bump = d.stated.damping * (1 - min(d.between(0.15, 0.4), 0.8))
+    told = {"rebound_damping": rebound, "bump_damping": bump}
+    asymmetry = (rebound - bump) / (rebound + bump)
+    mean = 0.5 * (rebound + bump)
+    d.making.devices.setdefault(d.corner, {}).update(viscous=mean, damping_asymmetry=asymmetry)
+    d.making.tell("damper_asymmetry", d.place, told)
+
+
+@_draws("tyre_damping")
+def _tyre_damping(d: _Draw) -> None:
+    size = float(np.sqrt(d.stated.tyre_stiffness * d.stated.wheel_mass))
+    value = rounded(d.between(0.05, 0.2) * size)
+    d.making.others.setdefault(d.corner, {})["tyre_damping"] = value
+    d.making.tell("tyre_damping", d.place, {"tyre_damping": value})
+
+
+@_draws("tyre_liftoff")
+def _liftoff(d: _Draw) -> None:
+    value = rounded(d.random.uniform(0.3, 0.55) * d.size.pull / d.strength)
+    d.making.others.setdefault(d.corner, {})["static_load"] = value
+    d.making.tell("tyre_liftoff", d.place, {"tyre_static_load": value})
+
+
+@_draws("joint_friction")
+def _joint_friction(d: _Draw) -> None:
+    level = rounded(d.between(0.08, 0.3) * d.size.force)
+    guide = {"friction": "coulomb", "coulomb_force": level,
+             "transition_velocity": rounded(0.005 * d.size.wheel_rate)}  # fmt: skip
+    d.making.guides.setdefault(d.corner, {}).update(guide)
+    d.making.tell("joint_friction", d.place, {"joint_friction": level})
+
+
+@_draws("joint_damping")
+def _joint_damping(d: _Draw) -> None:
+    value = rounded(d.between(0.08, 0.3) * d.size.force / d.size.wheel_rate)
+    d.making.guides.setdefault(d.corner, {})["viscous"] = value
+    d.making.tell("joint_damping", d.place, {"joint_damping": value})
+
+
+@_draws("sensor_delay")
+def _delay(d: _Draw) -> None:
+    column = str(d.random.choice(d.columns))
+    value = rounded(d.between(0.5, 3.0) * d.spacing)
+    d.making.late[column] = value
+    d.making.tell("sensor_delay", column, {"delay": value})
+
+
+@_draws("actuator_gain_error")
+def _gain(d: _Draw) -> None:
+    d.making.gain = rounded(d.off(0.2, 0.45))
+    d.making.tell("actuator_gain_error", "actuator_force", {"actuator_gain": d.making.gain})
+
+
+@_draws("actuator_lag")
+def _lag(d: _Draw) -> None:
+    d.making.lag = rounded(d.between(0.008, 0.03))
+    d.making.tell("actuator_lag", "actuator_force", {"actuator_lag": d.making.lag})
+
+
+VEHICLE_EFFECTS = (*_DRAWS, "hysteretic_friction")
+"""Every effect that can be hidden in a vehicle."""
+ACTIVE_EFFECTS = ("actuator_gain_error", "actuator_lag")
+_LAWS = ("coulomb_friction", "hysteretic_friction")
+_CLASHES = (
+    _LAWS,
+    ("series_elasticity", "backlash"),
+    # the same number twice, or one of which the other is a part
+    ("viscous_friction", "damper_asymmetry"),
+    ("parallel_stiffness", "spring_hardening"),
+    ("inertance_error", "variable_inertance"),
+    ("quadratic_damping", "damper_asymmetry"),
+    ("load_dependent_friction", "coulomb_friction"),
+    ("load_dependent_friction", "hysteretic_friction"),
+    ("load_dependent_friction", "series_elasticity"),
+    ("load_dependent_friction", "backlash"),
+    ("variable_inertance", "series_elasticity"),
+    ("variable_inertance", "backlash"),
+    ("variable_inertance", "load_dependent_friction"),
+)
+
+
+def compatible_in_vehicles(effects: tuple[str, ...]) -> bool:
+    """Whether effects can be hidden together."""
+    if len(set(effects)) < len(effects):
+        return False
+    return not any(set(pair) <= set(effects) for pair in _CLASHES)
+
+
+def draw_vehicle_effect(
+    making: Making,
+    effect: str,
+    law: str | None,
+    random: Generator,
+    sizes: list[Sizes],
+    strength: float,
+    columns: list[str],
+    spacing: float,
+) -> None:
+    """Hide one effect."""
+    corner = int(random.integers(len(sizes)))
+    if making.devices or making.places:
+        # a second one in the same corner, as two parts of one strut are worn together
+        told = [p for p in making.places.values() if p in making.stated.names]
+        corner = making.stated.names.index(told[0]) if told else corner
+    draw = _Draw(making, random, corner, sizes[corner], strength, columns, spacing)
+    if effect == "hysteretic_friction":
+        _hysteretic(draw, str(law))
+    else:
+        _DRAWS[effect](draw)
+
+
+# --- without a name ------------------------------------------------------------------------------
+
+
+def _imbalance(d: _Draw, seconds: float) -> None:
+    del seconds
+    frequency = float(d.random.uniform(5.0, 11.0))
+    size = d.between(0.2, 0.5) * d.size.force
+    d.making.on_wheel = lambda t, run: size * np.sin(2 * np.pi * frequency * t + run)
+
+
+def _gusts(d: _Draw, seconds: float) -> None:
+    size = d.between(0.03, 0.08) * 9.81 * d.making.stated.body_mass
+    seed = int(d.random.integers(2**31))
+
+    def force(t: Array, run: int) -> Array:
+        random = np.random.default_rng([seed, run])
+        tones = np.arange(1, 6 * seconds) / seconds
+        phases = random.uniform(0, 2 * np.pi, tones.size)
+        weights = 1 / np.hypot(1.0, tones / 1.5)
+        weights *= np.sqrt(2 / np.sum(weights**2))
+        return size * (np.sin(2 * np.pi * np.multiply.outer(t, tones) + phases) @ weights)
+
+    d.making.on_body = force
+
+
+def _cogging(d: _Draw, seconds: float) -> None:
+    del seconds
+    size = d.between(0.15, 0.4) * d.size.force
+    length = d.size.x * float(d.random.uniform(0.6, 1.5))
+    d.making.others.setdefault(d.corner, {})["extra"] = lambda x, v: (
+        size * float(np.sin(2 * np.pi * x / length))
+    )
+
+
+def _rider(d: _Draw, seconds: float) -> None:
+    del seconds
+    mass = d.between(0.06, 0.15) * d.making.stated.body_mass
+    stiffness = mass * (2 * np.pi * float(d.random.uniform(3.0, 6.0))) ** 2
+    d.making.rider = mass, stiffness, 0.3 * float(np.sqrt(stiffness * mass))
+
+
+def _coupling(d: _Draw, seconds: float) -> None:
+    del seconds
+    size = d.between(0.15, 0.4) * d.size.force / (d.size.x * d.size.v**2)
+    d.making.others.setdefault(d.corner, {})["extra"] = lambda x, v: size * x * v**2
+
+
+_UNKNOWN: dict[str, Callable[[_Draw, float], None]] = {
+    "imbalance": _imbalance, "gusts": _gusts, "cogging": _cogging, "rider": _rider,
+    "coupling": _coupling,
+}  # fmt: skip
+VEHICLE_UNKNOWN = tuple(_UNKNOWN)
+"""Without a name: a wheel out of balance, gusts on the body, a strut that cogs, somebody who sits
+on springs, a force x v^2."""
+
+
+def draw_vehicle_unknown(
+    making: Making,
+    kind: str,
+    random: Generator,
+    sizes: list[Sizes],
+    strength: float,
+    seconds: float,
+) -> None:
+    """Hide one that has no name."""
+    corner = int(random.integers(len(sizes))) if kind != "imbalance" else 0
+    draw = _Draw(making, random, corner, sizes[corner], strength, [], 0.0)
+    _UNKNOWN[kind](draw, seconds)
