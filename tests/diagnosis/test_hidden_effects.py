@@ -22,6 +22,8 @@ CLOSE = {
     "static_force": 0.15, "stribeck_velocity": 0.3, "bristle_damping": 0.3,
     "friction_gradient": 0.1, "friction_curvature": 0.1, "friction_asymmetry": 0.05,
     # a contact is short: its damper shows little; an exponent shows at great compression alone
+    # few reversals tell rate and age apart
+    "rate_effect": 0.5, "age_effect": 0.5, "age_distance": 1.0,
     "series_damping": 0.3, "stop_stiffness": 0.1, "gas_exponent": 0.3,
 }  # fmt: skip
 USUAL = 0.03
@@ -41,8 +43,11 @@ def solved(request: pytest.FixtureRequest, effects_seed: int):
 
 def test_effect_is_named_alone(solved) -> None:
     case, diagnosis = solved
-    named = [(finding.effect, finding.law) for finding in diagnosis.findings]
-    assert named == [(case.effect, case.law)], f"seed {case.seed}: {diagnosis.verdict}"
+    assert [finding.effect for finding in diagnosis.findings] == [case.effect], (
+        f"seed {case.seed}: {diagnosis.verdict}"
+    )
+    if case.law:
+        assert diagnosis.findings[0].law == case.law, f"seed {case.seed}"
 
 
 def test_parameters_are_near(solved) -> None:

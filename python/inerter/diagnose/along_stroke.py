@@ -8,12 +8,15 @@ over sines of the place tell the likeliest lengths, over a smooth curve how much
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from inerter.catalogue.along_stroke import NODES, PERIODS, QUANTITIES, Quantity
+from inerter.catalogue.friction import FRICTION
+from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.identify.fit import Fit, Problem
@@ -23,8 +26,8 @@ Array = NDArray[np.float64]
 # of a function of the place and its derivative by it: what it adds to the force
 Effect = Callable[[Array, Array], Array]
 
-# samples that are asked, at most; lines per stroke; the finest length as a share of the stroke
-_SAMPLES = 20_000
+# samples that are asked, at least and at most; lines per stroke; the finest length as a share of it
+_FEWEST, _SAMPLES = 100, 20_000
 _LINES = 4
 _FINEST = 1 / 40
 # nodes of the curves that are tried, the plainest first
@@ -32,68 +35,90 @@ _CURVES = (7, 17, NODES)
 # lines that are tried, and how far from a better one
 _TRIED = 2
 _APART = 1.0
+# share of the rms speed within which a direction is not sure
+_BLUR = 0.02
+# share of the square of a residual from which on a fit is worth while
+_WORTH = 1 - (1 - CRITERIA.likely * CRITERIA.gain) ** 2
 
 
 def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
     """Periods and curves that may take a share of what a fitted model leaves."""
-    sizes, model = problem.scales, fit.model
-    low, high = sizes.travel
-    if sizes.one_tone or not np.isfinite([low, high]).all() or high <= low:
+    low, high = ends = problem.scales.travel
+    if problem.scales.one_tone or not np.isfinite([low, high]).all() or high <= low:
         return
     x, v, a, residual = _samples(problem, fit)
-    if residual.size < 100:
+    if residual.size < _FEWEST:
         return
-    worth = 1 - (1 - CRITERIA.likely * CRITERIA.gain) ** 2
-    direction = np.tanh(v / (0.02 * sizes.velocity))
-    inertance = model.device().inertance
-    effects: dict[str, Effect] = {
-        "force": lambda f, slope: f,
-        "inertance": lambda f, slope: inertance * (f * a + 0.5 * slope * v**2),
-        "friction": lambda f, slope: f * direction,
-    }
     for quantity in QUANTITIES:
-        name = quantity.name
-        if f"{name}_curve" in model.texts or f"{name}_periods" in model.texts:
-            continue
-        if name == "inertance" and inertance == 0.0:
-            continue
-        effect, level = effects[name], 1.0
-        base = model
-        if name == "friction":
-            if not _has_level(model):
-                continue
-            level = model.values["coulomb_force"]
-        number = next(
-            (i for i in range(1, PERIODS + 1) if quantity.period(i)[0] not in model.values), 0
-        )
-        if number == 0 or (name == "friction" and number > 1):
-            lengths = []
-        else:
-            lengths = _periods(x, residual, effect, (low, high), worth)
-        if lengths:
-            starts = []
-            for length, cosine, sine in lengths:
-                names = quantity.period(number)
-                bound = 0.9 * quantity.bound(sizes)
-                amplitudes = np.clip([cosine / level, sine / level], -bound, bound)
-                values = dict(zip(names, (length, *map(float, amplitudes)), strict=True))
-                starts.append(base.adding(None, **values))
-            yield Candidate(quantity.effect, "period", tuple(starts))
-        if any(each.startswith(f"{name}_node") for each in model.values):
-            continue
-        for nodes in _CURVES:
-            if _gain_of_curve(x, residual, effect, (low, high), nodes) > worth:
-                yield Candidate(
-                    quantity.effect,
-                    "curve",
-                    (_with_curve(base, quantity, nodes, (low, high)),),
+        effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
+        if effect is not None:
+            shown = _Shown(x, residual, effect, ends)
+            yield from _periodic(quantity, fit.model, shown, problem.scales)
+            yield from _curved(quantity, fit.model, shown)
+
+
+def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -> Effect | None:
+    """What a relative change of a quantity adds to the force; None where it cannot be asked for."""
+    if any(f"{quantity.name}_{kind}" in model.texts for kind in ("curve", "periods")):
+        return None
+    if quantity.name == "force":
+        return lambda f, slope: f
+    if quantity.name == "inertance":
+        inertance = model.device().inertance
+        return (lambda f, slope: inertance * (f * a + 0.5 * slope * v**2)) if inertance else None
+    level = model.values.get("coulomb_force", 0.0) if FRICTION[model.friction].varies else 0.0
+    direction = level * np.tanh(v / slow)
+    return (lambda f, slope: f * direction) if level else None
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """Where samples are, what is left there, and what it is asked for."""
+
+    x: Array
+    residual: Array
+    effect: Effect
+    ends: tuple[float, float]
+
+
+def _periodic(
+    quantity: Quantity, model: Model, shown: _Shown, sizes: Scales
+) -> Iterator[Candidate]:
+    """One more period, from each of the likeliest lengths."""
+    most = 1 if quantity.name == "friction" else PERIODS
+    free = [i for i in range(1, most + 1) if quantity.period(i)[0] not in model.values]
+    # a level with a curve and a period might not stay above 0
+    if not free or (quantity.name == "friction" and _has_curve(quantity, model)):
+        return
+    bound = 0.9 * quantity.bound(sizes)
+    starts = [
+        model.adding(
+            None,
+            **dict(
+                zip(
+                    quantity.period(free[0]), (length, *amplitudes.clip(-bound, bound)), strict=True
                 )
+            ),
+        )
+        for length, amplitudes in _lengths(shown)
+    ]
+    if starts:
+        yield Candidate(quantity.effect, "period", tuple(starts))
 
 
-def _has_level(model: Model) -> bool:
-    from inerter.catalogue.friction import FRICTION
+def _curved(quantity: Quantity, model: Model, shown: _Shown) -> Iterator[Candidate]:
+    """A curve of few nodes, of more."""
+    periods = quantity.name == "friction" and quantity.period(1)[0] in model.values
+    if periods or _has_curve(quantity, model):
+        return
+    for nodes in _CURVES:
+        if _gain_of_curve(shown, nodes) > _WORTH:
+            start = _with_curve(model, quantity, nodes, shown.ends)
+            yield Candidate(quantity.effect, "curve", (start,))
 
-    return bool(FRICTION[model.friction].varies and model.values.get("coulomb_force"))
+
+def _has_curve(quantity: Quantity, model: Model) -> bool:
+    return any(quantity.node(i) in model.values for i in range(1, NODES + 1))
 
 
 def _with_curve(model: Model, quantity: Quantity, nodes: int, ends: tuple[float, float]) -> Model:
@@ -123,39 +148,35 @@ def _samples(problem: Problem, fit: Fit) -> tuple[Array, Array, Array, Array]:
     return x, v, a, residual
 
 
-def _periods(
-    x: Array, residual: Array, effect: Effect, ends: tuple[float, float], worth: float
-) -> list[tuple[float, float, float]]:
-    """Lengths [m] and amplitudes of the sines of the place that take most, the best first."""
-    stroke = ends[1] - ends[0]
+def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
+    """Lengths [m] and amplitudes (2,) of the sines of the place that take most, the best first."""
+    stroke = shown.ends[1] - shown.ends[0]
     lines = np.arange(0.75 / stroke, 1 / (_FINEST * stroke), 1 / (_LINES * stroke))
     gains, amplitudes = np.zeros(lines.size), np.zeros((lines.size, 2))
     for i, line in enumerate(lines):
-        angle, rate = 2 * np.pi * line * x, 2 * np.pi * line
+        angle, rate = 2 * np.pi * line * shown.x, 2 * np.pi * line
         c, s = np.cos(angle), np.sin(angle)
-        columns = np.column_stack([effect(c, -rate * s), effect(s, rate * c)])
-        gains[i], amplitudes[i] = _gain(columns, residual)
-    found: list[tuple[float, float, float]] = []
+        columns = np.column_stack([shown.effect(c, -rate * s), shown.effect(s, rate * c)])
+        gains[i], amplitudes[i] = _gain(columns, shown.residual)
+    found: list[tuple[float, Array]] = []
     for i in np.argsort(-gains):
-        if gains[i] < worth or len(found) == _TRIED:
+        if gains[i] < _WORTH or len(found) == _TRIED:
             break
-        if all(abs(lines[i] - 1 / length) > _APART / stroke for length, _, _ in found):
-            found.append((float(1 / lines[i]), *map(float, amplitudes[i])))
+        if all(abs(lines[i] - 1 / length) > _APART / stroke for length, _ in found):
+            found.append((float(1 / lines[i]), amplitudes[i]))
     return found
 
 
-def _gain_of_curve(
-    x: Array, residual: Array, effect: Effect, ends: tuple[float, float], nodes: int
-) -> float:
+def _gain_of_curve(shown: _Shown, nodes: int) -> float:
     """Share of the square of a residual that a smooth curve of the place takes."""
-    places = np.linspace(*ends, nodes)
+    places = np.linspace(*shown.ends, nodes)
     spline = make_interp_spline(places, np.eye(nodes), k=3, bc_type="clamped")
-    inside = np.clip(x, *ends)
+    inside = np.clip(shown.x, *shown.ends)
     values, slopes = spline(inside), spline(inside, 1)
-    columns = np.column_stack([effect(values[:, i], slopes[:, i]) for i in range(nodes)])
-    gain, _ = _gain(columns, residual)
+    columns = np.column_stack([shown.effect(values[:, i], slopes[:, i]) for i in range(nodes)])
+    gain, _ = _gain(columns, shown.residual)
     # what as many columns take of noise
-    return gain - nodes / residual.size
+    return gain - nodes / shown.residual.size
 
 
 def _gain(columns: Array, residual: Array) -> tuple[float, Array]:
