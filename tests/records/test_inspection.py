@@ -158,7 +158,8 @@ def test_a_range_is_in_one_unit() -> None:
 
 def test_a_linear_model_that_is_astray_bounds_nothing() -> None:
     """Stops are all of the force; where noise is much of it, that is none of the model's."""
-    rng, t = np.random.default_rng(4), 1e-3 * np.arange(12_000)
+    rng = np.random.default_rng(4)
+    t = np.asarray(1e-3 * np.arange(12_000), dtype=np.float64)
     x = 0.02 * np.sin(3 * t)
     stops = 5e5 * (np.maximum(x - 0.015, 0) + np.minimum(x + 0.015, 0))
     found = facts_of(Record(name="run", time=t, displacement=x, force=stops)).tells
