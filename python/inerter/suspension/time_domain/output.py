@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 
@@ -84,9 +84,7 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
         quarter = plan.car == QuarterCar()
         for name in ("strut", "case", *(["paper"] if quarter else [])):
             table.add_column(name, no_wrap=True)
-        inner = any(row.springs for row in rows)
-        heads = (f"{index} ± 95 %", "exact", "loss %", "c", "b", *(["springs"] if inner else []))
-        for name in heads:
+        for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
             table.add_column(name, justify="right", no_wrap=True)
         digits = ".4g" if quarter else ".3g"
         for row in rows:
@@ -104,16 +102,21 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
                 _both(f"{row.inertance:{digits}}", row.rear_inertance, digits)
                 if LAYOUTS[row.layout].has_inerter
                 else "",
-                *([_springs(row)] if inner else []),
             )
         console.print(table, "", sep="\n")
+        told = [
+            row for row in rows if row.springs and (row.stiffness, row.index) == (stiffness, index)
+        ]
+        for row in told:
+            text = f"{row.layout} {row.case}: {_springs(row)}"
+            console.print(text, markup=False, highlight=False, soft_wrap=True)
+        if told:
+            console.print()
     console.print(
         ("paper: table.case of Wang and Su. " if plan.car == QuarterCar() else "")
         + "exact: norm of the transfer function; in brackets, that of the same design without "
         "friction and play. loss: against the ideal inerter at its own optimum, road by road. "
-        "c [N s/m], b [kg]"
-        + (", springs k_b or k_1, k_2, k_b [kN/m]" if any(row.springs for row in rows) else "")
-        + ("; front/rear." if plan.car_name != "quarter" else "."),
+        "c [N s/m], b [kg]" + ("; front/rear." if plan.car_name != "quarter" else "."),
         markup=False,
     )
     for note in dict.fromkeys(note for row in rows for note in row.notes):
@@ -128,14 +131,14 @@ def _exact(row: Evaluation, scale: float) -> str:
 
 
 def _springs(row: Evaluation) -> str:
-    """Inner springs in kN/m, without what stands beside them."""
-    names = ("damper_stiffness", "inerter_stiffness", "relaxation_stiffness")
-
-    def text(springs: Mapping[str, float]) -> str:
-        own = [springs[name] for name in names if name in springs]
-        return ", ".join("rigid" if k == math.inf else f"{k / 1e3:.3g}" for k in own)
-
-    return "/".join(text(each) for each in (row.springs, row.rear_springs) if each)
+    """Inner springs in kN/m, of two axles front and rear."""
+    names = {"relaxation_stiffness": "k_b", "damper_stiffness": "k_1", "inerter_stiffness": "k_2"}
+    found = []
+    for name, short in names.items():
+        axles = [own[name] for own in (row.springs, row.rear_springs) if name in own]
+        shown = ["rigid" if k == math.inf else f"{k / 1e3:.4g} kN/m" for k in axles]
+        found += [f"{short} {' / '.join(shown)}"] if shown else []
+    return ", ".join(found)
 
 
 def _both(front: str, rear: float | None, form: str) -> str:
