@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.outcome import ChannelError, SystemAccuracy
 from inerter.diagnose.vehicle.problem import VehicleFit
 from inerter.diagnose.vehicle.search import VehicleScored
+from inerter.diagnose.vehicle.values import parameter_values
 from inerter.models import model_path
 from inerter.report.text import finding_name
 
@@ -93,3 +95,24 @@ def test_two_dampers_between_the_same_bodies_are_not_told_apart() -> None:
     values = {name: value.value for name, value in finding.parameters.items()}
     assert values["strut.viscous"] == pytest.approx(3200.0 - 1705.4, rel=0.01)
     assert values["twin.viscous"] == pytest.approx(3200.0 - 2000.0, rel=0.01)
+
+
+def test_standard_errors_reach_the_values_of_finer_steps() -> None:
+    user = model_of_text(
+        model_path("quarter_car", "model.xml").read_text(encoding="utf-8"), Path("car.xml")
+    )
+    user.with_roads([0])
+    random = np.random.default_rng(5)
+    one = candidate("inertance_error", "strut", [{"inertance": 130.0}],
+                    {"inertance": Range(100.0, 0.0)}, ("inertance",))  # fmt: skip
+    jacobian, residual = random.standard_normal((400, 1)), random.standard_normal(400)
+    fit = VehicleFit(one.model(VehicleModel(), one.starts[0]), residual, jacobian, 1.0, one.sizes)
+    scored = VehicleScored(fit, np.ones(48), one)
+    (plain,) = parameter_values(user, scored)
+    (same,) = parameter_values(user, scored, residual)
+    assert same["inertance"].stderr == pytest.approx(plain["inertance"].stderr)
+    # half the step moves the fit by 0.5; errors that fall with its square are 4/3 of that
+    (moved,) = parameter_values(user, scored, residual - 0.5 * jacobian[:, 0])
+    shift = 4 / 3 * 0.5 * fit.units()[0]
+    assert moved["inertance"].value == plain["inertance"].value
+    assert moved["inertance"].stderr == pytest.approx(np.hypot(plain["inertance"].stderr, shift))

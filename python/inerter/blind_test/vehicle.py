@@ -10,9 +10,6 @@ import numpy as np
 from inerter.blind_test.vehicle_model import sensors_of, vehicle_mjcf
 from inerter.diagnose import Diagnosis
 from inerter.diagnose.result import Finding
-from inerter.diagnose.vehicle.build import model_of_text
-from inerter.diagnose.vehicle.diagnosis import diagnose_system
-from inerter.diagnose.vehicle.mapping import map_columns
 from inerter.plugin import load_plugin
 from inerter.records.free_form import FreeRecord
 from inerter.reference import HiddenVehicle
@@ -32,6 +29,11 @@ def vehicle_records(case: HiddenVehicle) -> list[FreeRecord]:
 
 def diagnose_vehicle(case: HiddenVehicle, threads: int = 1) -> Diagnosis:
     """Against the vehicle as it is stated."""
+    # needs mujoco.batch, which benches do without
+    from inerter.diagnose.vehicle.build import model_of_text
+    from inerter.diagnose.vehicle.diagnosis import diagnose_system
+    from inerter.diagnose.vehicle.mapping import map_columns
+
     load_plugin()
     user = model_of_text(vehicle_mjcf(case.stated, case.active), Path(f"{case.stated.kind}.xml"))
     records = vehicle_records(case)

@@ -225,6 +225,21 @@ class _System:
             self.step_errors[model] = float(np.sqrt(square / count))
         return self.step_errors[model]
 
+    def _finer(self, model: VehicleModel) -> Array | None:
+        """The residual of what is fitted with steps half as long; None where that fails."""
+        records = {record.name: record for record in self.records}
+        half = self.user.with_timestep(self.drives[0].step / 2)
+        drives = [
+            replace(
+                make_drive(records[drive.name], self.channels, drive.step / 2),
+                measured=drive.measured,
+            )
+            for drive in self.fit.drives
+        ]
+        simulator = VehicleSimulator(half, self.channels, self.simulator.threads)
+        row = replace(self.fit, simulator=simulator, drives=drives).stacked([model])[0]
+        return row if np.isfinite(row).all() else None
+
     # --- effects -----------------------------------------------------------------------------
 
     def _chain(
@@ -275,7 +290,7 @@ class _System:
         errors, squares: held-out errors along the chain, and their squares over blocks.
         """
         final = chain[-1]
-        values = parameter_values(self.user, final)
+        values = parameter_values(self.user, final, self._finer(final.model))
         several = len(self.user.devices) > 1
         found = []
         for i, added in enumerate(final.model.effects):

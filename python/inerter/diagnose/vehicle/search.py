@@ -41,6 +41,8 @@ FOLDS = 4
 BURSTS = 2.0
 # the part of every run on which candidates are screened [s], at most
 SCREENED = 3.0
+# the part of every run on which fits of long runs begin [s]; from there few steps are left
+BEGUN = 8.0
 # predicted share of the error below which nothing is worth a fit
 WORTH = 0.005
 # candidates further behind the best after two steps than this are not fitted to the end
@@ -95,6 +97,8 @@ class VehicleSearch:
     def __post_init__(self) -> None:
         runs = len(self.problem.drives)
         self.part = self.problem.part(max(SCREENED * min(1.0, 2 / runs), 1.5))
+        begun = self.problem.part(BEGUN)
+        self.begun = begun if begun.count < 0.6 * self.problem.count else None
         self.blocks = stacked_blocks(self.problem)
 
     def run(self) -> VehicleScored:
@@ -125,7 +129,20 @@ class VehicleSearch:
         self, models: Sequence[tuple[VehicleModel, Mapping[str, Range]]]
     ) -> list[VehicleScored]:
         """Fit models again and score them."""
-        return [self._score(fit) for fit in fit_all(self.problem, models)]
+        near = self._begin(models, iterations=6)
+        return [self._score(fit) for fit in fit_all(self.problem, near)]
+
+    def _begin(
+        self, models: Sequence[tuple[VehicleModel, Mapping[str, Range]]], iterations: int
+    ) -> Sequence[tuple[VehicleModel, Mapping[str, Range]]]:
+        """Models at values that fit the first part of long runs; of short ones as they are."""
+        if self.begun is None:
+            return models
+        found = fit_all(self.begun, models, iterations=iterations, last=False)
+        return [
+            (fit.model, fit.sizes) if np.isfinite(fit.error) else given
+            for fit, given in zip(found, models, strict=True)
+        ]
 
     def without(
         self, scored: VehicleScored, index: int
@@ -185,11 +202,21 @@ class VehicleSearch:
         trials: Sequence[tuple[VehicleModel, Mapping[str, Range]]],
     ) -> list[VehicleScored]:
         """Fits of candidates, in two rounds: those that are far behind after one are left there."""
-        early = fit_all(self.problem, trials, iterations=2, last=False)
+        steps, more, far = 2, 4, NEAR
+        if self.begun is not None:
+            # all but the last step on a part of the runs; what is far behind then stays so
+            trials, steps, more, far = self._begin(trials, 5), 0, 1, CRITERIA.beaten
+        early = fit_all(self.problem, trials, iterations=steps, last=False)
         reached = min((f.error for f in early if np.isfinite(f.error)), default=0.0)
-        near = [i for i, f in enumerate(early) if f.error < NEAR * reached]
+        near = [i for i, f in enumerate(early) if f.error < far * reached]
+        if not steps:
+            # what is left behind is judged on samples left out, too, which wants its Jacobian
+            behind = [i for i, f in enumerate(early) if i not in near and np.isfinite(f.error)]
+            judged = fit_all(self.problem, [trials[i] for i in behind], iterations=0)
+            for i, fit in zip(behind, judged, strict=True):
+                early[i] = fit
         again = [(early[i].model, early[i].sizes) for i in near]
-        later = dict(zip(near, fit_all(self.problem, again, iterations=4), strict=True))
+        later = dict(zip(near, fit_all(self.problem, again, iterations=more), strict=True))
         return [
             self._score(later.get(i, fit), candidate)
             for i, (fit, candidate) in enumerate(zip(early, candidates, strict=True))

@@ -41,10 +41,13 @@ _MASSES = {"body_mass_error": "body_mass", "wheel_mass_error": "wheel_mass"}
 _TURNED = {"N": "N*m", "m": "rad", "kg": "kg*m^2"}
 
 
-def parameter_values(user: UserModel, scored: VehicleScored) -> list[dict[str, ParameterValue]]:
+def parameter_values(
+    user: UserModel, scored: VehicleScored, finer: Array | None = None
+) -> list[dict[str, ParameterValue]]:
     """Parameters of every effect of a fitted model, in the order of its effects.
 
     Names have their element before them ("strut_front.viscous") where a model has several alike.
+    finer: the fit's residual with steps half as long, whose parameters the errors reach then.
     """
     model = scored.model
     used = np.abs(scored.fit.residual) > 0
@@ -55,6 +58,10 @@ def parameter_values(user: UserModel, scored: VehicleScored) -> list[dict[str, P
         if model.free
         else np.empty((0, 0))
     )
+    if finer is not None and model.free:
+        moved = np.linalg.pinv(scored.fit.jacobian) @ (finer - scored.fit.residual) * units
+        # errors of the step fall with its square: all of them are 4/3 of what half of it changes
+        covariance += np.outer(moved, moved) * (4.0 / 3.0) ** 2
     found = []
     for added in model.effects:
         values: dict[str, ParameterValue] = {}
