@@ -183,4 +183,5 @@ def _gain(columns: Array, residual: Array) -> tuple[float, Array]:
     """Share of the square of a residual that columns take, and by which amplitudes."""
     amplitudes = np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
     left = residual - columns @ amplitudes
-    return 1.0 - float(left @ left) / float(residual @ residual), amplitudes
+    taken = 1.0 - float(left @ left) / float(residual @ residual)
+    return taken, np.asarray(amplitudes, dtype=np.float64)

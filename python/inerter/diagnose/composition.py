@@ -46,6 +46,10 @@ def is_distinct(
         return True
     if EFFECTS[effect].kind == "law" and (_loses_nothing(fit.model) or not bristle_is_known(fit)):
         return False
+    if effect == "digressive_damping":
+        # with a knee that is passed at once it is friction, and no damping below it is known
+        slope, error = parameter_errors(fit).get("viscous", (1.0, 0.0))
+        return slope > required * error
     if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
         stiffness, error = parameter_errors(fit).get("series_stiffness", (1.0, 0.0))

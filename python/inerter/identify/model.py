@@ -66,7 +66,7 @@ class Model:
 
     @cached_property
     def _smooth_device(self) -> Device:
-        whole, known = self._device.given, parameters() | lists()
+        whole, known = self._device.given, {**parameters(), **lists()}
         rough = (*JUMPS, "mu_forward", "mu_backward")
         names = [n for n in whole if n not in known or not known[n].laws]
         kept = {n: whole[n] for n in names if n != "friction" and n not in rough}

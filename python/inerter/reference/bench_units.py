@@ -134,7 +134,7 @@ def _relaxing(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
         np.concatenate([np.asarray(getattr(r.drive.motion, name)(r.drive.time)) for r in runs])
         for name in ("displacement", "velocity")
     )
-    time = rms(x - np.mean(x)) / rms(v) * float(np.exp(draw.uniform(np.log(0.1), np.log(2.0))))
+    time = float(np.std(x)) / rms(v) * float(np.exp(draw.uniform(np.log(0.1), np.log(2.0))))
     names = ("branch_stiffness_1", "branch_damping_1")
     unit = replace(ideal, branch_stiffness_1=1.0, branch_damping_1=rounded(time))
     return Unit(device=unit, channel=Channel(), scaling=names, names=names)
