@@ -39,7 +39,8 @@ def is_late(case: Case, integrator: str) -> bool:
     """
     device = case.device() or {}
     rigid = not {"series_stiffness", "series_damping"} & device.keys()
-    return "load_friction" in device and rigid and integrator != "GeneralizedAlpha"
+    loaded = {"load_friction", "mu_forward", "mu_backward"} & device.keys()
+    return bool(loaded) and rigid and integrator != "GeneralizedAlpha"
 
 
 def run_exudyn(case: Case, integrator: str, step: float) -> ValidationRun:
