@@ -64,8 +64,9 @@ def network_command(
         which = chosen_car(car, {})
         if not isinstance(which, QuarterCar):
             raise StudyError(f"--car {car}: a network is sought for a quarter-car")
+        road = Road(velocity=speed if velocity is None else velocity, roughness=roughness)
         if netlist.suffix.lower() == ".toml":
-            _tell_admittance(netlist, which, Road(velocity=velocity, roughness=roughness), as_json)
+            _tell_admittance(netlist, which, road, as_json)
             return
         try:
             lines = netlist.read_text(encoding="utf-8").splitlines()
@@ -77,7 +78,7 @@ def network_command(
         try:
             problem = NetworkProblem(
                 car=which,
-                road=Road(velocity=speed if velocity is None else velocity, roughness=roughness),
+                road=road,
                 index=chosen,
                 limits=read_pairs(limit, INDICES, "limit"),
                 netlist=read_netlist(lines),
