@@ -160,6 +160,19 @@ REPORTED_UNITS: Mapping[str, str] = {
 """Units of what findings report of it and no device has a parameter for."""
 
 
+FORMS: Mapping[str, str] = {
+    "period": "periodic along the stroke",
+    "curve": "a curve along the stroke",
+    "speed": "with the speed",
+}
+"""What the law of such a finding is in running text."""
+
+
+def node_of(parameter: str) -> Quantity | None:
+    """The quantity whose curve has a node of this name."""
+    return next((q for q in QUANTITIES if parameter.startswith(f"{q.name}_node_")), None)
+
+
 def told(values: Values) -> None:
     """Amplitude and phase in the place of cosine and sine."""
     for quantity in QUANTITIES:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from inerter.catalogue.along_stroke import FORMS, node_of
 from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
@@ -98,6 +99,8 @@ def _law(name: str | None) -> str:
     """A friction law in brackets, or of which channel and kind a filter is, where it is one."""
     if name and " order " in name:
         return f" ({name})"
+    if name in FORMS:
+        return f" ({FORMS[name]})"
     return f" ({FRICTION[name].words})" if name and name in FRICTION else ""
 
 
@@ -116,6 +119,29 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
     return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
 
 
+def curves_in_words(
+    parameters: Mapping[str, ParameterValue],
+) -> tuple[dict[str, str], dict[str, ParameterValue]]:
+    """Curves along the stroke in words, by name, and the parameters that are no nodes of one."""
+    nodes: dict[str, list[ParameterValue]] = {}
+    others = {}
+    for name, value in parameters.items():
+        if quantity := node_of(name):
+            nodes.setdefault(f"{quantity.name}_curve", []).append(value)
+        else:
+            others[name] = value
+    curves = {}
+    for name, values in nodes.items():
+        least, most = (each([v.value for v in values]) for each in (min, max))
+        unit = "" if values[0].unit == "1" else f" {values[0].unit}"
+        error = max(v.stderr for v in values)
+        curves[name] = (
+            f"a curve through {len(values)} places from {least:.3g} to {most:.3g}{unit} "
+            f"(each ± {error:.1g}{unit} at most)"
+        )
+    return curves, others
+
+
 def either_in_words(finding: Finding) -> str:
     """Such as "viscous friction of 120 N s/m or a delay of 3.8 ms": what members would be."""
     coordinates = {member: EFFECTS[member].parameters[0] for member in finding.members}
@@ -127,9 +153,12 @@ def either_in_words(finding: Finding) -> str:
 
 def evidence(finding: Finding) -> str:
     """One sentence: values, and what the effect does to the error on held-out data."""
+    curves, others = curves_in_words(finding.parameters)
     values = ", ".join(
-        value_in_words(PARAMETER_WORDS.get(name, name), value)
-        for name, value in finding.parameters.items()
+        [
+            *(value_in_words(PARAMETER_WORDS.get(n, n), v) for n, v in others.items()),
+            *curves.values(),
+        ]
     )
     if finding.members:
         values = f"{either_in_words(finding)}; this motion cannot tell, a second frequency would"
@@ -154,7 +183,19 @@ def evidence(finding: Finding) -> str:
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
-    return in_digits(text + f"{_of_the_mains(finding)}.")
+    return in_digits(text + f"{_of_the_mains(finding)}{_of_a_gear(finding)}.")
+
+
+def _of_a_gear(finding: Finding) -> str:
+    """What a length that the ratio repeats with could be."""
+    length = finding.parameters.get("inertance_period_1")
+    if length is None:
+        return ""
+    millimetres = 1e3 * length.value
+    return (
+        f"; {millimetres:.3g} mm is one turn of a gear of {millimetres / (2 * math.pi):.3g} mm "
+        "radius or of a screw of that lead, or the pitch of its teeth"
+    )
 
 
 def _of_the_mains(finding: Finding) -> str:

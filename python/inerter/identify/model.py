@@ -55,7 +55,11 @@ class Model:
         return given
 
     def smooth_part(self) -> Device:
-        """The device's terms that are smooth in the motion: no friction, no stops, no play."""
+        """The device's terms that are smooth in the motion: no friction, no stops, no play.
+
+        What changes along the stroke is none of them: along a fast stroke it is quicker than the
+        motion.
+        """
         return self._smooth_device
 
     # worked out once, for all runs
@@ -66,16 +70,21 @@ class Model:
 
     @cached_property
     def _smooth_device(self) -> Device:
-        whole, known = self._device.given, {**parameters(), **lists()}
-        rough = (*JUMPS, "mu_forward", "mu_backward")
-        names = [n for n in whole if n not in known or not known[n].laws]
-        kept = {n: whole[n] for n in names if n != "friction" and n not in rough}
+        known = parameters()
+        rough = ("friction", *JUMPS, *lists(), "mu_forward", "mu_backward")
+        kept = {
+            name: value
+            for name, value in self._device.given.items()
+            if name not in rough and not (name in known and known[name].laws)
+        }
         return Device(**_with_ends(kept))
 
     @cached_property
     def has_jumps(self) -> bool:
         """Whether something beside friction makes the force jump or bend sharply."""
-        return clips(self.values) or bool(self._device.backlash or self._device.stop_stiffness)
+        device = self._device
+        along = any(n in lists() and not n.startswith("friction") for n in device.given)
+        return clips(self.values) or along or bool(device.backlash or device.stop_stiffness)
 
     @property
     def delay(self) -> float:

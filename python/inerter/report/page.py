@@ -22,7 +22,7 @@ from inerter.diagnose.result import (
     RunCurves,
     TablePoints,
 )
-from inerter.diagnose.wording import departure, is_right
+from inerter.diagnose.wording import curves_in_words, departure, is_right
 from inerter.motion_units import force_word
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import to_script
@@ -153,13 +153,17 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         full = max(diagnosis.baseline.rmse, finding.rmse_before)
         return round(min(100.0, max(0.0, 100 * value / full)), 2) if full > 0 else 0.0
 
+    curves, others = curves_in_words(finding.parameters)
     return {
         "name": text.finding_name(finding),
         "key": finding.effect,
         "confidence": text.confidence(finding.confidence),
         "parameters": [
-            (name, text.parameter_meaning(name), text.with_error(value), _vague(value))
-            for name, value in finding.parameters.items()
+            *(
+                (name, text.parameter_meaning(name), text.with_error(value), _vague(value))
+                for name, value in others.items()
+            ),
+            *((name, "", words, False) for name, words in curves.items()),
         ],
         "before": finding.rmse_before,
         "after": finding.rmse_after,

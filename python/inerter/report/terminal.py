@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from inerter.diagnose.result import Diagnosis, ParameterValue
-from inerter.diagnose.wording import departure
+from inerter.diagnose.wording import curves_in_words, departure
 from inerter.printable import printable
 from inerter.report import text
 from inerter.report.runs import role
@@ -59,9 +59,12 @@ def _findings(diagnosis: Diagnosis) -> Table:
         if likely:
             names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
             effect.append(f"\nor {names}", style="dim not bold")
+        curves, others = curves_in_words(finding.parameters)
         values = "\n".join(
-            f"{name} {text.with_error(value)}{_departure(value)}"
-            for name, value in finding.parameters.items()
+            [
+                *(f"{n} {text.with_error(v)}{_departure(v)}" for n, v in others.items()),
+                *curves.values(),
+            ]
         )
         table.add_row(
             effect,
