@@ -27,7 +27,9 @@ def make() -> str | None:
     """Make what is out of date. The reason where scenes could not be rendered."""
     FOLDER.mkdir(exist_ok=True)
     kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
-    drawn = fingerprint([HERE / "figures.py", library_path("inerter_core")])
+    drawn = fingerprint(
+        [HERE / "figures.py", HERE / "strut_figures.py", library_path("inerter_core")]
+    )
     if kept.get("drawn") != drawn:
         kept["pictures"], kept["drawn"] = figures.draw(), drawn
     seen = fingerprint([plugin_path(), *model_path("quarter_car").parents[1].rglob("*.xml")])

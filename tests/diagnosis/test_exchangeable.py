@@ -134,7 +134,7 @@ def test_an_effect_whose_own_parameters_may_be_none_goes() -> None:
     search = Search(data.runs, data.split, base)
     start = base.adding("coulomb", coulomb_force=5.0, friction_gradient=0.0, friction_curvature=0.0)
     fit = search.problem.fit(start)
-    assert effects_of(fit.model, base) == [("position_dependent_friction", None)]
+    assert effects_of(fit.model, base) == [("position_dependent_friction", "polynomial")]
     known = identified(search, base, search.score("", None, fit))
     assert effects_of(known.model, base) == [("coulomb_friction", None)]
     assert known.model.values["coulomb_force"] == pytest.approx(8.0, rel=0.05)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inerter.diagnose.composition import effects_of, submodel
+from inerter.diagnose.composition import effects_of, is_local, submodel
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.search import Search, is_local
+from inerter.diagnose.search import Search
 from inerter.diagnose.statistics import (
     Interval,
     advantage,

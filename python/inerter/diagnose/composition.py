@@ -35,6 +35,16 @@ def has_series(model: Model) -> bool:
     return any(name in model.values for name in names)
 
 
+def is_local(effect: str) -> bool:
+    """Whether an effect may show in few stretches, or in one run alone."""
+    return effect in EFFECTS and EFFECTS[effect].local
+
+
+def is_shaft(effect: str) -> bool:
+    """Whether an effect makes the noise of the motion larger near a resonance."""
+    return effect in EFFECTS and EFFECTS[effect].kind == "shaft"
+
+
 def is_distinct(
     effect: str, fit: Fit, baseline: Model, required: float = CRITERIA.distinction
 ) -> bool:

@@ -23,6 +23,8 @@ from inerter.diagnose.composition import (
     effects_of,
     is_blur,
     is_distinct,
+    is_local,
+    is_shaft,
     simpler_laws,
     with_own_spring,
     within_blur,
@@ -46,16 +48,7 @@ from inerter.identify.split import Mask, Split, blocks, spread_folds
 
 Progress = Callable[[str], None]
 Folds = list[tuple[Problem, list[Mask]]]
-
-
-def is_local(effect: str) -> bool:
-    """Whether an effect may show in few stretches, or in one run alone."""
-    return effect in EFFECTS and EFFECTS[effect].local
-
-
-def is_shaft(effect: str) -> bool:
-    """Whether an effect makes the noise of the motion larger near a resonance."""
-    return effect in EFFECTS and EFFECTS[effect].kind == "shaft"
+Fitted = tuple[Candidate, Fit]
 
 
 def advantage_of(
@@ -258,8 +251,6 @@ class Search:
         near = floor * (1 + 5 * CRITERIA.tolerated_loss)
         shortlist = worthy[: CRITERIA.shortlist]
         shortlist += [pair for pair in worthy[CRITERIA.shortlist :] if pair[1].rmse(masks) < near]
-        # what stands on a friction level must not keep the level alone from being asked
-        shortlist += [p for p in worthy if p[0].effect == "coulomb_friction" and p not in shortlist]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 
@@ -269,17 +260,16 @@ class Search:
             current = self.score(current.effect, current.law, current.fit, folds)
         else:
             folds = self._folds
-        scored = parallel(
-            lambda pair: self.score(pair[0].effect, pair[0].law, pair[1], folds), shortlist
-        )
-        there = [
-            s
-            for s in scored
-            if is_distinct(s.effect, s.fit, self.baseline)
-            and not self.is_blur(s.fit, current.fit, fitted)
-        ]
-        good = [s for s in there if self._better(*self._weighed_for(s, [current, s]))]
-        if not good:
+        # what stands on a friction level must not keep the level alone from being asked
+        level = [p for p in worthy if p[0].effect == "coulomb_friction" and p not in shortlist]
+        there: list[Scored] = []
+        good: list[Scored] = []
+        for pairs in (shortlist, level):
+            there += self._that_are_there(pairs, folds, current, fitted)
+            good = [s for s in there if self._better(*self._weighed_for(s, [current, s]))]
+            if good:
+                break
+        else:
             limit = (1 - CRITERIA.foothold) ** 2 * current.squares.sum()
             self._refused = [s for s in there if s.squares.sum() < limit]
             return None
@@ -292,6 +282,18 @@ class Search:
         elif folds is not self._folds:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
         return replace(chosen, fit=self.problem.fit(chosen.model))
+
+    def _that_are_there(
+        self, pairs: Sequence[Fitted], folds: Folds, current: Scored, fitted: Sequence[Fitted]
+    ) -> list[Scored]:
+        """Fitted candidates on data left out, without those whose own values may be none."""
+        scored = parallel(lambda p: self.score(p[0].effect, p[0].law, p[1], folds), pairs)
+        return [
+            s
+            for s in scored
+            if is_distinct(s.effect, s.fit, self.baseline)
+            and not self.is_blur(s.fit, current.fit, fitted)
+        ]
 
     def _weighed_for(self, rich: Scored, scored: Sequence[Scored]) -> list[Scored]:
         """Models as they count where one of them brings a shaft."""
