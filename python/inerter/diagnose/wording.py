@@ -99,7 +99,7 @@ def _law(name: str | None) -> str:
     """A friction law in brackets, or of which channel and kind a filter is, where it is one."""
     if name and " order " in name:
         return f" ({name})"
-    if name in FORMS:
+    if name and name in FORMS:
         return f" ({FORMS[name]})"
     return f" ({FRICTION[name].words})" if name and name in FRICTION else ""
 
