@@ -8,6 +8,7 @@ starting points of its own has a function here, by the effect's name.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -32,6 +33,14 @@ Build = Callable[[Effect, Model, Scales], Iterator[Candidate]]
 
 def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Every candidate that adds something to a model, or sets free what it states."""
+    for each in _built(model, sizes):
+        # load friction, say, is none of a hysteresis that hardens without end
+        starts = tuple(start for start in each.starts if start.is_possible)
+        if starts:
+            yield replace(each, starts=starts)
+
+
+def _built(model: Model, sizes: Scales) -> Iterator[Candidate]:
     for effect in EFFECTS.values():
         build = _SPECIAL.get(effect.name) or _OF_KIND[effect.kind]
         yield from build(effect, model, sizes)

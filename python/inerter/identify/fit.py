@@ -13,7 +13,6 @@ from inerter.catalogue.coordinates import (
     parameters_of,
 )
 from inerter.catalogue.scales import Scales
-from inerter.core import DeviceError
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
 from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.estimation.variables import Variables
@@ -85,16 +84,15 @@ class Problem:
 
     def residual(self, model: Model, pressed: float = 0.0) -> list[Array]:
         """Errors as they count against noise, of every run [N]."""
-        return self.weighted(self.errors(model, pressed), model.shaft)
+        shaft = model.shaft if model.is_possible else None
+        return self.weighted(self.errors(model, pressed), shaft)
 
     def errors(self, model: Model, pressed: float = 0.0) -> list[Array]:
         """Measured minus predicted force of every run [N].
 
         States begin where a first force puts them that is the measured one and `pressed` [N].
         """
-        try:
-            model.device()
-        except DeviceError:
+        if not model.is_possible:
             # a search may try what no device can be: an inertance below 0 at a place, say
             return [np.full(run.force.size, np.inf) for run in self.runs]
         return [

@@ -47,6 +47,14 @@ class Model:
         """The device these coordinates stand for."""
         return self._device
 
+    @cached_property
+    def is_possible(self) -> bool:
+        """Whether there is a device that these coordinates stand for."""
+        try:
+            return self._device is not None
+        except DeviceError:
+            return False
+
     def stated(self) -> dict[str, float | str]:
         """What a file of the device has to state: no width of sign(v) where nothing reads it."""
         given = dict(self._device.given)
