@@ -185,10 +185,7 @@ def told(values: Values) -> None:
 
 
 def lists(values: Values) -> dict[str, str]:
-    """Lists of a device that told parameters stand for; these are taken out of the values.
-
-    Where no curve is left its ends go too.
-    """
+    """Lists of a device that told parameters stand for; these are taken out of the values."""
     found = {}
     for quantity in QUANTITIES:
         rows = []

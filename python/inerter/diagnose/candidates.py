@@ -276,7 +276,7 @@ def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
     yield Candidate(effect.name, None, starts)
 
 
-def _tone(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+def _by_the_search(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     # read off the residual by the search, see `tone` and `along_stroke`
     return iter(())
 
@@ -288,7 +288,7 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 _SPECIAL: dict[str, Build] = {
     "sensor_filter": _filter,
-    "position_force": _tone,
+    "position_force": _by_the_search,
     "friction_play": _play_of_friction,
     "viscoelasticity": _relaxing,
     "viscous_drift": _damper,
@@ -300,5 +300,5 @@ _SPECIAL: dict[str, Build] = {
     "end_stop": _end_stop,
     "gas_spring": _gas,
     "sensor_saturation": _saturation,
-    "periodic_disturbance": _tone,
+    "periodic_disturbance": _by_the_search,
 }

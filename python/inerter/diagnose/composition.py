@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from inerter.catalogue.along_stroke import QUANTITIES
+from inerter.catalogue.along_stroke import PERIODS, QUANTITIES
 from inerter.catalogue.coordinates import search_range
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import (
@@ -221,7 +221,7 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
 def _fewer_periods(model: Model, effect: str) -> list[Model]:
     """The model with one period along the stroke less, the last; none where there are not two."""
     for quantity in QUANTITIES:
-        numbers = [i for i in (1, 2, 3) if quantity.period(i)[0] in model.free]
+        numbers = [i for i in range(1, PERIODS + 1) if quantity.period(i)[0] in model.free]
         if quantity.effect == effect and len(numbers) > 1:
             return [model.without(quantity.period(numbers[-1]))]
     return []
