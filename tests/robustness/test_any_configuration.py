@@ -145,6 +145,7 @@ def simulated(path: Path) -> SimulatedRun | str:
 @pytest.mark.parametrize("integrator", ["RK4", "Euler", "implicitfast", "discrete"])
 @settings(SETTINGS, max_examples=25)
 @given(values=meant(), speed=st.floats(0.05, 1.0))
+@example(values={"inertance": 50.0, "viscous": 50.0, "damping_knee": 2.2e-309}, speed=1.0)
 def test_what_is_taken_is_simulated_right(
     values: Values, speed: float, integrator: str, tmp_path: Path
 ) -> None:
@@ -162,7 +163,8 @@ def test_what_is_taken_is_simulated_right(
     assert all(np.isfinite(column).all() for column in columns.values())
     heat = columns["dissipated_energy"]
     scale = 0.5 * (20 + device.inertance) * speed**2
-    assert np.diff(heat).min() > -1e-3 * scale
+    gives_energy = "force_map" in values and not values["force_map_passive"]
+    assert gives_energy or np.diff(heat).min() > -1e-3 * scale
     if integrator != "RK4":
         # the others show the force of a whole step
         return

@@ -43,6 +43,6 @@ def damping_force(
     """Damper force [N] at the velocity [m/s]."""
     bent = velocity
     if knee:
-        bent = velocity * (beyond + (1.0 - beyond) / np.hypot(1.0, velocity / knee))
+        bent = velocity * (beyond + (1.0 - beyond) * knee / np.hypot(knee, velocity))
     force = viscous * bent + quadratic_damping * abs(velocity) * velocity
     return force + asymmetry * abs(force)
