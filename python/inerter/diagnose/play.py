@@ -55,6 +55,9 @@ _PATIENCE = 2
 # the same where nothing is known, and of how many of these the fit begins
 _WIDE = 11
 _BELIEVED = 2
+# share of every run that these are asked on first; of one of how many the whole is asked then
+_PART = 0.25
+_LEFT = 16
 # points that are followed, and how far
 _FOLLOWED = 4
 _EVALUATIONS = 20
@@ -224,7 +227,12 @@ def find_play(problem: Problem, model: Model) -> Model | None:
     }
     start = model.adding(None, **{name: low for name, (low, _) in ranges.items()})
     problem = forgiving(problem, model, _FAR * rms(problem.errors(model), problem.masks))
-    best = _best(problem, _points(start, ranges, _WIDE, 0))[:_BELIEVED]
+    points = _points(start, ranges, _WIDE, 0)
+    part = problem.head(_PART)
+    points = _best(part, [model, *points], len(points) // _LEFT)
+    if points[0] is model:
+        return None
+    best = _best(problem, [each for each in points if each is not model])[:_BELIEVED]
     here, there = (rms(problem.residual(m), problem.masks) for m in (model, best[0]))
     if there > (1 - _PROMISE) * here:
         return None
@@ -271,7 +279,9 @@ def _fit_about(
         ranges["delay"] = (model.delay - late, model.delay + late)
     points = _points(model, ranges, _POWER, seed)
     best = _best(problem, [model, *points] if with_it else points)
-    fits = parallel(lambda start: problem.fit(start, _EVALUATIONS, tolerance=_TOLERANCE), best)
+    fits = parallel(
+        lambda start: problem.fit(start, _EVALUATIONS, tolerance=_TOLERANCE, rough=True), best
+    )
     return min(fits, key=lambda fit: fit.rmse(problem.masks))
 
 
@@ -286,6 +296,6 @@ def _points(model: Model, ranges: Ranges, power: int, seed: int) -> list[Model]:
     return [replace(model, values={**model.values, **values}) for values in moved]
 
 
-def _best(problem: Problem, models: list[Model]) -> list[Model]:
+def _best(problem: Problem, models: list[Model], count: int = _FOLLOWED) -> list[Model]:
     errors = parallel(lambda model: rms(problem.residual(model), problem.masks), models)
-    return [models[i] for i in np.argsort(errors)[:_FOLLOWED]]
+    return [models[i] for i in np.argsort(errors)[:count]]

@@ -199,9 +199,13 @@ class Search:
         if not fit.model.free:
             return self._scored(effect, law, fit, self.problem.errors(fit.model))
         left_out = [np.zeros(run.force.size) for run in self.runs]
+        derivatives = self.problem.derivatives(fit.model)
+        if fit.rough:
+            fit = self.problem.told(fit, derivatives)
 
         def errors(problem: Problem) -> list[Array]:
-            return problem.errors(problem.fit(fit.model, evaluations=12, tolerance=ROUGH).model)
+            refit = problem.fit(fit.model, 12, tolerance=ROUGH, rough=True, derivatives=derivatives)
+            return problem.errors(refit.model)
 
         problems, masks = zip(*(folds or self._folds), strict=True)
         for fold, found in zip(masks, parallel(errors, problems), strict=True):

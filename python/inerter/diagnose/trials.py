@@ -14,7 +14,6 @@ from inerter.diagnose.parallel import parallel
 from inerter.diagnose.promise import Promise
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
-from inerter.identify.runs import head, head_size
 
 # share of the cost below which a step of a fit that is only compared changes nothing
 ROUGH = 1e-5
@@ -48,14 +47,7 @@ class Trials:
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self._part = Problem(
-            [head(run, STARTING_SHARE) for run in problem.runs],
-            [
-                mask[: head_size(run, STARTING_SHARE)]
-                for mask, run in zip(problem.masks, problem.runs, strict=True)
-            ],
-            problem.scales,
-        )
+        self._part = problem.head(STARTING_SHARE)
         self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
 
     def __getstate__(self) -> dict[str, object]:
@@ -85,7 +77,8 @@ class Trials:
                 return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
 
             trials = [
-                part.fit(start, evaluations, tolerance=1e-3, give_up=hopeless) for start in starts
+                part.fit(start, evaluations, tolerance=1e-3, give_up=hopeless, rough=True)
+                for start in starts
             ]
             trials.sort(key=lambda fit: fit.rmse(part.masks))
             best = trials[0].rmse(part.masks)
@@ -94,13 +87,13 @@ class Trials:
                 return [replace(trials[0], residual=residual, evaluations=1)]
             near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
             starts = tuple(trial.model for trial in near or trials[:1])
-        return [self.problem.fit(start, FEW, tolerance=ROUGH) for start in starts]
+        return [self.problem.fit(start, FEW, tolerance=ROUGH, rough=True) for start in starts]
 
     def _followed(self, rough: Sequence[Fit], limit: float) -> Fit:
         """The best of them; those below a limit [N] are followed to their end first."""
         masks = self.problem.masks
         fits = [
-            self.problem.fit(fit.model, tolerance=ROUGH)
+            self.problem.fit(fit.model, tolerance=ROUGH, rough=True)
             if fit.evaluations >= FEW and fit.rmse(masks) < limit
             else fit
             for fit in rough

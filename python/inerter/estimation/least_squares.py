@@ -18,6 +18,10 @@ from inerter.estimation.covariance import usual_size
 
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
+
+# share of the change of a residual by a step that secants have to foretell
+_FORETOLD = 0.5
+
 Residuals = Callable[[Array], Array]
 """Points (sets, p) to residuals (sets, n)."""
 GiveUp = Callable[[int, float], bool]
@@ -82,6 +86,7 @@ def minimise(
     loss: str = "linear",
     scaled: bool = False,
     give_up: GiveUp | None = None,
+    secants: Secants | None = None,
 ) -> Solution:
     """A trust region reflective search from a point, see `scipy.optimize.least_squares`.
 
@@ -99,26 +104,101 @@ def minimise(
         Whether the variables are scaled by the Jacobian's columns.
     give_up
         Told the evaluations so far and the rms of the residual after every step.
+    secants
+        Takes the Jacobian's place between the points at which it is worked out.
     """
+    before = 0
 
     def watch(intermediate_result: OptimizeResult) -> None:
         error = float(np.sqrt(np.mean(intermediate_result.fun**2)))
-        if give_up and give_up(intermediate_result.nfev, error):
+        if give_up and give_up(before + intermediate_result.nfev, error):
             raise StopIteration
 
     begin = inside(start, bounds)
-    found = least_squares(
-        residual, begin,
-        jac=jacobian or "2-point",  # pyright: ignore[reportArgumentType]
-        bounds=bounds, loss=loss, x_scale="jac" if scaled else 1.0,
-        f_scale=usual_size(residual(begin)) if loss != "linear" else 1.0,
-        xtol=tolerances.point, ftol=tolerances.cost, gtol=tolerances.gradient,
-        max_nfev=evaluations, callback=watch if give_up else None,
-    )  # fmt: skip
+    scale = usual_size(residual(begin)) if loss != "linear" else 1.0
+    cost = np.inf
+    while True:
+        found = least_squares(
+            residual, begin,
+            jac=secants or jacobian or "2-point",  # pyright: ignore[reportArgumentType]
+            bounds=bounds, loss=loss, x_scale="jac" if scaled else 1.0, f_scale=scale,
+            xtol=tolerances.point, ftol=tolerances.cost, gtol=tolerances.gradient,
+            max_nfev=evaluations and evaluations - before, callback=watch if give_up else None,
+        )  # fmt: skip
+        before += int(found.nfev)
+        spent = evaluations is not None and before >= evaluations
+        if secants is None or secants.rough or not secants.stale or found.status <= 0 or spent:
+            break
+        if found.cost > (1 - tolerances.cost) * cost:
+            break
+        # no step that these derivatives tell lowers the cost: what do true ones tell?
+        secants.forget()
+        begin, cost = inside(found.x, bounds), float(found.cost)
     return Solution(
         variables=found.x, residual=found.fun, jacobian=np.asarray(found.jac),
-        cost=float(found.cost), evaluations=int(found.nfev), ended=found.status > 0,
+        cost=float(found.cost), evaluations=before, ended=found.status > 0,
     )  # fmt: skip
+
+
+class Secants:
+    """A Jacobian that follows a search from point to point by what the residual did (Broyden 1965).
+
+    It is worked out anew where too little of a step was foretold.
+
+    Parameters
+    ----------
+    residual, jacobian
+        Of a point (p,): residual (n,) and derivatives (n, p).
+    enough
+        Relative fall of the cost below which a step is the last one, and its derivatives are not
+        asked for.
+    rough
+        Whether a search may end without true derivatives.
+    first
+        Derivatives (n, p) that are near those at the first point, if there are such.
+    """
+
+    def __init__(
+        self,
+        residual: Callable[[Array], Array],
+        jacobian: Callable[[Array], Array],
+        enough: float = 0.0,
+        rough: bool = False,
+        first: Array | None = None,
+    ) -> None:
+        self._residual, self._jacobian, self._enough, self.rough = residual, jacobian, enough, rough
+        self._known: tuple[Array, Array, Array] | None = None
+        self._first = first
+        self.stale = False
+
+    def forget(self) -> None:
+        """Be worked out anew at the next point."""
+        self._known = None
+
+    def __call__(self, point: Array) -> Array:
+        """Derivatives at a point, (n, p)."""
+        here = self._residual(point)
+        if self._known is None:
+            found, self._first = self._first, None
+        else:
+            found = self._followed(point, here, *self._known)
+        self.stale = found is not None
+        if found is None:
+            found = self._jacobian(point)
+        self._known = point.copy(), here, found
+        return found
+
+    def _followed(
+        self, point: Array, here: Array, last: Array, was: Array, old: Array
+    ) -> Array | None:
+        step, change = point - last, here - was
+        length, before = float(step @ step), float(was @ was)
+        if not length or before - float(here @ here) < self._enough * before:
+            return old
+        miss = change - old @ step
+        if not np.linalg.norm(miss) < (1 - _FORETOLD) * np.linalg.norm(change):
+            return None
+        return old + np.outer(miss / length, step)
 
 
 def differences(residuals: Residuals, at: Array, here: Array, bounds: Bounds, step: float) -> Array:

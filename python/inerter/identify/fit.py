@@ -14,12 +14,12 @@ from inerter.catalogue.coordinates import (
 )
 from inerter.catalogue.scales import Scales
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
-from inerter.estimation.least_squares import Tolerances, minimise
+from inerter.estimation.least_squares import Secants, Tolerances, minimise
 from inerter.estimation.variables import Variables
 from inerter.identify.columns import Columns
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
-from inerter.identify.runs import BenchRun, scales
+from inerter.identify.runs import BenchRun, head, head_size, scales
 from inerter.records.motion import Shaft
 
 Array = NDArray[np.float64]
@@ -40,6 +40,8 @@ class Fit:
         How often the optimiser asked for the residual.
     cost : float
         What was minimised, without unit.
+    rough : bool
+        Whether the covariance is as near as the search needed it.
     """
 
     model: Model
@@ -47,6 +49,7 @@ class Fit:
     covariance: Array
     evaluations: int
     cost: float = 0.0
+    rough: bool = False
 
     def rmse(self, masks: Masks) -> float:
         """Root mean square residual over masked samples [N]."""
@@ -81,6 +84,17 @@ class Problem:
     def with_masks(self, masks: Masks) -> Problem:
         """The same runs with other samples counting."""
         return Problem(self.runs, masks, self.scales)
+
+    def head(self, share: float) -> Problem:
+        """The first part of every run."""
+        return Problem(
+            [head(run, share) for run in self.runs],
+            [
+                mask[: head_size(run, share)]
+                for mask, run in zip(self.masks, self.runs, strict=True)
+            ],
+            self.scales,
+        )
 
     def residual(self, model: Model, pressed: float = 0.0) -> list[Array]:
         """Errors as they count against noise, of every run [N]."""
@@ -118,6 +132,10 @@ class Problem:
 
         `names` are the free coordinates asked for, by default all.
         """
+        return self.derivatives(model, names)[np.concatenate(self.masks)]
+
+    def derivatives(self, model: Model, names: Sequence[str] | None = None) -> Array:
+        """The same over all samples, those that do not count among them."""
         here = self.variables(model).encode(model.values)
         wanted = model.free if names is None else names
         return self._columns(model, here, wanted, lambda p: self.residual(self._decode(model, p)))
@@ -129,11 +147,9 @@ class Problem:
         names: Sequence[str],
         residual: Callable[[Array], list[Array]],
     ) -> Array:
-        selected = np.concatenate(self.masks)
         columns = self._derivatives.of(model, point, names, residual)
-        if not columns:
-            return np.zeros((int(selected.sum()), 0))
-        return np.column_stack([column[selected] for column in columns])
+        samples = sum(run.force.size for run in self.runs)
+        return np.column_stack(columns) if columns else np.zeros((samples, 0))
 
     def moved(self, model: Model, step: Array) -> Model:
         """The model with its search variables moved, within their bounds."""
@@ -153,17 +169,22 @@ class Problem:
         loss: str = "linear",
         tolerance: float = 1e-9,
         give_up: Callable[[int, float], bool] | None = None,
+        rough: bool = False,
+        derivatives: Array | None = None,
     ) -> Fit:
         """Bounded least squares over the model's free coordinates, from its present values.
 
         A robust `loss` (see `scipy.optimize.least_squares`) lets samples far off count less. The
         search ends where a step lowers the cost by less than `tolerance` of it, or where `give_up`
-        says so of the evaluations so far and the rms of the masked residual [N].
+        says so of the evaluations so far and the rms of the masked residual [N]. A `rough` one is
+        only compared: its derivatives where it ends are not worked out. `derivatives`, where given,
+        are near those at the start.
         """
         if not model.free:
             return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
         variables, size = self.variables(model), self.scales.force
         cache: dict[bytes, list[Array]] = {}
+        selected = np.concatenate(self.masks)
 
         def at(point: Array) -> list[Array]:
             key = point.tobytes()
@@ -173,13 +194,19 @@ class Problem:
             return cache[key]
 
         def jacobian(point: Array) -> Array:
-            return self._columns(self._decode(model, point), point, model.free, at) / size
+            columns = self._columns(self._decode(model, point), point, model.free, at)
+            return columns[selected] / size
 
         def hopeless(done: int, error: float) -> bool:
             return bool(give_up and give_up(done, size * error))
 
+        def flat_at(point: Array) -> Array:
+            return self.masked(at(point)) / size
+
+        first = None if derivatives is None else derivatives[selected] / size
+        secants = Secants(flat_at, jacobian, tolerance, rough, first)
         solution = minimise(
-            lambda point: self.masked(at(point)) / size,
+            flat_at,
             variables.encode(model.values),
             variables.bounds,
             jacobian,
@@ -187,15 +214,24 @@ class Problem:
             evaluations=evaluations,
             loss=loss,
             give_up=hopeless if give_up else None,
+            secants=secants,
         )
         fitted = self._decode(model, solution.variables)
         residual = at(solution.variables)
         flat = self.masked(residual)
         weight = robust_weight(flat, usual_size(flat), loss)
         # a robust loss scales the derivatives
-        columns = solution.jacobian if loss == "linear" else jacobian(solution.variables)
+        true = rough or not (secants.stale or loss != "linear")
+        columns = solution.jacobian if true else jacobian(solution.variables)
         covariance = self._covariance(fitted, columns * size, flat, weight)
-        return Fit(fitted, residual, covariance, solution.evaluations, solution.cost)
+        return Fit(fitted, residual, covariance, solution.evaluations, solution.cost, rough)
+
+    def told(self, fit: Fit, derivatives: Array) -> Fit:
+        """A rough fit with the covariance that the derivatives at its end tell."""
+        flat = self.masked(fit.residual)
+        columns = derivatives[np.concatenate(self.masks)]
+        covariance = self._covariance(fit.model, columns, flat, np.ones_like(flat))
+        return replace(fit, covariance=covariance, rough=False)
 
     def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
         """Covariance of the free coordinates, see `sandwich`."""

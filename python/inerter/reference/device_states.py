@@ -51,12 +51,12 @@ def at_command(method: Callable[..., Any]) -> Callable[..., Any]:
 class DeviceStates(DeviceParameters):
     """The parameters of a device, and the states that follow from them."""
 
-    @property
+    @functools.cached_property
     def nstate(self) -> int:
         """Number of states."""
         return len(self.state_names)
 
-    @property
+    @functools.cached_property
     def state_names(self) -> tuple[str, ...]:
         """Names of the states in their order."""
         friction = ("friction_state",) if self.friction_states else ()
@@ -101,6 +101,9 @@ class DeviceStates(DeviceParameters):
         """The device at the value of its control, without a state of it; its states."""
         found = self._with_value(self.control, control.value(self, self._change(z)))
         object.__setattr__(found, "control", "force")
+        for name in ("nstate", "state_names"):
+            # without what the control adds to them
+            found.__dict__.pop(name, None)
         array = np.asarray(z, dtype=np.float64)
         if not control.count(self) or array.ndim == 0:
             return found, z if self.nstate > control.count(self) else 0.0

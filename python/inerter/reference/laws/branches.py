@@ -22,40 +22,28 @@ from numpy.typing import NDArray
 from .device_parameters import DeviceParameters
 from .parameters import Quantity
 
-MOST = 3
-
-
-def elements(parameters: DeviceParameters) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """K_i [N/m] and C_i [N s/m] of the branches that are there, shape (n,)."""
-    found = [
-        (getattr(parameters, f"branch_stiffness_{i}"), getattr(parameters, f"branch_damping_{i}"))
-        for i in range(1, MOST + 1)
-    ]
-    there = np.array([pair for pair in found if pair[0] > 0.0]).reshape(-1, 2)
-    return there[:, 0], there[:, 1]
-
 
 def count(parameters: DeviceParameters) -> int:
     """How many branches there are."""
-    return elements(parameters)[0].size
+    return parameters.branches[0].size
 
 
 def rates(
     parameters: DeviceParameters, velocity: Quantity, deflections: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """e_i' [m/s], of the shape of the deflections and the velocity's."""
-    stiffness, damping = elements(parameters)
+    stiffness, damping = parameters.branches
     return np.asarray(velocity)[..., np.newaxis] - deflections * (stiffness / damping)
 
 
 def force(parameters: DeviceParameters, deflections: NDArray[np.float64]) -> Quantity:
     """F [N]."""
-    return deflections @ elements(parameters)[0]
+    return deflections @ parameters.branches[0]
 
 
 def stored_energy(parameters: DeviceParameters, deflections: NDArray[np.float64]) -> Quantity:
     """Energy in the springs [J]."""
-    return 0.5 * deflections**2 @ elements(parameters)[0]
+    return 0.5 * deflections**2 @ parameters.branches[0]
 
 
 def dissipated_power(
@@ -63,4 +51,4 @@ def dissipated_power(
 ) -> Quantity:
     """Heat in the dashpots [W]."""
     flow = np.asarray(velocity)[..., np.newaxis] - rates(parameters, velocity, deflections)
-    return flow**2 @ elements(parameters)[1]
+    return flow**2 @ parameters.branches[1]

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .force_map import MOST_COLUMNS, MOST_ROWS, ForceMap
 from .parameters import UNSET, FrictionParameters, parameter
@@ -141,6 +142,16 @@ class DeviceParameters(FrictionParameters):
         given = (self.mu_forward, self.mu_backward)
         forward, backward = (self.load_friction if np.isnan(mu) else mu for mu in given)
         return forward, backward
+
+    @cached_property
+    def branches(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """K_i [N/m] and C_i [N s/m] of the branches that are there, shape (n,)."""
+        found = [
+            (getattr(self, f"branch_stiffness_{i}"), getattr(self, f"branch_damping_{i}"))
+            for i in (1, 2, 3)
+        ]
+        there = np.array([pair for pair in found if pair[0] > 0.0]).reshape(-1, 2)
+        return there[:, 0], there[:, 1]
 
     @cached_property
     def surface(self) -> ForceMap | None:
