@@ -160,6 +160,8 @@ REPORTED_UNITS: Mapping[str, str] = {
 """Units of what findings report of it and no device has a parameter for."""
 
 
+_NAMES = {name for q in QUANTITIES for name in (*q.coordinates, *q.reported)}
+
 FORMS: Mapping[str, str] = {
     "period": "periodic along the stroke",
     "curve": "a curve along the stroke",
@@ -175,6 +177,8 @@ def node_of(parameter: str) -> Quantity | None:
 
 def told(values: Values) -> None:
     """Amplitude and phase in the place of cosine and sine."""
+    if values.keys().isdisjoint(_NAMES):
+        return
     for quantity in QUANTITIES:
         for i in range(1, PERIODS + 1):
             _, cosine, sine = quantity.period(i)
@@ -186,7 +190,9 @@ def told(values: Values) -> None:
 
 def lists(values: Values) -> dict[str, str]:
     """Lists of a device that told parameters stand for; these are taken out of the values."""
-    found = {}
+    found: dict[str, str] = {}
+    if values.keys().isdisjoint(_NAMES):
+        return found
     for quantity in QUANTITIES:
         rows = []
         for i in range(1, PERIODS + 1):

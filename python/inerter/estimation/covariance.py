@@ -18,9 +18,10 @@ def usual_size(flat: Array) -> float:
 
 def robust_weight(residual: Array, typical: float, loss: str) -> Array:
     """What each sample counts in a fit: 1 with the linear loss, less far off with others."""
+    if loss == "linear":
+        return np.ones_like(residual)
     z = (residual / typical) ** 2
     return {
-        "linear": np.ones_like(z),
         "soft_l1": 1 / np.sqrt(1 + z),
         "huber": 1 / np.sqrt(np.maximum(z, 1)),
         "cauchy": 1 / (1 + z),
