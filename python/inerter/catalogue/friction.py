@@ -37,7 +37,7 @@ class FrictionLaw:
     memory
         Whether it has a state.
     peaked
-        Whether it falls with the speed and has no state: the blur of smoothed data may look so.
+        Whether it falls with the speed: the blur of smoothed data may look so.
     varies
         Whether its level can differ with the direction and along the stroke.
     contains, limits
@@ -121,7 +121,7 @@ _ALL = (
         ),
         constants=("stribeck_exponent",),
         spread=("stribeck_velocity", "static_excess", "presliding", "bristle_damping"),
-        memory=True, contains=("none", "dahl"), limits=("coulomb",),
+        memory=True, peaked=True, contains=("none", "dahl"), limits=("coulomb",),
         simpler=("coulomb", "dahl", "stribeck"), tried_on=("none", "coulomb", "stribeck", "dahl"),
         grid={"presliding": (0.003, 0.03, 0.2), "stribeck_velocity": (0.05, 0.3)},
         begin={"static_excess": 0.5, "bristle_damping": 0.001}, rich=True,

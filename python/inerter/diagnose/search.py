@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import along_stroke
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
@@ -339,12 +340,10 @@ class Search:
         return None
 
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
-        """Whether a fit's peak of friction does little more than friction without one.
-
-        That is among the fitted, or there has been such before.
-        """
+        """Whether a fit's peak of friction does little more than the laws without it."""
         masks = self.problem.masks
-        plain = [each.rmse(masks) for trial, each in fitted if trial.effect == "coulomb_friction"]
+        simpler = [n for n in FRICTION[fit.model.friction].simpler if not FRICTION[n].peaked]
+        plain = [each.rmse(masks) for _, each in fitted if each.model.friction in simpler]
         plainest = min(plain, default=without.rmse(masks))
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 

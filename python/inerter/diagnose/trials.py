@@ -93,7 +93,7 @@ class Trials:
         """The best of them; those below a limit [N] are followed to their end first."""
         masks = self.problem.masks
         fits = [
-            self.problem.fit(fit.model, tolerance=ROUGH, rough=True)
+            self.problem.fit(fit.model, tolerance=ROUGH)
             if fit.evaluations >= FEW and fit.rmse(masks) < limit
             else fit
             for fit in rough

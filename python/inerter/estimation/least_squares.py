@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
 
 # share of the change of a residual by a step that secants have to foretell
-_FORETOLD = 0.5
+_FORETOLD = 0.7
 
 Residuals = Callable[[Array], Array]
 """Points (sets, p) to residuals (sets, n)."""
