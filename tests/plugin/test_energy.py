@@ -115,7 +115,7 @@ def test_heat_of_elements_whose_limit_rises_is_of_the_order_of_the_step(name: st
         coarse, fine = (heat_of_slip(RISING[name], integrator, h) for h in (2e-3, 1e-3))
         # a first-order error may pass through 0, but is within what halving the step allows
         assert abs(fine[0] - true) < 0.65 * abs(coarse[0] - true) + 1e-3 * true
-        assert abs(fine[0] - true) < 0.03 * true
+        assert abs(fine[0] - true) < (0.1 if integrator == "discrete" else 0.02) * true
         if integrator != "discrete":  # which damps the bodies
             assert abs(fine[1]) < 0.65 * abs(coarse[1]) + 1e-4 * true
             assert abs(fine[1]) < 0.02 * true
