@@ -36,8 +36,9 @@ STEPS = 150
 
 
 def spec(
-    law: str, shaft: str, integrator: str, mu: float = 0.2, live: bool = False
-) -> mujoco.MjSpec:
+    law: str, shaft: str, integrator: str, mu: float = 0.2, *, live: bool = False,
+    more: dict[str, float] | None = None,
+) -> mujoco.MjSpec:  # fmt: skip
     """A wheel and a car side by side; with `live` the load friction is a numeric."""
     made = mujoco.MjSpec()
     made.option.timestep = 5e-4
@@ -51,7 +52,7 @@ def spec(
     inerter.add_device(
         made, "strut", between=(("wheel", [0, 0, 0]), ("car", [0, 0, 0])), rest_length="initial",
         inertance=113.0, friction=law, mu_forward=mu, mu_backward=0.1,
-        live=("mu_forward",) if live else (), **LAWS[law], **SHAFTS[shaft],
+        live=("mu_forward",) if live else (), **{**LAWS[law], **SHAFTS[shaft], **(more or {})},
     )  # fmt: skip
     return made
 
@@ -149,3 +150,29 @@ def test_a_live_load_is_the_compiled_one(law: str, shaft: str, integrator: str) 
     mujoco.mj_setState(stated, other, state, size)
     other.qacc_warmstart[:] = data.qacc_warmstart
     np.testing.assert_array_equal(run(model, data, 40), run(stated, other, 40))
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
+@pytest.mark.parametrize("shaft", SHAFTS)
+def test_where_several_accelerations_fit_the_bodies_gain_nothing(shaft: str, integrator: str) -> None:
+    """mu sigma1 |v| is 450 times the level, see load_friction.c."""
+    steep = {"bristle_damping": 1e4, "static_force": 40.0}
+    made = spec("lugre", shaft, integrator, mu=0.9, more=steep)
+    made.option.timestep, made.option.gravity = 1.25e-4, [0, 0, 0]
+    model = made.compile()
+    data = start(model)
+    data.qvel[0] = 2.0
+    kept = []
+    for _ in range(1600):
+        mujoco.mj_step(model, data)
+        mujoco.mj_forward(model, data)
+        bodies = 0.5 * (
+            25.0 * data.qvel[0] ** 2 + 180.0 * data.qvel[1] ** 2
+            + 1.2e5 * data.qpos[0] ** 2 + 6e3 * data.qpos[1] ** 2
+        )  # fmt: skip
+        kept.append(bodies + data.sensordata[-2])
+    # 2 m/s of 25 kg and of 113 kg beside, or behind the shaft at rest
+    first = 0.5 * 25.0 * 4.0 + (0.5 * 113.0 * 4.0 if shaft == "rigid" else 0.0)
+    assert max(kept) <= first * (1.0 + 1e-3)
+    balance = (kept[-1] + data.sensordata[-1]) / first
+    assert balance == pytest.approx(1.0, abs=1e-4 if integrator == "RK4" else 1e-2)
