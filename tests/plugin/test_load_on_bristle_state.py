@@ -121,9 +121,7 @@ def test_a_rollout_and_a_batch_are_a_loop(law: str, shaft: str, integrator: str)
 
     many = pytest.importorskip("mujoco.batch", reason="MuJoCo 3.16 has none")
     batch = many.Batch(model, 6, 2)
-    qpos, qvel, act, sensors = (
-        batch.bind(name) for name in ("qpos", "qvel", "act", "sensordata")
-    )
+    qpos, qvel, act, sensors = (batch.bind(name) for name in ("qpos", "qvel", "act", "sensordata"))
     qvel[:] = np.stack([speeds, np.zeros(6)], axis=1)
     batch.step(nstep=STEPS)
     found = np.concatenate([qpos, qvel, act, sensors], axis=1)
@@ -154,7 +152,9 @@ def test_a_live_load_is_the_compiled_one(law: str, shaft: str, integrator: str) 
 
 @pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
 @pytest.mark.parametrize("shaft", SHAFTS)
-def test_where_several_accelerations_fit_the_bodies_gain_nothing(shaft: str, integrator: str) -> None:
+def test_where_several_accelerations_fit_the_bodies_gain_nothing(
+    shaft: str, integrator: str
+) -> None:
     """mu sigma1 |v| is 450 times the level, see load_friction.c."""
     steep = {"bristle_damping": 1e4, "static_force": 40.0}
     made = spec("lugre", shaft, integrator, mu=0.9, more=steep)
