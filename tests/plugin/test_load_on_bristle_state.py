@@ -155,7 +155,7 @@ def test_a_live_load_is_the_compiled_one(law: str, shaft: str, integrator: str) 
 def test_where_several_accelerations_fit_the_bodies_gain_nothing(
     shaft: str, integrator: str
 ) -> None:
-    """mu sigma1 |v| is 450 times the level, see load_friction.c."""
+    """Mu sigma1 |v| is 450 times the level, see load_friction.c."""
     steep = {"bristle_damping": 1e4, "static_force": 40.0}
     made = spec("lugre", shaft, integrator, mu=0.9, more=steep)
     made.option.timestep, made.option.gravity = 1.25e-4, [0, 0, 0]
