@@ -86,7 +86,7 @@ def test_exudyns_own(path: Path) -> None:
     second order too, so that the difference bounds both; 1e-9 for rounding.
     """
     found = told(path)
-    assert found["velocity"] < 1e-12
+    assert found["velocity"] < (1e-6 if found["carried"] else 1e-12)
     known = {name: found[f"{name}_known"] for name in ("momentum", "energy")}
     if not found["moves"]:
         pytest.skip("its body is at rest")

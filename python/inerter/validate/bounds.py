@@ -18,9 +18,9 @@ goes to 0. With corners p is 1 at most, the sensitivity above is added, and to t
 law makes of a motion that is off by the bounds on displacement and velocity: where friction
 reverses, a slightly wrong velocity is a very wrong force. Force and states of a contact have no
 bound here: at an impact they jump, and whoever is late by a step is wrong by all of the jump.
-Where the sign of load friction is that of an evaluation before (Exudyn's explicit solvers), a sample
-just after a change of sign has mu |N| of the wrong sign: off by 2 mu |N|, and |N| is what N changes
-in a step at most. How much of that a run shows is chance, so that halving the step does not tell.
+Where the sign of load friction is that of an evaluation before (Exudyn's explicit solvers), a
+sample just after a change of sign has mu |N| of the wrong sign: off by 2 mu |N|, and |N| is what N
+changes in a step at most. How much of that a run shows is chance: halving the step does not tell.
 """
 
 from __future__ import annotations

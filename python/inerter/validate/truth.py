@@ -21,7 +21,7 @@ from inerter.validate.run import ValidationRun
 Array = NDArray[np.float64]
 
 KNEE = 1e-5
-"""Share of its limit over which an element of maxwell_slip begins to slip under a load, in the truth.
+"""Share of its limit over which an element of maxwell_slip begins to slip under a load here.
 
 A limit that rises holds the element between two rates; no solver that follows its error gets past
 that. Ten times the knee is off by ten times as much of the force, which a test looks at.
