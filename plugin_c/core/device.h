@@ -373,9 +373,9 @@ INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, 
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                             double a, const double* z);
 
-// For steps of one stage: that power without a friction law of several states, and what its elements
-// turn into heat in a step of h seconds from x, v, a, z to a velocity v1 and states `end` [J]; 0 for
-// other laws.
+// For steps of one stage: that power without a friction law of several states, and what its
+// elements turn into heat in a step of h seconds from x, v, a, z to a velocity v1 and states `end`
+// [J]; 0 for other laws.
 INERTER_API double inerter_power_beside_slip(const InerterDevice* device, double x, double v,
                                              double a, const double* z);
 INERTER_API double inerter_slip_heat(const InerterDevice* device, double x, double v, double a,

@@ -90,10 +90,10 @@ static double stored_power(const InerterDevice* p, const double* z, const double
   return sum;
 }
 
-// An element slips by what the path has more than its deflection. Its limit goes in a line from that
-// of the start to where it ends, and it slips at that force from where it reaches it; from beyond
-// its limit l it comes back with q = l (1 - q') over the path. The power of an instant tells none of
-// that: where the limit has just risen, no element is at it.
+// An element slips by what the path has more than its deflection. Its limit goes in a line from
+// that of the start to where it ends, and it slips at that force from where it reaches it; from
+// beyond its limit l it comes back with q = l (1 - q') over the path. The power of an instant tells
+// none of that: where the limit has just risen, no element is at it.
 static double heat(const InerterDevice* p, double x, double path, const double* z,
                    const double* end, double load) {
   double level = level_at(p, x, path, load), side = sign(path), length = fabs(path), sum = 0;

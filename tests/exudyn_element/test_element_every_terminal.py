@@ -177,7 +177,11 @@ def chain(mbs: Any, kind: str) -> tuple[Any, float]:
     last = None
     for pair in pairwise(nodes):
         common: dict[str, Any] = {"nodeNumbers": list(pair), "length": part}
-        plain = {"massPerLength": mass, "bendingStiffness": bending, "axialStiffness": axial}
+        plain: dict[str, Any] = {
+            "massPerLength": mass,
+            "bendingStiffness": bending,
+            "axialStiffness": axial,
+        }
         if kind in ("ANCFCable2D", "ANCFCable"):
             made = getattr(itemInterface, f"Object{kind}")(**common, **plain)
         elif kind == "BeamGeometricallyExact2D":

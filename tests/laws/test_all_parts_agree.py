@@ -36,7 +36,7 @@ from map_draws import draw_map
 ALL = (*LAWS, *AGING, *SEVERAL)
 POINTS, DEVICES = 40, 20
 TOLERANCE = 1e-12
-QUANTITIES = (
+QUANTITIES: tuple[str, ...] = (
     "total", "inertance", "friction", "stored_energy", "dissipated_power", "state_rate",
 )  # fmt: skip
 CONTROLS = ("viscous", "inertance", "stiffness", "flywheel_viscous", "coulomb_force")
@@ -141,7 +141,9 @@ def told_by_element(device: Device, command: float, x: Array, v: Array, a: Array
 def worst_errors(seed: int, law: str, devices: int) -> dict[str, dict[str, float]]:
     """Largest error of each quantity, relative to its largest size, by telling."""
     rng = np.random.default_rng([seed, ALL.index(law)])
-    worst = {who: dict.fromkeys(QUANTITIES, 0.0) for who in ("reference", "element")}
+    worst: dict[str, dict[str, float]] = {
+        who: dict.fromkeys(QUANTITIES, 0.0) for who in ("reference", "element")
+    }
     for _ in range(devices):
         p = draw(rng, law)
         device = Device(**p)
@@ -149,8 +151,9 @@ def worst_errors(seed: int, law: str, devices: int) -> dict[str, dict[str, float
         x = device.rest_length + rng.normal(0.0, 0.01, POINTS)
         v, a = rng.normal(0.0, 0.3, POINTS), rng.normal(0.0, 5.0, POINTS)
         z = drawn_states(rng, device, p)
-        core = device.evaluate(x, v, a, z, **({"command": command} if "control" in p else {}))
-        reference = ReferenceDevice(**p, **({"command": command} if "control" in p else {}))
+        commanded: dict[str, Any] = {"command": command} if "control" in p else {}
+        core = device.evaluate(x, v, a, z, **commanded)
+        reference = ReferenceDevice(**p, **commanded)
         told = {
             "reference": told_by_reference(reference, x, v, a, z),
             "element": told_by_element(device, command, x, v, a, z),

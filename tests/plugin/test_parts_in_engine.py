@@ -110,7 +110,7 @@ def build(
 def truth(name: str) -> np.ndarray:
     """Displacements and velocities at the end."""
     given = keys(name)
-    told = {"command": COMMAND} if "control" in given else {}
+    told: dict[str, Any] = {"command": COMMAND} if "control" in given else {}
     made = Structure(
         mass=np.diag(MASSES),
         damping=np.zeros((2, 2)),
