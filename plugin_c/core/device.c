@@ -78,6 +78,11 @@ static double load_at_terminals(const InerterDevice* device, double v, const dou
   return has(device, PART_WHEEL_FRICTION) ? 0 : inerter_load_factor(device, v, z, carried);
 }
 
+// whether the friction law has several states
+static int slips(const InerterDevice* device) {
+  return has_bristle(device) && law_of(device)->several;
+}
+
 // T without friction
 static double beside_force(const InerterDevice* device, double stretch, double v, const double* z) {
   double force = parallel_force(device, stretch, v);
@@ -307,25 +312,24 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   return has(device, PART_STOPS) ? energy + stop_energy(device, stretch) : energy;
 }
 
-double inerter_dissipated_power(const InerterDevice* device, double x, double v, double a,
-                                const double* z) {
+double inerter_power_beside_slip(const InerterDevice* device, double x, double v, double a,
+                                 const double* z) {
   double stretch = stretch_of(device, x), w = v;
   double damper = damper_force(device, stretch, v);
   double carried = branch_force(device, x, v, a, z);
   double load = load_at_terminals(device, v, z, carried) * fabs(carried);
   double on_bristle = law_load(device, x, v, a, z);
   Place rubbing = place_of_friction(device, stretch, v, z);
-  double friction = has(device, PART_WHEEL_FRICTION) ? wheel_drag(device, x, v, z)
-                                                     : law_force(device, stretch, v, z, on_bristle);
-  double power = (damper + load) * v + friction * rubbing.v;
+  double power = (damper + load) * v;
+  const FrictionLaw* law = law_of(device);
+  if (!slips(device)) {
+    power += rubbing.v * (has(device, PART_WHEEL_FRICTION)
+                              ? wheel_drag(device, x, v, z)
+                              : law_force(device, stretch, v, z, on_bristle));
+  }
 
   // what the law stores: dE/dt = dE/dx v + dE/dz z'; E is quadratic in x and z without cross term
-  const FrictionLaw* law = law_of(device);
-  if (has_bristle(device) && law->several) {
-    double rate[INERTER_MAXFRICTION];
-    friction_rates(device, rubbing.x, rubbing.v, z, on_bristle, rate);
-    power -= law->several->stored_power(device, z, rate);
-  } else if (has_bristle(device)) {
+  if (has_bristle(device) && !law->several) {
     double bristle = bristle_deflection(device, z[0]);
     double rate = law->rate(device, rubbing.x, rubbing.v, bristle, on_bristle);
     power -= 2 * law->energy(device, 0, 1) * bristle * rate;
@@ -346,6 +350,35 @@ double inerter_dissipated_power(const InerterDevice* device, double x, double v,
     power += map_heat(device, stretch, v);
   }
   return has(device, PART_STOPS) ? power + stop_heat(device, stretch, v) : power;
+}
+
+// power of a friction law with several states
+static double power_of_slip(const InerterDevice* device, double x, double v, double a,
+                            const double* z) {
+  if (!slips(device)) {
+    return 0;
+  }
+  double load = law_load(device, x, v, a, z), rate[INERTER_MAXFRICTION];
+  Place rubbing = place_of_friction(device, stretch_of(device, x), v, z);
+  friction_rates(device, rubbing.x, rubbing.v, z, load, rate);
+  return friction_force(device, rubbing.x, rubbing.v, z, load) * rubbing.v -
+         law_of(device)->several->stored_power(device, z, rate);
+}
+
+double inerter_dissipated_power(const InerterDevice* device, double x, double v, double a,
+                                const double* z) {
+  return inerter_power_beside_slip(device, x, v, a, z) + power_of_slip(device, x, v, a, z);
+}
+
+double inerter_slip_heat(const InerterDevice* device, double x, double v, double a, const double* z,
+                         double h, double v1, const double* end) {
+  if (!slips(device)) {
+    return 0;
+  }
+  Place before = place_of_friction(device, stretch_of(device, x), v, z);
+  Place after = place_of_friction(device, stretch_of(device, x + h * v1), v1, end);
+  return law_of(device)->several->heat(device, before.x, after.x - before.x, z, end,
+                                       law_load(device, x, v, a, z));
 }
 
 int inerter_valid(const InerterDevice* device, double x, const double* z,

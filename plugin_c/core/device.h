@@ -373,6 +373,14 @@ INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, 
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                             double a, const double* z);
 
+// For steps of one stage: that power without a friction law of several states, and what its
+// elements turn into heat in a step of h seconds from x, v, a, z to a velocity v1 and states `end`
+// [J]; 0 for other laws.
+INERTER_API double inerter_power_beside_slip(const InerterDevice* device, double x, double v,
+                                             double a, const double* z);
+INERTER_API double inerter_slip_heat(const InerterDevice* device, double x, double v, double a,
+                                     const double* z, double h, double v1, const double* end);
+
 // Whether something changes along the stroke; the largest size of its slope [unit/m].
 static inline int inerter_has_curve(const InerterDevice* device, InerterStroke stroke) {
   return device->curve[stroke].nvalue > 0 || device->curve[stroke].nperiod > 0;

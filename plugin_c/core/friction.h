@@ -39,7 +39,8 @@ double friction_curve_level(const InerterDevice* p, double x, double rise, doubl
 // level is even in v but for the asymmetry, which it leaves out. NULL where the law is smooth. Laws
 // without states leave all but force, along, level and width NULL, those with one the latter.
 // several: the same of a law with several states, whose functions take all of them; then rate,
-// step, straight, force and energy are NULL.
+// step, straight, force and energy are NULL. heat: of a step along a path [m] from states z, where
+// the displacement is x and the load that of the start, to those of its end [J].
 typedef struct FrictionStates_ {
   void (*rate)(const InerterDevice* p, double x, double v, const double* z, double load,
                double* rate);
@@ -47,6 +48,8 @@ typedef struct FrictionStates_ {
   double (*force)(const InerterDevice* p, const double* z);
   double (*energy)(const InerterDevice* p, const double* z);
   double (*stored_power)(const InerterDevice* p, const double* z, const double* rate);
+  double (*heat)(const InerterDevice* p, double x, double path, const double* z, const double* end,
+                 double load);
   void (*of_force)(const InerterDevice* p, double x, double v, double force, double load,
                    double* z);
 } FrictionStates;

@@ -20,7 +20,10 @@
 // Range: mu_backward < 1; at 1 (phi = lambda) the screw locks itself, and no force says how fast
 // the flywheel turns; with rate_state mu_backward times the bracket is held below 0.999. N + F does
 // not fall with N, so that the acceleration follows uniquely; with the damper of LuGre as long as
-// mu sigma1 |v| < level.
+// mu sigma1 |v| < level: above it several accelerations may fit. One of them is found then, bounded
+// and without giving energy, but another may be after a small change; the reference refuses.
+// Passive as the law itself: that of LuGre where sigma1 |v| <= 4 (level + mu |N|), or as long as
+// the bristle is within its level, whatever the load.
 // Source: Coulomb's law with the load as normal force; the square-threaded screw of any textbook.
 // Why not the whole bristle in proportion to the load (Canudas de Wit & Tsiotras 1999, for tyres):
 // a load that rises on a bent bristle would give energy.

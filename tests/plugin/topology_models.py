@@ -49,7 +49,8 @@ def device_texts(
     keys: Mapping[str, float | str], target: str, name: str
 ) -> tuple[str, str, str]:  # fmt: skip
     """A device that a sensor reads: the texts for extension, actuator and sensor."""
-    states = int(keys.get("friction") in ("dahl", "lugre", "bouc_wen"))
+    states = int(keys.get("friction") in ("dahl", "lugre", "bouc_wen", "rate_state"))
+    states += sum(key.startswith("slip_stiffness") for key in keys)
     if "series_stiffness" in keys or "series_damping" in keys:
         states += 3 if "backlash" in keys else 2
     config = "".join(f'<config key="{key}" value="{value}"/>' for key, value in keys.items())

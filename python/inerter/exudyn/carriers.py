@@ -16,9 +16,11 @@ from inerter.exudyn.engine import exudyn
 
 CARRIED_MARKERS = ("SuperElementPosition", "SuperElementRigid", "KinematicTreeRigid")
 CARRIED_BODIES = (
-    "ANCFCable2D", "ANCFCable", "ALEANCFCable2D", "ANCFBeam", "BeamGeometricallyExact",
-    "BeamGeometricallyExact2D", "ANCFThinPlate",
+    "ANCFCable2D", "ANCFCable", "ALEANCFCable2D", "ANCFBeam", "ObjectANCFBeam",
+    "BeamGeometricallyExact", "BeamGeometricallyExact3D", "BeamGeometricallyExact2D",
+    "ANCFThinPlate",
 )  # fmt: skip
+"""As `GetObject` calls them, which is not always the name of the item."""
 
 
 class Carrier(NamedTuple):

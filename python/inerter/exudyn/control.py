@@ -35,4 +35,4 @@ def present(f: Functions, p: Parameters, z: Sequence[Value]) -> Parameters:
 
 def rate(p: Parameters, z: Sequence[Value]) -> Value:
     """Rate of the control's state."""
-    return (p.aim - p.control_rest - z[-1]) / p.control_lag
+    return 0.0 * z[-1] if p.still else (p.aim - p.control_rest - z[-1]) / p.control_lag

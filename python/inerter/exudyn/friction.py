@@ -87,6 +87,11 @@ def curved(p: Parameters) -> bool:
     return stroke.there(p, "friction") or stroke.there(p, "friction_back")
 
 
+def varies(p: Parameters) -> bool:
+    """Whether the level is not the same at every place and in both directions."""
+    return curved(p) or any((p.friction_asymmetry, p.friction_gradient, p.friction_curvature))
+
+
 def _curved_level(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """The same with curves; that of v < 0 passes into that of v > 0 as sign(v) does."""
     rise = 1.0 + (p.friction_gradient + p.friction_curvature * x) * x
@@ -192,6 +197,11 @@ REACHED = 1e-12
 """Share of its limit within which an element of maxwell_slip counts as being there."""
 
 
+KNEE = 1e-3
+"""Share of its limit over which it begins to slip, where limits may rise: an element is held at a
+limit that rises, between the two rates, and a solver that iterates finds nothing there without."""
+
+
 def elements(p: Parameters) -> list[tuple[float, float]]:
     """Stiffness [N/m] and slip force [N] of each element of maxwell_slip."""
     pairs = ((f"slip_stiffness_{i}", f"slip_force_{i}") for i in range(1, 9))
@@ -205,13 +215,17 @@ def maxwell_slip(f: Functions, p: Parameters, x: Value, v: Value, z: Any) -> Fri
     F = sum of k_i z_i.
     """
     factor, side = level(f, p, x, v), f.sign(v)
+    rises = varies(p) or loaded_by(p)
     if loaded_by(p):
         factor = factor + p.load_level / yield_force(p)
     total: Value = 0.0
     rates = []
     for (spring, slip), each in zip(elements(p), z, strict=True):
         u = 1.0 - spring * each * side / (slip * factor)
-        rates.append(v * f.choose(u > REACHED, 1.0, u))
+        if rises:
+            rates.append(v * f.choose(u < 0.0, u, f.least(1.0, u / KNEE)))
+        else:
+            rates.append(v * f.choose(u > REACHED, 1.0, u))
         total = total + spring * each
     return Friction(total, 0.0, tuple(rates))
 
@@ -225,7 +239,8 @@ def rate_state(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Fri
 
     V^2 = v^2 + v_t^2; at least 0.001 is left of the bracket.
     """
-    rate = (p.rate_velocity * f.exp(-f.greatest(YOUNGEST, z)) - f.abs(v)) / p.age_distance
+    aging = 0.0 if p.still else p.rate_velocity * f.exp(-f.greatest(YOUNGEST, z))
+    rate = (aging - f.abs(v)) / p.age_distance
     size = p.coulomb_force * level(f, p, x, v) * bracket(f, p, v, z)
     return Friction(size * f.tanh(v / p.transition_velocity), 0.0, rate)
 

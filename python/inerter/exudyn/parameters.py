@@ -34,7 +34,8 @@ class Parameters(SimpleNamespace):
     """Parameters and lists of the device by name, those of `WORDS`, `nstate`, `state_names`.
 
     `smooth_play` is this element's own, see `series.py`; `load_level` [N] what a load adds to the
-    level of a bristle at the moment. For a control that sets a parameter
+    level of a bristle at the moment; `still` that nothing changes at rest, for a static solution.
+    For a control that sets a parameter
     (`control.py`): `command`, `aim` (the same within the bounds), `control_rest`, `static_follows`.
     """
 
@@ -45,7 +46,7 @@ class Parameters(SimpleNamespace):
         names = (*WORDS, "nstate", "state_names")
         numbers["smooth_play"] = smooth_play
         found = cls(**numbers, **{name: getattr(device, name) for name in names})
-        found.command, found.load_level = command, 0.0
+        found.command, found.load_level, found.still = command, 0.0, False
         if device.control == "force":
             return found
         found.control_rest = getattr(device, device.control)

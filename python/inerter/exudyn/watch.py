@@ -11,11 +11,21 @@ import functools
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import copy
+from dataclasses import replace
 from typing import Any
 
 from inerter.core import names
+from inerter.exudyn import control
 from inerter.exudyn.carriers import follow
-from inerter.exudyn.changes import KEPT, change_parameters, models_of, read_geometry, read_start
+from inerter.exudyn.changes import (
+    KEPT,
+    change_parameters,
+    models_of,
+    read_geometry,
+    read_start,
+    take,
+)
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import Line
@@ -39,10 +49,13 @@ def install() -> None:
     for name in GEOMETRY:
         setattr(system, name, _telling_of_change(name, getattr(system, name)))
     system.Reset = _forgetting(system.Reset)
-    solve = _careful(system.SolveDynamic)
-    for place in (system, exudyn(), exudyn("solver")):
-        if hasattr(place, "SolveDynamic"):
-            place.SolveDynamic = solve
+    for name, wrapped in (
+        ("SolveDynamic", _careful(system.SolveDynamic)),
+        ("SolveStatic", _still(system.SolveStatic)),
+    ):
+        for place in (system, exudyn(), exudyn("solver")):
+            if hasattr(place, name):
+                setattr(place, name, wrapped)
 
 
 def _telling_of_assembly(original: Callable[..., Any]) -> Callable[..., Any]:
@@ -115,6 +128,32 @@ def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
             return original(mbs, settings, *args, **kwargs)
 
     return SolveDynamic
+
+
+def _still(original: Callable[..., Any]) -> Callable[..., Any]:
+    @functools.wraps(original)
+    def SolveStatic(mbs: Any, *args: Any, **kwargs: Any) -> Any:  # noqa: N802 - Exudyn's name
+        moving = {
+            int(model.objectNumber): model.element for model in models_of(mbs) if _goes_on(model)
+        }
+        models = [model for model in models_of(mbs) if int(model.objectNumber) in moving]
+        for model in models:
+            held = copy(model.element.device)
+            held.still = True
+            take(mbs, model, replace(model.element, device=held))
+        try:
+            return original(mbs, *args, **kwargs)
+        finally:
+            for model in models:
+                take(mbs, model, moving[int(model.objectNumber)])
+
+    return SolveStatic
+
+
+def _goes_on(model: Model) -> bool:
+    """Whether a state changes at rest, so that no static solution would end."""
+    device = model.element.device
+    return device.friction == "rate_state" or control.lags(device)
 
 
 @contextmanager

@@ -177,6 +177,8 @@ class ReferenceDevice(DeviceStates):
         ValueError
             The inertance is zero or has a series element before it: the force then says nothing
             about the terminals' acceleration.
+        RuntimeError
+            The damper of a bristle grows too fast with its load for one acceleration to fit.
         """
         if self.total_inertance == 0.0:
             raise ValueError("inertance: 0 kg gives no acceleration for a force; give more than 0")
@@ -195,8 +197,11 @@ class ReferenceDevice(DeviceStates):
             # only the damper of a loaded bristle asks for the acceleration
             same = abs(found - before) <= 1e-14 * (abs(found) + abs(before))
             if not (load.bends(self) and self.bristle_damping > 0.0) or np.all(same):
-                break
-        return found
+                return found
+        raise RuntimeError(
+            "the load on a bristle and the acceleration do not settle; is load_friction "
+            "bristle_damping |v| below the friction level?"
+        )
 
     def state_rate(
         self,

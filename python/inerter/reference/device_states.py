@@ -85,6 +85,10 @@ class DeviceStates(DeviceParameters):
         """Every parameter by name, defaults included; NaN for one that is not given."""
         return {name: value for name, value in asdict(self).items() if name != "command"}
 
+    def with_knee(self, share: float) -> Self:
+        """The device with a knee in maxwell_slip, see `laws/maxwell_slip.py`."""
+        return self._with_value("slip_knee", share)
+
     def _change(self, z: Quantity) -> Quantity:
         """The control's own state."""
         array = np.asarray(z, dtype=np.float64)

@@ -1,7 +1,7 @@
 """Bodies on linear springs and dampers, with struts between them: what all models share.
 
     M q'' + C q' + K q + sum_i e_i u_i = f(t),   x_i = e_i . q
-    u_i = known_i + N_i + lambda_i |N_i|,   N_i = B_i x_i'' + r_i
+    u_i = known_i + N_i + lambda_i |N_i|,   N_i = B_i x_i'' + r_i,   lambda_i by the sign of N_i
 
 Symbols: q coordinates (nq,), M, C, K matrices (nq, nq), e_i the strut's direction: its elongation
 per coordinate, u_i its force (tension positive), f generalised forces (nq,).
@@ -135,7 +135,7 @@ class Structure:
         carried = joint_branch_forces(
             np.array([p.mass for p in points]),
             np.array([p.rest for p in points]),
-            np.array([p.share for p in points]),
+            np.array([p.share for p in points]).T,
             self.directions.T @ free,
             self.strut_mobility,
         )
@@ -310,26 +310,31 @@ def joint_branch_forces(
 ) -> Array:
     """Forces N + lambda |N| [N] of all branches with N = B (free - W force) + r.
 
-    `mass` B, `rest` r, `share` lambda, `free` (the elongations' accelerations without these
-    forces) have shape (struts,), `mobility` W (struts, struts).
+    `mass` B, `rest` r, `free` (the elongations' accelerations without these forces) have shape
+    (struts,), `share` lambda (struts,) or, for N > 0 and for N < 0, (2, struts), `mobility` W
+    (struts, struts).
     """
     push = mass * free + rest
     coupled = mass[:, None] * mobility
     eye = np.eye(len(mass))
+    shares = np.broadcast_to(share, (2, len(mass)))
+
+    def factor(signs: Array) -> Array:
+        return np.asarray(1.0 + np.where(signs < 0.0, shares[1], shares[0]) * signs)
 
     def branch(signs: Array) -> Array:
-        found = np.linalg.solve(eye + coupled * (1.0 + share * signs), push)
+        found = np.linalg.solve(eye + coupled * factor(signs), push)
         return np.asarray(found, dtype=np.float64)
 
     # the signs of the solution before usually are right at once
     signs = np.sign(push)
     for _ in range(3):
         found = branch(signs)
-        if np.all((share == 0.0) | (found * signs >= 0.0)):
-            return (1.0 + share * np.sign(found)) * found
+        if np.all(np.all(shares == 0.0, axis=0) | (found * signs >= 0.0)):
+            return factor(np.sign(found)) * found
         signs = np.sign(found)
     for choice in product((-1.0, 1.0), repeat=len(mass)):
         found = branch(np.array(choice))
         if np.all(found * np.array(choice) >= 0.0):
-            return (1.0 + share * np.sign(found)) * found
+            return factor(np.sign(found)) * found
     raise RuntimeError("no signs of the branch forces agree with themselves; is load_friction < 1?")

@@ -33,14 +33,15 @@ Array = NDArray[np.float64]
 class StrutPoint:
     """What a strut does at one moment.
 
-    Its force is `known` + N + `share` |N| with N = `mass` a + `rest` ([N], [kg], [N], [-]);
-    `rates` are those of its own states; the others describe the device.
+    Its force is `known` + N + `share` |N| with N = `mass` a + `rest` ([N], [kg], [N], [-]), the
+    first of `share` where N > 0, the second where N < 0; `rates` are those of its own states; the
+    others describe the device.
     """
 
     known: float
     mass: float
     rest: float
-    share: float
+    share: tuple[float, float]
     rates: Array
     device_displacement: float
     device_velocity: float
@@ -70,13 +71,6 @@ class Strut:
         if self.layout not in LAYOUTS:
             raise ValueError(f"layout: '{self.layout}' is not one of {', '.join(LAYOUTS)}")
         inertance = self.device.total_inertance
-        shares = self.device.load_shares
-        if shares[0] != shares[1] and not load.bends(self.device):
-            raise ValueError(
-                f"mu_forward {self.device.load_shares[0]} and mu_backward "
-                f"{self.device.load_shares[1]} differ: the reference vehicles have one load "
-                "friction for both; give load_friction"
-            )
         if self.layout == "S3" and not (self.damping > 0.0 and inertance > 0.0):
             raise ValueError(
                 f"S3: damping {self.damping} N s/m and inertance {inertance} kg stand "
@@ -113,7 +107,7 @@ class Strut:
                 known=spring + self.damping * v,
                 mass=0.0,
                 rest=0.0,
-                share=0.0,
+                share=(0.0, 0.0),
                 rates=np.empty(0),
                 device_displacement=0.0,
                 device_velocity=0.0,
@@ -126,7 +120,10 @@ class Strut:
                 known=spring + self.damping * v + float(self.device.rest_force(x, v, z, a=a)),
                 mass=float(mass),
                 rest=float(rest),
-                share=float(self.device.load_share(v, 1.0, z)),
+                share=(
+                    float(self.device.load_share(v, 1.0, z)),
+                    float(self.device.load_share(v, -1.0, z)),
+                ),
                 rates=self._device_rates(x, v, z, a, contact),
                 device_displacement=x,
                 device_velocity=v,
@@ -147,7 +144,7 @@ class Strut:
             known=spring + through,
             mass=0.0,
             rest=0.0,
-            share=0.0,
+            share=(0.0, 0.0),
             rates=rates,
             device_displacement=y,
             device_velocity=speed,

@@ -18,6 +18,9 @@ goes to 0. With corners p is 1 at most, the sensitivity above is added, and to t
 law makes of a motion that is off by the bounds on displacement and velocity: where friction
 reverses, a slightly wrong velocity is a very wrong force. Force and states of a contact have no
 bound here: at an impact they jump, and whoever is late by a step is wrong by all of the jump.
+Where the sign of load friction is that of an evaluation before (Exudyn's explicit solvers), a
+sample just after a change of sign has mu |N| of the wrong sign: off by 2 mu |N|, and |N| is what N
+changes in a step at most. How much of that a run shows is chance: halving the step does not tell.
 """
 
 from __future__ import annotations
@@ -25,7 +28,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from inerter.validate.case import Case
+import numpy as np
+
+from inerter.validate.case import SAMPLE, Case
 from inerter.validate.run import QUANTITIES, ValidationRun, errors
 from inerter.validate.truth import force_change, stepped
 
@@ -34,6 +39,7 @@ AGREEMENT = 1e-6
 ROOM = 0.4
 """By how much an observed order may stay below the nominal one."""
 PHASES = (0.0, 0.5)
+LOADS = ("load_friction", "mu_forward", "mu_backward")
 HIGH_ORDER = 4.0
 
 Figures = Mapping[str, float | None]
@@ -59,6 +65,7 @@ def bound(
     own: Mapping[str, float],
     change: Figures,
     true: ValidationRun,
+    late: float = 0.0,
 ) -> dict[str, float | None]:
     """Largest admissible error of each quantity; None where there is no bound.
 
@@ -72,8 +79,14 @@ def bound(
         From `sensitivity`.
     change
         Relative difference between the runs at h and h/2.
+    late
+        By how much the sign of load friction may be late [s].
     """
     found = {quantity: AGREEMENT + 2.0 * own[quantity] for quantity in QUANTITIES}
+    if late and true.force.size:
+        device, steepest = case.device() or {}, np.abs(np.diff(true.force, axis=0)).max() / SAMPLE
+        mu = max(float(device.get(name, 0.0)) for name in LOADS)
+        found["force"] += float(2.0 * mu * steepest * late / np.abs(true.force).max())
     if order is None or order >= HIGH_ORDER:
         return {**found}
     least = (order if case.kind == "smooth" else 1.0) - ROOM

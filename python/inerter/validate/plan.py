@@ -18,6 +18,9 @@ ENGINES = {"mujoco": mujoco_engine.INTEGRATORS, "exudyn": exudyn_engine.INTEGRAT
 
 # one law of each kind where not all of them are run
 _SUBSET = (PUBLISHED, "coulomb", "lugre", "backlash")
+_SHORT = {"load_on_lugre": 1.0, "load_on_maxwell_slip": 1.0}
+"""Durations of laws that take the reference long [s]; they slide and stick within it."""
+
 _LONG = 10.0
 _LONG_INTEGRATORS = ("RK4", "DOPRI5")
 
@@ -109,7 +112,7 @@ def _quick() -> list[Case]:
 
 
 def _case(model: str, law: str, kind: str) -> Case:
-    return Case(model, law, kind, models()[model].duration)
+    return Case(model, law, kind, _SHORT.get(law, models()[model].duration))
 
 
 def _wanted(case: Case, selection: Selection, exudyn: bool) -> Iterable[Wanted]:

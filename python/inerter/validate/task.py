@@ -125,7 +125,8 @@ def _row(
         coarse, fine = (figure["displacement"] for figure in figures)
         order = bounds.observed_order(coarse, fine, floor)
         change = errors(*found)
-    limits = bounds.bound(case, nominal, own, change, true.at(case.times))
+    late = case.step / 2.0 if note == exudyn_engine.LATE else 0.0
+    limits = bounds.bound(case, nominal, own, change, true.at(case.times), late)
     return ValidationRow(
         **_names(case, wanted),
         errors=figures[-1],

@@ -1,7 +1,7 @@
 """The reference's run of a case, and its own equations stepped by a textbook formula.
 
 The truth is integrated to 1e-10, by DOP853 or where it is stiff by LSODA, contacts located as
-events. `stepped` takes the same
+events; with a load on maxwell_slip to `KNEE`. `stepped` takes the same
 right-hand side through classical Runge-Kutta steps of a fixed size: what that loses is lost by the
 step and the law together, not by an engine. See `bounds.py` for what it is used for.
 """
@@ -14,18 +14,28 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.reference import Structure, StructureRun
+from inerter.reference.laws import load
 from inerter.validate.case import SAMPLE, Case
 from inerter.validate.run import ValidationRun
 
 Array = NDArray[np.float64]
 
+KNEE = 1e-5
+"""Share of its limit over which an element of maxwell_slip begins to slip under a load here.
+
+A limit that rises holds the element between two rates; no solver that follows its error gets past
+that. Ten times the knee is off by ten times as much of the force, which a test looks at.
+"""
+
 
 def truth(case: Case, times: ArrayLike) -> ValidationRun:
     """The reference at `times` [s], increasing from 0."""
-    structure = case.setup.with_device(case.reference_device())
-    method = case.setup.method
+    device, method, rtol = case.reference_device(), case.setup.method, 1e-10
+    if device is not None and device.friction == "maxwell_slip" and load.bends(device):
+        device, method, rtol = device.with_knee(KNEE), "LSODA", KNEE / 1e3
+    structure = case.setup.with_device(device)
     run = structure.simulate(
-        forces_of(case), times, method=method, rtol=1e-10, atol=1e-13, max_step=0.02
+        forces_of(case), times, method=method, rtol=rtol, atol=1e-3 * rtol, max_step=0.02
     )
     return run_of(structure, run)
 

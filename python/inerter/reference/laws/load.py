@@ -10,7 +10,8 @@
 Symbols: mu_f `mu_forward`, mu_b `mu_backward` [-] (both `load_friction` where not given), N force
 through the inertance branch [N], v_t `transition_velocity` [m/s]. For an ideal inertance N = b a.
 Sign: tension positive; F v >= 0.
-Range: 0 <= mu_b < 1, so that the acceleration still follows uniquely from the force.
+Range: 0 <= mu_b < 1, so that the acceleration still follows uniquely from the force; with the
+damper of LuGre mu sigma1 |v| < level besides, else `acceleration` and `Structure.joint` refuse.
 Efficiency: power forward 1 / (1 + mu_f), backward 1 - mu_b.
 Energy: the stiffness of a bristle does not follow the load, so that a load that changes does no
 work on it, and the law is passive whatever the load does.

@@ -66,7 +66,11 @@ def rate(
     level = np.asarray(level)[..., np.newaxis]
     speed, z = np.asarray(velocity)[..., np.newaxis], _wide(parameters, state)
     reached = stiffness * z * np.sign(speed) / (force_limit * level)
-    rates = np.where(reached < 1.0 - REACHED, speed, speed * (1.0 - reached))
+    if parameters.slip_knee > 0.0:
+        left = 1.0 - reached
+        rates = speed * np.where(left < 0.0, left, np.minimum(1.0, left / parameters.slip_knee))
+    else:
+        rates = np.where(reached < 1.0 - REACHED, speed, speed * (1.0 - reached))
     return rates[..., 0] if stiffness.size == 1 else rates
 
 

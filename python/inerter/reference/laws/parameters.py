@@ -63,6 +63,9 @@ class FrictionParameters(StrokeParameters):
     load_level = 0.0
     """What a load adds to the level of a bristle now [N], see `load.py`; no parameter."""
 
+    slip_knee = 0.0
+    """Share of its limit over which an element of maxwell_slip begins to slip; no parameter."""
+
     coulomb_force: float = parameter(0.0, "N", "friction force at speed, f_c", at_least=0.0)
     static_force: float = parameter(
         UNSET, "N", "friction force at break-away, f_s >= f_c; not given: f_c", at_least=0.0
