@@ -13,6 +13,9 @@ from types import MappingProxyType
 from inerter.catalogue.coordinates import NUISANCES
 from inerter.catalogue.effects import EFFECTS
 
+TYRES = "tyres"
+"""Element of what all tyres have in common."""
+
 
 @dataclass(frozen=True)
 class Added:
