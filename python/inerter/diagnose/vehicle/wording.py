@@ -12,6 +12,8 @@ from inerter.diagnose.wording import value_in_words
 # the same force between the same bodies: no record of the vehicle can tell these apart
 EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
 
+_OF_CHANNELS = {"sensor_delay": "a delay", "sensor_filter": "a low-pass filter"}
+"""Words that on a bench are those of its force and displacement."""
 _NOTES = {
     "force_offset": "; a sensor whose zero is displaced may look the same: check it at rest",
     "tyre_damping": "; in model.xml its actuator is driven by the rate of the road [m/s]",
@@ -24,7 +26,8 @@ _NOTES = {
 
 def in_words(effect: str, law: str | None = None) -> str:
     """An effect in running text."""
-    text = KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+    plain = KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+    text = _OF_CHANNELS.get(effect, plain)
     return f"{text} ({law})" if law else text
 
 
