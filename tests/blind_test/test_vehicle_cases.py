@@ -49,17 +49,20 @@ def _misses(making: Making, change: VehicleModel, seconds: float = 1.5) -> dict[
     first = max(corner.x for corner in stated.corners)
     times = np.arange(0.0, seconds, SPACING)
     tracks = [road.track(int(c.y < 0), first - c.x) for c in stated.corners]
-    truth = making.built().drive(tracks, times)
+    felt = [road.track(int(c.y < 0), first - c.x, making.patch) for c in stated.corners]
+    truth = making.built().drive(felt, times)
+    truth = {name: making.felt(name, times, values) for name, values in truth.items()}
     heights = {
         f"road{name}": np.array([track(t) for t in times])
         for name, track in zip(stated.names, tracks, strict=True)
     }
     user = model_of_text(vehicle_mjcf(stated), Path("car.xml")).with_timestep(0.001)
-    channels = map_columns(user.model, [*heights, *truth], {}, sensors_of(stated))
-    user.with_roads([user.model.actuator(name).id for name in channels.inputs.values()])
+    channels = map_columns(user.model, [*heights, *truth, "speed"], {}, sensors_of(stated))
+    user.with_inputs(channels.inputs.values())
     assert user.parts.unknown == []
     assert len(user.parts.tyres) == len(stated.corners)
-    record = FreeRecord(name="run", time=times, extra={**heights, **truth})
+    speed = np.full(times.size, road.speed)
+    record = FreeRecord(name="run", time=times, extra={**heights, **truth, "speed": speed})
     drive = make_drive(record, channels, 0.001)
     simulated = VehicleSimulator(user, channels, 1).outputs([change], drive)[0]
     found = {}
@@ -87,7 +90,10 @@ OF = {
     "parallel_stiffness": "strut", "end_stop": "strut",
     "tyre_damping": "tyre:road", "tyre_liftoff": "tyre:road", "tyre_stiffness_error": "tyre:road",
     "body_mass_error": "body:sprung", "wheel_mass_error": "body:wheel",
-    "joint_damping": "joint:wheel",
+    "joint_damping": "joint:wheel", "digressive_damping": "strut",
+    "position_dependent_damping": "strut", "viscoelasticity": "strut",
+    "tyre_enveloping": "tyres", "sensor_filter": "channel:body_acceleration",
+    "sensor_compliance": "channel:body_acceleration", "sensor_delay": "channel:body_acceleration",
 }  # fmt: skip
 
 
@@ -95,9 +101,13 @@ OF = {
 def test_a_hidden_effect_is_what_the_same_number_does_in_mujoco(effect: str) -> None:
     random = np.random.default_rng([7, len(effect)])
     making = Making(draw_vehicle(random, "quarter"))
-    draw_vehicle_effect(making, effect, None, random, [SIZES], 1.0, ["tyre_force"], SPACING)
+    column = ["body_acceleration"]
+    strength = 2.0 if effect == "tyre_enveloping" else 1.0
+    draw_vehicle_effect(making, effect, None, random, [SIZES], strength, column, SPACING)
     without = _misses(making, VehicleModel())
     values = making.names[effect]
+    if effect == "viscoelasticity":
+        values["branch_time_1"] = values.pop("branch_damping_1") / values["branch_stiffness_1"]
     telling = {"body_mass": "mass", "wheel_mass": "mass"}
     change = {f"{OF[effect]}.{telling.get(name, name)}": v for name, v in values.items()}
     within = _misses(making, VehicleModel(change))

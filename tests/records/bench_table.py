@@ -10,8 +10,9 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from bench_export import Export
 from bench_files import BINARIES, DISPLACEMENT, FORCE, STEP, TEXTS, TIME
-from bench_programs import EXPORTS, Export
+from bench_programs import EXPORTS
 from inerter.records import Record, RecordError, read_records
 from inerter.records.stated import reading
 

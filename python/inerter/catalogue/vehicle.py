@@ -55,6 +55,33 @@ _ALL = (
         experiment="weigh the wheel", rivals=("tyre_stiffness_error",),
     ),
     Effect(
+        name="tyre_enveloping", reported=("patch_length", "patch_time"),
+        plain="tyres that average the road over their length of contact",
+        meaning="a tyre feels the mean of the road over a length, not a point of it",
+        cause="a contact patch and a belt that bridge what is short; a profile measured finer than "
+        "tyres feel",
+        taken_for="a softer tyre, or a delay",
+        experiment="drive at another speed, the length stays",
+        rivals=("tyre_stiffness_error", "sensor_filter"),
+    ),
+    Effect(
+        name="position_dependent_damping", reported=("damping_gradient",),
+        plain="damping that changes along the stroke", meaning="c (1 + g x) v",
+        cause="bypass grooves and zones of a damper, a lever whose ratio changes",
+        taken_for="a damper that differs between rebound and bump",
+        experiment="strokes of one speed about two places",
+        rivals=("damper_asymmetry", "viscous_friction"),
+    ),
+    Effect(
+        name="sensor_compliance", reported=("mount_frequency", "mount_loss"),
+        plain="a sensor that swings on its mount",
+        meaning="the channel shows its quantity behind a spring with a loss",
+        cause="a soft bracket, tape, a panel of the frame between sensor and body",
+        taken_for="a low-pass filter of the channel, where the loss is near 0.7",
+        experiment="knock on the bracket and look at the channel alone",
+        rivals=("sensor_filter", "sensor_delay"),
+    ),
+    Effect(
         name="joint_friction", reported=("joint_friction",),
         plain="dry friction of a joint of the vehicle",
         meaning="f sign(v) between a wheel or body and its guide",

@@ -19,6 +19,7 @@ from inerter.diagnose.result import (
     Rival,
     StatedValue,
 )
+from inerter.measured_text import measured
 from inerter.motion_units import Kind, force_word, words
 from inerter.printable import in_digits
 
@@ -32,17 +33,7 @@ MOST_HARMONICS = 7
 def quantity(value: ParameterValue) -> str:
     """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells."""
     unit = "" if value.unit == "1" else f" {value.unit}"
-    number, error = value.value, value.stderr
-    if not (number and math.isfinite(number) and math.isfinite(error) and error > 0):
-        return f"{number:.3g} ± {error:.1g}{unit}"
-    top, last = (math.floor(math.log10(size)) for size in (max(abs(number), error), error))
-    digits = min(max(top - last + 1, 3), 6)
-    if not -4 < top < 6:
-        return f"{number:.{digits}g} ± {error:.1g}{unit}"
-    decimals = digits - 1 - top
-    seen = round(error, decimals)
-    text = f"{seen:.{max(decimals, 0)}f}" if seen else f"{error:.1g}"
-    return f"{round(number, decimals):.{max(decimals, 0)}f} ± {text}{unit}"
+    return measured(value.value, value.stderr, least=3) + unit
 
 
 def value_in_words(name: str, value: ParameterValue) -> str:

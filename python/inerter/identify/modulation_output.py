@@ -16,6 +16,7 @@ from rich.text import Text
 
 from inerter.folder import json_text, write_files
 from inerter.identify.modulation import Modulation, Scaled
+from inerter.measured_text import measured
 from inerter.pictures.palette import LIGHT
 
 SCHEMA = "inerter.modulation/1"
@@ -29,12 +30,12 @@ def json_of(found: Modulation) -> dict[str, Any]:
 def law_in_words(found: Modulation, each: Scaled) -> str:
     """Such as "coulomb_force = 2.1 N + 0.8 N/bar (pressure - 4 bar)"."""
     per = f" {each.unit}/{found.unit}" if found.unit else f" {each.unit} per unit"
-    text = f"{each.name} = {each.value:.4g} +- {each.stderr:.2g} {each.unit}"
+    text = f"{each.name} = {measured(each.value, each.stderr, digits=2)} {each.unit}"
     if not each.slope_stderr:
         return f"{text}, whatever {found.channel} is"
     sign = "-" if each.slope < 0 else "+"
     middle = f"({found.channel} - {found.middle:.4g} {found.unit})".replace(" )", ")")
-    size = f"({abs(each.slope):.4g} +- {each.slope_stderr:.2g}){per}"
+    size = f"({measured(abs(each.slope), each.slope_stderr, digits=2)}){per}"
     return f"{text} {sign} {size} * {middle}"
 
 

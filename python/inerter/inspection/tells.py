@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, median_filter
 
 from inerter.inspection.motion import MotionFacts
+from inerter.measured_text import measured
 from inerter.motion_units import words as in_words
 from inerter.records.motion import Motion, lowpass, white_noise
 
@@ -209,10 +210,5 @@ def words(tell: Tell) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """Both to the first digit of the error, such as "530 ± 30"."""
-    if not (math.isfinite(error) and error > 0):
-        return f"{value:.4g}"
-    digits = -math.floor(math.log10(float(f"{error:.1g}")))
-    if digits > 6:
-        return f"{value:.6g} ± {error:.1g}"
-    return " ± ".join(f"{round(x, digits):.{max(digits, 0)}f}" for x in (value, error))
+    """Both to the first digit of the error, such as "530 ± 30"; without one the value."""
+    return measured(value, error) if math.isfinite(error) and error > 0 else f"{value:.4g}"

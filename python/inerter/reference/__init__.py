@@ -71,7 +71,8 @@ from .tuned_inerter_damper import (
     frame_state_matrix,
 )
 from .vehicle import Corner, corner_of
-from .vehicle_draws import VEHICLE_EFFECTS, VEHICLE_UNKNOWN, compatible_in_vehicles
+from .vehicle_draws import VEHICLE_EFFECTS, compatible_in_vehicles
+from .vehicle_unknown import VEHICLE_UNKNOWN
 from .wang_su import WANG_SU_DEVICE, WangSuBench, wang_su_bench, wang_su_motion
 
 __all__ = [

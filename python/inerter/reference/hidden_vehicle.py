@@ -2,6 +2,7 @@
 
     drawn_vehicle.py    the equations      vehicle_roads.py    the roads
     vehicle_draws.py    what each effect changes, and by how much
+    vehicle_unknown.py  what has no name
 Everything follows from a seed. An effect that changes the channels by less than twice their noise
 is drawn anew, larger. Not modelled: coloured noise, sensors that run at rates of their own.
 """
@@ -22,14 +23,13 @@ from .sizes import rms, rounded
 from .vehicle_draws import (
     ACTIVE_EFFECTS,
     VEHICLE_EFFECTS,
-    VEHICLE_UNKNOWN,
     Making,
     Sizes,
     compatible_in_vehicles,
     draw_vehicle_effect,
-    draw_vehicle_unknown,
 )
 from .vehicle_roads import RoadRun, draw_run
+from .vehicle_unknown import VEHICLE_UNKNOWN, draw_vehicle_unknown
 
 Array = NDArray[np.float64]
 RUNS, SECONDS, SPACING = 3, 6.0, 0.004
@@ -212,6 +212,7 @@ class _Situation:
     ) -> dict[str, Array]:
         """What is written down of a run: the roads as they lie there, the force as commanded."""
         found = {"time": self.times}
+        found["speed"] = np.full(self.times.size, self.roads[number].speed)
         first, road = max(corner.x for corner in stated.corners), self.roads[number]
         for corner, name in zip(stated.corners, stated.names, strict=True):
             track = road.track(int(corner.y < 0), first - corner.x)

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from .device import ReferenceDevice
@@ -52,6 +54,7 @@ class Making:
     others: dict[int, dict[str, Any]] = field(default_factory=dict)
     rider: tuple[float, float, float] | None = None
     late: dict[str, float] = field(default_factory=dict)
+    behind: dict[str, tuple[float, float]] = field(default_factory=dict)
     patch: float = 0.0
     gain: float = 1.0
     lag: float = 0.0
@@ -81,14 +84,31 @@ class Making:
         )  # fmt: skip
 
     def felt(self, name: str, times: Array, values: Array) -> Array:
-        """A channel as its sensor shows it."""
+        """A channel as its sensor shows it: behind a mount or a low-pass, then late."""
+        if (element := self.behind.get(name)) is not None:
+            values = _behind(times, values, *element)
         if (late := self.late.get(name, 0.0)) != 0.0:
             values = CubicSpline(times, values)(np.clip(times - late, times[0], times[-1]))
         return values
 
 
+def _behind(times: Array, values: Array, frequency: float, loss: float) -> Array:
+    """What stands behind a mass on a spring, s'' + 2 D w s' + w^2 (s - y) = 0, from rest at y."""
+    omega, given = 2.0 * np.pi * frequency, CubicSpline(times, values)
+
+    def rate(t: float, state: Array) -> Array:
+        pull = omega**2 * (float(given(t)) - state[0])
+        return np.array([state[1], pull - 2.0 * loss * omega * state[1]])
+
+    run = solve_ivp(
+        rate, (float(times[0]), float(times[-1])), [float(values[0]), 0.0], t_eval=times,
+        rtol=1e-6, atol=1e-8 * float(np.std(values)), max_step=0.1 / frequency,
+    )  # fmt: skip
+    return np.asarray(run.y[0], dtype=np.float64)
+
+
 @dataclass(frozen=True)
-class _Draw:
+class Draw:
     """What the functions below need."""
 
     making: Making
@@ -129,7 +149,7 @@ class _Draw:
 def _number(effect: str, name: str, told: str, low: float = 0.08, high: float = 0.2) -> None:
     """A number of the corner that is wrong."""
 
-    def draw(d: _Draw) -> None:
+    def draw(d: Draw) -> None:
         value = rounded(getattr(d.stated, name) * d.off(low, high))
         d.making.corners.setdefault(d.corner, {})[name] = value
         d.making.tell(effect, d.place, {told: value})
@@ -137,7 +157,7 @@ def _number(effect: str, name: str, told: str, low: float = 0.08, high: float = 
     _DRAWS[effect] = draw
 
 
-_DRAWS: dict[str, Callable[[_Draw], None]] = {}
+_DRAWS: dict[str, Callable[[Draw], None]] = {}
 _number("inertance_error", "inertance", "inertance", 0.1, 0.3)
 _number("viscous_friction", "damping", "viscous", 0.1, 0.3)
 _number("parallel_stiffness", "stiffness", "stiffness", 0.1, 0.25)
@@ -145,8 +165,8 @@ _number("tyre_stiffness_error", "tyre_stiffness", "tyre_stiffness")
 _number("wheel_mass_error", "wheel_mass", "wheel_mass", 0.1, 0.25)
 
 
-def _draws(effect: str) -> Callable[[Callable[[_Draw], None]], Callable[[_Draw], None]]:
-    def keep(function: Callable[[_Draw], None]) -> Callable[[_Draw], None]:
+def _draws(effect: str) -> Callable[[Callable[[Draw], None]], Callable[[Draw], None]]:
+    def keep(function: Callable[[Draw], None]) -> Callable[[Draw], None]:
         _DRAWS[effect] = function
         return function
 
@@ -154,24 +174,24 @@ def _draws(effect: str) -> Callable[[Callable[[_Draw], None]], Callable[[_Draw],
 
 
 @_draws("body_mass_error")
-def _body_mass(d: _Draw) -> None:
+def _body_mass(d: Draw) -> None:
     d.making.body = d.off(0.08, 0.2)
     mass = d.making.stated.body_mass * d.making.body
     d.making.tell("body_mass_error", "", {"body_mass": mass})
 
 
-def _sharp(d: _Draw) -> dict[str, float]:
+def _sharp(d: Draw) -> dict[str, float]:
     return {"transition_velocity": rounded(0.01 * d.size.v)}
 
 
 @_draws("coulomb_friction")
-def _coulomb(d: _Draw) -> None:
+def _coulomb(d: Draw) -> None:
     level = rounded(d.between(0.06, 0.25) * d.size.force)
     d.device("coulomb_friction", {"coulomb_force": level}, friction="coulomb",
              coulomb_force=level, **_sharp(d))  # fmt: skip
 
 
-def _hysteretic(d: _Draw, law: str) -> None:
+def _hysteretic(d: Draw, law: str) -> None:
     level = rounded(d.between(0.1, 0.3) * d.size.force)
     stiffness = rounded(level / (d.size.x * d.random.uniform(0.03, 0.3)))
     values: dict[str, Any] = {
@@ -185,19 +205,19 @@ def _hysteretic(d: _Draw, law: str) -> None:
 
 
 @_draws("quadratic_damping")
-def _quadratic(d: _Draw) -> None:
+def _quadratic(d: Draw) -> None:
     size = d.between(0.06, 0.25) * d.size.force / d.size.v**2
     d.device("quadratic_damping", quadratic_damping=size)
 
 
 @_draws("load_dependent_friction")
-def _load(d: _Draw) -> None:
+def _load(d: Draw) -> None:
     mu = rounded(min(d.between(0.1, 0.3), 0.6))
     d.device("load_dependent_friction", {"load_friction": mu}, load_friction=mu, **_sharp(d))
 
 
 @_draws("end_stop")
-def _stop(d: _Draw) -> None:
+def _stop(d: Draw) -> None:
     upper = bool(d.random.integers(2))
     reach = d.size.largest if upper else d.size.smallest
     place = rounded(reach * d.random.uniform(0.35, 0.65) / d.strength)
@@ -206,7 +226,7 @@ def _stop(d: _Draw) -> None:
     d.device("end_stop", None, **{name: place, "stop_stiffness": stiffness})
 
 
-def _shaft(d: _Draw, low: float, high: float) -> dict[str, float]:
+def _shaft(d: Draw, low: float, high: float) -> dict[str, float]:
     slow = float(np.sqrt(d.size.a / d.size.x))
     omega = slow * float(d.random.uniform(low, high)) / d.strength**0.5
     stiffness = d.stated.inertance * omega**2
@@ -215,30 +235,30 @@ def _shaft(d: _Draw, low: float, high: float) -> dict[str, float]:
 
 
 @_draws("series_elasticity")
-def _series(d: _Draw) -> None:
+def _series(d: Draw) -> None:
     d.device("series_elasticity", None, **_shaft(d, 1.5, 4.0))
 
 
 @_draws("backlash")
-def _backlash(d: _Draw) -> None:
+def _backlash(d: Draw) -> None:
     gap = rounded(d.between(0.1, 0.5) * d.size.x)
     d.device("backlash", {"backlash": gap}, backlash=gap, **_shaft(d, 4.0, 8.0))
 
 
 @_draws("variable_inertance")
-def _variable(d: _Draw) -> None:
+def _variable(d: Draw) -> None:
     size = min(d.between(0.08, 0.2), 0.3) / d.size.x * float(d.random.choice([-1, 1]))
     d.device("variable_inertance", inertance_gradient=size)
 
 
 @_draws("spring_hardening")
-def _hardening(d: _Draw) -> None:
+def _hardening(d: Draw) -> None:
     size = d.between(0.15, 0.5) * d.stated.stiffness / (3 * d.size.x**2)
     d.device("spring_hardening", stiffness_cubic=size)
 
 
 @_draws("damper_asymmetry")
-def _asymmetry(d: _Draw) -> None:
+def _asymmetry(d: Draw) -> None:
     rebound = d.stated.damping * (1 + min(d.between(0.15, 0.5), 1.0))
     bump = d.stated.damping * (1 - min(d.between(0.15, 0.4), 0.8))
     told = {"rebound_damping": rebound, "bump_damping": bump}
@@ -249,7 +269,7 @@ def _asymmetry(d: _Draw) -> None:
 
 
 @_draws("tyre_damping")
-def _tyre_damping(d: _Draw) -> None:
+def _tyre_damping(d: Draw) -> None:
     size = float(np.sqrt(d.stated.tyre_stiffness * d.stated.wheel_mass))
     value = rounded(d.between(0.05, 0.2) * size)
     d.making.others.setdefault(d.corner, {})["tyre_damping"] = value
@@ -257,14 +277,14 @@ def _tyre_damping(d: _Draw) -> None:
 
 
 @_draws("tyre_liftoff")
-def _liftoff(d: _Draw) -> None:
+def _liftoff(d: Draw) -> None:
     value = rounded(d.random.uniform(0.3, 0.55) * d.size.pull / d.strength)
     d.making.others.setdefault(d.corner, {})["static_load"] = value
     d.making.tell("tyre_liftoff", d.place, {"tyre_static_load": value})
 
 
 @_draws("joint_friction")
-def _joint_friction(d: _Draw) -> None:
+def _joint_friction(d: Draw) -> None:
     level = rounded(d.between(0.08, 0.3) * d.size.force)
     guide = {"friction": "coulomb", "coulomb_force": level,
              "transition_velocity": rounded(0.005 * d.size.wheel_rate)}  # fmt: skip
@@ -273,14 +293,14 @@ def _joint_friction(d: _Draw) -> None:
 
 
 @_draws("joint_damping")
-def _joint_damping(d: _Draw) -> None:
+def _joint_damping(d: Draw) -> None:
     value = rounded(d.between(0.08, 0.3) * d.size.force / d.size.wheel_rate)
     d.making.guides.setdefault(d.corner, {})["viscous"] = value
     d.making.tell("joint_damping", d.place, {"joint_damping": value})
 
 
 @_draws("sensor_delay")
-def _delay(d: _Draw) -> None:
+def _delay(d: Draw) -> None:
     column = str(d.random.choice(d.columns))
     value = rounded(d.between(0.5, 3.0) * d.spacing)
     d.making.late[column] = value
@@ -288,15 +308,71 @@ def _delay(d: _Draw) -> None:
 
 
 @_draws("actuator_gain_error")
-def _gain(d: _Draw) -> None:
+def _gain(d: Draw) -> None:
     d.making.gain = rounded(d.off(0.2, 0.45))
     d.making.tell("actuator_gain_error", "actuator_force", {"actuator_gain": d.making.gain})
 
 
 @_draws("actuator_lag")
-def _lag(d: _Draw) -> None:
+def _lag(d: Draw) -> None:
     d.making.lag = rounded(d.between(0.008, 0.03))
     d.making.tell("actuator_lag", "actuator_force", {"actuator_lag": d.making.lag})
+
+
+def _element(d: Draw, effect: str, columns: list[str], loss: tuple[float, float]) -> None:
+    column = str(d.random.choice(columns))
+    frequency = rounded(d.random.uniform(15.0, 40.0) / d.strength)
+    share = rounded(d.random.uniform(*loss))
+    d.making.behind[column] = frequency, share
+    told = {"mount_frequency": frequency, "mount_loss": share}
+    if effect == "sensor_filter":
+        told = {"filter_frequency": frequency}
+    d.making.tell(effect, column, told)
+
+
+@_draws("sensor_filter")
+def _filter(d: Draw) -> None:
+    _element(d, "sensor_filter", d.columns, (0.5**0.5, 0.5**0.5))
+
+
+@_draws("sensor_compliance")
+def _mount(d: Draw) -> None:
+    shaken = [column for column in d.columns if "acceleration" in column]
+    _element(d, "sensor_compliance", shaken, (0.03, 0.3))
+
+
+@_draws("tyre_enveloping")
+def _enveloping(d: Draw) -> None:
+    d.making.patch = rounded(d.between(0.12, 0.35))
+    d.making.tell("tyre_enveloping", "", {"patch_length": d.making.patch})
+
+
+@_draws("digressive_damping")
+def _digressive(d: Draw) -> None:
+    damping = rounded(d.stated.damping * d.random.uniform(1.1, 1.5))
+    knee = rounded(d.size.v * d.random.uniform(0.3, 0.9))
+    beyond = rounded(d.random.uniform(0.15, 0.5) / d.strength)
+    d.device("digressive_damping", None, viscous=damping, damping_knee=knee, damping_beyond=beyond)
+
+
+@_draws("position_dependent_damping")
+def _bypass(d: Draw) -> None:
+    reach = max(d.size.largest, -d.size.smallest)
+    slope = rounded(min(d.between(0.3, 0.6), 0.65) / reach * float(d.random.choice([-1, 1])))
+    ends = 1.3 * reach
+    rise = d.stated.damping * slope * np.linspace(-ends, ends, 41)
+    d.device(
+        "position_dependent_damping", {"damping_gradient": slope},
+        viscous_curve=tuple(map(float, rise)), curve_lower=-ends, curve_upper=ends,
+    )  # fmt: skip
+
+
+@_draws("viscoelasticity")
+def _bush(d: Draw) -> None:
+    stiffness = rounded(d.between(0.15, 0.5) * d.size.force / d.size.x)
+    period = 2.0 * np.pi * float(np.sqrt(d.size.x / d.size.a))
+    damping = rounded(stiffness * period * d.random.uniform(0.1, 0.6))
+    d.device("viscoelasticity", None, branch_stiffness_1=stiffness, branch_damping_1=damping)
 
 
 VEHICLE_EFFECTS = (*_DRAWS, "hysteretic_friction")
@@ -307,10 +383,8 @@ _CLASHES = (
     _LAWS,
     ("series_elasticity", "backlash"),
     # the same number twice, or one of which the other is a part
-    ("viscous_friction", "damper_asymmetry"),
     ("parallel_stiffness", "spring_hardening"),
     ("inertance_error", "variable_inertance"),
-    ("quadratic_damping", "damper_asymmetry"),
     ("load_dependent_friction", "coulomb_friction"),
     ("load_dependent_friction", "hysteretic_friction"),
     ("load_dependent_friction", "series_elasticity"),
@@ -318,7 +392,14 @@ _CLASHES = (
     ("variable_inertance", "series_elasticity"),
     ("variable_inertance", "backlash"),
     ("variable_inertance", "load_dependent_friction"),
-)
+    # one curve of the damping, one element of a channel
+    *combinations(
+        ("viscous_friction", "damper_asymmetry", "quadratic_damping", "digressive_damping",
+         "position_dependent_damping"), 2,
+    ),
+    *combinations(("sensor_delay", "sensor_filter", "sensor_compliance"), 2),
+    ("viscoelasticity", "hysteretic_friction"),
+)  # fmt: skip
 
 
 def compatible_in_vehicles(effects: tuple[str, ...]) -> bool:
@@ -344,78 +425,8 @@ def draw_vehicle_effect(
         # a second one in the same corner, as two parts of one strut are worn together
         told = [p for p in making.places.values() if p in making.stated.names]
         corner = making.stated.names.index(told[0]) if told else corner
-    draw = _Draw(making, random, corner, sizes[corner], strength, columns, spacing)
+    draw = Draw(making, random, corner, sizes[corner], strength, columns, spacing)
     if effect == "hysteretic_friction":
         _hysteretic(draw, str(law))
     else:
         _DRAWS[effect](draw)
-
-
-# --- without a name ------------------------------------------------------------------------------
-
-
-def _imbalance(d: _Draw, seconds: float) -> None:
-    del seconds
-    frequency = float(d.random.uniform(5.0, 11.0))
-    size = d.between(0.2, 0.5) * d.size.force
-    d.making.on_wheel = lambda t, run: size * np.sin(2 * np.pi * frequency * t + run)
-
-
-def _gusts(d: _Draw, seconds: float) -> None:
-    size = d.between(0.03, 0.08) * 9.81 * d.making.stated.body_mass
-    seed = int(d.random.integers(2**31))
-
-    def force(t: Array, run: int) -> Array:
-        random = np.random.default_rng([seed, run])
-        tones = np.arange(1, 6 * seconds) / seconds
-        phases = random.uniform(0, 2 * np.pi, tones.size)
-        weights = 1 / np.hypot(1.0, tones / 1.5)
-        weights *= np.sqrt(2 / np.sum(weights**2))
-        return size * (np.sin(2 * np.pi * np.multiply.outer(t, tones) + phases) @ weights)
-
-    d.making.on_body = force
-
-
-def _cogging(d: _Draw, seconds: float) -> None:
-    del seconds
-    size = d.between(0.15, 0.4) * d.size.force
-    length = d.size.x * float(d.random.uniform(0.6, 1.5))
-    d.making.others.setdefault(d.corner, {})["extra"] = lambda x, v: (
-        size * float(np.sin(2 * np.pi * x / length))
-    )
-
-
-def _rider(d: _Draw, seconds: float) -> None:
-    del seconds
-    mass = d.between(0.06, 0.15) * d.making.stated.body_mass
-    stiffness = mass * (2 * np.pi * float(d.random.uniform(3.0, 6.0))) ** 2
-    d.making.rider = mass, stiffness, 0.3 * float(np.sqrt(stiffness * mass))
-
-
-def _coupling(d: _Draw, seconds: float) -> None:
-    del seconds
-    size = d.between(0.15, 0.4) * d.size.force / (d.size.x * d.size.v**2)
-    d.making.others.setdefault(d.corner, {})["extra"] = lambda x, v: size * x * v**2
-
-
-_UNKNOWN: dict[str, Callable[[_Draw, float], None]] = {
-    "imbalance": _imbalance, "gusts": _gusts, "cogging": _cogging, "rider": _rider,
-    "coupling": _coupling,
-}  # fmt: skip
-VEHICLE_UNKNOWN = tuple(_UNKNOWN)
-"""Without a name: a wheel out of balance, gusts on the body, a strut that cogs, somebody who sits
-on springs, a force x v^2."""
-
-
-def draw_vehicle_unknown(
-    making: Making,
-    kind: str,
-    random: Generator,
-    sizes: list[Sizes],
-    strength: float,
-    seconds: float,
-) -> None:
-    """Hide one that has no name."""
-    corner = int(random.integers(len(sizes))) if kind != "imbalance" else 0
-    draw = _Draw(making, random, corner, sizes[corner], strength, [], 0.0)
-    _UNKNOWN[kind](draw, seconds)

@@ -10,6 +10,7 @@ from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.wording import effect_in_words
+from inerter.measured_text import decimals_told
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.motion_units import parameter_unit as unit_in
 
@@ -81,9 +82,7 @@ def with_error(value: ParameterValue) -> str:
     top = math.floor(math.log10(max(abs(value.value), error)))
     power = top if top < -3 or top > 6 else 0
     scaled, scaled_error = value.value / 10.0**power, error / 10.0**power
-    decimals = 1 - math.floor(math.log10(scaled_error))
-    # no more than six digits, however sure the fit is
-    decimals = min(decimals, 5 - (top - power))
+    decimals = decimals_told(scaled, scaled_error, digits=2)
     pair = f"{_plain(scaled, decimals)} ± {_plain(scaled_error, decimals)}"
     if power:
         return f"({pair}) × 10{str(power).translate(_SUPERSCRIPT)}{suffix}"

@@ -9,10 +9,10 @@ import typer
 
 from inerter.console import AsJson, Jobs, number, out, progress_bar, refusing
 from inerter.model_parameters import QUARTER_CAR
+from inerter.suspension import options
 from inerter.suspension.model_command import model_command
 from inerter.suspension.network_command import network_command
 from inerter.suspension.pareto_command import pareto_command
-from inerter.suspension.quarter_car import Road
 from inerter.suspension.time_domain.command import evaluate_command
 
 app = typer.Typer(
@@ -26,14 +26,10 @@ app.command("pareto")(pareto_command)
 app.command("model")(model_command)
 app.command("network")(network_command)
 
-_ROAD = Road()
-
 
 @app.command("optimize")
 def optimize_command(
-    layout: Annotated[
-        str, typer.Option(help="Layouts S1 ... S6, SR, SW1 ... SW8, with commas between.")
-    ] = "S1,S2,S3",
+    layout: options.Layouts = "S1,S2,S3",
     index: Annotated[
         str,
         typer.Option(
@@ -41,51 +37,14 @@ def optimize_command(
             "your own: file.toml, file.py:FUNCTION; with commas."
         ),
     ] = "J1,J3,J5",
-    stiffness: Annotated[
-        str | None,
-        typer.Option(
-            help="k [N/m]: numbers and ranges FIRST:LAST:COUNT, with commas; of a half- or full "
-            "car the front's, or KF/KR.",
-            show_default=f"{QUARTER_CAR.stiffness:g}, or the half- and full car's own",
-        ),
-    ] = None,
-    series: Annotated[
-        str,
-        typer.Option(help="none (ideal), soft, hard or KS/CS [N/m, N s/m]; with commas."),
-    ] = "none",
-    car: Annotated[
-        str,
-        typer.Option(
-            help="quarter (Wang and Su's), half or full (a published passenger car), or a file "
-            "car.toml of your own."
-        ),
-    ] = "quarter",
-    limit: Annotated[
-        str | None,
-        typer.Option(help="Not above: INDEX=VALUE in SI, as in travel=0.02,J3=900; also J5, J1w."),
-    ] = None,
-    hold: Annotated[
-        str | None,
-        typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
-    ] = None,
-    catalogue: Annotated[
-        str | None,
-        typer.Option(
-            help="One of some values each: NAME=VALUE/VALUE/... in SI, as in "
-            "inertance=60/80/113,damping=900/1200; names as for --hold."
-        ),
-    ] = None,
-    vary: Annotated[
-        str | None,
-        typer.Option(
-            help="The best over all combinations of factors: NAME=FACTOR/FACTOR/..., as in "
-            "body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, tyre_stiffness, "
-            "inertance, relaxation_stiffness."
-        ),
-    ] = None,
-    equal: Annotated[
-        bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")
-    ] = False,
+    stiffness: options.Stiffness = None,
+    series: options.Series = "none",
+    car: options.Car = "quarter",
+    limit: options.Limit = None,
+    hold: options.Hold = None,
+    catalogue: options.Catalogue = None,
+    vary: options.Vary = None,
+    equal: options.Equal = False,
     correlation: Annotated[
         float | None,
         number("", "Full: of the left and the right road, 0 to 1.", show_default="0.5"),
@@ -102,13 +61,9 @@ def optimize_command(
         float | None,
         number("N/m", "Quarter: kt [N/m].", show_default=f"{QUARTER_CAR.tyre_stiffness:g}"),
     ] = None,
-    speed: Annotated[float, number("m/s", "Speed of the car [m/s].")] = _ROAD.velocity,
-    velocity: Annotated[
-        float | None, number("m/s", "The name of --speed before.", hidden=True)
-    ] = None,
-    roughness: Annotated[
-        float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")
-    ] = _ROAD.roughness,
+    speed: options.Speed = options.ROAD.velocity,
+    velocity: options.OldSpeed = None,
+    roughness: options.Roughness = options.ROAD.roughness,
     jobs: Jobs = None,
     scheduler: Annotated[
         str | None,
@@ -147,7 +102,7 @@ def optimize_command(
             indices=read_indices(index),
             stiffness=stiffness,
             series=series,
-            road=Road(velocity=speed if velocity is None else velocity, roughness=roughness),
+            road=options.road_asked(speed, velocity, roughness),
             equal=equal,
             hold=hold,
             limit=limit,

@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, number, out, refusing
+from inerter.console import AsJson, out, refusing
+from inerter.suspension import options
 from inerter.suspension.quarter_car import QuarterCar, Road
-
-_ROAD = Road()
 
 
 def network_command(
@@ -25,16 +24,10 @@ def network_command(
         str, typer.Option(help="One of J1, J1w, J3, travel, or file.toml, file.py:FUNCTION.")
     ] = "J1",
     car: Annotated[str, typer.Option(help="quarter, or a file car.toml of one.")] = "quarter",
-    limit: Annotated[
-        str | None, typer.Option(help="Not above: INDEX=VALUE in SI, with commas.")
-    ] = None,
-    speed: Annotated[float, number("m/s", "Speed of the car [m/s].")] = _ROAD.velocity,
-    velocity: Annotated[
-        float | None, number("m/s", "The name of --speed before.", hidden=True)
-    ] = None,
-    roughness: Annotated[
-        float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")
-    ] = _ROAD.roughness,
+    limit: options.Limit = None,
+    speed: options.Speed = options.ROAD.velocity,
+    velocity: options.OldSpeed = None,
+    roughness: options.Roughness = options.ROAD.roughness,
     as_json: AsJson = False,
 ) -> None:
     """Find the values of a network of springs, dampers and inerters that minimise an index.
@@ -64,7 +57,7 @@ def network_command(
         which = chosen_car(car, {})
         if not isinstance(which, QuarterCar):
             raise StudyError(f"--car {car}: a network is sought for a quarter-car")
-        road = Road(velocity=speed if velocity is None else velocity, roughness=roughness)
+        road = options.road_asked(speed, velocity, roughness)
         if netlist.suffix.lower() == ".toml":
             _tell_admittance(netlist, which, road, as_json)
             return

@@ -7,14 +7,12 @@ from typing import Annotated
 
 import typer
 
-from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
-from inerter.suspension.quarter_car import Road
-
-_ROAD = Road()
+from inerter.console import AsJson, Folder, out, progress_bar, refusing
+from inerter.suspension import options
 
 
 def pareto_command(
-    layout: Annotated[str, typer.Option(help="Layouts, with commas.")] = "S1,S2,S3",
+    layout: options.Layouts = "S1,S2,S3",
     index: Annotated[
         str,
         typer.Option(
@@ -22,47 +20,18 @@ def pareto_command(
             "file.py:FUNCTION."
         ),
     ] = "J1w,J3",
-    stiffness: Annotated[
-        str | None,
-        typer.Option(help="k [N/m]; KF/KR of a half- or full car.", show_default="the car's own"),
-    ] = None,
-    series: Annotated[str, typer.Option(help="none, soft, hard or KS/CS.")] = "none",
-    car: Annotated[
-        str, typer.Option(help="quarter, half, full, or a file car.toml of your own.")
-    ] = "quarter",
-    limit: Annotated[
-        str | None, typer.Option(help="Along the front not above: INDEX=VALUE, with commas.")
-    ] = None,
-    hold: Annotated[
-        str | None,
-        typer.Option(help="Not sought: damping=, inertance=, relaxation_stiffness= VALUE in SI."),
-    ] = None,
-    catalogue: Annotated[
-        str | None,
-        typer.Option(
-            help="One of some values each: NAME=VALUE/VALUE/... in SI, as in "
-            "inertance=60/80/113,damping=900/1200; names as for --hold."
-        ),
-    ] = None,
-    vary: Annotated[
-        str | None,
-        typer.Option(
-            help="The best over all combinations of factors: NAME=FACTOR/FACTOR/..., as in "
-            "body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, tyre_stiffness, "
-            "inertance, relaxation_stiffness."
-        ),
-    ] = None,
-    equal: Annotated[
-        bool, typer.Option("--equal", help="Half, full: the same struts at both axles.")
-    ] = False,
+    stiffness: options.Stiffness = None,
+    series: options.Series = "none",
+    car: options.Car = "quarter",
+    limit: options.Limit = None,
+    hold: options.Hold = None,
+    catalogue: options.Catalogue = None,
+    vary: options.Vary = None,
+    equal: options.Equal = False,
     points: Annotated[int, typer.Option(min=2, help="Designs of each layout.")] = 9,
-    speed: Annotated[float, number("m/s", "Speed of the car [m/s].")] = _ROAD.velocity,
-    velocity: Annotated[
-        float | None, number("m/s", "The name of --speed before.", hidden=True)
-    ] = None,
-    roughness: Annotated[
-        float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")
-    ] = _ROAD.roughness,
+    speed: options.Speed = options.ROAD.velocity,
+    velocity: options.OldSpeed = None,
+    roughness: options.Roughness = options.ROAD.roughness,
     out_dir: Folder = Path("out/suspension"),
     as_json: AsJson = False,
 ) -> None:
@@ -94,7 +63,7 @@ def pareto_command(
             indices=indices[:1],
             stiffness=stiffness,
             series=series,
-            road=Road(velocity=speed if velocity is None else velocity, roughness=roughness),
+            road=options.road_asked(speed, velocity, roughness),
             equal=equal,
             hold=hold,
             limit=limit,

@@ -1,7 +1,7 @@
 """Diagnosis at system level: a user's MJCF in the loop, driven by what a vehicle or rig recorded.
 
-mapping.py     columns -> actuators and sensors
-drive.py       a run on the model's steps
+mapping.py     columns -> actuators, mocap bodies and sensors;  inputs.py  what drives a model
+drive.py       a run on the model's steps;  sensing.py  what sensors do
 parts.py       what is wheel, body, spring, damper and tyre
 model.py       a model as coordinates;  build.py  the same as an MjSpec
 simulate.py    many variants in one batch
@@ -104,7 +104,7 @@ def diagnose_model(
     inputs = read_options(mapping.inputs, "input")
     sensors = read_options(mapping.sensors, "sensor")
     channels = map_columns(user.model, columns, inputs, sensors)
-    used = [*channels.inputs, *(output.column for output in channels.outputs)]
+    used = list(channels.used)
     runs: list[Any]
     if mapping or not set(used) <= {"road", *VehicleRecord.optional}:
         runs = list(read_free_form(records, used))

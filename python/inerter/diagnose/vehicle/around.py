@@ -9,7 +9,7 @@ import numpy as np
 
 from inerter.catalogue.scales import Range
 from inerter.diagnose.vehicle.candidate import VehicleCandidate, candidate
-from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.model import TYRES, VehicleModel
 from inerter.diagnose.vehicle.parts import Suspension, Tyre
 
 if TYPE_CHECKING:
@@ -42,6 +42,25 @@ def _tyres(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
                 "tyre_liftoff", tyre.element, [{"tyre_static_load": r * load} for r in starts],
                 {"tyre_static_load": size}, (),
             )  # fmt: skip
+
+
+def _road(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    """What all tyres do to the road, and the stiffness of a spring to a mocap body."""
+    user = effects.user
+    for link in user.parts.road_springs:
+        stiffness = effects.stated(f"{link.element}.tyre_stiffness", model)
+        yield candidate(
+            "tyre_stiffness_error", link.element, [{"tyre_stiffness": 1.05 * stiffness}],
+            {"tyre_stiffness": Range(stiffness, 0.02 * stiffness)}, ("tyre_stiffness",),
+        )  # fmt: skip
+    if user.parts.tyres or user.tables:
+        # a wave shrinks with the square of what is covered: starts of two sizes
+        name, starts, most = ("patch_length", (0.1, 0.3), 1.5) if effects.speed else (
+            "patch_time", (0.006, 0.02), 0.15)  # fmt: skip
+        yield candidate(
+            "tyre_enveloping", TYRES, [{name: start} for start in starts],
+            {name: Range(starts[0], 0.1 * starts[0], most, logarithmic=True)}, (),
+        )  # fmt: skip
 
 
 def _wheel_rate(effects: Effects, tyre: Tyre) -> float:
@@ -139,16 +158,30 @@ def _forces(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]
 
 
 def _channels(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    """One channel that is late, or early, of all others."""
+    """One channel that is late, or early, of all others, or shows less of what is fast."""
     del model
     for column, spacing in effects.columns.items():
+        element, most = f"channel:{column}", 0.4 / spacing
         yield candidate(
-            "sensor_delay", f"channel:{column}", [{"delay": spacing}],
+            "sensor_delay", element, [{"delay": spacing}],
             {"delay": Range(spacing, -MOST_DELAY, MOST_DELAY)}, ("delay",),
         )  # fmt: skip
+        frequency = Range(0.1 * most, 0.01 * most, 2 * most, logarithmic=True)
+        starts = (0.1 * most, 0.3 * most)
+        yield candidate(
+            "sensor_filter", element, [{"filter_frequency": start} for start in starts],
+            {"filter_frequency": frequency}, (),
+        )  # fmt: skip
+        if column in effects.shaken:
+            loss = Range(0.1, 5e-3, 3.0, logarithmic=True)
+            yield candidate(
+                "sensor_compliance", element,
+                [{"mount_frequency": start, "mount_loss": 0.1} for start in starts],
+                {"mount_frequency": frequency, "mount_loss": loss}, (),
+            )  # fmt: skip
 
 
 def around(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
     """Everything around the devices that can be tried."""
-    for build in (_tyres, _suspensions, _guides, _forces, _channels):
+    for build in (_tyres, _road, _suspensions, _guides, _forces, _channels):
         yield from build(effects, model)

@@ -7,6 +7,8 @@ TYRE.tyre_damping           a further velocity actuator, whose control is the ro
 TYRE.tyre_static_load       force range of the road's actuator: it cannot pull by more [N]
 DEVICE.rebound_damping, DEVICE.bump_damping   the suspension's damper: the smaller one stays
                             where the user has it, the rest acts in its direction alone [N s/m]
+DEVICE.damping_gradient     its damping grows along the stroke by this share per metre [1/m]
+tyres.patch_length, patch_time   no part of a model: what tyres average the road over [m, s]
 joint:NAME.joint_friction, joint_damping   of a wheel's or body's own joint [N, N s/m]
 actuator:NAME.actuator_gain, actuator_lag   of a force that the record drives [1, s]
 LINK.stiffness, LINK.stiffness_cubic, LINK.damping   of a joint or tendon
@@ -16,6 +18,7 @@ BODY.mass                   of a body, its inertia in proportion [kg]
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -36,8 +39,10 @@ from inerter.diagnose.vehicle.changes import (
     change_guide,
     change_tyre,
     rate_actuator,
+    set_first,
     split_damping,
 )
+from inerter.diagnose.vehicle.inputs import MOCAP, actuator_of, mocap_of
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.parts import Parts, Suspension, VehicleLink, find_parts
 from inerter.engine_errors import (
@@ -74,11 +79,29 @@ class UserModel:
     devices: list[DeviceInModel]
     parts: Parts = field(default_factory=Parts)
     roads: list[int] = field(default_factory=list)
+    tables: list[int] = field(default_factory=list)
 
-    def with_roads(self, roads: list[int]) -> None:
-        """Say which actuators the records drive."""
-        self.roads = roads
-        self.parts = find_parts(self.model, roads)
+    def with_inputs(self, targets: Iterable[str]) -> None:
+        """Say what the records drive, as `Channels.inputs` has it."""
+        named = list(targets)
+        actuators = [actuator_of(self.model, target) for target in named]
+        bodies = [mocap_of(self.model, target) for target in named]
+        self.with_roads([i for i in actuators if i >= 0], [b for b in bodies if b >= 0])
+
+    def with_roads(self, roads: list[int], tables: Sequence[int] = ()) -> None:
+        """Say which actuators and which mocap bodies the records drive."""
+        self.roads, self.tables = roads, list(tables)
+        self.parts = find_parts(self.model, roads, tables)
+
+    def road_inputs(self, targets: Sequence[str]) -> list[int]:
+        """Which of the inputs are roads under tyres: of tyres' actuators, upright mocap bodies."""
+        tyres = {tyre.actuator for tyre in self.parts.tyres}
+        return [
+            i
+            for i, target in enumerate(targets)
+            if (target.startswith(MOCAP) and target.endswith(".z"))
+            or actuator_of(self.model, target) in tyres
+        ]  # fmt: skip
 
     def with_timestep(self, step: float) -> UserModel:
         """The same model with another timestep."""
@@ -92,6 +115,7 @@ class UserModel:
             devices=devices_of(model),
             parts=self.parts,
             roads=self.roads,
+            tables=self.tables,
         )
 
     @cached_property
@@ -106,6 +130,8 @@ class UserModel:
             rate = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_ACTUATOR, rate_actuator(tyre))
             if rate >= 0:
                 found[f"{tyre.element}.tyre_damping"] = -float(self.model.actuator_biasprm[rate, 2])
+        for link in self.parts.road_springs:
+            found[f"{link.element}.tyre_stiffness"] = self._of_link(link, "stiffness")
         for joint in self.guides:
             dof = int(self.model.jnt_dofadr[joint])
             found[f"{self.joint(joint)}.joint_friction"] = float(self.model.dof_frictionloss[dof])
@@ -189,6 +215,7 @@ class UserModel:
         values = {
             k: v for k, v in change.of(name).items() if k not in ("rebound_damping", "bump_damping")
         }
+        slope = values.pop("damping_gradient", 0.0)
         law = change.friction.get(name, found.device.friction)
         if not values and law == found.device.friction:
             base = Device(**given)
@@ -205,7 +232,13 @@ class UserModel:
                 coordinates.pop(name, None)
             base = Device(friction=law, **parameters_of(coordinates), **texts)
         low = self._lower_damping(name, change)
-        return base if low is None else base.replace(viscous=low)
+        if low is not None:
+            base = base.replace(viscous=low)
+        return _sloping(base, slope) if slope else base
+
+    def has_damping_curve(self, name: str) -> bool:
+        """Whether a device states how its damping changes along the stroke."""
+        return "curve_lower" in self.device(name).stated(self.model)
 
     def _lower_damping(self, name: str, change: VehicleModel) -> float | None:
         """What stays in a device's `viscous` where its damper differs by direction."""
@@ -226,6 +259,9 @@ class UserModel:
             self._change_suspension(spec, part, change)
         for tyre in self.parts.tyres:
             change_tyre(spec, tyre, change.of(tyre.element))
+        for link in self.parts.road_springs:
+            if "tyre_stiffness" in (values := change.of(link.element)):
+                set_first(spec.tendons[link.index], "stiffness", values["tyre_stiffness"])
         for index in {b for p in self.parts.suspensions for b in (p.wheel, p.body)}:
             if (mass := change.of(self.body(index)).get("mass")) is not None:
                 self._weigh(spec, index, mass)
@@ -294,15 +330,13 @@ class UserModel:
                 continue
             element = (spec.tendons if link.kind == "tendon" else spec.joints)[link.index]
             values = change.of(link.element)
-            for name, place in (("stiffness", 0), ("stiffness_cubic", 2)):
+            for name, column, place in (
+                ("stiffness", "stiffness", 0),
+                ("stiffness_cubic", "stiffness", 2),
+                ("damping", "damping", 0),
+            ):
                 if name in values:
-                    column = np.array(element.stiffness)
-                    column[place] = values[name]
-                    element.stiffness = column
-            if "damping" in values:
-                column = np.array(element.damping)
-                column[0] = values["damping"]
-                element.damping = column
+                    set_first(element, column, values[name], place)
         split = split_damping(part.device, change)
         if split is None or part.damper is None:
             return
@@ -310,9 +344,7 @@ class UserModel:
         link = part.damper
         if link.kind != "device":
             element = (spec.tendons if link.kind == "tendon" else spec.joints)[link.index]
-            column = np.array(element.damping)
-            column[0] = min(split)
-            element.damping = column
+            set_first(element, "damping", min(split))
         add_one_sided(spec, link, rebound, bump)
 
     def _weigh(self, spec: mujoco.MjSpec, index: int, mass: float) -> None:
@@ -378,6 +410,17 @@ def stated_coordinates(device: DeviceInModel, model: mujoco.MjModel) -> dict[str
     # of a law also what is left to its defaults, for the simulation has it
     law = FRICTION[device.device.friction].of_device(device.device)
     return {**law, **law_coordinates(device.device, numbers)}
+
+
+def _sloping(device: Device, gradient: float) -> Device:
+    """A device with damping viscous (1 + gradient x), held above a tenth and below twice of it."""
+    share = np.linspace(-1.4, 1.4, 29)
+    values = device.viscous * np.sign(gradient) * np.clip(share, -0.9, 0.9)
+    return device.replace(
+        viscous_curve=" ".join(repr(float(value)) for value in values),
+        curve_lower=-1.4 / abs(gradient),
+        curve_upper=1.4 / abs(gradient),
+    )
 
 
 def _number(value: float | str) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mujoco
 import numpy as np
 
@@ -49,35 +51,36 @@ def add_one_sided(spec: mujoco.MjSpec, link: VehicleLink, rebound: float, bump: 
     actuator.biasprm = bias
 
 
+def set_first(element: Any, name: str, value: float, place: int = 0) -> None:
+    """Set one number of a column of an element, the first one by default."""
+    column = np.array(getattr(element, name))
+    column[place] = value
+    setattr(element, name, column)
+
+
 def change_guide(joint: mujoco.MjsJoint, values: dict[str, float]) -> None:
     if "joint_friction" in values:
         joint.frictionloss = values["joint_friction"]
     if "joint_damping" in values:
-        column = np.array(joint.damping)
-        column[0] = values["joint_damping"]
-        joint.damping = column
+        set_first(joint, "damping", values["joint_damping"])
 
 
 def change_force(actuator: mujoco.MjsActuator, values: dict[str, float]) -> bool:
     """Gain and lag of a force that a record drives; whether it has a state now."""
     if "actuator_gain" in values:
-        gain = np.array(actuator.gainprm)
-        gain[0] *= values["actuator_gain"]
-        actuator.gainprm = gain
+        set_first(actuator, "gainprm", actuator.gainprm[0] * values["actuator_gain"])
     if not values.get("actuator_lag", 0.0) > 0:
         return False
-    column = np.array(actuator.dynprm)
-    column[0] = values["actuator_lag"]
-    actuator.dyntype, actuator.dynprm = mujoco.mjtDyn.mjDYN_FILTEREXACT, column
+    actuator.dyntype = mujoco.mjtDyn.mjDYN_FILTEREXACT
+    set_first(actuator, "dynprm", values["actuator_lag"])
     return True
 
 
 def change_tyre(spec: mujoco.MjSpec, tyre: Tyre, values: dict[str, float]) -> None:
     actuator = spec.actuators[tyre.actuator]
     if "tyre_stiffness" in values:
-        gain, bias = np.array(actuator.gainprm), np.array(actuator.biasprm)
-        gain[0], bias[1] = values["tyre_stiffness"], -values["tyre_stiffness"]
-        actuator.gainprm, actuator.biasprm = gain, bias
+        set_first(actuator, "gainprm", values["tyre_stiffness"])
+        set_first(actuator, "biasprm", -values["tyre_stiffness"], 1)
     if "tyre_static_load" in values:
         load = values["tyre_static_load"]
         actuator.forcelimited = True
@@ -85,9 +88,8 @@ def change_tyre(spec: mujoco.MjSpec, tyre: Tyre, values: dict[str, float]) -> No
     own = spec.actuator(rate_actuator(tyre))
     if "tyre_damping" in values and own is not None:
         # the user's model has one
-        gain, bias = np.array(own.gainprm), np.array(own.biasprm)
-        gain[0], bias[2] = values["tyre_damping"], -values["tyre_damping"]
-        own.gainprm, own.biasprm = gain, bias
+        set_first(own, "gainprm", values["tyre_damping"])
+        set_first(own, "biasprm", -values["tyre_damping"], 2)
     elif "tyre_damping" in values:
         extra = spec.add_actuator(
             name=rate_actuator(tyre),

@@ -21,7 +21,7 @@ from inerter.diagnose.vehicle.drive import RecordedDrive, make_drive
 from inerter.diagnose.vehicle.effects import Effects, Scale
 from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.members import exchangeable, with_members
-from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.model import TYRES, VehicleModel
 from inerter.diagnose.vehicle.outcome import ChannelError, SystemAccuracy, SystemDiagnosis
 from inerter.diagnose.vehicle.polarity import polarity
 from inerter.diagnose.vehicle.problem import ComparedChannel, DrivenProblem
@@ -103,7 +103,7 @@ class _System:
         self.records = without_copies(records, holdout)
         self.user, self.channels = user, channels
         self.progress = progress
-        user.with_roads([user.model.actuator(name).id for name in channels.inputs.values()])
+        user.with_inputs(channels.inputs.values())
         self.simulator = VehicleSimulator(user, channels, threads)
         step = float(user.model.opt.timestep)
         drives = [make_drive(record, channels, step) for record in self.records]
@@ -125,16 +125,15 @@ class _System:
 
     def run(self) -> SystemDiagnosis:
         """The whole procedure."""
-        spacing = float(np.median([drive.spacing for drive in self.drives]))
-        columns = {output.column: spacing for output in self.channels.outputs}
-        effects = Effects(self.user, self._scales(), self._loads(), columns)
+        effects = Effects(self.user, self._scales(), self._loads(), *self._of_channels())
         search = VehicleSearch(self.fit, effects, self._step_error, self.progress)
         final = search.run()
         start = search.refit([(VehicleModel(), {})])[0]
         chain = self._chain(search, start, final)
         while (weak := self._unconfirmed(chain)) is not None:
-            name = final.model.effects[weak].effect
-            self.progress(f"{name} is not confirmed on held-out road: dropped")
+            self.progress(
+                f"{final.model.effects[weak].effect} is not confirmed on held-out road: dropped"
+            )
             final = search.refit([search.without(final, weak)])[0]
             chain = self._chain(search, start, final)
         return self._diagnosis(search, start, final, chain)
@@ -200,11 +199,16 @@ class _System:
             )
         return found
 
+    def _of_channels(self) -> tuple[dict[str, float], tuple[str, ...], bool]:
+        spacing = float(np.median([drive.spacing for drive in self.drives]))
+        shaken = self.channels.shaken(self.user.model)
+        return self.channels.spaced(spacing), shaken, bool(self.channels.speed)
+
     def _loads(self) -> dict[str, float]:
         """Mass on each tyre [kg], the vehicle's shared equally."""
         tyres = self.user.parts.tyres
-        total = float(self.user.model.body_mass.sum())
-        return {tyre.element: total / len(tyres) for tyre in tyres}
+        share = float(self.user.model.body_mass.sum()) / max(len(tyres), 1)
+        return {tyre.element: share for tyre in tyres}
 
     def _step_error(self, model: VehicleModel) -> float:
         """How much of a model's error is its step's: against half the step, per spread."""
@@ -258,12 +262,16 @@ class _System:
             chain.insert(0, before)
         return chain
 
-    def _unconfirmed(self, chain: list[VehicleScored]) -> int | None:
-        """The last effect of a chain that does not help on held-out road, or not visibly."""
+    def _on_held(self, chain: list[VehicleScored]) -> tuple[Array, list[Array], list[float]]:
+        """Residuals on held-out road along a chain, their squares over blocks, their errors."""
         residuals = self.held.stacked([scored.model for scored in chain])
         blocks = stacked_blocks(self.held)
         squares = [block_squares(residual, blocks) for residual in residuals]
-        errors = [self.held.error(residual) for residual in residuals]
+        return residuals, squares, [self.held.error(residual) for residual in residuals]
+
+    def _unconfirmed(self, chain: list[VehicleScored]) -> int | None:
+        """The last effect of a chain that does not help on held-out road, or not visibly."""
+        residuals, squares, errors = self._on_held(chain)
         floor = self.held.noise(residuals[-1])
         for i in range(len(chain) - 1, 0, -1):
             before, after = squares[i - 1], squares[i]
@@ -334,10 +342,7 @@ class _System:
         final: VehicleScored,
         chain: list[VehicleScored],
     ) -> SystemDiagnosis:
-        residuals = self.held.stacked([scored.model for scored in chain])
-        errors = [self.held.error(residual) for residual in residuals]
-        blocks = stacked_blocks(self.held)
-        squares = [block_squares(residual, blocks) for residual in residuals]
+        residuals, squares, errors = self._on_held(chain)
         named = self._findings(search, chain, errors, squares)
         findings, places = [f for f, _ in named], [place for _, place in named]
         before = self._accuracy(VehicleModel(), residuals[0], residuals[0])
@@ -350,9 +355,7 @@ class _System:
         findings = [doubted(finding, remains.structure) for finding in findings]
         self.progress("simulating the extended model once more, as it is written")
         xml = self.user.xml(final.model)
-        parameters = {}
-        for finding in findings:
-            parameters |= finding.parameters
+        parameters = {n: value for f in findings for n, value in f.parameters.items()}
         return SystemDiagnosis(
             records=self._summaries(),
             baseline=before,
@@ -393,12 +396,10 @@ class _System:
         """Rms error of every channel in its unit."""
         table = residual.reshape(-1, len(self.whole.channels))
         rms = np.sqrt(np.sum(table**2, axis=0) / self.held.count) * self.whole.spreads
-        return [float(value) for value in rms]
+        return list(map(float, rms))
 
     def _summaries(self) -> list[RecordSummary]:
-        held = {drive.name for drive in self.held.drives}
-        if len(self.records) == 1:
-            held = set()
+        held = {drive.name for drive in self.held.drives} if len(self.records) > 1 else set()
         return [
             RecordSummary(
                 record.name,
@@ -418,14 +419,14 @@ class _System:
     def _written_error(self, xml: str, model: VehicleModel) -> float | None:
         """Held-out error of the model as written, read back from its text.
 
-        What belongs to a channel, its delay, is in no model.
+        What belongs to a channel or to the road under a tyre is in no model.
         """
-        late = {n: v for n, v in model.values.items() if n.startswith("channel:")}
+        late = {n: v for n, v in model.values.items() if n.startswith(("channel:", f"{TYRES}."))}
         written = model_of_text(xml, self.user.path)
-        written.with_roads(self.user.roads)
+        written.with_inputs(self.channels.inputs.values())
         simulator = VehicleSimulator(written, self.channels, self.simulator.threads)
-        problem = replace(self.held, simulator=simulator)
-        error = problem.error(problem.stacked([VehicleModel(late)])[0])
+        row = replace(self.held, simulator=simulator).stacked([VehicleModel(late)])[0]
+        error = self.held.error(row)
         return error if np.isfinite(error) else None
 
     def _method(self) -> dict:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from inerter.records.record import RecordError, TimeRecord
 Array = NDArray[np.float64]
 # a recorded sample this near to a model's step counts as on it [steps]
 _ON_STEP = 1e-3
+_SLOWEST = 0.1  # below this no road is averaged over a patch [m/s]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +41,10 @@ class RecordedDrive:
         Rates at the beginning.
     stride : int or None
         Steps between samples; None where samples lie between steps.
+    spline : CubicSpline
+        The inputs over the time.
+    speed : CubicSpline or None
+        Of the vehicle [m/s], where the record has it.
     """
 
     name: str
@@ -51,6 +57,8 @@ class RecordedDrive:
     rate: Array
     rate_now: Array
     stride: int | None
+    spline: CubicSpline
+    speed: CubicSpline | None = None
 
     @property
     def steps(self) -> int:
@@ -85,9 +93,47 @@ class RecordedDrive:
             rate_now=self.rate_now[:steps],
         )
 
-    def finer(self, channels: Channels, record: TimeRecord) -> RecordedDrive:
-        """The same with steps half as long."""
-        return make_drive(record, channels, self.step / 2)
+    def averaged(
+        self, columns: Sequence[int], patch_length: float = 0.0, patch_time: float = 0.0
+    ) -> RecordedDrive:
+        """The drive with some inputs averaged over what a tyre covers at once.
+
+        Parameters
+        ----------
+        columns : sequence of int
+            Of the inputs.
+        patch_length : float
+            Covered [m]; wants `speed`.
+        patch_time : float
+            In place of it the time in which a point passes under the tyre [s].
+        """
+        now = self.step * np.arange(self.steps, dtype=np.float64)
+        values = [self.now.copy(), self.rate_now.copy(), self.ahead.copy(), self.rate.copy()]
+        for place, later in enumerate((0.0, self.step / 2)):
+            times: Array = now + later
+            half = np.full(times.size, 0.5 * patch_time)
+            if self.speed is not None and patch_length:
+                inside = np.clip(times, 0.0, self.speed.x[-1])
+                half = 0.5 * patch_length / np.maximum(self.speed(inside), _SLOWEST)
+            half = np.maximum(half, 1e-9)
+            height, rate = _window(self.spline, times, half)
+            values[2 * place][:, columns] = height[:, columns]
+            values[2 * place + 1][:, columns] = rate[:, columns]
+        now_, rate_now, ahead, rate = values
+        return replace(self, now=now_, rate_now=rate_now, ahead=ahead, rate=rate)
+
+
+def _window(spline: CubicSpline, times: Array, half: Array) -> tuple[Array, Array]:
+    """Mean over `half` before and behind each time, and its rate; held beyond the ends."""
+    total, last = spline.antiderivative(), float(spline.x[-1])
+
+    def whole(t: Array) -> Array:
+        inside = np.clip(t, 0.0, last)
+        return total(inside) + (t - inside)[:, None] * spline(inside)
+
+    late, early, width = times + half, times - half, (2 * half)[:, None]
+    mean = (whole(late) - whole(early)) / width
+    return mean, (spline(np.clip(late, 0, last)) - spline(np.clip(early, 0, last))) / width
 
 
 def make_drive(record: TimeRecord, channels: Channels, step: float) -> RecordedDrive:
@@ -99,7 +145,7 @@ def make_drive(record: TimeRecord, channels: Channels, step: float) -> RecordedD
         A mapped column is missing in this run.
     """
     columns = {**record.extra, **record.channels()}
-    for name in (*channels.inputs, *(output.column for output in channels.outputs)):
+    for name in channels.used:
         if name not in columns:
             raise RecordError(
                 f"{record.name}: no column {name!r}, which other runs have; record it in every run"
@@ -127,4 +173,6 @@ def make_drive(record: TimeRecord, channels: Channels, step: float) -> RecordedD
         rate=rates(middle),
         rate_now=rates(begin),
         stride=stride if aligned else None,
+        spline=spline,
+        speed=CubicSpline(time, columns[channels.speed]) if channels.speed else None,
     )

@@ -21,13 +21,16 @@ class Effects:
     """Everything that can be tried in a user's model.
 
     scales: by device; loads: sprung and unsprung mass on each tyre by its element [kg]; columns:
-    time between samples [s] by compared column.
+    time between samples [s] by compared column; shaken: those of accelerometers; speed: whether
+    the record has that of the vehicle.
     """
 
     user: UserModel
     scales: Mapping[str, Scale]
     loads: Mapping[str, float] = field(default_factory=dict)
     columns: Mapping[str, float] = field(default_factory=dict)
+    shaken: tuple[str, ...] = ()
+    speed: bool = False
 
     def candidates(self, model: VehicleModel) -> Iterator[VehicleCandidate]:
         """Every effect that a model does not have yet."""
@@ -293,16 +296,76 @@ def _gas(effects: Effects, device: str, model: VehicleModel) -> Iterator[Vehicle
 
 def _stops(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
     scale = effects.scales[device]
-    stiff = Range(1.0, 0.3 * scale.force / scale.x, 1e3 * scale.force / scale.x, logarithmic=True)
-    for name, reach in (("stop_upper", scale.largest), ("stop_lower", scale.smallest)):
+    size = scale.force / scale.x
+    stiff = Range(size, 0.3 * size, 1e3 * size, logarithmic=True)
+    known = model.values.get(f"{device}.stop_stiffness")
+    for name, reach, side in (
+        ("stop_upper", scale.largest, "rebound"), ("stop_lower", scale.smallest, "bump")
+    ):  # fmt: skip
         if reach == 0 or f"{device}.{name}" in effects.user.stated:
             continue
         place = Range(abs(reach), min(0.2 * reach, 1.2 * reach), max(0.2 * reach, 1.2 * reach))
+        # a device has one stiffness for both of its ends
         starts = [
-            {name: r * reach, "stop_stiffness": s * scale.force / scale.x}
+            {name: r * reach, "stop_stiffness": known or s * size}
             for r, s in ((0.5, 2.0), (0.75, 8.0))
         ]
-        yield candidate("end_stop", device, starts, {name: place, "stop_stiffness": stiff}, ())
+        yield candidate(
+            "end_stop", device, starts, {name: place, "stop_stiffness": stiff}, (), law=side
+        )
+
+
+def _damped(effects: Effects, device: str) -> bool:
+    """Whether a device is the damper between its wheel and its body."""
+    part = next((p for p in effects.user.parts.suspensions if p.device == device), None)
+    return part is not None and part.damper is not None and part.damper.kind == "device"
+
+
+def _bent(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    """Damping that bends with the speed, about what is stated."""
+    stated = effects.user.stated.get(f"{device}.damping_knee", 0.0)
+    if not _damped(effects, device) or stated > 0 or f"{device}.bump_damping" in model.free:
+        return
+    scale, now = effects.scales[device], effects.stated(f"{device}.viscous", model)
+    names = ("viscous", "damping_knee", "damping_beyond")
+    sizes = {name: COORDINATES[name].range(scale.of_data) for name in names}
+    sizes["viscous"] = Range(now or scale.force / scale.v, 0.0)
+    starts = [
+        {"viscous": 1.1 * now, "damping_knee": r * scale.v, "damping_beyond": b}
+        for r in (0.4, 1.0) for b in (0.5, 1.5)
+    ]  # fmt: skip
+    yield candidate("digressive_damping", device, starts, sizes, ())
+
+
+def _along(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    """Damping that grows or falls along the stroke."""
+    if not _damped(effects, device) or effects.user.has_damping_curve(device):
+        return
+    scale = effects.scales[device]
+    reach = max(scale.largest, -scale.smallest)
+    most = 0.9 / reach
+    yield candidate(
+        "position_dependent_damping", device, [{"damping_gradient": 0.2 * most}],
+        {"damping_gradient": Range(most, -most, most)}, ("damping_gradient",),
+    )  # fmt: skip
+
+
+def _relaxing(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
+    """A spring that relaxes: a rubber bush, a damper on a soft mount."""
+    if effects.stated(f"{device}.branch_stiffness_1", model) > 0:
+        return
+    scale = effects.scales[device]
+    stiffness, period = scale.force / scale.x, 2 * np.pi * np.sqrt(scale.x / scale.a)
+    least = 2.5 * scale.step if scale.explicit else 0.1 * scale.step
+    sizes = {
+        "branch_stiffness_1": Range(stiffness, 1e-3 * stiffness),
+        "branch_time_1": Range(period, least, max(30 * period, 2 * least), logarithmic=True),
+    }
+    starts = [
+        {"branch_stiffness_1": 0.1 * stiffness, "branch_time_1": max(r * period, 1.5 * least)}
+        for r in (0.1, 0.6)
+    ]
+    yield candidate("viscoelasticity", device, starts, sizes, ("branch_stiffness_1",))
 
 
 _DEVICE: tuple[Builder, ...] = (
@@ -328,4 +391,7 @@ _DEVICE: tuple[Builder, ...] = (
     _series,
     _gas,
     _stops,
+    _bent,
+    _along,
+    _relaxing,
 )  # fmt: skip

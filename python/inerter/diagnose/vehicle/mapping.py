@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import mujoco
 
 from inerter.device_in_model import devices_of, sensor_names
+from inerter.diagnose.vehicle.inputs import AXES, MOCAP, mocap_bodies
 
-_AXES = {"x": 0, "y": 1, "z": 2}
 _SENSOR = mujoco.mjtSensor
 ACCELEROMETERS = (
     int(_SENSOR.mjSENS_ACCELEROMETER),
@@ -23,6 +23,8 @@ PLACES = (int(_SENSOR.mjSENS_FRAMEPOS), int(_SENSOR.mjSENS_RANGEFINDER))
 # load cells, whose zero has whatever hangs on them at rest
 CELLS = (int(_SENSOR.mjSENS_FORCE), int(_SENSOR.mjSENS_TORQUE))
 VEHICLE_INPUT = "road"
+SPEED = "speed"
+"""Column of the vehicle's speed [m/s], by which a tyre's patch is told in metres."""
 VEHICLE_OUTPUTS = ("body_acceleration", "wheel_acceleration", "suspension_travel", "tyre_force")
 
 
@@ -47,13 +49,30 @@ class Output:
 
 @dataclass(frozen=True)
 class Channels:
-    """inputs: actuator by column; outputs: in the order of the record's columns; unused: columns
-    that neither drive nor are compared.
+    """inputs: by column the actuator, or "mocap:BODY.AXIS"; outputs: in the order of the record's
+    columns; unused: columns that neither drive nor are compared; speed: the column of the
+    vehicle's speed, "" where there is none.
     """
 
     inputs: Mapping[str, str]
     outputs: tuple[Output, ...]
     unused: tuple[str, ...] = ()
+    speed: str = ""
+
+    def spaced(self, spacing: float) -> dict[str, float]:
+        """Time between samples by compared column [s]."""
+        return {output.column: spacing for output in self.outputs}
+
+    def shaken(self, model: mujoco.MjModel) -> tuple[str, ...]:
+        """Columns of accelerometers, whose brackets may swing."""
+        kinds = {o.column: int(model.sensor(o.sensor).type[0]) for o in self.outputs}
+        return tuple(column for column, kind in kinds.items() if kind in ACCELEROMETERS)
+
+    @property
+    def used(self) -> tuple[str, ...]:
+        """Every column that a diagnosis reads."""
+        speed = (self.speed,) if self.speed else ()
+        return (*self.inputs, *(output.column for output in self.outputs), *speed)
 
 
 def read_options(options: Sequence[str], name: str) -> dict[str, str]:
@@ -90,7 +109,8 @@ def map_columns(
     columns : sequence of str
         Of the records, without time.
     inputs, sensors : mapping
-        Actuator and sensor by column, as the user gave them; sensor "NAME.z" is a component.
+        Actuator (or mocap body, "NAME" along z or "NAME.x") and sensor by column, as the user gave
+        them; sensor "NAME.z" is a component.
         What is not given goes by equal names, and by kind where a kind is there once.
 
     Raises
@@ -103,18 +123,20 @@ def map_columns(
         for column in given:
             if column not in columns:
                 raise names.error(f"--{option} {column}={given[column]}: no column {column!r}")
-    driven = {column: names.actuator(column, name) for column, name in inputs.items()}
+    driven = {column: names.target(column, name) for column, name in inputs.items()}
     for column in columns:
         if column in sensors or column in driven:
             continue
         if column in names.actuators:
             driven[column] = column
-        elif column == VEHICLE_INPUT and len(names.positions) == 1:
-            driven[column] = names.positions[0]
+        elif column in names.mocaps:
+            driven[column] = f"{MOCAP}{column}.z"
+        elif column == VEHICLE_INPUT and (only := names.only_road):
+            driven[column] = only
     if len(set(driven.values())) < len(driven):
-        raise names.error("two columns drive one actuator")
+        raise names.error("two columns drive one actuator or mocap body")
     if not driven:
-        raise names.error("no column drives an actuator")
+        raise names.error("no column drives an actuator or a mocap body")
     outputs = []
     for column in columns:
         if column in driven:
@@ -125,7 +147,9 @@ def map_columns(
     if not outputs:
         raise names.error("no column is compared with a sensor")
     used = {*driven, *(output.column for output in outputs)}
-    return Channels(driven, tuple(outputs), tuple(c for c in columns if c not in used))
+    speed = SPEED if SPEED in columns and SPEED not in used else ""
+    unused = tuple(c for c in columns if c not in used and c != speed)
+    return Channels(driven, tuple(outputs), unused, speed)
 
 
 class _Names:
@@ -142,6 +166,8 @@ class _Names:
             for i, name in enumerate(all_actuators)
             if name and i not in devices and model.actuator_biastype[i] == affine
         ]
+        self.bodies = [model.body(i).name for i in range(model.nbody)]
+        self.mocaps = [model.body(body).name for body in mocap_bodies(model)]
         self.sensors = [model.sensor(i).name for i in range(model.nsensor)]
         self.driven = {i: name in self.positions for i, name in enumerate(all_actuators)}
         self.devices = {d.instance: d for d in devices_of(model)}
@@ -149,17 +175,37 @@ class _Names:
     def error(self, what: str) -> MappingError:
         return MappingError(
             f"{what}; columns: {', '.join(self.columns) or 'none'}; actuators: "
-            f"{', '.join(self.actuators) or 'none'}; sensors: "
+            f"{', '.join(self.actuators) or 'none'}; mocap bodies: "
+            f"{', '.join(filter(None, self.mocaps)) or 'none'}; sensors: "
             f"{', '.join(filter(None, self.sensors)) or 'none'}; map them with "
-            "--input COLUMN=ACTUATOR and --sensor COLUMN=SENSOR"
+            "--input COLUMN=ACTUATOR, --input COLUMN=BODY.z and --sensor COLUMN=SENSOR"
         )
 
-    def actuator(self, column: str, name: str) -> str:
-        if name not in self.actuators:
-            close = difflib.get_close_matches(name, self.actuators, n=1)
-            hint = f" (did you mean {close[0]!r}?)" if close else ""
-            raise self.error(f"--input {column}={name}: no actuator {name!r} in the model{hint}")
-        return name
+    def target(self, column: str, name: str) -> str:
+        """The input of a name: an actuator, or an axis of a mocap body."""
+        if name in self.actuators:
+            return name
+        body, dot, axis = name.rpartition(".")
+        if not dot or name in self.mocaps:
+            body, axis = name, "z"
+        if body in self.mocaps:
+            if axis not in AXES:
+                raise self.error(f"--input {column}={name}: write .x, .y or .z after {body}")
+            return f"{MOCAP}{body}.{axis}"
+        close = difflib.get_close_matches(name, [*self.actuators, *self.mocaps], n=1)
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        fixed = " (that body is not one of mocap)" if body in self.bodies else ""
+        raise self.error(
+            f"--input {column}={name}: no actuator {name!r} in the model, nor a mocap body"
+            f"{hint or fixed}"
+        )
+
+    @property
+    def only_road(self) -> str:
+        """The one input that can be a road; "" where there are several, or none."""
+        if len(self.positions) == 1:
+            return self.positions[0]
+        return f"{MOCAP}{self.mocaps[0]}.z" if not self.positions and len(self.mocaps) == 1 else ""
 
     def sensor_like(self, column: str) -> str | None:
         """The sensor of a column's name, or the only one of its kind."""
@@ -213,8 +259,8 @@ class _Names:
                 return int(part)
             raise self.error(f"--sensor {column}={wanted}: write one of {', '.join(shown)} "
                              "after the dot")  # fmt: skip
-        if part in _AXES and _AXES[part] < size:
-            return _AXES[part]
+        if part in AXES and AXES.index(part) < size:
+            return AXES.index(part)
         if part.isdigit() and int(part) < size:
             return int(part)
         if part or (size > 1 and given and column not in VEHICLE_OUTPUTS):

@@ -13,6 +13,10 @@ from types import MappingProxyType
 from inerter.catalogue.coordinates import NUISANCES
 from inerter.catalogue.effects import EFFECTS
 
+_FORMED = ("sensor_filter", "sensor_compliance")
+TYRES = "tyres"
+"""Element of what all tyres have in common."""
+
 
 @dataclass(frozen=True)
 class Added:
@@ -72,8 +76,12 @@ class VehicleModel:
 
     @property
     def complexity(self) -> int:
-        """Number of free coordinates that say something; the width of sign(v) says nothing."""
-        return sum(name.rpartition(".")[2] not in NUISANCES for name in self.free)
+        """Number of free coordinates that say something; the width of sign(v) says nothing.
+
+        An element of a channel counts one more: its form was chosen, too. A delay is plainer.
+        """
+        formed = sum(added.effect in _FORMED for added in self.effects)
+        return formed + sum(name.rpartition(".")[2] not in NUISANCES for name in self.free)
 
     def at(self, values: Mapping[str, float]) -> VehicleModel:
         """The model with other values."""

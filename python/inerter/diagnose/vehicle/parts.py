@@ -7,6 +7,7 @@ suspension's. What cannot be known is left out, and `Parts.unknown` says why.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import mujoco
@@ -71,14 +72,18 @@ class Suspension:
 
 @dataclass(frozen=True)
 class Parts:
-    """Suspensions and tyres of a model; unknown: what is not there, in words."""
+    """Suspensions and tyres of a model; unknown: what is not there, in words.
+
+    road_springs: tendons between a wheel and a mocap body under it.
+    """
 
     suspensions: tuple[Suspension, ...] = ()
     tyres: tuple[Tyre, ...] = ()
+    road_springs: tuple[VehicleLink, ...] = ()
     unknown: list[str] = field(default_factory=list)
 
 
-def find_parts(model: mujoco.MjModel, roads: list[int]) -> Parts:
+def find_parts(model: mujoco.MjModel, roads: list[int], tables: Sequence[int] = ()) -> Parts:
     """The vehicle in a compiled model.
 
     Parameters
@@ -87,25 +92,53 @@ def find_parts(model: mujoco.MjModel, roads: list[int]) -> Parts:
         The user's model.
     roads : list of int
         Actuators that the record drives.
+    tables : sequence of int
+        Mocap bodies that the record drives.
     """
     tyres = [tyre for road in roads if (tyre := _tyre(model, road)) is not None]
     # a road tells the wheel; another input, such as a measured force, only where there is no road
     on_roads = [tyre.actuator for tyre in tyres] or roads
     driven = {_driven_body(model, road): road for road in on_roads}
+    springs = []
+    for table in tables:
+        wheels, links = _on_table(model, table)
+        driven |= dict.fromkeys(wheels, -1)
+        springs += links
     unknown: list[str] = []
     found = []
     for device in devices_of(model):
         suspension = _suspension(model, device, driven, tyres, unknown)
         if suspension is not None:
             found.append(suspension)
-    if not tyres and not found:
+    if springs:
+        unknown.append(
+            "damping and lift-off of the tyre, as MuJoCo gives a mocap body no velocity and a "
+            "tendon's spring may pull (a position actuator from road to wheel has both)"
+        )
+    elif not tyres and not found:
         # no vehicle at all, such as a robot
         unknown = ["effects of a vehicle, as no wheel, body and tyre were recognised"]
     elif not tyres:
         unknown.append(
             "effects of the tyre, as none was recognised (a position actuator from road to wheel)"
         )
-    return Parts(tuple(found), tuple(tyres), unknown)
+    return Parts(tuple(found), tuple(tyres), tuple(springs), unknown)
+
+
+def _on_table(model: mujoco.MjModel, table: int) -> tuple[list[int], list[VehicleLink]]:
+    """Bodies that a mocap body drives by a tendon or a constraint, and the springs to them."""
+    wheels, springs = [], []
+    for i in range(model.ntendon):
+        ends = _tendon_ends(model, i)
+        if ends is not None and table in ends and len(set(ends)) == 2:
+            wheels.append(ends[0] if ends[1] == table else ends[1])
+            if model.tendon_stiffness[i] > 0:
+                springs.append(VehicleLink("tendon", i, model.tendon(i).name or f"tendon {i}"))
+    for i in range(model.neq):
+        if model.eq_objtype[i] == mujoco.mjtObj.mjOBJ_BODY:
+            pair = int(model.eq_obj1id[i]), int(model.eq_obj2id[i])
+            wheels += [body for body in pair if table in pair and body != table]
+    return wheels, springs
 
 
 def _suspension(

@@ -13,14 +13,15 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
 from inerter.diagnose.vehicle.build import UserModel
 from inerter.diagnose.vehicle.changes import rate_actuator
 from inerter.diagnose.vehicle.drive import RecordedDrive
+from inerter.diagnose.vehicle.inputs import STATE, actuator_of, place_of, set_inputs, undriven
 from inerter.diagnose.vehicle.mapping import Channels, Output
-from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.model import TYRES, VehicleModel
+from inerter.diagnose.vehicle.sensing import shown
 from inerter.engine_batch import batch
 
 Array = NDArray[np.float64]
@@ -79,24 +80,28 @@ class VehicleSimulator:
         for members in groups.values():
             group = [compiled[i] for i in members]
             own = [starts[i] for i in members] if starts is not None else None
-            found[members] = self._group([m for m in group if m is not None], drive, own)
+            felt = [self._felt(drive, models[i]) for i in members]
+            found[members] = self._group([m for m in group if m is not None], drive, felt, own)
         for i, model in enumerate(models):
-            self._delay(found[i], model, drive)
+            for k, output in enumerate(self.channels.outputs):
+                if np.isfinite(found[i, :, k]).all():
+                    channel = model.of(f"channel:{output.column}")
+                    found[i, :, k] = shown(drive.time, found[i, :, k], channel)
         return found
 
-    def _delay(self, values: Array, model: VehicleModel, drive: RecordedDrive) -> None:
-        """Take the channels that a model has late from an earlier time, in place."""
-        for k, output in enumerate(self.channels.outputs):
-            delay = model.values.get(f"channel:{output.column}.delay", 0.0)
-            if delay and np.isfinite(values[:, k]).all():
-                at = np.clip(drive.time - delay, drive.time[0], drive.time[-1])
-                values[:, k] = CubicSpline(drive.time, values[:, k])(at)
+    def _felt(self, drive: RecordedDrive, model: VehicleModel) -> RecordedDrive:
+        """A drive as a model's tyres feel it."""
+        patch = model.of(TYRES)
+        if not any(patch.values()):
+            return drive
+        targets = list(self.channels.inputs.values())
+        return drive.averaged(self.user.road_inputs(targets), **patch)
 
     def start(self, model: mujoco.MjModel, drive: RecordedDrive) -> Start:
         """At rest: in the first keyframe, else in static equilibrium with the first input."""
         if model.nkey:
             return Start(model.key_qpos[0].copy())
-        return Start(_equilibrium(model, self._controls(model, drive)[0]))
+        return Start(_equilibrium(model, self._inputs(model, drive)[0]))
 
     def device_motion(
         self, model: VehicleModel, drive: RecordedDrive
@@ -105,7 +110,8 @@ class VehicleSimulator:
         compiled = self.user.compile(model)
         worlds = self._worlds([compiled], drive, None)
         wanted = ("actuator_length", "actuator_velocity")
-        run = worlds.rollout(drive.steps, self._controls(compiled, drive)[None], record=wanted)
+        inputs = self._inputs(compiled, drive)[None]
+        run = worlds.rollout(drive.steps, inputs, STATE, record=wanted)
         found = {}
         for device in self.user.devices:
             rest = device.rest_length(self.user.model)
@@ -126,26 +132,33 @@ class VehicleSimulator:
         return worlds
 
     def _group(
-        self, models: list[mujoco.MjModel], drive: RecordedDrive, starts: list[Start] | None
+        self,
+        models: list[mujoco.MjModel],
+        drive: RecordedDrive,
+        felt: list[RecordedDrive],
+        starts: list[Start] | None,
     ) -> Array:
         worlds = self._worlds(models, drive, starts)
         first, size = models[0], len(models)
         own = starts if starts is not None else [Start(q) for q in worlds.bind("qpos").copy()]
         addresses = [self._addresses(first, output) for output in self.channels.outputs]
-        controls = self._controls(first, drive)
-        roads = self._roads(first)
-        clipped = [i for i in roads if any(m.actuator_forcelimited[i] for m in models)]
+        alike = all(each is drive for each in felt)
+        inputs = np.array([self._inputs(first, each) for each in (felt[:1] if alike else felt)])
+        wrong = [self._difference(first, each) for each in (felt[:1] if alike else felt)]
+        roads = [actuator_of(first, target) for target in self.channels.inputs.values()]
+        clipped = [i for i in roads if i >= 0 and any(m.actuator_forcelimited[i] for m in models)]
         wanted = ("sensordata", "actuator_force") if clipped else ("sensordata",)
         parts = []
         chunk = max(_CHUNK // (size * max(first.nsensordata, 1)), 64)
         for begin in range(0, drive.steps, chunk):
-            part = controls[begin : begin + chunk]
-            inputs = np.broadcast_to(part, (size, *part.shape))
-            run = worlds.rollout(len(part), inputs, record=wanted)
+            part = inputs[:, begin : begin + chunk]
+            count = part.shape[1]
+            run = worlds.rollout(
+                count, np.broadcast_to(part, (size, *part.shape[1:])), STATE, record=wanted
+            )
             data = run["sensordata"]
             values = np.stack([data[:, :, at].sum(axis=2) for at in addresses], axis=2)
-            wrong = self._difference(first, drive)[begin : begin + chunk]
-            free = np.ones((size, len(part)), dtype=bool)
+            free = np.ones((size, count), dtype=bool)
             for i in clipped:
                 force = run["actuator_force"][:, :, first.actuator_outadr[i]]
                 limits = np.array(
@@ -154,8 +167,10 @@ class VehicleSimulator:
                 )  # fmt: skip
                 free &= (force > limits[:, None, 0]) & (force < limits[:, None, 1])
             for k, model in enumerate(models):
-                direct = _through(model, own[k], controls[0], addresses)
-                values[k] -= free[k][:, None] * (wrong @ direct.T)
+                at = 0 if alike else k
+                direct = _through(model, own[k], inputs[at, 0], addresses)
+                off = wrong[at][begin : begin + chunk]
+                values[k] -= free[k][:, None] * (off @ direct.T)
             parts.append(values)
         found = drive.at_samples(np.concatenate(parts, axis=1))
 
@@ -175,23 +190,21 @@ class VehicleSimulator:
                 found.append(int(model.sensor_adr[more]))
         return found
 
-    def _roads(self, model: mujoco.MjModel) -> list[int]:
-        """Actuators that the record drives, in the order of the inputs."""
-        return [model.actuator(name).id for name in self.channels.inputs.values()]
-
-    def _controls(self, model: mujoco.MjModel, drive: RecordedDrive) -> Array:
-        """Controls of every step, (steps, nu)."""
-        base = np.tile(_first_controls(model), (drive.steps, 1))
+    def _inputs(self, model: mujoco.MjModel, drive: RecordedDrive) -> Array:
+        """Inputs of every step, (steps, inputs of the model)."""
+        base = np.tile(undriven(model), (drive.steps, 1))
         return self._fill(model, base, drive.ahead, drive.rate)
 
     def _difference(self, model: mujoco.MjModel, drive: RecordedDrive) -> Array:
-        """Controls of a step less those at its beginning, (steps, nu)."""
-        base = np.zeros((drive.steps, model.nu))
+        """Inputs of a step less those at its beginning, (steps, inputs of the model)."""
+        base = np.zeros((drive.steps, undriven(model).size))
         return self._fill(model, base, drive.ahead - drive.now, drive.rate - drive.rate_now)
 
     def _fill(self, model: mujoco.MjModel, base: Array, inputs: Array, rates: Array) -> Array:
-        for column, actuator in enumerate(self._roads(model)):
-            base[:, model.actuator_ctrladr[actuator]] = inputs[:, column]
+        for column, target in enumerate(self.channels.inputs.values()):
+            actuator, at = actuator_of(model, target), place_of(model, target)
+            # a control is what is recorded, a mocap body moves by it from where it stands
+            base[:, at] = inputs[:, column] + (base[:, at] if actuator < 0 else 0.0)
             for tyre in self.user.parts.tyres:
                 name = rate_actuator(tyre)
                 if tyre.actuator == actuator:
@@ -201,32 +214,28 @@ class VehicleSimulator:
         return base
 
 
-def _first_controls(model: mujoco.MjModel) -> Array:
-    return model.key_ctrl[0] if model.nkey else np.zeros(model.nu)
-
-
-def _through(model: mujoco.MjModel, start: Start, controls: Array, addresses: list) -> Array:
-    """What controls do to outputs at once, (outputs, nu)."""
+def _through(model: mujoco.MjModel, start: Start, inputs: Array, addresses: list) -> Array:
+    """What inputs do to outputs at once, (outputs, inputs)."""
     data = mujoco.MjData(model)
     data.qpos[:] = start.qpos
-    found = np.zeros((len(addresses), model.nu))
+    found = np.zeros((len(addresses), inputs.size))
 
     def read(values: Array) -> Array:
-        data.ctrl[:] = values
+        set_inputs(model, data, values)
         mujoco.mj_forward(model, data)
         return np.array([data.sensordata[at].sum() for at in addresses])
 
-    for i in range(model.nu):
-        move = np.zeros(model.nu)
+    for i in range(inputs.size):
+        move = np.zeros(inputs.size)
         move[i] = 1e-4
-        found[:, i] = (read(controls + move) - read(controls - move)) / 2e-4
+        found[:, i] = (read(inputs + move) - read(inputs - move)) / 2e-4
     return found
 
 
-def _equilibrium(model: mujoco.MjModel, controls: Array) -> Array:
+def _equilibrium(model: mujoco.MjModel, inputs: Array) -> Array:
     """Positions at which nothing accelerates; the initial ones where there are none such."""
     data = mujoco.MjData(model)
-    data.ctrl[:] = controls
+    set_inputs(model, data, inputs)
     initial = data.qpos.copy()
 
     def acceleration(move: Array) -> Array:

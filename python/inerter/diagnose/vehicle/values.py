@@ -12,7 +12,7 @@ from inerter.catalogue.coordinates import NUISANCES, parameter_names
 from inerter.core import parameters
 from inerter.diagnose.result import ParameterValue, StatedValue
 from inerter.diagnose.vehicle.build import UserModel
-from inerter.diagnose.vehicle.model import VehicleModel
+from inerter.diagnose.vehicle.model import TYRES, VehicleModel
 from inerter.diagnose.vehicle.search import VehicleScored
 from inerter.estimation.covariance import sandwich
 
@@ -33,6 +33,12 @@ _UNITS = {
     "actuator_gain": "1",
     "actuator_lag": "s",
     "delay": "s",
+    "filter_frequency": "Hz",
+    "mount_frequency": "Hz",
+    "mount_loss": "1",
+    "patch_length": "m",
+    "patch_time": "s",
+    "damping_gradient": "1/m",
 }
 # elements that are named even where there is one of them
 NAMED = ("joint", "actuator", "channel")
@@ -96,9 +102,7 @@ def _read(
     if element not in {device.name for device in user.devices}:
         return {name: values[name] for name in names}
     found = {
-        n: values[n]
-        for n in names
-        if n in _UNITS and n.endswith(("rebound_damping", "bump_damping"))
+        n: values[n] for n in names if n in ("rebound_damping", "bump_damping", "damping_gradient")
     }
     device = user.device_of(element, model)
     # of a gas the area is a choice, and stands beside the pressure
@@ -144,6 +148,8 @@ def _prefix(user: UserModel, element: str) -> str:
     if element in names:
         return f"{element}." if len(names) > 1 else ""
     kind, _, name = element.partition(":")
+    if kind == TYRES:
+        return ""
     if kind in NAMED:
         return f"{name}."
     alike = {

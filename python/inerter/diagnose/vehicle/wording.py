@@ -12,10 +12,22 @@ from inerter.diagnose.wording import value_in_words
 # the same force between the same bodies: no record of the vehicle can tell these apart
 EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
 
+_OF_CHANNELS = {"sensor_delay": "a delay", "sensor_filter": "a low-pass filter"}
+"""Words that on a bench are those of its force and displacement."""
+_NOTES = {
+    "force_offset": "; a sensor whose zero is displaced may look the same: check it at rest",
+    "tyre_damping": "; in model.xml its actuator is driven by the rate of the road [m/s]",
+    "tyre_enveloping": "; model.xml has no road: feed it the mean over this length",
+    "sensor_compliance": "; what a sensor shows is in no model: correct the record or the bracket",
+    "sensor_filter": "; what a sensor shows is in no model: state the filter, or record without it",
+}
+"""What follows for who uses the extended model."""
+
 
 def in_words(effect: str, law: str | None = None) -> str:
     """An effect in running text."""
-    text = KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+    plain = KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+    text = _OF_CHANNELS.get(effect, plain)
     return f"{text} ({law})" if law else text
 
 
@@ -43,10 +55,7 @@ def evidence(finding: Finding, place: str) -> str:
             f"; {in_words(twin)} would be the same force between the same bodies, which these "
             "records cannot tell apart: test the device alone"
         )
-    if finding.effect == "force_offset":
-        text += "; a sensor whose zero is displaced may look the same: check it at rest"
-    if finding.effect == "tyre_damping":
-        text += "; in model.xml its actuator is driven by the rate of the road [m/s]"
+    text += _NOTES.get(finding.effect, "")
     likely = [r for r in finding.rivals if r.confidence >= CRITERIA.rival_told and r.effect != twin]
     if likely:
         others = " or ".join(in_words(r.effect, r.law) for r in likely[:2])

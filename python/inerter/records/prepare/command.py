@@ -10,6 +10,7 @@ import typer
 from rich.table import Table
 
 from inerter.console import AsJson, Folder, number, out, parts_of, refuse, refusing, status
+from inerter.measured_text import measured
 from inerter.records.options import told_reading, with_reading
 
 
@@ -142,5 +143,5 @@ def _delay_text(delay: dict[str, Any] | None) -> str:
     if delay["how"] == "stated":
         return f"{1e3 * delay['applied']:.4g} as stated"
     mine = delay["this_record"]
-    text = f"{1e3 * mine['value']:.4g} ± {1e3 * mine['stderr']:.2g}"
+    text = measured(1e3 * mine["value"], 1e3 * mine["stderr"], digits=2)
     return text if delay["significant"] else f"{text}, left as it is"

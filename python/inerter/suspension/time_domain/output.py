@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from inerter.folder import write_files
+from inerter.measured_text import measured
 from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.evaluation import Evaluation
@@ -147,10 +148,7 @@ def _both(front: str, rear: float | None, form: str) -> str:
 
 
 def _with_error(value: float, half: float) -> str:
-    text = f"{value:.5g}"
-    if half < 5e-6 * abs(value):
-        return text
-    return f"{text} ± {half:.1g}"
+    return f"{value:.5g}" if half < 5e-6 * abs(value) else measured(value, half, least=4)
 
 
 def _change(row: Evaluation) -> str:

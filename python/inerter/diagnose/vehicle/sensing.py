@@ -1,0 +1,61 @@
+"""What stands between a quantity and the column that shows it: delay, mount, low-pass.
+
+    s'' + 2 D w s' + w^2 s = w^2 y     y the quantity, s what the sensor shows, w = 2 pi f
+
+Symbols: f [Hz] `mount_frequency` and D [-] `mount_loss` of a sensor that swings on its bracket, or
+`filter_frequency` of a low-pass of second order with the flat D = 1/sqrt(2) (Butterworth).
+Range: a record that begins at rest. Not modelled: filters of other orders, a sensor's own mass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.signal import cont2discrete, lfilter
+
+Array = NDArray[np.float64]
+FLAT = 0.5**0.5
+"""Loss of a low-pass of second order without a peak."""
+_FINER = 4  # steps of the filter per sample: what a line between samples leaves out
+
+
+def shown(time: Array, values: Array, channel: Mapping[str, float]) -> Array:
+    """A quantity as a channel shows it.
+
+    Parameters
+    ----------
+    time : ndarray (n,)
+        Of the samples [s].
+    values : ndarray (n,)
+        The quantity, finite.
+    channel : mapping
+        `delay` [s], `mount_frequency` [Hz] with `mount_loss` [-], `filter_frequency` [Hz]; what is
+        not there does nothing.
+    """
+    for frequency, loss in (
+        (channel.get("mount_frequency", 0.0), channel.get("mount_loss", FLAT)),
+        (channel.get("filter_frequency", 0.0), FLAT),
+    ):
+        if frequency:
+            values = second_order(time, values, frequency, loss)
+    delay = channel.get("delay", 0.0)
+    if delay:
+        values = CubicSpline(time, values)(np.clip(time - delay, time[0], time[-1]))
+    return values
+
+
+def second_order(time: Array, values: Array, frequency: float, loss: float) -> Array:
+    """A quantity behind a second-order element, from where it begins; exact for straight lines."""
+    omega = 2 * np.pi * frequency
+    count = max(_FINER * (time.size - 1), int(np.ceil(8 * frequency * (time[-1] - time[0])))) + 1
+    fine = np.linspace(time[0], time[-1], count)
+    step = float(fine[1] - fine[0])
+    system = ([omega**2], [1.0, 2 * loss * omega, omega**2])
+    sampled: Any = cont2discrete(system, step, method="foh")
+    top, bottom = sampled[0], sampled[1]
+    before = np.interp(fine, time, values) if time.size < 4 else CubicSpline(time, values)(fine)
+    return CubicSpline(fine, lfilter(np.ravel(top), bottom, before - before[0]) + before[0])(time)
