@@ -88,6 +88,25 @@ def line(
     )
 
 
+def band(
+    plot: go.Figure, x: ArrayLike, low: ArrayLike, high: ArrayLike, color: str, name: str
+) -> None:
+    """Fill what lies between two lines over the same places."""
+    xs = np.asarray(x, float)
+    plot.add_trace(
+        go.Scatter(
+            x=np.concatenate([xs, xs[::-1]]),
+            y=np.concatenate([np.asarray(high, float), np.asarray(low, float)[::-1]]),
+            mode="none",
+            fill="toself",
+            fillcolor=LIGHT[color],
+            opacity=0.25,
+            name=html.escape(name),
+            hoverinfo="skip",
+        )
+    )
+
+
 def points(
     plot: go.Figure,
     x: ArrayLike,

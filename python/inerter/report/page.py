@@ -31,6 +31,7 @@ from inerter.report import text
 from inerter.report.other_plots import carried_plots, cutoff_plot, table_plots
 from inerter.report.run_plots import LOOP_CYCLES, run_plots
 from inerter.report.runs import part_held_out, pictured, rmse, role
+from inerter.report.stroke_plots import stroke_plot
 from inerter.report.subject import subject
 
 # share of what remains below which a quantity it goes with is not shown
@@ -64,6 +65,8 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
     kept = diagnosis.unexplained.carried
     if kept is not None:
         single |= carried_plots(kept["parameters"], diagnosis.motion)
+    strokes = {f"stroke-{f.effect}": stroke_plot(f, diagnosis) for f in diagnosis.findings}
+    single |= {place: plot for place, plot in strokes.items() if plot is not None}
     cutoff = cutoff_plot(diagnosis.method, diagnosis.motion)
     if cutoff is not None:
         single["cutoff"] = cutoff
@@ -75,6 +78,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         headline=headline(diagnosis),
         budget=_budget(diagnosis),
         findings=[_finding(finding, diagnosis) for finding in diagnosis.findings],
+        strokes=[place for place, plot in strokes.items() if plot is not None],
         runs=[_run_label(run) for run in runs],
         unpictured=len(diagnosis.curves) - len(runs),
         partly=any(run.holdout.any() and not run.holdout.all() for run in runs),
