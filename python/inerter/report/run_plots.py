@@ -42,12 +42,15 @@ def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
 def _over_time(run: RunCurves, limit: int) -> go.Figure:
     """Force above, residual below, one time axis."""
     plot = two_over_time(f"{run.quantity} [{shown(run.unit)}]", f"error [{shown(run.unit)}]")
+    # until the motion is known nothing is simulated
+    begun = np.arange(len(run.time)) >= np.argmax(run.inner)
+    before, after = (np.where(begun, f, np.nan) for f in (run.baseline, run.extended))
     lines: list[tuple[str, np.ndarray, str, float, str]] = [
         ("measured", run.force, "measured", 3.0, "y"),
-        (BEFORE, run.baseline, "before", 1.4, "y"),
-        (AFTER, run.extended, "after", 1.4, "y"),
-        ("error before", run.force - run.baseline, "before", 1.2, "y2"),
-        ("error after", run.force - run.extended, "after", 1.2, "y2"),
+        (BEFORE, before, "before", 1.4, "y"),
+        (AFTER, after, "after", 1.4, "y"),
+        ("error before", run.force - before, "before", 1.2, "y2"),
+        ("error after", run.force - after, "after", 1.2, "y2"),
     ]
     for name, values, color, width, axis in lines:
         real = np.flatnonzero(np.isfinite(values))
