@@ -212,6 +212,22 @@ for each, share in (
     ALONG[f"MarkerBodyPosition of a {each}"] = beam(each, share)
 
 
+def node_of_beam(kind: str) -> Callable[[Any], Made]:
+    def make(mbs: Any) -> Made:
+        body, _ = chain(mbs, kind)
+        end = int(mbs.GetObject(body)["nodeNumbers"][1])
+        marker = mbs.AddMarker(itemInterface.MarkerNodePosition(nodeNumber=end))
+        return marker, marker
+
+    return make
+
+
+for each, kind_of_node in (
+    ("ANCFCable2D", "Point2DSlope1"), ("ANCFCable", "PointSlope1"), ("ANCFBeam", "PointSlope23"),
+):  # fmt: skip
+    ALONG[f"MarkerNodePosition of a Node{kind_of_node}"] = node_of_beam(each)
+
+
 def lattice(mbs: Any) -> Any:
     """Four points, masses and springs in matrices: what Exudyn calls a superelement."""
     places = np.array([[1, 0, 0], [1.3, 0, 0], [1, 0.3, 0], [1, 0, 0.3]], dtype=float)

@@ -34,7 +34,10 @@ from inerter.exudyn.kinematics import (
     tait_bryan,
 )
 
-NO_ROTATION: dict[str, tuple[int, Any]] = {"Point": (3, None), "Point2D": (2, None)}
+NO_ROTATION: dict[str, tuple[int, Any]] = {
+    "Point": (3, None), "Point2D": (2, None), "Point2DSlope1": (2, None),
+    "PointSlope1": (3, None), "PointSlope12": (3, None), "PointSlope23": (3, None),
+}  # fmt: skip
 WITH_ROTATION: dict[str, tuple[int, Any]] = {
     "RigidBody2D": (2, plane_rotation),
     "RigidBodyEP": (3, euler_parameters),
