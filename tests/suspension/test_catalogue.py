@@ -98,3 +98,19 @@ def test_bad_words_are_told(text: str, told: str) -> None:
     )
     assert answer.exit_code == 2
     assert told in answer.output.replace("\n", " ")
+
+
+@pytest.mark.long
+def test_within_limits_the_choice_is_the_best_of_all_choices() -> None:
+    """The search ends where what is left is no better without limits: nothing is lost by that."""
+    words = "optimize --layout S6 --index J1 --stiffness 30e3 --limit J5=6e-4,J3=560"
+    (row,) = run(f"{words} --catalogue inertance=30/60/113,damping=1500/2600")
+    each = []
+    for c, b in itertools.product((1500, 2600), (30, 60, 113)):
+        held = f"{words} --hold inertance={b},damping={c}"
+        answer = CliRunner().invoke(app, [*held.split(), "--json"])
+        each += json.loads(answer.stdout) if answer.exit_code == 0 else []
+    assert len(each) >= 2, "limits that leave no choice test nothing"
+    best = min(each, key=lambda other: other["value"])
+    assert row["value"] == pytest.approx(best["value"], rel=1e-8)
+    assert (row["damping"], row["inertance"]) == (best["damping"], best["inertance"])

@@ -65,13 +65,20 @@ def best_within(problem: Problem, starts: Sequence[Array] = ()) -> Limited:
     """
     best: Limited | None = None
     picked = [one for choice in problem.picked() for one in choice.variants()]
-    for one in picked:
+    # what is best without limits bounds what is best within them: most promising first, and where
+    # that is no better than what is known, all that follow are not either
+    alone = [_alone_or_inf(one) for one in picked]
+    for i in sorted(range(len(picked)), key=lambda i: alone[i][0]):
+        one, (bound, point) = picked[i], alone[i]
+        if best is not None and bound >= best.value * (1.0 - 1e-9):
+            break
         if not one.variables:
             found = _alone_within(one)
         elif not one.limits:
-            found = Limited(one, *_best_alone(one), ())
+            found = Limited(one, bound, point, ())
         else:
-            found = _search(one, [x for x in starts if len(x) == len(one.variables)])
+            near = [x for x in starts if len(x) == len(one.variables)]
+            found = _search(one, [*near, point])
         # a part that may be absent is, where that costs nothing
         if found is not None and (best is None or found.value < best.value * (1.0 - 1e-9)):
             best = found
@@ -95,6 +102,16 @@ def values_of(problem: Problem, point: Array) -> dict[str, float]:
         name: float(np.ravel(replace(problem, index=name, limits=()).value(point[None]))[0])
         for name in shown
     }
+
+
+def _alone_or_inf(problem: Problem) -> tuple[float, Array]:
+    """Value and point of the best design without limits; infinite where there is none."""
+    bare, point = replace(problem, limits=()), np.empty(0)
+    if bare.variables:
+        value, point = _best_alone(bare)
+    else:
+        value = float(np.ravel(bare.value(point[None]))[0])
+    return (value if np.isfinite(value) else np.inf), point
 
 
 def _alone_within(problem: Problem) -> Limited | None:
@@ -124,11 +141,12 @@ def _bare(problem: Problem) -> Limited | None:
 
 
 def _search(problem: Problem, starts: Sequence[Array]) -> Limited | None:
+    """The best within limits; starts: none, or with the best without limits among them."""
     bare = replace(problem, limits=())
     others = [replace(bare, index=index) for index, _ in problem.limits]
     most = np.array([value for _, value in problem.limits])
     best = None
-    alone = [_alone(one) for one in (bare, *others)]
+    alone = [_alone(one) for one in ((bare, *others) if not len(starts) else others)]
     for start in [*starts, *alone, *_candidates(bare, others, most)]:
         point, extra = np.asarray(start), np.empty(0)
         # where a peak of J5 stands between the frequencies, it becomes one of them
