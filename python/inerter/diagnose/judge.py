@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.composition import is_shaft
 from inerter.diagnose.decision import visible, visible_delay
-from inerter.diagnose.search import advantage_of
 from inerter.diagnose.statistics import block_squares
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model

@@ -8,7 +8,7 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
-from inerter.diagnose.decision import CRITERIA, does_as_well
+from inerter.diagnose.decision import CRITERIA, does_as_well, plainest
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
@@ -68,18 +68,18 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         [0.0, 0.0, *(CRITERIA.tolerated_advantage * more for more in richer)],
     )
     pairs = sorted(zip(scored, shares[2:], strict=True), key=lambda pair: -pair[1])
-    better = next(
-        (
-            s
-            for s, share in pairs
-            if s.effect != effect
-            and (
-                _takes_precedence(s, final, effect, baseline)
-                or (share > CRITERIA.preferred and _is_better(s, final, baseline))
-            )
-        ),
-        None,
-    )
+    instead = [
+        s
+        for s, share in pairs
+        if s.effect != effect
+        and (
+            _takes_precedence(s, final, effect, baseline)
+            or (share > CRITERIA.preferred and _is_better(s, final, baseline))
+        )
+    ]
+    # of those that do as well as the likeliest the plainest
+    equal = [s for s in instead if s is instead[0] or _does_as_well(s, instead[0])]
+    better = plainest(equal) if equal else None
     # another law or form of the same effect is no doubt about the effect; a law is told
     same = float(sum(share for s, share in pairs if s.effect == effect))
     rivals = [

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import along_stroke
+from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
@@ -34,12 +34,7 @@ from inerter.diagnose.composition import (
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
 from inerter.diagnose.low_passes import other_filter, where_late
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.statistics import (
-    Array,
-    advantage,
-    block_squares,
-    where_apart,
-)
+from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.tone import strongest_line
 from inerter.diagnose.trials import FAR, ROUGH, Trials
 from inerter.identify.fit import Fit, Problem
@@ -50,26 +45,6 @@ from inerter.identify.split import Mask, Split, blocks, spread_folds
 Progress = Callable[[str], None]
 Folds = list[tuple[Problem, list[Mask]]]
 Fitted = tuple[Candidate, Fit]
-
-
-def advantage_of(
-    simple: Sequence[Array],
-    rich: Sequence[Array],
-    masks: Sequence[Mask],
-    stretches: Sequence[tuple[int, NDArray]],
-    effect: str,
-    least: float = CRITERIA.local_gain,
-) -> float:
-    """`statistics.advantage` of residuals, over the stretches where the effect may show.
-
-    What shows in few places has to take away at least a share of what is missed there.
-    """
-    if is_local(effect):
-        stretches = where_apart(simple, rich, masks)
-    before, after = block_squares(simple, stretches), block_squares(rich, stretches)
-    if is_local(effect) and after.sum() > (1 - least) ** 2 * before.sum():
-        return 0.0
-    return advantage(before, after)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -298,7 +273,16 @@ class Search:
             for s in scored
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
+            and not self._is_shaft_alone(s)
         ]
+
+    def _is_shaft_alone(self, scored: Scored) -> bool:
+        """Whether a play does no more than its shaft, which is no candidate along one sine."""
+        if scored.effect != "backlash" or not self.problem.scales.one_tone:
+            return False
+        alone = self.problem.fit(scored.model.without(("backlash",)))
+        masks = self.problem.masks
+        return scored.fit.rmse(masks) > (1 - CRITERIA.gain) * alone.rmse(masks)
 
     def _weighed_for(self, rich: Scored, scored: Sequence[Scored]) -> list[Scored]:
         """Models as they count where one of them brings a shaft."""
