@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.identify.channel import delayed, through_channel, without_limits, without_tone
+from inerter.identify.channel import clips, delayed, through_channel, without_limits, without_tone
 from inerter.identify.channel_filter import Filter, filter_of, filtered, without_start
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
@@ -102,12 +102,16 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     times, spacing = run.fine_elapsed, run.spacing / run.thinned
     total = found["total"] + drift * times * law if drift else found["total"]
     plain, less = without_limits(values), run.at_measured_rate(part, rest)["total"]
-    if run.measured is not None:
-        warmed = warming(device, values, run.measured[1], times)
-        total, less = total + warmed, less + warmed
-    whole = through_channel(values, total, times, spacing)
-    less = through_channel(plain, less, times, spacing)
-    return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(whole - less)
+    if clips(values):
+        if run.measured is not None:
+            warmed = warming(device, values, run.measured[1], times)
+            total, less = total + warmed, less + warmed
+        added = through_channel(values, total, times, spacing)
+        added = added - through_channel(plain, less, times, spacing)
+    else:
+        # such a channel is linear, and what goes with time alone is in both
+        added = through_channel({**plain, "force_drift": 0.0}, total - less, times, spacing)
+    return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(added)
 
 
 def _states_of(part: Device, device: Device, state: float | Array) -> float | Array:
