@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -46,10 +48,14 @@ def of_period() -> tuple[Finding, Diagnosis]:
     return finding, found(finding)
 
 
-def test_a_curve_is_the_force_of_the_device() -> None:
-    plot = stroke_plot(*of_curve())
+def drawn(plot: Any, trace: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places and values of a trace: 0 the band, 1 the line."""
     assert plot is not None
-    x, y = (np.asarray(v, float) for v in (plot.data[1].x, plot.data[1].y))
+    return np.asarray(plot.data[trace].x, float), np.asarray(plot.data[trace].y, float)
+
+
+def test_a_curve_is_the_force_of_the_device() -> None:
+    x, y = drawn(stroke_plot(*of_curve()), 1)
     assert x.min() == pytest.approx(-0.02, abs=1e-3)
     device = Device(**CURVE)
     np.testing.assert_allclose(y, device.evaluate(x, 0.0, 0.0, 0.0)["total"], atol=1e-5)
@@ -57,26 +63,23 @@ def test_a_curve_is_the_force_of_the_device() -> None:
 
 def test_its_band_is_that_of_the_nodes() -> None:
     plot = stroke_plot(*of_curve())
-    assert plot is not None
-    x, high = (np.asarray(v, float) for v in (plot.data[0].x, plot.data[0].y))
+    (x, high), (_, middle) = drawn(plot, 0), drawn(plot, 1)
     half = x.size // 2
-    upper, middle = high[:half], np.asarray(plot.data[1].y, float)
+    upper = high[:half]
     at = int(np.argmin(np.abs(x[:half] - 0.015)))
     assert upper[at] - middle[at] == pytest.approx(BAND * 0.5, rel=0.02)
 
 
 def test_periods_are_the_ratio_of_the_device() -> None:
-    plot = stroke_plot(*of_period())
-    assert plot is not None
-    x, y = (np.asarray(v, float) for v in (plot.data[1].x, plot.data[1].y))
+    x, y = drawn(stroke_plot(*of_period()), 1)
     device = Device(inertance=1.0, inertance_periods=list(PERIOD.values()))
     force = device.evaluate(x, 0.0, 1.0, 0.0)["total"]
     np.testing.assert_allclose(1 + y / 100, force, atol=1e-6)
 
 
 @pytest.mark.parametrize("case", [of_curve, of_period])
-def test_the_page_shows_it(case: object) -> None:
-    finding, made = case()  # type: ignore[operator]
+def test_the_page_shows_it(case: Callable[[], tuple[Finding, Diagnosis]]) -> None:
+    finding, made = case()
     page = render_report(made, TOML, XML)
     assert f'data-plot="stroke-{finding.effect}"' in page
 
