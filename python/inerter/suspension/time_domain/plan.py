@@ -74,6 +74,13 @@ class Plan:
                     f"index {index!r}: there are {', '.join(INDICES)}, or a file of your own"
                 )
         refuse_turning(self.indices, self.car)
+        for index in self.indices:
+            of_travel = "travel" in (index, INDICES[index].signal)
+            if of_travel and not (self.given and all(c is not None for c, _ in self.given)):
+                raise ValueError(
+                    f"index {index!r}: travel alone is least with a damper that holds the strut "
+                    "fast; give --damping"
+                )
         for stiffness in self.stiffnesses:
             if not 0.0 < stiffness < math.inf:
                 raise ValueError(f"stiffness is {stiffness:g} N/m: give a positive number")
