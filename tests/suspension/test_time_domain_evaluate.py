@@ -124,7 +124,7 @@ def test_table(tmp_path: Path) -> None:
     [
         (["--layout", "S9"], "layout 'S9' is not known: take S1, S2, S3"),
         (["--case", "rust"], "case 'rust': there are ideal, friction"),
-        (["--index", "J2"], "index 'J2': there are J1, J3, J5"),
+        (["--index", "J2"], "index 'J2' is not known: choose from J1, J3, J5, J1w, travel"),
         (["--stiffness", "12O"], "--stiffness is '12O': give numbers"),
         (["--stiffness", "-1"], "stiffness is -1 N/m: give a positive number"),
         (["--road", "moon"], "road 'moon': give paper or iso:A"),

@@ -10,7 +10,7 @@ from inerter.console import number
 from inerter.suspension.quarter_car import Road
 
 ROAD = Road()
-_FACTORS = (
+FACTORS = (
     "NAME=FACTOR/FACTOR/..., as in body_mass=1/1.3,speed=0.6/1.4,damping=0.8/1.2; also wheel_mass, "
     "tyre_stiffness, inertance, relaxation_stiffness."
 )
@@ -52,7 +52,7 @@ Catalogue = Annotated[
     ),
 ]
 Vary = Annotated[
-    str | None, typer.Option(help=f"The best over all combinations of factors: {_FACTORS}")
+    str | None, typer.Option(help=f"The best over all combinations of factors: {FACTORS}")
 ]
 Equal = Annotated[
     bool, typer.Option("--equal", help="Half, full: the same c, b, k_b at front and rear.")

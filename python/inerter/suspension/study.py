@@ -65,13 +65,7 @@ class Study:
         """Refuse an index that the car, or what varies, has not."""
         if self.vary and "J5" in (*self.indices, *dict(self.limits)):
             raise StudyError("J5 with --vary: a largest value has no mean; take another index")
-        sides = None if isinstance(self.car, QuarterCar) else self.car.sides
-        for name in (*self.indices, *dict(self.limits)):
-            own = INDICES[name]
-            for each in (name, own.signal, *own.parts):
-                if each in ("pitch", "roll") and each not in indices_of(sides):
-                    of = "a quarter-car has none" if sides is None else "it takes a full car"
-                    raise StudyError(f"index {name!r} is of {each}: {of}")
+        refuse_turning((*self.indices, *dict(self.limits)), self.car)
 
     def cases(self) -> Iterator[Case]:
         """The combinations in order. S1 has no inerter: its problem is the same in each series."""
@@ -172,6 +166,19 @@ def read_catalogue(text: str | None, known: Iterable[str], what: str = "catalogu
         sizes = {_positive(each, f"{what} of {own}") for each in values.split("/")}
         found[own] = tuple(sorted(sizes))
     return tuple(found.items())
+
+
+def refuse_turning(indices: Iterable[str], car: QuarterCar | Vehicle) -> None:
+    """Raise StudyError for an index of pitch or roll of a car that has none."""
+    sides = None if isinstance(car, QuarterCar) else car.sides
+    for name in indices:
+        own = INDICES[name]
+        # of a function also the signals that its parts are of
+        parts = [x for part in own.parts for x in (part, INDICES[part].signal)]
+        for each in (name, own.signal, *parts):
+            if each in ("pitch", "roll") and each not in indices_of(sides):
+                of = "a quarter-car has none" if sides is None else "it takes a full car"
+                raise StudyError(f"index {name!r} is of {each}: {of}")
 
 
 def read_names(text: str, known: Iterable[str], what: str) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from inerter.console import AsJson, Folder, number, out, progress_bar, refusing
+from inerter.suspension import options
 
 
 def evaluate_command(
@@ -41,7 +42,14 @@ def evaluate_command(
         Path | None,
         typer.Option(help="device.toml of a measured device: the case named device."),
     ] = None,
-    index: Annotated[str, typer.Option(help="J1, J3, J5, with commas.")] = "J1,J3,J5",
+    index: Annotated[
+        str | None,
+        typer.Option(
+            help="J1, J1w, J3, travel, J5, pitch, roll; your own: seat.toml, mine.py:NAME; with "
+            "commas.",
+            show_default="J1,J3,J5",
+        ),
+    ] = None,
     road: Annotated[
         str,
         typer.Option(
@@ -77,6 +85,13 @@ def evaluate_command(
         typer.Option(
             help="one-sided: leaves the road where it would pull by more than its static load; "
             "pulling: never. Default: one-sided, but on the paper's road pulling, as there."
+        ),
+    ] = None,
+    vary: Annotated[
+        str | None,
+        typer.Option(
+            help="Also the index of each design under all combinations of factors, nominal, mean "
+            f"and worst: {options.FACTORS}"
         ),
     ] = None,
     amplitude: Annotated[
@@ -118,6 +133,7 @@ def evaluate_command(
       inerter suspension evaluate --device device.toml --road iso:C --speed 20
       inerter suspension evaluate --layout own --car car.toml --road bump:0.05/0.5
     """
+    from inerter.suspension.study import read_catalogue, read_indices
     from inerter.suspension.time_domain.asked import (
         car_named,
         cases_asked,
@@ -125,7 +141,6 @@ def evaluate_command(
         layouts_asked,
         numbers,
         tyre_named,
-        words,
     )
     from inerter.suspension.time_domain.evaluate import evaluate
     from inerter.suspension.time_domain.output import (
@@ -137,6 +152,7 @@ def evaluate_command(
     from inerter.suspension.time_domain.plan import Plan
     from inerter.suspension.time_domain.road import road_named
     from inerter.suspension.time_domain.simulate import RunSettings
+    from inerter.suspension.variations import OF_CAR, OF_PARTS
 
     # --reoptimise: the name of --reoptimize before
     reoptimise = reoptimise or reoptimised
@@ -144,21 +160,22 @@ def evaluate_command(
         others = {
             "--case": case, "--device": device, "--stiffness": stiffness, "--damping": damping,
             "--inertance": inertance, "--amplitude": amplitude, "--scheduler": scheduler,
-            "--reoptimize": reoptimise or None,
+            "--reoptimize": reoptimise or None, "--vary": vary,
         }  # fmt: skip
         own_command(
             car=car, road=road, speed=speed, seeds=seeds, tyre=tyre, step=step, settle=settle,
-            jobs=jobs or 0, others=others, out_dir=out_dir, as_json=as_json,
+            jobs=jobs or 0, indices=index, others=others, out_dir=out_dir, as_json=as_json,
         )  # fmt: skip
         return
-    with refusing(out_dir, "evaluation.json", "evaluation.csv"):
+    files_of = ("evaluation.json", "evaluation.csv", *(["variations.csv"] if vary else []))
+    with refusing(out_dir, *files_of):
         asked = car_named(car)
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
         cases, own = cases_asked(case, device, step)
         plan = Plan(
             layouts=layouts_asked(layout),
             cases=cases,
-            indices=words(index, "index"),
+            indices=read_indices("J1,J3,J5" if index is None else index),
             stiffnesses=(
                 (asked.stiffness,) if stiffness is None else numbers(stiffness, "stiffness")
             ),
@@ -168,6 +185,7 @@ def evaluate_command(
             reoptimise=reoptimise,
             given=given_struts(damping, inertance, own, getattr(asked.car, "name", "quarter")),
             one_sided=tyre_named(tyre),
+            vary=read_catalogue(vary, (*OF_CAR, *OF_PARTS), "vary"),
             keep_settle=settle is not None,
             amplitude=asked.amplitude if amplitude is None else amplitude,
             car=asked.car,

@@ -13,14 +13,16 @@ compared at its own optimum in every case.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from inerter.parallel import run_all
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.cases import CASES, numbers_of
+from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.linear import exact_index, spectrum
 from inerter.suspension.time_domain.piece import NOTED, Found, Piece, linear_design, work
@@ -32,6 +34,7 @@ from inerter.suspension.time_domain.resolution import (
     resolution_of,
 )
 from inerter.suspension.time_domain.samples import interval
+from inerter.suspension.time_domain.varied import Varied, varied_pieces
 
 Progress = Callable[[float, str], None]
 
@@ -77,6 +80,7 @@ def evaluate(
         )
         for p in rows
     ]
+    asked = rows
     rows, ideals = zip(*_resolved(rows, ideals), strict=True)
     # what several rows need is done once
     pieces = {piece.key: piece for piece in [*ideals, *rows]}
@@ -87,10 +91,48 @@ def evaluate(
     done(0.0)
     found = run_all(work, list(pieces.values()), jobs=1, scheduler=scheduler, progress=done)
     results = dict(zip(pieces, found, strict=True))
-    return [
+    answer = [
         _row(piece, results[piece.key], results[ideal.key])
         for piece, ideal in zip(rows, ideals, strict=True)
     ]
+    if not plan.vary:
+        return answer
+    designs = {piece.key: results[piece.key].design for piece in rows}
+    return _varied(answer, asked, designs, tell, scheduler)
+
+
+def _varied(
+    rows: list[Evaluation],
+    pieces: list[Piece],
+    designs: Mapping[Any, Design],
+    tell: Progress,
+    scheduler: str | None,
+) -> list[Evaluation]:
+    """The rows with what their designs do under each variation."""
+    each = [varied_pieces(piece, designs[piece.key]) for piece in pieces]
+    work_on = []
+    for name, piece in (one for some in each for one in some):
+        plan, notes = _plan_of([piece])
+        work_on.append((name, replace(piece, plan=plan, notes=notes)))
+
+    def done(share: float) -> None:
+        tell(share, f"{round(share * len(work_on))} of {len(work_on)} variations")
+
+    found = run_all(
+        work, [piece for _, piece in work_on], jobs=1, scheduler=scheduler, progress=done
+    )
+    told = iter(zip(work_on, found, strict=True))
+    answer = []
+    for row, some in zip(rows, each, strict=True):
+        varied, notes = [], list(row.notes)
+        for (name, piece), one in (next(told) for _ in some):
+            value, low, high, linear, missed = _measured(piece, one)
+            exact = linear if math.isfinite(linear) else None
+            varied.append(Varied(name, value, low, high, exact))
+            said = (*piece.notes, *_lift_off(piece, one, missed))
+            notes += [f"{name}: {note}" for note in said] if name != "as planned" else []
+        answer.append(replace(row, variations=tuple(varied), notes=tuple(notes)))
+    return answer
 
 
 def _resolved(rows: list[Piece], ideals: list[Piece]) -> list[tuple[Piece, Piece]]:
@@ -155,12 +197,11 @@ def _lift_off(piece: Piece, found: Found, missed: float) -> list[str]:
     ]
 
 
-def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
+def _measured(piece: Piece, found: Found) -> tuple[float, float, float, float, float]:
+    """Value, its interval, linear value, and what the sinusoids miss of it, relative."""
     plan, case, index = piece.plan, piece.case, piece.index
-    design, values = found.design, found.samples.values
-    value, low, high = interval(values)
-    change, change_low, change_high = interval(values / ideal.samples.values - 1.0)
-    asked = (index, piece.layout, design, case.pair, plan.car)
+    value, low, high = interval(found.samples.values)
+    asked = (index, piece.layout, found.design, case.pair, plan.car)
     if index == "J5" or plan.road.name == "paper":
         linear = exact_index(*asked, spectrum(plan.road))
     else:
@@ -170,6 +211,14 @@ def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
         # what the sinusoids miss of the density they stand for
         missed = on_sinusoids(*asked, plan.road) / exact_on_road(*asked, plan.road) - 1.0
         low, high = low - abs(missed) * value, high + abs(missed) * value
+    return value, low, high, linear, missed
+
+
+def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
+    plan, case, index, design = piece.plan, piece.case, piece.index, found.design
+    value, low, high, linear, missed = _measured(piece, found)
+    ratio = found.samples.values / ideal.samples.values
+    change, change_low, change_high = interval(ratio - 1.0)
     exact = linear if case.linear else None
     rear = design.rear
     return Evaluation(
@@ -202,5 +251,6 @@ def _row(piece: Piece, found: Found, ideal: Found) -> Evaluation:
         peaks=found.samples.peaks,
         pulling=None if found.pulling is None else float(np.mean(found.pulling.values)),
         notes=(*piece.notes, *_lift_off(piece, found, missed)),
+        variations=(),
         **found.samples.beside,
     )

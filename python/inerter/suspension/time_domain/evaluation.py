@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from inerter.suspension.optimum import finite
+from inerter.suspension.time_domain.varied import Varied, summary
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +46,8 @@ class Evaluation:
         is off the road (mean of the wheels), largest dynamic force that presses a tyre [N].
     pulling
         The index with tyres that pull on the road, where they would be off it.
+    variations
+        The index of the design under each variation of the plan; empty without any.
     notes
         Sentences on what a reader should know.
     reoptimised
@@ -86,10 +89,14 @@ class Evaluation:
     rear_springs: Mapping[str, float] = field(default_factory=dict)
     peaks: tuple[tuple[float, float], ...] = ()
     notes: tuple[str, ...] = ()
+    variations: tuple[Varied, ...] = ()
 
     def json(self) -> dict[str, Any]:
         """Plain data: of a half- or full car the struts as "front" and "rear"."""
         row = asdict(self)
+        each = row.pop("variations")
+        if self.variations:
+            row["variations"] = {**summary(self.value, self.variations), "each": each}
         springs, behind = (finite(row.pop(name)) for name in ("springs", "rear_springs"))
         rear = {name: row.pop(f"rear_{name}") for name in ("stiffness", "damping", "inertance")}
         if self.rear_stiffness is not None:

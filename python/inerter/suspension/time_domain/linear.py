@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.comfort_weighting import weighting
 from inerter.suspension.indices import INDICES, comfort_function, travel_function, tyre_function
 from inerter.suspension.layouts import LAYOUTS, SeriesPair
 from inerter.suspension.optimum import optimise
@@ -21,6 +20,7 @@ from inerter.suspension.time_domain.road import PeriodicRoad
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.state_space import system
 from inerter.suspension.vehicle.strut import Branch, VehicleStrut, branch
+from inerter.suspension.vehicle.white_noise import signals
 
 Array = NDArray[np.float64]
 
@@ -145,7 +145,7 @@ def linear_indices(
     car: Car,
     road: Road,
 ) -> Array:
-    """J1 or J3 of many designs, good enough for a search.
+    """An index, not J5, of many designs, good enough for a search.
 
     `values`: c and b of every strut, shape (designs, struts, 2); springs are those of `start`.
     Returns shape (designs,).
@@ -190,11 +190,13 @@ def road_density(
 ) -> Array:
     """Squared gain of an index's signal per velocity of the road, at frequencies [Hz], (n,).
 
-    J1, J1w, J3 or travel, of several wheels the mean, the rear ones on the same road later.
+    Of an rms, filtered or not, not of a function of several; of several wheels the mean, the rear
+    ones on the same road later.
     """
     s = 2j * np.pi * f
-    weight = np.abs(weighting()(s)) ** 2 if index == "J1w" else 1.0
-    signal = "J1" if index == "J1w" else index
+    own = INDICES[index]
+    weight = 1.0 if own.filter is None else np.abs(own.filter(s)) ** 2
+    signal = own.signal or index
     if isinstance(car, QuarterCar):
         network = LAYOUTS[layout].stiffness(
             design.stiffness, design.damping, design.inertance, **design.more, pair=pair
@@ -205,16 +207,23 @@ def road_density(
         branch(LAYOUTS[layout], x.stiffness, x.damping, x.inertance, **x.more, pair=pair)
         for x in design.struts
     )
-    return weight * plane_densities(car, (front, rear), speed, s)[signal]
+    return weight * plane_densities(car, (front, rear), speed, s, (signal,))[signal]
 
 
 def plane_densities(
-    car: Vehicle, branches: tuple[Branch, Branch], speed: float, s: NDArray[Any]
+    car: Vehicle,
+    branches: tuple[Branch, Branch],
+    speed: float,
+    s: NDArray[Any],
+    names: tuple[str, ...] = ("J1", "J3", "travel"),
 ) -> dict[str, Array]:
-    """J1, J3, travel of a half- or full car: squared gains, means over its wheels, (n,) each."""
+    """J1, J3, travel, pitch, roll of a half- or full car, as far as they are in `names`.
+
+    Squared gains, means over its wheels, (n,) each.
+    """
     later = np.exp(-s * car.wheelbase / speed)
     warp = (later - 1.0) / s
-    total = {name: np.zeros(len(s)) for name in ("J1", "J3", "travel")}
+    total = {name: np.zeros(len(s)) for name in names}
     for plane in car.planes:
         m = system(plane, branches)
         drive = m.front + later[:, None] * m.rear
@@ -222,13 +231,9 @@ def plane_densities(
             drive = drive + warp[:, None] * m.warp
         inverse = s[:, None, None] * np.eye(len(m.front)) - m.matrix
         x = np.linalg.solve(inverse, drive[:, :, None])[:, :, 0]
-        bent = 0.0 if m.acceleration_warp is None else warp[:, None] * m.acceleration_warp
-        signals = {
-            "J1": x @ m.acceleration.T + bent,
-            "J3": x @ m.tyre.T,
-            "travel": x @ m.travel.T + warp[:, None] * m.travel_warp,
-        }
-        for name, signal in signals.items():
+        for name in names:
+            rows, bent = signals(m, name)
+            signal = x @ rows.T + (0.0 if bent is None else warp[:, None] * bent)
             total[name] += plane.weight * np.mean(np.abs(signal) ** 2, axis=1)
     return total
 

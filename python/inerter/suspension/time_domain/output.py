@@ -16,16 +16,19 @@ from rich.table import Table
 
 from inerter.folder import write_files
 from inerter.measured_text import measured
+from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import LAYOUTS
+from inerter.suspension.own_index import is_own
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.evaluation import Evaluation
 from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.samples import CONFIDENCE
+from inerter.suspension.time_domain.varied import summary
 
 SCHEMA = "inerter.suspension.evaluation/1"
 
-_SCALE = {"J1": (1.0, "m/s^2"), "J3": (1.0, "N"), "J5": (1e5, "1e-5 m/N")}
-_NOT_FLAT = ("peaks", "notes", "springs", "rear_springs")
+_SCALE = {"J5": (1e5, "1e-5 m/N"), "travel": (1e3, "mm")}
+_NOT_FLAT = ("peaks", "notes", "springs", "rear_springs", "variations")
 _FLAT = [f.name for f in fields(Evaluation) if f.name not in _NOT_FLAT]
 
 
@@ -39,13 +42,14 @@ def json_text(plan: Plan, rows: Sequence[Evaluation]) -> str:
         "confidence": CONFIDENCE,
         "amplitude": plan.amplitude,
         "reoptimise": plan.reoptimise,
+        **({"vary": {name: list(x) for name, x in plan.vary}} if plan.vary else {}),
         "rows": [row.json() for row in rows],
     }
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
 
 
 def write_evaluation(plan: Plan, rows: Sequence[Evaluation], folder: Path) -> list[str]:
-    """Write evaluation.json and evaluation.csv; the names of the files.
+    """Write evaluation.json and evaluation.csv, of variations also theirs; names of the files.
 
     Raises
     ------
@@ -65,6 +69,8 @@ def write_evaluation(plan: Plan, rows: Sequence[Evaluation], folder: Path) -> li
         shown = ["rigid" if own.get(name) == math.inf else own.get(name, "") for name in more]
         writer.writerow([*values, *shown])
     texts = {"evaluation.json": json_text(plan, rows), "evaluation.csv": table.getvalue()}
+    if plan.vary:
+        texts["variations.csv"] = _variations_csv(rows)
     return write_files(folder, texts)
 
 
@@ -72,10 +78,11 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
     """A table for each index and stiffness."""
     groups = dict.fromkeys((row.stiffness, row.index) for row in rows)
     for stiffness, index in groups:
-        scale, unit = _SCALE[index]
+        scale, unit = _SCALE.get(index, (1.0, INDICES[index].unit))
+        head = index + (f" ({unit})" if unit else "")
         of = f"{plan.seeds} roads {plan.road.name}" if index != "J5" else f"{plan.amplitude:g} N"
         table = Table(
-            title=f"{index} ({unit}) at k = {stiffness / 1e3:g} kN/m, {of}",
+            title=f"{head} at k = {stiffness / 1e3:g} kN/m, {of}",
             title_justify="left",
             box=box.SIMPLE_HEAD,
             pad_edge=False,
@@ -85,7 +92,13 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
         quarter = plan.car == QuarterCar()
         for name in ("strut", "case", *(["paper"] if quarter else [])):
             table.add_column(name, no_wrap=True)
-        for name in (f"{index} ± 95 %", "exact", "loss %", "c", "b"):
+        for name in (
+            "value ± 95 %" if is_own(index) else f"{index} ± 95 %",
+            "exact",
+            "loss %",
+            "c",
+            "b",
+        ):
             table.add_column(name, justify="right", no_wrap=True)
         digits = ".4g" if quarter else ".3g"
         for row in rows:
@@ -113,6 +126,9 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
             console.print(text, markup=False, highlight=False, soft_wrap=True)
         if told:
             console.print()
+        if plan.vary:
+            some = [row for row in rows if (row.stiffness, row.index) == (stiffness, index)]
+            console.print(_variations(some, scale, f"{head} over the variations"), "", sep="\n")
     console.print(
         ("paper: table.case of Wang and Su. " if plan.car == QuarterCar() else "")
         + "exact: norm of the transfer function; in brackets, that of the same design without "
@@ -122,6 +138,45 @@ def print_evaluation(plan: Plan, rows: Sequence[Evaluation], console: Console) -
     )
     for note in dict.fromkeys(note for row in rows for note in row.notes):
         console.print(note, markup=False, soft_wrap=True)
+
+
+def _variations(rows: Sequence[Evaluation], scale: float, title: str) -> Table:
+    """Nominal, mean and worst of each design."""
+    table = Table(
+        title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False,
+        padding=(0, 1, 0, 0),
+    )  # fmt: skip
+    for name in ("strut", "case"):
+        table.add_column(name, no_wrap=True)
+    for name in ("nominal", "mean", "worst"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("worst when")
+    for row in rows:
+        told = summary(row.value, row.variations)
+        ends = [(row.low, row.high)]
+        ends += [(told[f"{name}_low"], told[f"{name}_high"]) for name in ("mean", "worst")]
+        values = (told["nominal"], told["mean"], told["worst"])
+        cells = [
+            _with_error(scale * value, 0.5 * scale * (high - low))
+            for value, (low, high) in zip(values, ends, strict=True)
+        ]
+        table.add_row(row.layout, row.case, *cells, told["worst_when"])
+    return table
+
+
+def _variations_csv(rows: Sequence[Evaluation]) -> str:
+    """A line for each design and variation, SI units."""
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    names = ("layout", "case", "index", "stiffness")
+    own = ("name", "value", "low", "high", "linear")
+    writer.writerow([*names, "variation", *own[1:]])
+    for row in rows:
+        for each in row.variations:
+            writer.writerow(
+                [getattr(x, n) for x, some in ((row, names), (each, own)) for n in some]
+            )
+    return table.getvalue()
 
 
 def _exact(row: Evaluation, scale: float) -> str:

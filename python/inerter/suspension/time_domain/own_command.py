@@ -16,6 +16,8 @@ from inerter.cars.read import read_car, shipped_car
 from inerter.console import out, progress_bar, refusing
 from inerter.folder import json_text, write_files
 from inerter.suspension.car_options import CARS
+from inerter.suspension.indices import INDICES
+from inerter.suspension.study import read_indices
 from inerter.suspension.time_domain.asked import tyre_named
 from inerter.suspension.time_domain.own_struts import UNITS, OwnEvaluation, evaluate_own
 from inerter.suspension.time_domain.profile import Profile, profile_named
@@ -38,6 +40,7 @@ def own_command(
     step: float,
     settle: float | None,
     jobs: int,
+    indices: str | None,
     others: Mapping[str, Any],
     out_dir: Path,
     as_json: bool,
@@ -58,6 +61,7 @@ def own_command(
                 RunSettings(step=step, settle=settle or _SETTLE, jobs=jobs),
                 one_sided=road != "paper" if one_sided is None else one_sided,
                 keep_settle=settle is not None,
+                indices=read_indices(indices) if indices else (),
                 progress=progress,
             )
         document = _document(parts, chosen.name, speed, found)
@@ -77,7 +81,7 @@ def own_command(
     for each in found.figures:
         half = 0.5 * (each.high - each.low)
         cells = [f"{half:.1g}" if half else "", _number(each.linear)]
-        shown = [each.name, _number(each.value), *([] if profile else cells), UNITS[each.name]]
+        shown = [each.name, _number(each.value), *([] if profile else cells), _unit(each.name)]
         table.add_row(*shown)
     out.print(table)
     for note in found.notes:
@@ -93,6 +97,10 @@ def _car(name: str) -> CarParts:
     raise ValueError(f"car {name!r}: take {', '.join(CARS)}, or a file car.toml")
 
 
+def _unit(name: str) -> str:
+    return UNITS[name] if name in UNITS else INDICES[name].unit
+
+
 def _number(value: float | None) -> str:
     return "" if value is None else f"{value:.5g}"
 
@@ -106,7 +114,7 @@ def _document(car: CarParts, road: str, speed: float, found: OwnEvaluation) -> d
         "roads": found.roads,
         "road_period": found.road_period,
         "settle": found.settle,
-        "figures": {each.name: asdict(each) | {"unit": UNITS[each.name]} for each in found.figures},
+        "figures": {each.name: asdict(each) | {"unit": _unit(each.name)} for each in found.figures},
         "notes": list(found.notes),
     }
 
@@ -117,5 +125,5 @@ def _csv(found: OwnEvaluation) -> str:
     writer.writerow(["figure", "unit", "value", "low", "high", "linear"])
     for each in found.figures:
         line = [each.value, each.low, each.high, "" if each.linear is None else each.linear]
-        writer.writerow([each.name, UNITS[each.name], *line])
+        writer.writerow([each.name, _unit(each.name), *line])
     return table.getvalue()

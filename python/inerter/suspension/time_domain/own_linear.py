@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from inerter.cars.parts import AxleParts, CarParts, StrutParts
 from inerter.suspension.car_options import linear_car
-from inerter.suspension.comfort_weighting import weighting
 from inerter.suspension.indices import comfort_function, travel_function, tyre_function
 from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.linear import centring_of, plane_densities
 from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.time_domain.signals import gain_of, index_of, parts_of, signal_of
 from inerter.suspension.vehicle.strut import Branch, branch
 
 Array = NDArray[np.float64]
@@ -27,11 +27,13 @@ _POINTS = 12_000
 
 
 def linear_figures(
-    car: CarParts, road: PeriodicRoad, *, on_sinusoids: bool = False
+    car: CarParts, road: PeriodicRoad, more: tuple[str, ...] = (), *, on_sinusoids: bool = False
 ) -> dict[str, float]:
-    """J1, J1w, J3, travel by name, SI units; `on_sinusoids`: of the road's own, not infinitely
-    close ones.
+    """J1, J1w, J3, travel and `more` indices by name, SI units.
+
+    `on_sinusoids`: of the road's own, not infinitely close ones.
     """
+    parts = tuple(dict.fromkeys(("J1", "J1w", "J3", "travel", *parts_of(more))))
     low, high = road.limits
     f = road.frequencies
     weights = np.full(f.size, road.spacing)
@@ -41,16 +43,20 @@ def linear_figures(
         weights = np.tile([2.0, 4.0], _POINTS + 1)[: f.size]
         weights[[0, -1]] = 1.0
         weights *= f * np.log(f[-1] / f[0]) / (6.0 * _POINTS)
-    gains = dict(_gains(car, road, f))
-    gains["J1w"] = gains["J1"] * np.abs(weighting()(2j * np.pi * f)) ** 2
+    gains = dict(_gains(car, road, f, tuple(dict.fromkeys(map(signal_of, parts)))))
     # the road's velocity has an even density
-    return {
-        name: float(2.0 * np.pi * np.sqrt(road.strength * (weights @ gain)))
-        for name, gain in gains.items()
+    found = {
+        part: np.sqrt(road.strength * (weights @ (gains[signal_of(part)] * gain_of(part, f))))
+        for part in parts
     }
+    found = {part: np.asarray(2.0 * np.pi * root) for part, root in found.items()}
+    names = dict.fromkeys(("J1", "J1w", "J3", "travel", *more))
+    return {name: float(index_of(name, found)) for name in names}
 
 
-def _gains(car: CarParts, road: PeriodicRoad, f: Array) -> Iterator[tuple[str, Array]]:
+def _gains(
+    car: CarParts, road: PeriodicRoad, f: Array, names: tuple[str, ...]
+) -> Iterator[tuple[str, Array]]:
     """Squared gain per velocity of the road, mean of the wheels, (n,)."""
     s = 2j * np.pi * f
     linear = linear_car(car)
@@ -63,7 +69,7 @@ def _gains(car: CarParts, road: PeriodicRoad, f: Array) -> Iterator[tuple[str, A
         return
     assert car.rear is not None
     branches = (_branch(car.front), _branch(car.rear))
-    yield from plane_densities(linear, branches, road.speed, s).items()
+    yield from plane_densities(linear, branches, road.speed, s, names).items()
 
 
 def _branch(axle: AxleParts) -> Branch:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -37,12 +37,15 @@ from numpy.typing import NDArray
 from inerter.cars.mjcf import NODES, car_mjcf
 from inerter.cars.parts import CarParts
 from inerter.plugin import load_plugin
-from inerter.suspension.comfort_weighting import weighting
+from inerter.suspension.car_options import linear_car
+from inerter.suspension.indices import INDICES
+from inerter.suspension.study import refuse_turning
 from inerter.suspension.time_domain.model import step_matrix
 from inerter.suspension.time_domain.profile import Profile
 from inerter.suspension.time_domain.resolution import ERROR, LONGEST
 from inerter.suspension.time_domain.road import PeriodicRoad, track
 from inerter.suspension.time_domain.samples import interval
+from inerter.suspension.time_domain.signals import gain_of, index_of, parts_of, signal_of
 from inerter.suspension.time_domain.simulate import FADE, RunSettings
 
 Array = NDArray[np.float64]
@@ -51,7 +54,7 @@ UNITS = {
     "J1": "m/s^2", "J1w": "m/s^2", "pitch": "rad/s^2", "roll": "rad/s^2", "J3": "N", "travel": "m",
     "lift_off": "", "acceleration_peak": "m/s^2", "tyre_peak": "N", "travel_peak": "m",
 }  # fmt: skip
-"""Figures of a run, with their units."""
+"""Figures of a run, with their units; an index that is asked for beside has its own."""
 
 _SLOWEST = 1e-3
 
@@ -98,6 +101,7 @@ def evaluate_own(
     *,
     one_sided: bool = True,
     keep_settle: bool = False,
+    indices: tuple[str, ...] = (),
     progress: Callable[[float], None] = lambda share: None,
 ) -> OwnEvaluation:
     """Every figure of a car with the struts of its file.
@@ -116,6 +120,8 @@ def evaluate_own(
         A tyre pulls by at most its static load.
     keep_settle
         The settling time of the settings, whatever the modes ask for.
+    indices
+        Of `INDICES`, told beside the figures if they are not among them.
     progress
         Called with the share that is done.
 
@@ -126,13 +132,18 @@ def evaluate_own(
     """
     from inerter.suspension.time_domain.own_linear import linear_figures
 
+    if "J5" in indices:
+        raise ValueError("index J5: a car as its file states it has none; give a --layout")
+    refuse_turning(indices, linear_car(car))
+    more = tuple(name for name in indices if name not in UNITS)
+    parts = parts_of(more)
     built = _build(car, settings.step, one_sided)
     slowest = _slowest(built.model)
     faded = math.log(2.0 / ERROR) / max(slowest, _SLOWEST)
     notes: list[str] = []
     if isinstance(road, Profile):
         after = min(faded, LONGEST)
-        found = [_over_profile(built, road, settings.step, after)]
+        found = [_over_profile(built, road, settings.step, after, parts)]
         period, settle, count = road.duration + after, 0.0, 1
         linear: dict[str, float] = {}
         missing = 0.0
@@ -152,17 +163,18 @@ def evaluate_own(
                 f"--settle {settle:g}: the slowest mode needs {needed:.3g} s; what is left of the "
                 "start is in the means"
             )
-        run = partial(_over_random, built, car, road, settings.step, settle)
+        run = partial(_over_random, built, car, road, settings.step, settle, parts)
         found = []
         with ThreadPoolExecutor(settings.jobs or os.cpu_count() or 1) as pool:
             for n, one in enumerate(pool.map(run, range(seeds))):
                 found.append(one)
                 progress((n + 1) / seeds)
         period, count = road.period, seeds
-        linear = linear_figures(car, road)
-        lines = linear_figures(car, road, on_sinusoids=True)
+        linear = linear_figures(car, road, more)
+        lines = linear_figures(car, road, more, on_sinusoids=True)
         missing = max(abs(lines[name] / linear[name] - 1.0) for name in linear)
-    names = [name for name in UNITS if name in found[0]]
+    found = [{**one, **{name: _index(name, one) for name in more}} for one in found]
+    names = [name for name in (*UNITS, *more) if name in found[0]]
     figures = []
     for name in names:
         values = np.array([each[name] for each in found])
@@ -267,7 +279,13 @@ def _run(built: _Model, held: Array, heights: Array, skip: int) -> tuple[Array, 
 
 
 def _over_random(
-    built: _Model, car: CarParts, road: PeriodicRoad, step: float, settle: float, seed: int
+    built: _Model,
+    car: CarParts,
+    road: PeriodicRoad,
+    step: float,
+    settle: float,
+    parts: tuple[str, ...],
+    seed: int,
 ) -> dict[str, float]:
     """The figures of one road; `step` is that of the model, a period a whole number of them."""
     count = round(road.period / step)
@@ -286,12 +304,17 @@ def _over_random(
             into.append(track(f, seed, count, behind, side, car.correlation)[times] * rising)
     sensed, forces = _run(built, np.array(held).T, np.array(heights).T, lead)
     # what the steps cannot follow acts on the tyre, and through a rigid inerter on the body
-    missed = float(road.left_out(count)[0, 0])
     stiffness = np.array([corner[2] for corner in built.corners])
-    return _figures(built, car, sensed, forces, step, missed * stiffness**2)
+
+    def missed(part: str) -> Array:
+        return road.left_out(count, gain=partial(gain_of, part))[0, 0] * stiffness**2
+
+    return _figures(built, sensed, forces, step, parts, missed)
 
 
-def _over_profile(built: _Model, profile: Profile, step: float, after: float) -> dict[str, float]:
+def _over_profile(
+    built: _Model, profile: Profile, step: float, after: float, parts: tuple[str, ...]
+) -> dict[str, float]:
     wheelbase = max(corner[4] for corner in built.corners)
     seconds = profile.duration + wheelbase / profile.speed + after
     times = step * np.arange(math.ceil(seconds / step), dtype=np.float64)
@@ -303,27 +326,28 @@ def _over_profile(built: _Model, profile: Profile, step: float, after: float) ->
         ).T
 
     sensed, forces = _run(built, at(0.5 * step), at(0.0), 0)
-    return _figures(built, None, sensed, forces, step, np.zeros(len(built.corners)))
+    return _figures(built, sensed, forces, step, parts)
 
 
 def _figures(
     built: _Model,
-    car: CarParts | None,
     sensed: Array,
     forces: Array,
     step: float,
-    missed: Array,
+    parts: tuple[str, ...],
+    missed: Callable[[str], Array] | None = None,
 ) -> dict[str, float]:
-    """See the module; `missed`: mean square of each tyre's force that the steps did not follow.
+    """See the module, and rms values of `parts`.
 
-    A run with a `car` is a whole period, another is followed by rest.
+    `missed`: mean square of each tyre's force, filtered as a part is, that the steps did not
+    follow. A run with it is a whole period, one without is followed by rest.
     """
     model = built.model
     place = int(model.sensor("body_acceleration").adr[0]) + 2
     columns = [sensed[:, place]] * len(built.corners)
     rows = [built.at_once[:, place]] * len(built.corners)
     names = {model.sensor(n).name for n in range(model.nsensor)}
-    found: dict[str, float] = {}
+    turning: dict[str, tuple[Array, Array]] = {}
     if "body_angular_acceleration" in names:
         roll = int(model.sensor("body_angular_acceleration").adr[0])
         arms = [(y, -x) for *_, x, y in built.corners]
@@ -331,28 +355,41 @@ def _figures(
         columns = [columns[0] + a * turned[0] + b * turned[1] for a, b in arms]
         hit = [built.at_once[:, roll + n] for n in range(2)]
         rows = [rows[0] + a * hit[0] + b * hit[1] for a, b in arms]
-        found["pitch"] = _rms(turned[1])
+        turning["pitch"] = turned[1][None], hit[1][None]
         if len(built.corners) == 4:
-            found["roll"] = _rms(turned[0])
+            turning["roll"] = turned[0][None], hit[0][None]
     points = np.array(columns)
-    extra = float(np.mean(np.array(rows) ** 2 @ missed))
-    size = points.shape[1] if car is not None else 2 * points.shape[1]
-    f = np.fft.rfftfreq(size, step)
-    felt = np.fft.irfft(np.fft.rfft(points, size) * weighting()(2j * np.pi * f), size)
-    felt = felt[:, : points.shape[1]]
     travel = sensed[:, built.travels]
+    # each signal, and its rows per force of each tyre
+    signals = {
+        "J1": (points, np.array(rows)),
+        "J3": (forces.T, np.eye(len(built.corners))),
+        "travel": (travel.T, np.zeros((1, len(built.corners)))),
+        **turning,
+    }
+    found = {}
+    for part in dict.fromkeys((*signals, "J1w", *parts)):
+        series, per_force = signals[signal_of(part)]
+        felt = INDICES[part].filter
+        if felt is not None:
+            size = series.shape[1] * (1 if missed is not None else 2)
+            f = np.fft.rfftfreq(size, step)
+            filtered = np.fft.irfft(np.fft.rfft(series, size) * felt(2j * np.pi * f), size)
+            series = filtered[:, : series.shape[1]]
+        extra = 0.0 if missed is None else float(np.mean(per_force**2 @ missed(part)))
+        found[part] = math.sqrt(_rms(series) ** 2 + extra)
     loads = np.array([corner[3] for corner in built.corners])
     return {
         **found,
-        "J1": math.sqrt(_rms(points) ** 2 + extra),
-        "J1w": _rms(felt),
-        "J3": math.sqrt(_rms(forces) ** 2 + float(missed.mean())),
-        "travel": _rms(travel),
         "lift_off": float(np.mean(forces <= -loads)),
         "acceleration_peak": float(abs(points).max()),
         "tyre_peak": float(forces.max()),
         "travel_peak": float(abs(travel).max()),
     }
+
+
+def _index(name: str, found: Mapping[str, float]) -> float:
+    return float(index_of(name, {part: np.asarray(value) for part, value in found.items()}))
 
 
 def _rms(values: Array) -> float:

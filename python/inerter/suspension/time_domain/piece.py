@@ -24,7 +24,7 @@ NOTED = 1e-3
 class Piece:
     """`case` of a layout; `own`: at its own linear optimum, whatever the plan says of designs.
 
-    `notes` on the road and the settling of its plan.
+    `notes` on the road and the settling of its plan. `design`: the one to take, whatever else.
     """
 
     plan: Plan
@@ -34,6 +34,7 @@ class Piece:
     case: Case
     own: bool = False
     notes: tuple[str, ...] = ()
+    design: Design | None = None
 
     @property
     def key(self) -> tuple[float, str, str, str, bool]:
@@ -64,7 +65,7 @@ def work(piece: Piece) -> Found:
         A design that cannot be simulated with the step of the settings.
     """
     plan, index, layout, case = piece.plan, piece.index, piece.layout, piece.case
-    searched = plan.reoptimise and not case.linear and not piece.own
+    searched = plan.reoptimise and not case.linear and not piece.own and piece.design is None
     design = linear_design(piece)
     step = plan.settings.step
     leaves = plan.leaves and index != "J5"
@@ -87,6 +88,8 @@ def linear_design(piece: Piece) -> Design:
     ValueError
         A layout cannot have the inertance that is given.
     """
+    if piece.design is not None:
+        return piece.design
     plan = piece.plan
     given = () if piece.own else plan.given
     layout = LAYOUTS[piece.layout]

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from inerter.suspension.quarter_car import QuarterCar
+from inerter.suspension.indices import INDICES
+from inerter.suspension.own_index import is_own
+from inerter.suspension.quarter_car import QuarterCar, Road
+from inerter.suspension.study import refuse_turning
 from inerter.suspension.time_domain.cases import CASES, Case
 from inerter.suspension.time_domain.model import LAYOUTS, Car
 from inerter.suspension.time_domain.road import PeriodicRoad, paper_road
 from inerter.suspension.time_domain.simulate import RunSettings
-
-INDEX_NAMES = ("J1", "J3", "J5")
+from inerter.suspension.variations import scenes_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +39,8 @@ class Plan:
         The settling time of the settings, even where the modes of the car ask for a longer one.
     amplitude
         [N] of the load for J5.
+    vary
+        Factors by the names in `variations`: every row is told for each combination, too.
     car, settings
         The car, and how it is stepped.
 
@@ -48,7 +52,7 @@ class Plan:
 
     layouts: tuple[str, ...] = ("S1", "S2", "S3")
     cases: tuple[Case, ...] = (CASES["ideal"],)
-    indices: tuple[str, ...] = INDEX_NAMES
+    indices: tuple[str, ...] = ("J1", "J3", "J5")
     stiffnesses: tuple[float, ...] = (120e3,)
     road: PeriodicRoad = field(default_factory=paper_road)
     seeds: int = 20
@@ -58,14 +62,25 @@ class Plan:
     one_sided: bool | None = None
     keep_settle: bool = False
     amplitude: float = 1000.0
+    vary: tuple[tuple[str, tuple[float, ...]], ...] = ()
     car: Car = field(default_factory=QuarterCar)
     settings: RunSettings = field(default_factory=RunSettings)
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
         for index in self.indices:
-            if index not in INDEX_NAMES:
-                raise ValueError(f"index {index!r}: there are {', '.join(INDEX_NAMES)}")
+            if index not in INDICES and not is_own(index):
+                raise ValueError(
+                    f"index {index!r}: there are {', '.join(INDICES)}, or a file of your own"
+                )
+        refuse_turning(self.indices, self.car)
+        for index in self.indices:
+            of_travel = "travel" in (index, INDICES[index].signal)
+            if of_travel and not (self.given and all(c is not None for c, _ in self.given)):
+                raise ValueError(
+                    f"index {index!r}: travel alone is least with a damper that holds the strut "
+                    "fast; give --damping"
+                )
         for stiffness in self.stiffnesses:
             if not 0.0 < stiffness < math.inf:
                 raise ValueError(f"stiffness is {stiffness:g} N/m: give a positive number")
@@ -87,6 +102,8 @@ class Plan:
         for layout in self.layouts:
             if layout not in LAYOUTS:
                 raise ValueError(f"layout {layout!r} is not known: take {', '.join(LAYOUTS)}")
+        # what is too much is said before the work
+        scenes_of(self.car, Road(), dict(self.vary))
         if not self.rows:
             raise ValueError(
                 f"layout {self.layouts[0]} has no inerter: nothing but the case ideal is one of it"

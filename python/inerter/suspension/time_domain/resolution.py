@@ -13,16 +13,20 @@ with the same design: friction only adds damping.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.suspension.indices import INDICES
 from inerter.suspension.layouts import SeriesPair
 from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.linear import linear_gains, road_density
 from inerter.suspension.time_domain.model import Car
 from inerter.suspension.time_domain.road import PeriodicRoad
+from inerter.suspension.time_domain.signals import index_of
 
 Array = NDArray[np.float64]
 
@@ -49,7 +53,17 @@ class Resolution:
 def resolution_of(
     index: str, layout: str, design: Design, pair: SeriesPair | None, car: Car, road: PeriodicRoad
 ) -> Resolution:
-    """What an index of a design needs of a road; J5, which has none, of settling alone."""
+    """What an index of a design needs of a road; J5, which has none, of settling alone.
+
+    A function of several indices needs what the most demanding of them does.
+    """
+    if INDICES[index].parts:
+        each = [resolution_of(p, layout, design, pair, car, road) for p in INDICES[index].parts]
+        return Resolution(
+            max(one.refined for one in each),
+            max(one.settle for one in each),
+            all(one.enough for one in each),
+        )
     count = round(2.0 * LONGEST * _HIGHEST)
     f = np.arange(count + 1) / (2.0 * LONGEST)
     if index == "J5":
@@ -76,7 +90,9 @@ def resolution_of(
 def exact_on_road(
     index: str, layout: str, design: Design, pair: SeriesPair | None, car: Car, road: PeriodicRoad
 ) -> float:
-    """J1 or J3 of a linear car on the density of a road, sinusoids infinitely close."""
+    """An index of a linear car on the density of a road, sinusoids infinitely close."""
+    if INDICES[index].parts:
+        return _combined(exact_on_road, index, layout, design, pair, car, road)
     low, high = road.limits
     f = np.geomspace(max(low, 1e-3), high, 2 * _POINTS + 1)
     density = road_density(index, layout, design, pair, car, road.speed, f) * f
@@ -90,9 +106,16 @@ def exact_on_road(
 def on_sinusoids(
     index: str, layout: str, design: Design, pair: SeriesPair | None, car: Car, road: PeriodicRoad
 ) -> float:
-    """J1 or J3 of a linear car on the sinusoids of a road: what a long simulation gives."""
+    """An index of a linear car on the sinusoids of a road: what a long simulation gives."""
+    if INDICES[index].parts:
+        return _combined(on_sinusoids, index, layout, design, pair, car, road)
     density = road_density(index, layout, design, pair, car, road.speed, road.frequencies)
     return _rms(road, float(density.sum()) * road.spacing)
+
+
+def _combined(each: Callable[..., float], index: str, *asked: Any) -> float:
+    """A function of several indices, `each` of them as asked."""
+    return float(index_of(index, {p: np.asarray(each(p, *asked)) for p in INDICES[index].parts}))
 
 
 def _rms(road: PeriodicRoad, integral: float) -> float:

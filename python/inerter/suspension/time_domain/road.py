@@ -157,12 +157,21 @@ class PeriodicRoad:
         amplitudes = self.amplitudes[:kept] / np.sinc(share)
         return self._sum(amplitudes, self._later(seed, behind)[:kept] + np.pi * share, count)
 
-    def left_out(self, count: int, behind: Sequence[float] = (0.0,)) -> Array:
-        """Mean products [m^2] of what `count` steps per period cannot follow, (axles, axles)."""
+    def left_out(
+        self,
+        count: int,
+        behind: Sequence[float] = (0.0,),
+        gain: Callable[[Array], Array] = np.ones_like,
+    ) -> Array:
+        """Mean products [m^2] of what `count` steps per period cannot follow, (axles, axles).
+
+        `gain`: of frequencies [Hz], a factor of each sinusoid's mean square.
+        """
         kept = self._kept(count)
         lags = np.subtract.outer(behind, behind) / self.speed
-        turns = np.multiply.outer(lags, 2.0 * np.pi * self.frequencies[kept:])
-        return np.cos(turns) @ (0.5 * self.amplitudes[kept:] ** 2)
+        f = self.frequencies[kept:]
+        turns = np.multiply.outer(lags, 2.0 * np.pi * f)
+        return np.cos(turns) @ (0.5 * self.amplitudes[kept:] ** 2 * gain(f))
 
     def _later(self, seed: int, behind: float) -> Array:
         """Phases [rad] under an axle that is `behind` [m]."""

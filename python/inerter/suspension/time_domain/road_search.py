@@ -1,4 +1,4 @@
-"""J1 or J3 for a search: the exact linear index, corrected around a design; see `search.py`."""
+"""An index over roads for a search: the linear one, corrected around a design; see `search.py`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Values = Callable[[Array], Array]
 
 @dataclass(kw_only=True)
 class RoadSearch:
-    """J1 or J3."""
+    """Any index but J5."""
 
     plan: Plan
     model: CarModel
@@ -67,7 +67,9 @@ class RoadSearch:
         seeds = range(min(plan.search_seeds, plan.seeds))
 
         def run(designs: list[Design]) -> Array:
-            found = road_indices(self.model, designs, plan.road, seeds, plan.settings)
+            found = road_indices(
+                self.model, designs, plan.road, seeds, plan.settings, indices=(self.index,)
+            )
             return np.log(found[self.index].mean(axis=1))
 
         return each_or_one_by_one(run, [self.space.design(point) for point in points], 1)

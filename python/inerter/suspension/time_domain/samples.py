@@ -14,7 +14,7 @@ from inerter.suspension.time_domain.car_model import CarModel
 from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.load_peaks import load_peaks
 from inerter.suspension.time_domain.plan import Plan
-from inerter.suspension.time_domain.simulate import road_indices
+from inerter.suspension.time_domain.simulate import BESIDE, road_indices
 
 Array = NDArray[np.float64]
 
@@ -44,11 +44,11 @@ def samples(plan: Plan, model: CarModel, index: str, design: Design, seeds: int)
     if index == "J5":
         (found,) = load_peaks(model, [design], plan.amplitude, plan.settings)
         return Samples(np.array([found.value]), found.peaks)
-    found = road_indices(model, [design], plan.road, range(seeds), plan.settings)
+    found = road_indices(model, [design], plan.road, range(seeds), plan.settings, indices=(index,))
     beside = {
         name: float(values.max() if name.endswith("_peak") else values.mean())
         for name, values in found.items()
-        if name not in ("J1", "J3")
+        if name in BESIDE
     }
     return Samples(found[index][0], beside=beside)
 

@@ -31,6 +31,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,13 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.suspension.time_domain.car_model import CarModel
 from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.road import PeriodicRoad, correlations, track
+from inerter.suspension.time_domain.signals import (
+    Kept,
+    gain_of,
+    index_of,
+    kept_of,
+    signal_of,
+)
 from inerter.suspension.time_domain.stepping import step_all
 
 Array = NDArray[np.float64]
@@ -49,8 +57,13 @@ FADE = 1.0
 
 _LOAD_BLOCK = 16
 
-# what a simulation of a road gives; the first three as mean squares
-_ROWS = ("J1", "J3", "travel_rms", "lift_off", "tyre_peak", "travel_peak")
+# numbers of whole signals at a time
+_HELD = 2**24
+
+BESIDE = ("travel_rms", "lift_off", "tyre_peak", "travel_peak")
+"""What a simulation of a road gives beside its indices."""
+
+_ROWS = ("J1", "J3", *BESIDE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,8 +101,9 @@ def road_indices(
     seeds: Sequence[int],
     settings: RunSettings | None = None,
     progress: Progress | None = None,
+    indices: Sequence[str] = ("J1", "J3"),
 ) -> dict[str, Array]:
-    """J1 [m/s^2] and J3 [N] of every design on every road.
+    """Indices of every design on every road.
 
     Parameters
     ----------
@@ -103,12 +117,15 @@ def road_indices(
         Step, settling, threads.
     progress
         Called with the share that is done.
+    indices
+        Names in `INDICES` but J5; also a user's own.
 
     Returns
     -------
     dict of ndarray (designs, seeds)
-        "J1" and "J3"; "travel_rms", "travel_peak" [m] of the struts; "lift_off", the share of time
-        that a tyre is off the road, or would have to pull, mean of the wheels; "tyre_peak"
+        "J1" [m/s^2], "J3" [N] and what of `indices` is beside, SI units; "travel_rms",
+        "travel_peak" [m] of the struts; "lift_off", the share of time that a tyre is off the road,
+        or would have to pull, mean of the wheels; "tyre_peak"
         [N], the largest dynamic force that presses a tyre.
 
     Raises
@@ -119,22 +136,33 @@ def road_indices(
     settings = settings or RunSettings()
     tell = progress or (lambda share: None)
     pairs = [(d, s) for s in range(len(seeds)) for d in range(len(designs))]
-    squares = np.empty((len(_ROWS), len(designs), len(seeds)))
+    kept = kept_of(indices)
+    rows = (*_ROWS, *kept)
+    squares = np.empty((len(rows), len(designs), len(seeds)))
     for design in designs:
         car.refuse(design, settings.step)
-    for start in range(0, len(pairs), settings.block):
-        part = pairs[start : start + settings.block]
+    block = settings.block
+    if kept:
+        # whole signals are held in memory
+        finest = settings.step / (2 * car.fineness if car.implicit else 1)
+        one = road.period / finest * len(car.wheels) * len(kept)
+        block = max(1, min(block, int(_HELD / one)))
+    for start in range(0, len(pairs), block):
+        part = pairs[start : start + block]
         chosen, drawn = [designs[d] for d, _ in part], [seeds[s] for _, s in part]
 
         def at(step: float, chosen: list[Design] = chosen, drawn: list[int] = drawn) -> Array:
-            return _road_squares(car, chosen, road, drawn, step, settings)
+            return _road_squares(car, chosen, road, drawn, step, settings, kept)
 
         d, s = np.array(part).T
         squares[:, d, s] = _extrapolated(car, settings.step, at)
         tell((start + len(part)) / len(pairs))
-    found = dict(zip(_ROWS, squares, strict=True))
-    roots = {name: np.sqrt(found[name]) for name in ("J1", "J3", "travel_rms")}
-    return {**found, **roots, "lift_off": np.clip(found["lift_off"], 0.0, 1.0)}
+    found = dict(zip(rows, squares, strict=True))
+    rms = {name: np.sqrt(found.pop(name)) for name in ("J1", "J3", "travel_rms", *kept)}
+    parts = {**rms, "travel": rms["travel_rms"]}
+    beside = {name: rms[name] for name in ("J1", "J3", "travel_rms")}
+    asked = {name: index_of(name, parts) for name in indices}
+    return {**asked, **beside, **found, "lift_off": np.clip(found["lift_off"], 0.0, 1.0)}
 
 
 def load_gains(
@@ -205,8 +233,9 @@ def _road_squares(
     seeds: Sequence[int],
     step: float,
     settings: RunSettings,
+    kept: tuple[str, ...],
 ) -> Array:
-    """Means of `_ROWS` over time and axles, shape (6, simulations)."""
+    """Means of `_ROWS` and `kept` over time and axles, shape (rows, simulations)."""
     # a whole number of steps makes the period
     count = math.ceil(road.period / step - 1e-9)
     step = road.period / count
@@ -237,6 +266,7 @@ def _road_squares(
     loads = np.array([wheel.static_load for wheel in car.wheels])
     sums = np.zeros((4, len(designs)))
     peaks = np.zeros((2, len(designs)))
+    whole = Kept(kept, car, len(designs), count) if kept else None
     steps = np.full(len(designs), step)
     roads = [wheel.road for wheel in car.wheels]
     for chunk in step_all(car, designs, steps, settle + count, roads, control, settings.jobs):
@@ -259,10 +289,23 @@ def _road_squares(
         sums[3] += off.sum(axis=(1, 2))
         highest = [-force.min(axis=(1, 2)), np.abs(chunk.travels[:, skip:]).max(axis=(1, 2))]
         peaks = np.maximum(peaks, highest)
+        if whole is not None:
+            whole.add(int(now[0]), corrected, force, chunk.travels[:, skip:])
     # sinusoids too quick for the step move nothing; they press the tyres
     rest = road.left_out(count, behind) * correlations(sides, shared)
     quick = np.einsum("spw,wv,spv->s", at_once, rest, at_once)
     points, wheels = at_once.shape[1:]
+    felt = np.zeros((0, len(designs)))
+    if whole is not None:
+        felt = whole.mean_squares(step)
+        for n, name in enumerate(kept):
+            beyond = road.left_out(count, behind, partial(gain_of, name))
+            beyond = beyond * correlations(sides, shared)
+            if signal_of(name) == "J3":
+                felt[n] += float(np.sum(kt**2 * np.diag(beyond))) / wheels
+            elif signal_of(name) != "travel":
+                turned = whole.rows[signal_of(name)] @ at_once
+                felt[n] += np.einsum("spw,wv,spv->s", turned, beyond, turned) / turned.shape[1]
     return np.array(
         [
             (sums[0] / count + quick) / points,
@@ -270,6 +313,7 @@ def _road_squares(
             sums[2] / count / wheels,
             sums[3] / count / wheels,
             *peaks,
+            *felt,
         ]
     )
 

@@ -144,11 +144,11 @@ def _outputs(system: System, index: str) -> tuple[System, Array, Array | None]:
     """The system, with a filter's states where the index has one, and its signals."""
     own = INDICES[index]
     if own.filter is None:
-        return system, *_signals(system, index)
-    return weighted(system, *_signals(system, own.signal), own.filter)
+        return system, *signals(system, index)
+    return weighted(system, *signals(system, own.signal), own.filter)
 
 
-def _signals(system: System, index: str) -> tuple[Array, Array | None]:
+def signals(system: System, index: str) -> tuple[Array, Array | None]:
     """Output rows (..., 2, n) and outputs per warp (..., 2)."""
     if index == "J1":
         return system.acceleration, system.acceleration_warp
