@@ -128,9 +128,9 @@ def test_the_command_takes_the_indices_of_optimize(tmp_path: Path) -> None:
     refused = run(f"{words} --index pitch")
     assert refused.exit_code != 0
     assert "a quarter-car has none" in refused.output
-    refused = run("evaluate --index travel --seeds 2")
+    refused = run(f"{words} --index travel")
     assert refused.exit_code == 2
-    assert "give --damping" in refused.output
+    assert "travel_rms" in refused.output
     refused = run(f"{words} --index J9")
     assert refused.exit_code != 0
     assert "choose from J1" in refused.output

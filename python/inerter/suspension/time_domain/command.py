@@ -45,8 +45,7 @@ def evaluate_command(
     index: Annotated[
         str | None,
         typer.Option(
-            help="J1, J1w, J3, travel, J5, pitch, roll; your own: seat.toml, mine.py:NAME; with "
-            "commas.",
+            help="J1, J1w, J3, J5, pitch, roll; your own: seat.toml, mine.py:NAME; with commas.",
             show_default="J1,J3,J5",
         ),
     ] = None,

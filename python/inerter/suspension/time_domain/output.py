@@ -150,7 +150,7 @@ def _variations(rows: Sequence[Evaluation], scale: float, title: str) -> Table:
         table.add_column(name, no_wrap=True)
     for name in ("nominal", "mean", "worst"):
         table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("worst when")
+    table.add_column("worst when", overflow="fold")
     for row in rows:
         told = summary(row.value, row.variations)
         ends = [(row.low, row.high)]

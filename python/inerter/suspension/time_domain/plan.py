@@ -75,11 +75,11 @@ class Plan:
                 )
         refuse_turning(self.indices, self.car)
         for index in self.indices:
-            of_travel = "travel" in (index, INDICES[index].signal)
-            if of_travel and not (self.given and all(c is not None for c, _ in self.given)):
+            if "travel" in (index, INDICES[index].signal):
                 raise ValueError(
                     f"index {index!r}: travel alone is least with a damper that holds the strut "
-                    "fast; give --damping"
+                    "fast, so there is nothing to compare with; every row has travel_rms beside, "
+                    "and a function mine.py:NAME may take travel with other indices"
                 )
         for stiffness in self.stiffnesses:
             if not 0.0 < stiffness < math.inf:
