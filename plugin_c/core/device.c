@@ -312,8 +312,9 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   return has(device, PART_STOPS) ? energy + stop_energy(device, stretch) : energy;
 }
 
-double inerter_power_beside_slip(const InerterDevice* device, double x, double v, double a,
-                                 const double* z) {
+// power turned into heat without a friction law with several states
+static double power_beside_slip(const InerterDevice* device, double x, double v, double a,
+                                const double* z) {
   double stretch = stretch_of(device, x), w = v;
   double damper = damper_force(device, stretch, v);
   double carried = branch_force(device, x, v, a, z);
@@ -367,11 +368,12 @@ static double power_of_slip(const InerterDevice* device, double x, double v, dou
 
 double inerter_dissipated_power(const InerterDevice* device, double x, double v, double a,
                                 const double* z) {
-  return inerter_power_beside_slip(device, x, v, a, z) + power_of_slip(device, x, v, a, z);
+  return power_beside_slip(device, x, v, a, z) + power_of_slip(device, x, v, a, z);
 }
 
-double inerter_slip_heat(const InerterDevice* device, double x, double v, double a, const double* z,
-                         double h, double v1, const double* end) {
+// what the elements of such a law turn into heat in a step to the velocity v1 and the states `end`
+static double slip_heat(const InerterDevice* device, double x, double v, double a, const double* z,
+                        double h, double v1, const double* end) {
   if (!slips(device)) {
     return 0;
   }
@@ -379,6 +381,15 @@ double inerter_slip_heat(const InerterDevice* device, double x, double v, double
   Place after = place_of_friction(device, stretch_of(device, x + h * v1), v1, end);
   return law_of(device)->several->heat(device, before.x, after.x - before.x, z, end,
                                        law_load(device, x, v, a, z));
+}
+
+double inerter_heat_over_step(InerterDevice* device, double x, double v, double a, const double* z,
+                              double h, double v1, double a1, const double* end) {
+  double slip = slip_heat(device, x, v, a, z, h, v1, end);
+  double first = power_beside_slip(device, x, v, a, z);
+  inerter_command(device, device->command, end);
+  double last = power_beside_slip(device, x + h * v1, v1, a1, end);
+  return 0.5 * h * (first + last) + slip;
 }
 
 int inerter_valid(const InerterDevice* device, double x, const double* z,

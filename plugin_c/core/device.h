@@ -373,13 +373,12 @@ INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, 
 INERTER_API double inerter_dissipated_power(const InerterDevice* device, double x, double v,
                                             double a, const double* z);
 
-// For steps of one stage: that power without a friction law of several states, and what its
-// elements turn into heat in a step of h seconds from x, v, a, z to a velocity v1 and states `end`
-// [J]; 0 for other laws.
-INERTER_API double inerter_power_beside_slip(const InerterDevice* device, double x, double v,
-                                             double a, const double* z);
-INERTER_API double inerter_slip_heat(const InerterDevice* device, double x, double v, double a,
-                                     const double* z, double h, double v1, const double* end);
+// Heat [J] of a step of one stage, h seconds from x, v, a, z to a velocity v1, an acceleration a1
+// and states `end`: the trapezoid of that power, but for what elements of friction slip, which is
+// added up exactly. Afterwards the device is at the value that its control has at the end.
+INERTER_API double inerter_heat_over_step(InerterDevice* device, double x, double v, double a,
+                                          const double* z, double h, double v1, double a1,
+                                          const double* end);
 
 // Whether something changes along the stroke; the largest size of its slope [unit/m].
 static inline int inerter_has_curve(const InerterDevice* device, InerterStroke stroke) {

@@ -388,13 +388,8 @@ static void advance(const mjModel* m, mjData* d, int instance) {
   }
   mju_copy(state, self->state, nstate);
   if (heat) {
-    InerterDevice* device = &self->device;
     mjtNum first = self->solved ? self->acceleration : 0;
-    mjtNum slip = inerter_slip_heat(device, self->x, self->v, first, before, h, v, state);
-    mjtNum start = inerter_power_beside_slip(device, self->x, self->v, first, before);
-    inerter_command(device, device->command, state);
-    mjtNum end = inerter_power_beside_slip(device, self->x + h * v, v, a, state);
-    *heat += 0.5 * h * (start + end) + slip;
+    *heat += inerter_heat_over_step(&self->device, self->x, self->v, first, before, h, v, a, state);
     watch_heat(m, self, heat);
   }
 }
