@@ -115,7 +115,7 @@ def not_modelled() -> str:
             continue  # how a step is taken, not a law
         # the words up to the end of the comment, or of its paragraph
         text = re.sub(r"\n// ?", "\n", path.read_text(encoding="utf-8"))
-        found = re.search(r"Not modelled: (.*?)(?:\n\n|\n#)", text, re.S)
+        found = re.search(r"Not\s+modelled: (.*?)(?:\n\n|\n#)", text, re.S)
         if found:
             rows.append(f"| `{path.name}` | {' '.join(found[1].split())} |")
     return "\n".join(rows) + "\n"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import time
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import pytest
 from inerter.commands import app
 from inerter.console import EVERY_VARIABLE, progress_bar, status
 from inerter.core import lists, parameters
-from inerter.identify.laws import PARTS
 from inerter.models import model_names
 from typer.main import get_command
 from typer.testing import CliRunner
@@ -51,13 +49,6 @@ def test_every_help_has_an_example_in_80_columns(name: tuple[str, ...]) -> None:
     assert f"inerter {' '.join(name)}" in text.split("Example")[1]
     # what each option takes, in plain words
     assert not {"<str>", "<path>", "<list[str]>", "<int", "<float"} & set(text.split())
-
-
-def test_identify_names_every_law_and_part() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "identification.md").read_text(encoding="utf-8")
-    words = set(re.findall(r"\w+", output("identify", "--help")))
-    assert words >= set(PARTS)
-    assert set(re.findall(r"`(\w+)`", page)) >= set(PARTS)
 
 
 def test_names_of_before_are_understood(tmp_path: Path) -> None:
