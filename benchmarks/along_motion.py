@@ -29,7 +29,7 @@ from benchmarks.picture import COLOURS, figure, save
 OTHERS = ("numba", "scipy", "reference")
 
 
-COMPARED = tuple(law for law in LAWS if law not in ("maxwell_slip", "rate_state"))
+COMPARED = ("none", "coulomb", "stribeck", "dahl", "lugre", "bouc_wen", "brown_mcphee")
 """The laws that the others are written for too."""
 
 

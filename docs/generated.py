@@ -1,18 +1,20 @@
 """What the pages show and code makes: pictures, the gallery, scenes, what the laws leave out.
 
 Everything goes into docs/figures, which git does not know, and is made again only when the code
-that makes it has changed. The page builder runs this; `python docs/generated.py` does it by hand.
+that makes it has changed. The page builder runs this; `python docs/generated.py` does it by hand,
+and writes the parameter table of plugin_c/README.md from the core.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import re
 from hashlib import sha256
 from pathlib import Path
 
 import figures
-from inerter.core import library_path
+from inerter.core import library_path, parameters
 from inerter.diagnose.decision import CRITERIA
 from inerter.models import model_names, model_path
 from inerter.plugin import plugin_path
@@ -21,6 +23,8 @@ HERE = Path(__file__).parent
 FOLDER = figures.FOLDER
 CORE = HERE.parent / "plugin_c" / "core"
 KEPT = FOLDER / "made_of.json"
+README = HERE.parent / "plugin_c" / "README.md"
+OPENS, CLOSES = "<!-- parameters -->\n", "<!-- /parameters -->"
 
 
 def make() -> str | None:
@@ -111,7 +115,7 @@ def not_modelled() -> str:
             continue  # how a step is taken, not a law
         # the words up to the end of the comment, or of its paragraph
         text = re.sub(r"\n// ?", "\n", path.read_text(encoding="utf-8"))
-        found = re.search(r"Not modelled: (.*?)(?:\n\n|\n#)", text, re.S)
+        found = re.search(r"Not\s+modelled: (.*?)(?:\n\n|\n#)", text, re.S)
         if found:
             rows.append(f"| `{path.name}` | {' '.join(found[1].split())} |")
     return "\n".join(rows) + "\n"
@@ -125,5 +129,32 @@ def criteria() -> str:
     return "\n".join(rows) + "\n"
 
 
+def parameter_table() -> str:
+    """The parameters as the core declares them."""
+    rows = [
+        "| name | unit | default | range | friction laws | meaning |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
+    for name, each in parameters().items():
+        default = "unset" if math.isnan(each.initial) else f"{each.initial:g}"
+        bounds = []
+        if math.isfinite(each.lower):
+            bounds.append(f"{'>' if each.lower_open else '>='} {each.lower:g}")
+        if math.isfinite(each.upper):
+            bounds.append(f"<= {each.upper:g}")
+        allowed, laws = " ".join(bounds) or "any", " ".join(each.laws) or "-"
+        cells = (f"`{name}`", each.unit, default, allowed, laws, each.meaning)
+        rows.append(f"| {' | '.join(cells)} |")
+    return "\n".join(rows) + "\n"
+
+
+def write_parameter_table(path: Path = README) -> None:
+    """The table between the marks of a document."""
+    before, rest = path.read_text(encoding="utf-8").split(OPENS, 1)
+    after = rest[rest.index(CLOSES) :]
+    path.write_text(before + OPENS + parameter_table() + after, encoding="utf-8")
+
+
 if __name__ == "__main__":
+    write_parameter_table()
     print(make() or "everything is there")

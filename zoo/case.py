@@ -11,6 +11,7 @@ from typing import Any
 
 import mujoco
 import numpy as np
+from inerter.catalogue.friction import FRICTION
 
 from zoo import checks
 from zoo.draw import INTEGRATORS, Case, Drawn, added, draw
@@ -26,7 +27,7 @@ REASONS = (
     "which is all that it acts on",
 )
 # friction that changes its sign with the velocity
-SHARP = ("coulomb", "stribeck", "brown_mcphee")
+SHARP = tuple(law.name for law in FRICTION.values() if law.level and not law.memory)
 # springs, which move a model at rest
 SPRINGS = ("stiffness", "stop_upper", "stop_stiffness")
 

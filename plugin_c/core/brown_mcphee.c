@@ -19,8 +19,13 @@ static double force(const InerterDevice* p, double x, double v, double z, double
   return friction_level(p, x, v) * (sliding + peak);
 }
 
+static double width(const InerterDevice* p) {
+  return 0.25 * p->stribeck_velocity;
+}
+
 static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
   friction_along(p, path, z, forces, NULL, force);
 }
 
-const FrictionLaw inerter_brown_mcphee = {.force = force, .along = along};
+const FrictionLaw inerter_brown_mcphee = {
+    .force = force, .along = along, .width = width, .width_parameter = "stribeck_velocity"};

@@ -35,9 +35,12 @@ double friction_curve_level(const InerterDevice* p, double x, double rise, doubl
 // along: force and state at samples of a motion, see `friction_along`.
 // over_step: step and force in one, z + share (step - z) in the force, and how the force rises with
 // v; NULL where a small difference of the two says that.
-// level, width: the force of a law with a sharp sign is level(p, x, v) tanh(v / width(p)); the
-// level is even in v but for the asymmetry, which it leaves out. NULL where the law is smooth. Laws
-// without states leave all but force, along, level and width NULL, those with one the latter.
+// level: the force of a law with a sharp sign is level(p, x, v) tanh(v / width(p)); the level is
+// even in v but for the asymmetry, which it leaves out. NULL where the law is smooth.
+// width [m/s]: of the sign in a law without states, smooth or not: mu |N| tanh(v / width) is what a
+// load adds (load_friction.c). width_parameter: which parameter it follows, for messages; NULL:
+// transition_velocity. Laws without states leave all but force, along, level, width and its
+// parameter NULL, those with one these but force and along.
 // several: the same of a law with several states, whose functions take all of them; then rate,
 // step, straight, force and energy are NULL. heat: of a step along a path [m] from states z, where
 // the displacement is x and the load that of the start, to those of its end [J].
@@ -65,19 +68,15 @@ typedef struct FrictionLaw_ {
   double (*force_of_rate)(const InerterDevice* p, double z, double rate);
   double (*level)(const InerterDevice* p, double x, double v);
   double (*width)(const InerterDevice* p);
+  const char* width_parameter;
   double (*over_step)(const InerterDevice* p, double x, double v, double z, double h, double share,
                       double* slope);
   const FrictionStates* several;
 } FrictionLaw;
 
-extern const FrictionLaw inerter_coulomb;
-extern const FrictionLaw inerter_stribeck;
-extern const FrictionLaw inerter_dahl;
-extern const FrictionLaw inerter_lugre;
-extern const FrictionLaw inerter_bouc_wen;
-extern const FrictionLaw inerter_brown_mcphee;
-extern const FrictionLaw inerter_maxwell_slip;
-extern const FrictionLaw inerter_rate_state;
+#define X(identifier, nstate, meaning) extern const FrictionLaw inerter_##identifier;
+INERTER_FRICTION_LAWS(X)
+#undef X
 
 // maxwell_slip.c: how many elements there are; sum of their slip forces [N]; stiffness and slip
 // force of one, side by side

@@ -7,7 +7,7 @@
 // drives the motion. load_friction is one mu for both. In each friction law mu |N| [N] is added to
 // f_c, so that it has the law's own shape:
 //   none, coulomb, stribeck   + mu |N| tanh(v / v_t);  f_s rises with f_c
-//   brown_mcphee              + mu |N| tanh(4 v / v_s)
+//   brown_mcphee              + mu |N| tanh(4 v / v_s): what the law gives as its width
 //   rate_state                (f_c + mu |N|) (1 + A ln(V / v_0) + B z) tanh(v / v_t)
 //   dahl, lugre, bouc_wen, maxwell_slip   the force at which the bristle yields; those of several
 //                             elements in proportion
@@ -43,8 +43,8 @@ double inerter_load_factor(const InerterDevice* p, double v, const double* z, do
     return 0;
   }
   double mu = share_of(p, v, carried);
-  if (p->friction == INERTER_FRICTION_brown_mcphee) {
-    return mu * tanh(4 * v / p->stribeck_velocity);
+  if (p->friction != INERTER_FRICTION_none && law_of(p)->width) {
+    return mu * tanh(v / law_of(p)->width(p));
   }
   if (p->friction == INERTER_FRICTION_rate_state) {
     mu *= rate_state_factor(p, v, z ? z[0] : 0);

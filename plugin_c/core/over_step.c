@@ -34,7 +34,7 @@ enum { STEP_LINE, STEP_FRICTION, STEP_BRISTLE, STEP_LOAD, STEP_GENERAL };  // In
 static Tangent sharp_friction(const InerterStep* step, double v1) {
   const InerterDevice* p = step->device;
   if (!law_of(p)->level) {
-    double near = 1e-6 * p->stribeck_velocity, force = law_of(p)->force(p, step->stretch, v1, 0, 0);
+    double near = 4e-6 * law_of(p)->width(p), force = law_of(p)->force(p, step->stretch, v1, 0, 0);
     double beside = law_of(p)->force(p, step->stretch, v1 + near, 0, 0);
     return (Tangent){force, fmax(0, (beside - force) / near)};
   }

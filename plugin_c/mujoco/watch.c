@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "core/friction.h"
+
 //------------------------------ numbers -----------------------------------------------------------
 
 void watch_state(const mjModel* m, Instance* self, mjtNum* state) {
@@ -221,6 +223,10 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   const char* tendon =
       ", or give the stiffness to the tendon or joint, with integrator=\"discrete\"";
   const char* implicit = ", or integrator=\"implicitfast\"";
+  const char* width = p->friction ? inerter_friction_law[p->friction]->width_parameter : NULL;
+  char turn[INERTER_MESSAGE_SIZE];
+  snprintf(turn, sizeof(turn), "the change of sign of friction within %s",
+           width ? width : "transition_velocity");
   Fastest fastest = {1, NULL, NULL};
   consider(&fastest, sqrt(fabs(p->stiffness) * light), swing, "stiffness", tendon);
   double steepest = inerter_curve_steepest(p, INERTER_STROKE_force);
@@ -234,10 +240,7 @@ void watch_stiffness(const mjModel* m, Instance* self) {
     consider(&fastest, p->flywheel_viscous * wheel, decay, "flywheel_viscous", implicit);
     consider(&fastest, rise * light, decay, "force_map over velocity", implicit);
     consider(&fastest, sqrt(p->stop_stiffness * light), swing, "stop_stiffness", implicit);
-    consider(&fastest, friction_slope(p) * (instance_rubs_flywheel(p) ? wheel : light), decay,
-             p->friction == INERTER_FRICTION_brown_mcphee
-                 ? "the change of sign of friction within stribeck_velocity"
-                 : "the change of sign of friction within transition_velocity",
+    consider(&fastest, friction_slope(p) * (instance_rubs_flywheel(p) ? wheel : light), decay, turn,
              implicit);
     double branches = p->branch_stiffness_1 + p->branch_stiffness_2 + p->branch_stiffness_3;
     consider(&fastest, sqrt(branches * light), swing, "branch_stiffness", implicit);

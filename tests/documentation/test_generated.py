@@ -62,3 +62,12 @@ def test_every_law_says_what_it_leaves_out() -> None:
     table = generated.not_modelled()
     for law in (*figures.FRICTION, "series", "pipe", "gas_spring", "end_stop", "friction_play"):
         assert re.search(rf"\| `{law}\.c` \| \w.*\w.* \|", table), law
+
+
+def test_the_parameter_table_is_written_from_the_core(tmp_path: Path) -> None:
+    kept = generated.README.read_text(encoding="utf-8")
+    copy = tmp_path / "README.md"
+    copy.write_text(re.sub(r"\n\| `coulomb_force`.*", "\n| `old` | N |", kept), encoding="utf-8")
+    assert copy.read_text(encoding="utf-8") != kept
+    generated.write_parameter_table(copy)
+    assert copy.read_text(encoding="utf-8") == kept

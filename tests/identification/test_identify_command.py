@@ -155,6 +155,8 @@ def test_the_help_names_every_law_and_part() -> None:
     (law,) = (p for p in signature(identify_command).parameters.values() if p.name == "law")
     text = get_type_hints(identify_command, include_extras=True)[law.name].__metadata__[0].help
     assert set(PARTS) <= set(re.findall(r"\w+", text))
+    page = Path(__file__).parents[2] / "docs" / "identification.md"
+    assert set(PARTS) <= set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8")))
 
 
 @pytest.mark.parametrize("simulate", [False, pytest.param(True, marks=pytest.mark.long)])

@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 import pytest
-from inerter.core import Parameter, parameters
+from inerter.core import Parameter, friction_laws, parameters
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r"^<!--\s*parameters\s*-->(.*?)(?:<!--\s*/parameters\s*-->|\Z)", re.S | re.M)
@@ -59,6 +59,12 @@ def in_words(parameter: Parameter) -> str:
 
 def test_the_readme_of_the_plugin_has_a_table() -> None:
     assert "plugin_c/README.md" in blocks()
+
+
+def test_the_readme_of_the_plugin_names_every_law() -> None:
+    text = (ROOT / "plugin_c" / "README.md").read_text(encoding="utf-8")
+    (named,) = re.findall(r"^`friction` names the law: (.*)\.", text, re.M)
+    assert re.findall(r"`(\w+)`", named.split(". ")[0]) == list(friction_laws())
 
 
 @pytest.mark.parametrize("document", sorted(blocks()))

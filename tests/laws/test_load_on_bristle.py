@@ -5,7 +5,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from core_draws import draw_branches, draw_levels, draw_points, draw_series, draw_states
+from core_draws import LAWS as ALL_LAWS
+from core_draws import (
+    MEMORY,
+    draw_branches,
+    draw_friction,
+    draw_levels,
+    draw_points,
+    draw_series,
+    draw_states,
+)
 from inerter.core import Device, DeviceError
 from inerter.exudyn import device as element
 from inerter.exudyn.parameters import Parameters
@@ -287,6 +296,24 @@ def test_age_and_smooth_laws_scale_with_the_load() -> None:
         z = 0.7 if law == "rate_state" else 0.0
         one, other = (each.evaluate(0.0, v, a, z)["total"][0] for each in (loaded, plain))
         assert one == pytest.approx(other, rel=1e-13)
+
+
+@pytest.mark.parametrize("law", [law for law in ALL_LAWS if law not in (*MEMORY, "none")])
+def test_a_load_has_the_shape_of_every_law_without_a_state(law: str) -> None:
+    """f_c + mu |N| in place of f_c, f_s as much higher, at speeds above and below what bends it."""
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        p, mu = draw_friction(rng, law), rng.uniform(0.0, 0.9)
+        v, a = 10.0 ** rng.uniform(-5.0, 0.0) * rng.choice([-1.0, 1.0]), rng.normal(0.0, 3.0)
+        more = mu * B * abs(a)
+        higher = {k: p[k] + more for k in ("coulomb_force", "static_force") if k in p}
+        for telling in (
+            lambda **keys: Device(**keys).evaluate(0.0, v, a, 0.0)["total"][0],  # noqa: B023
+            lambda **keys: ReferenceDevice(**keys).force(0.0, v, a),  # noqa: B023
+        ):
+            loaded = telling(inertance=B, **p, load_friction=mu)
+            plain = telling(inertance=B, **p | higher)
+            assert loaded == pytest.approx(plain, rel=1e-12, abs=1e-12 * B)
 
 
 def test_what_does_not_fit_is_refused() -> None:

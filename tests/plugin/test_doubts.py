@@ -115,6 +115,7 @@ def said(capfd: pytest.CaptureFixture) -> str:
         ({"viscous": 1e7}, 0, "viscous is too stiff"),
         ({"stop_upper": 1.0, "stop_stiffness": 1e10}, 0, "stop_stiffness is too stiff"),
         ({"friction": "coulomb", "coulomb_force": 1e4}, 0, "transition_velocity"),
+        ({"friction": "brown_mcphee", "coulomb_force": 1e6}, 0, "within stribeck_velocity"),
         ({"stiffness": 1e9}, 0, "stiffness is too stiff"),
     ],
 )

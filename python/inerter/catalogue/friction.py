@@ -36,8 +36,9 @@ class FrictionLaw:
         Whether it reads the width of sign(v).
     memory
         Whether it has a state.
-    peaked
-        Whether it falls with the speed: the blur of smoothed data may look so.
+    peak
+        Of a law that falls with the speed, the coordinate that says at which: the blur of smoothed
+        data may look so. Where that is small, a law without memory is near those of `limits`.
     varies
         Whether its level can differ with the direction and along the stroke.
     contains, limits
@@ -66,7 +67,7 @@ class FrictionLaw:
     level: str = "coulomb_force"
     smoothed: bool = False
     memory: bool = False
-    peaked: bool = False
+    peak: str = ""
     varies: bool = True
     contains: tuple[str, ...] = ("none",)
     limits: tuple[str, ...] = ()
@@ -97,7 +98,7 @@ _ALL = (
         name="stribeck", words="Stribeck", meaning="Stribeck friction", effect="stribeck_friction",
         coordinates=("coulomb_force", "static_excess", "stribeck_velocity"),
         constants=("stribeck_exponent",), spread=("stribeck_velocity", "static_excess"),
-        smoothed=True, peaked=True, contains=("none", "coulomb"), simpler=("coulomb",),
+        smoothed=True, peak="stribeck_velocity", contains=("none", "coulomb"), simpler=("coulomb",),
         tried_on=("none", "coulomb"), grid={"stribeck_velocity": (0.03, 0.1, 0.4)},
         begin={"static_excess": 0.5},
     ),
@@ -106,7 +107,7 @@ _ALL = (
         effect="stribeck_friction",
         coordinates=("coulomb_force", "static_excess", "stribeck_velocity"),
         spread=("stribeck_velocity", "static_excess"),
-        peaked=True, limits=("coulomb",), simpler=("coulomb",),
+        peak="stribeck_velocity", limits=("coulomb",), simpler=("coulomb",),
     ),
     FrictionLaw(
         name="dahl", words="Dahl", meaning="Dahl friction", effect="hysteretic_friction",
@@ -121,7 +122,7 @@ _ALL = (
         ),
         constants=("stribeck_exponent",),
         spread=("stribeck_velocity", "static_excess", "presliding", "bristle_damping"),
-        memory=True, peaked=True, contains=("none", "dahl"), limits=("coulomb",),
+        memory=True, peak="stribeck_velocity", contains=("none", "dahl"), limits=("coulomb",),
         simpler=("coulomb", "dahl", "stribeck"), tried_on=("none", "coulomb", "stribeck", "dahl"),
         grid={"presliding": (0.003, 0.03, 0.2), "stribeck_velocity": (0.05, 0.3)},
         begin={"static_excess": 0.5, "bristle_damping": 0.001}, rich=True,

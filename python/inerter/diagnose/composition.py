@@ -128,10 +128,11 @@ def is_blur(model: Model, scales: Scales, plain: float, error: float) -> bool:
 
     The rms errors [N] are those with friction that does not fall with speed, and with the peak.
     """
-    if not FRICTION[model.friction].peaked:
+    peak = FRICTION[model.friction].peak
+    if not peak:
         return False
-    narrow = CRITERIA.narrow_peak * search_range("stribeck_velocity", scales).lower
-    return model.values["stribeck_velocity"] < narrow and within_blur(model, plain, error)
+    narrow = CRITERIA.narrow_peak * search_range(peak, scales).lower
+    return model.values[peak] < narrow and within_blur(model, plain, error)
 
 
 def within_blur(model: Model, one: float, other: float) -> bool:

@@ -326,7 +326,7 @@ class Search:
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
         """Whether a fit's peak of friction does little more than the laws without it."""
         masks = self.problem.masks
-        simpler = [n for n in FRICTION[fit.model.friction].simpler if not FRICTION[n].peaked]
+        simpler = [n for n in FRICTION[fit.model.friction].simpler if not FRICTION[n].peak]
         plain = [each.rmse(masks) for _, each in fitted if each.model.friction in simpler]
         plainest = min(plain, default=without.rmse(masks))
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))

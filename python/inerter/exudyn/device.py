@@ -256,9 +256,7 @@ def _load_share(f: Functions, p: Parameters, v: Value, through: Value, rubbed: A
     if not rubs_by_load(p) or bends(p):
         return 0.0
     mu = _by_power(f, p, v, through)
-    if p.friction == "brown_mcphee":
-        return mu * f.tanh(4.0 * v / p.stribeck_velocity)
     if p.friction == "rate_state":
         mu = mu * friction.bracket(f, p, v, rubbed)
         mu = f.choose(through * v < 0.0, f.least(0.999, mu), mu)
-    return mu * f.tanh(v / p.transition_velocity)
+    return mu * f.tanh(v / friction.sign_width(p))

@@ -116,6 +116,11 @@ def stribeck_curve(f: Functions, p: Parameters, v: Value) -> Value:
     return p.coulomb_force + excess * f.exp(decay)
 
 
+def sign_width(p: Parameters) -> float:
+    """Width [m/s] of sign(v) = tanh(v / width) in a law without states."""
+    return p.stribeck_velocity / 4.0 if p.friction == "brown_mcphee" else p.transition_velocity
+
+
 def none(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """No friction."""
     return Friction(0.0)

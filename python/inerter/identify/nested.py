@@ -73,8 +73,9 @@ def _values(model: Model, other: Model, sizes: Scales) -> Iterator[dict[str, flo
     if model.friction in ("none", other.friction):
         yield inside
         return
-    if model.friction == "brown_mcphee":
-        inside["stribeck_velocity"] = search_range("stribeck_velocity", sizes).lower
+    law = FRICTION[model.friction]
+    if law.peak and law.limits and not law.memory:
+        inside[law.peak] = search_range(law.peak, sizes).lower
     level = other.values.get("coulomb_force", _FAINT * sizes.force)
     inside["coulomb_force"] = inside["bw_level"] = level
     if "presliding" in other.values:

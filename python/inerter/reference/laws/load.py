@@ -57,12 +57,10 @@ def share(
     forward, backward = parameters.load_shares
     back = carried * velocity < 0.0
     mu = forward if forward == backward else np.where(back, backward, forward)
-    if parameters.friction == "brown_mcphee":
-        return mu * np.tanh(4.0 * velocity / parameters.stribeck_velocity)
     if parameters.friction == "rate_state":
         mu = mu * rate_state.bracket(parameters, velocity, state)
         mu = np.where(back, np.minimum(0.999, mu), mu)
-    return mu * np.tanh(velocity / parameters.transition_velocity)
+    return mu * np.tanh(velocity / parameters.sign_width)
 
 
 def force(

@@ -161,6 +161,13 @@ class FrictionParameters(StrokeParameters):
         """f_s [N]: `static_force`, or `coulomb_force` where that is not given."""
         return self.coulomb_force if np.all(np.isnan(self.static_force)) else self.static_force
 
+    @property
+    def sign_width(self) -> float:
+        """Width [m/s] of sign(v) = tanh(v / width) in a law without states."""
+        if self.friction == "brown_mcphee":
+            return self.stribeck_velocity / 4.0
+        return self.transition_velocity
+
     def _check_levels(self) -> None:
         """A law slides at a level above zero, and breaks away at no less."""
         if self.breakaway_force < self.coulomb_force:
