@@ -129,7 +129,7 @@ def is_blur(model: Model, scales: Scales, plain: float, error: float) -> bool:
     The rms errors [N] are those with friction that does not fall with speed, and with the peak.
     """
     peak = FRICTION[model.friction].peak
-    if not peak:
+    if peak not in model.values:
         return False
     narrow = CRITERIA.narrow_peak * search_range(peak, scales).lower
     return model.values[peak] < narrow and within_blur(model, plain, error)

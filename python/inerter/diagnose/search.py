@@ -325,6 +325,8 @@ class Search:
 
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
         """Whether a fit's peak of friction does little more than the laws without it."""
+        if fit.model.friction == without.model.friction:
+            return False
         masks = self.problem.masks
         simpler = [n for n in FRICTION[fit.model.friction].simpler if not FRICTION[n].peak]
         plain = [each.rmse(masks) for _, each in fitted if each.model.friction in simpler]
