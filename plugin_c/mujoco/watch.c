@@ -224,7 +224,7 @@ void watch_stiffness(const mjModel* m, Instance* self) {
       ", or give the stiffness to the tendon or joint, with integrator=\"discrete\"";
   const char* implicit = ", or integrator=\"implicitfast\"";
   const char* width = p->friction ? inerter_friction_law[p->friction]->width_parameter : NULL;
-  char turn[INERTER_MESSAGE_SIZE];
+  char turn[128];
   snprintf(turn, sizeof(turn), "the change of sign of friction within %s",
            width ? width : "transition_velocity");
   Fastest fastest = {1, NULL, NULL};
