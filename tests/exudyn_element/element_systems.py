@@ -162,3 +162,29 @@ def solve(mbs: Any, chosen: Any, solver: str = "RK44") -> None:
         assert mbs.SolveDynamic(chosen, solverType=getattr(exu.DynamicSolverType, solver))
     finally:
         exudyn.solver.solverCheckMemoryAllocationsThreshold = enough
+
+
+def double_pendulum(mbs: Any, speeds: list[float]) -> int:
+    """A kinematic tree of two links that turn at these speeds [rad/s]: a marker at its tip."""
+    node = mbs.AddNode(
+        itemInterface.NodeGenericODE2(
+            referenceCoordinates=[0.0, 0.0], initialCoordinates=[0.3, 0.2],
+            initialCoordinates_t=speeds, numberOfODE2Coordinates=2,
+        )
+    )  # fmt: skip
+    eye = np.eye(3)
+    tree = mbs.AddObject(
+        itemInterface.ObjectKinematicTree(
+            nodeNumber=node, jointTypes=[exudyn.JointType.RevoluteZ] * 2, linkParents=[-1, 0],
+            jointTransformations=exu.Matrix3DList([eye] * 2),
+            jointOffsets=exu.Vector3DList([[0, 0, 0], [1, 0, 0]]),
+            linkInertiasCOM=exu.Matrix3DList([0.1 * eye] * 2),
+            linkCOMs=exu.Vector3DList([[0.5, 0, 0]] * 2), linkMasses=[1.0, 1.0],
+            baseOffset=[0, 0, 0], gravity=[0, -9.81, 0],
+        )
+    )  # fmt: skip
+    return mbs.AddMarker(
+        itemInterface.MarkerKinematicTreeRigid(
+            objectNumber=tree, linkNumber=1, localPosition=[1, 0, 0]
+        )
+    )

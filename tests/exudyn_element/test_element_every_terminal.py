@@ -16,7 +16,7 @@ import pytest
 
 pytest.importorskip("exudyn.itemInterface")
 
-from element_systems import BLOCK, ROTATIONS, Array, empty, exu, settings, solve
+from element_systems import BLOCK, ROTATIONS, Array, double_pendulum, empty, exu, settings, solve
 from exudyn import itemInterface
 from inerter.exudyn import CreateInerter
 
@@ -279,28 +279,7 @@ def superelement_rigid(mbs: Any) -> Made:
 @terminal
 def kinematic_tree(mbs: Any) -> Made:
     """MarkerKinematicTreeRigid."""
-    node = mbs.AddNode(
-        itemInterface.NodeGenericODE2(
-            referenceCoordinates=[0.0, 0.0], initialCoordinates=[0.3, 0.2],
-            initialCoordinates_t=[1.0, 0.5], numberOfODE2Coordinates=2,
-        )
-    )  # fmt: skip
-    eye = np.eye(3)
-    tree = mbs.AddObject(
-        itemInterface.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=[exu.JointType.RevoluteZ] * 2, linkParents=[-1, 0],
-            jointTransformations=exu.Matrix3DList([eye] * 2),
-            jointOffsets=exu.Vector3DList([[0, 0, 0], [1, 0, 0]]),
-            linkInertiasCOM=exu.Matrix3DList([0.1 * eye] * 2),
-            linkCOMs=exu.Vector3DList([[0.5, 0, 0]] * 2), linkMasses=[1.0, 1.0],
-            baseOffset=[0, 0, 0], gravity=[0, -9.81, 0],
-        )
-    )  # fmt: skip
-    marker = mbs.AddMarker(
-        itemInterface.MarkerKinematicTreeRigid(
-            objectNumber=tree, linkNumber=1, localPosition=[1, 0, 0]
-        )
-    )
+    marker = double_pendulum(mbs, [1.0, 0.5])
     return marker, marker
 
 

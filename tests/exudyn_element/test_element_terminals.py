@@ -9,7 +9,17 @@ import pytest
 
 pytest.importorskip("exudyn.itemInterface")
 
-from element_systems import BLOCK, ROTATIONS, coordinate, empty, exu, line, settings, solve
+from element_systems import (
+    BLOCK,
+    ROTATIONS,
+    coordinate,
+    double_pendulum,
+    empty,
+    exu,
+    line,
+    settings,
+    solve,
+)
 from exudyn import itemInterface
 from exudyn.rigidBodyUtilities import RotationMatrixX, RotationMatrixY
 from inerter import DeviceError
@@ -93,28 +103,7 @@ def test_a_kinematic_tree() -> None:
     """A double pendulum: F = b x'' with x'' from the positions that Exudyn tells."""
     made = empty()
     mbs = made.mbs
-    node = mbs.AddNode(
-        itemInterface.NodeGenericODE2(
-            referenceCoordinates=[0.0, 0.0], initialCoordinates=[0.3, 0.2],
-            initialCoordinates_t=[1.0, 0.0], numberOfODE2Coordinates=2,
-        )
-    )  # fmt: skip
-    eye = np.eye(3)
-    tree = mbs.AddObject(
-        itemInterface.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=[exu.JointType.RevoluteZ] * 2, linkParents=[-1, 0],
-            jointTransformations=exu.Matrix3DList([eye] * 2),
-            jointOffsets=exu.Vector3DList([[0, 0, 0], [1, 0, 0]]),
-            linkInertiasCOM=exu.Matrix3DList([0.1 * eye] * 2),
-            linkCOMs=exu.Vector3DList([[0.5, 0, 0]] * 2), linkMasses=[1.0, 1.0],
-            baseOffset=[0, 0, 0], gravity=[0, -9.81, 0],
-        )
-    )  # fmt: skip
-    tip = mbs.AddMarker(
-        itemInterface.MarkerKinematicTreeRigid(
-            objectNumber=tree, linkNumber=1, localPosition=[1, 0, 0]
-        )
-    )
+    tip = double_pendulum(mbs, [1.0, 0.0])
     ground = np.array([0.5, -1.5, 0.0])
     strut = CreateInerter(mbs, "d", [None, tip], localPosition0=ground, inertance=2.0)
     place = mbs.AddSensor(
