@@ -19,8 +19,9 @@ from inerter.estimation.covariance import usual_size
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
 
-# share of the change of a residual by a step that secants have to foretell; with 0.5 fits end away
-# from their minimum, and a search on a measured rack took 2.5 times as many predictions
+# share of the change of a residual by a step that secants have to foretell; at 0.5, and where fits
+# to be followed ended without true derivatives, a search on a measured rack took 2.5 times as many
+# predictions
 _FORETOLD = 0.7
 
 Residuals = Callable[[Array], Array]
