@@ -19,6 +19,8 @@ from inerter.estimation.covariance import usual_size
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
 
+# search variables, which are of the order of 1, below this are none
+_NOTHING = 1e-50
 # share of the change of a residual by a step that secants have to foretell; at 0.5, and where fits
 # to be followed ended without true derivatives, a search on a measured rack took 2.5 times as many
 # predictions
@@ -117,6 +119,8 @@ def minimise(
             raise StopIteration
 
     begin = inside(start, bounds)
+    # the first region is as wide as the start is far from 0: of next to nothing powers overflow
+    begin[np.abs(begin) < _NOTHING] = 0.0
     scale = usual_size(residual(begin)) if loss != "linear" else 1.0
     cost = np.inf
     while True:
