@@ -85,13 +85,14 @@ def _silent(text: str) -> None:
 
 @dataclass
 class Search:
-    """A search over the fit data of a split."""
+    """A search over the fit data of a split; effects `excluded` are not tried."""
 
     runs: Sequence[BenchRun]
     split: Split
     baseline: Model
     progress: Progress = _silent
     found: list[str] = field(default_factory=list)
+    excluded: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         self._divide()
@@ -215,6 +216,7 @@ class Search:
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
         trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
         trials += along_stroke.candidates(self.problem, current.fit)
+        trials = [trial for trial in trials if trial.effect not in self.excluded]
         fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None

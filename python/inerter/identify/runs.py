@@ -164,12 +164,12 @@ class BenchRun:
             return 1.0
         return float(response(np.array([frequency]), self.cutoff)[0])
 
-    @property
+    @cached_property
     def elapsed(self) -> Array:
         """Time since the clock began [s], shape (n,)."""
         return self.time - self.clock
 
-    @property
+    @cached_property
     def fine_elapsed(self) -> Array:
         """The same at the measured rate, shape (m,)."""
         size = self.force.size if self.measured is None else self.measured[0].size

@@ -1,0 +1,61 @@
+"""Where the held-out data do not confirm an effect, what its place hid is looked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from inerter.diagnose.composition import effects_of
+from inerter.diagnose.stages import Confirmed, Given, Settled, confirmed, prepared, searched
+from inerter.records import Record
+
+
+def bench(viscous: float, coulomb: float, seed: int) -> Record:
+    """60 kg with friction along two sines."""
+    random = np.random.default_rng(seed)
+    time = np.arange(0, 8, 1 / 500)
+    size, speed = np.array([[0.01], [0.004]]), 2 * np.pi * np.array([[1.0], [2.7]])
+    x = (size * np.sin(speed * time)).sum(0)
+    v = (size * speed * np.cos(speed * time)).sum(0)
+    a = -(size * speed**2 * np.sin(speed * time)).sum(0)
+    force = 60 * a + viscous * v + coulomb * np.sign(v)
+    return Record(
+        name="run",
+        time=time,
+        displacement=x + random.normal(0, 1e-6, time.size),
+        force=force + random.normal(0, 0.3, time.size),
+    )
+
+
+def confirmed_from(record: Record, **said: float) -> tuple[Confirmed, list[str]]:
+    """What stands of a search that ended with some effects, and what was told on the way."""
+    told: list[str] = []
+    found = searched(prepared(Given(records=[record], progress=told.append)))
+    search = found.search
+    fit = search.problem.fit(search.baseline.adding(None, **said))
+    final = search.score("", None, fit)
+    start = Settled(
+        searched=replace(found, final=final), final=final, before=search.baseline_fit(),
+        standings={},
+    )  # fmt: skip
+    return confirmed(start), told
+
+
+def names(found: Confirmed) -> set[str]:
+    """Effects that stand."""
+    return {name for name, _ in effects_of(found.fit.model, found.searched.prepared.baseline)}
+
+
+def test_search_goes_on_without_what_was_dropped(effects_seed: int) -> None:
+    found, told = confirmed_from(bench(100.0, 8.0, effects_seed), viscous=0.0, force_drift=0.0)
+    assert "force_drift is not confirmed on held-out data: dropped" in told
+    assert "searching on without force_drift" in told
+    assert names(found) == {"viscous_friction", "coulomb_friction"}
+    assert {link.effect for link in found.chain} == names(found)
+    assert set(found.standings) == names(found)
+
+
+def test_nothing_is_added_where_nothing_is_left(effects_seed: int) -> None:
+    found, told = confirmed_from(bench(100.0, 0.0, effects_seed), viscous=0.0, force_drift=0.0)
+    assert "searching on without force_drift" in told
+    assert names(found) == {"viscous_friction"}
