@@ -135,9 +135,15 @@ class Search:
             for fold in folds
         ]
 
-    def run(self, start: Model | None = None, until: str | None = None) -> Scored:
+    def run(
+        self,
+        start: Model | None = None,
+        until: str | None = None,
+        most: int = CRITERIA.most_effects,
+    ) -> Scored:
         """Search from a model, by default the baseline; the extended one, fitted to all fit data.
 
+        `most` effects are added at most.
         Where the effect `until` is found the search ends with it, and nothing is pruned.
         """
         start = start or self.baseline
@@ -145,7 +151,7 @@ class Search:
         if any(is_local(effect) for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
-        while len(self.found) < CRITERIA.most_effects:
+        while len(self.found) < most:
             chosen = self._best_step(current) or self._two_steps(current)
             if chosen is None:
                 break

@@ -359,7 +359,7 @@ def confirmed(start: Settled) -> Confirmed:
     if dropped and chain and not has_series(final.model):
         progress(f"searching on without {', '.join(sorted(dropped))}")
         again = replace(search, found=[], excluded=frozenset({*dropped, *_DRIVE}))
-        more = identified(again, baseline, again.run(final.model))
+        more = identified(again, baseline, again.run(final.model, most=len(dropped)))
         if added(more.model, final.model, baseline):
             more, compared_again = compared(again, baseline, more)
             more, links, _ = standing_on_held_out(found, more)
