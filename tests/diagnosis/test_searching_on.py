@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 from inerter.diagnose.composition import effects_of
-from inerter.diagnose.stages import Confirmed, Given, Settled, confirmed, prepared, searched
+from inerter.diagnose.stages import (
+    Confirmed,
+    Given,
+    Settled,
+    compared,
+    confirmed,
+    prepared,
+    searched,
+)
 from inerter.records import Record
 
 
@@ -59,3 +67,17 @@ def test_nothing_is_added_where_nothing_is_left(effects_seed: int) -> None:
     found, told = confirmed_from(bench(100.0, 0.0, effects_seed), viscous=0.0, force_drift=0.0)
     assert "searching on without force_drift" in told
     assert names(found) == {"viscous_friction"}
+    assert [link.effect for link in found.chain] == ["viscous_friction"]
+
+
+def test_what_is_excluded_comes_back_on_no_way(effects_seed: int) -> None:
+    found = searched(prepared(Given(records=[bench(100.0, 8.0, effects_seed)])))
+    baseline = found.prepared.baseline
+    assert "coulomb_friction" in dict(effects_of(found.final.model, baseline))
+    # every law of friction, and what stands in for one
+    excluded = {"coulomb_friction", "hysteretic_friction", "position_dependent_friction"}
+    search = replace(found.search, found=[], excluded=frozenset(excluded))
+    model, _ = compared(search, baseline, search.run())
+    there = {name for name, _ in effects_of(model.model, baseline)}
+    assert "viscous_friction" in there
+    assert not there & excluded

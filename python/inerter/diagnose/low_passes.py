@@ -63,7 +63,7 @@ def where_late(search: Search, current: Scored, fitted: Fitted) -> list[tuple[Ca
     fitted: the other candidates, the best first.
     """
     masks, here = search.problem.masks, current.fit
-    if has_filter(here.model):
+    if has_filter(here.model) or "sensor_filter" in search.excluded:
         return []
     delay = here.model.delay if "delay" in here.model.free else 0.0
     late = next((fit for trial, fit in fitted if trial.effect == "sensor_delay"), None)

@@ -71,7 +71,7 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     instead = [
         s
         for s, share in pairs
-        if s.effect != effect
+        if s.effect not in (effect, *search.excluded)
         and (
             _takes_precedence(s, final, effect, baseline)
             or (share > CRITERIA.preferred and _is_better(s, final, baseline))

@@ -85,7 +85,7 @@ def _silent(text: str) -> None:
 
 @dataclass
 class Search:
-    """A search over the fit data of a split; effects `excluded` are not tried."""
+    """A search over the fit data of a split; effects `excluded` are not added."""
 
     runs: Sequence[BenchRun]
     split: Split
@@ -222,7 +222,7 @@ class Search:
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
         trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
         trials += along_stroke.candidates(self.problem, current.fit)
-        trials = [trial for trial in trials if trial.effect not in self.excluded]
+        trials = [trial for trial in trials if self._may_be(trial.starts[0])]
         fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None
@@ -341,6 +341,10 @@ class Search:
         plainest = min(plain, default=without.rmse(masks))
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 
+    def _may_be(self, model: Model) -> bool:
+        """Whether a model has none of the effects excluded."""
+        return not self.excluded.intersection(name for name, _ in effects_of(model, self.baseline))
+
     def _tones(self, current: Fit) -> list[Candidate]:
         """The tone that a residual shows, if any."""
         if "disturbance_amplitude" in current.model.values:
@@ -383,7 +387,8 @@ class Search:
                 if same and (stiffens or not EFFECTS[candidate.effect].unlike_friction):
                     trials.append(candidate)
         spare = current.model.complexity
-        trials = [trial for trial in trials if trial.starts[0].complexity < spare]
+        plainer = (trial for trial in trials if trial.starts[0].complexity < spare)
+        trials = [trial for trial in plainer if self._may_be(trial.starts[0])]
         limit = current.fit.rmse(masks) * (1 + CRITERIA.tolerated_loss)
         fits = sorted(
             parallel(lambda trial: self.trials.fit(trial, (FAR * limit, np.inf)), trials),
@@ -395,7 +400,7 @@ class Search:
                 return self._exchange(scored)
         if with_spring := self._spring_beside(current):
             return self._exchange(with_spring)
-        for model in as_one(current.model):
+        for model in filter(self._may_be, as_one(current.model)):
             fit = self.problem.fit(model)
             if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):
                 return self.score("exchange", None, fit)
@@ -410,7 +415,7 @@ class Search:
             candidate
             for model in with_own_spring(current.model)
             for candidate in candidates(model, self.problem.scales)
-            if candidate.law == "lugre"
+            if candidate.law == "lugre" and self._may_be(candidate.starts[0])
         ]
         for candidate in trials:
             scored = self.score("exchange", None, self.trials.fit(candidate))
@@ -427,6 +432,7 @@ class Search:
                 (effect, model)
                 for effect, _ in effects_of(current.model, self.baseline)
                 for model in without_effect(current.model, effect, self.baseline)
+                if self._may_be(model)
             ]
             simpler = []
             for scored in parallel(

@@ -352,19 +352,17 @@ def _plainest_law(found: Searched) -> Scored:
 def confirmed(start: Settled) -> Confirmed:
     """What helps on data that no fit has seen; the rest is dropped."""
     found, final = start.searched, start.final
-    search, judge, baseline = found.search, found.judge, found.prepared.baseline
+    search, judge = found.search, found.judge
     progress = found.prepared.given.progress
-    final, chain, dropped = standing_on_held_out(found, final)
+    progress("measuring the gain of each effect")
+    final, chain, dropped = _standing_on_held_out(found, final)
     standings = dict(start.standings)
-    if dropped and chain and not has_series(final.model):
-        progress(f"searching on without {', '.join(sorted(dropped))}")
-        again = replace(search, found=[], excluded=frozenset({*dropped, *_DRIVE}))
-        more = identified(again, baseline, again.run(final.model, most=len(dropped)))
-        if added(more.model, final.model, baseline):
-            more, compared_again = compared(again, baseline, more)
-            more, links, _ = standing_on_held_out(found, more)
-            if judge.rmse(more.model) < judge.rmse(final.model):
-                final, chain, standings = more, links, compared_again
+    if dropped and chain and (further := _searched_on(found, final, dropped)):
+        progress("measuring the gain of each effect")
+        more, links, _ = _standing_on_held_out(found, further[0])
+        new = {link.effect for link in links} - {link.effect for link in chain}
+        if new and judge.rmse(more.model) < judge.rmse(final.model):
+            final, chain, standings = more, links, further[1]
     # where nothing stands the baseline is left, fitted as it was
     fit, tone = _with_tone(found, final.fit if chain else start.before)
     if tone:
@@ -383,18 +381,16 @@ def confirmed(start: Settled) -> Confirmed:
     )
 
 
-def standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[Link], set[str]]:
-    """A model without the effects that the held-out data do not confirm; what each gains there.
+def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[Link], set[str]]:
+    """A model without the effects that the held-out data do not confirm; their chain; the others.
 
-    Also what was dropped, the weakest first, each with the rest fitted anew.
+    What is left is fitted anew each time that one is dropped.
     """
     search, judge, baseline = found.search, found.judge, found.prepared.baseline
-    progress = found.prepared.given.progress
-    progress("measuring the gain of each effect")
     chain = chain_of(search, judge, final.model)
     dropped: set[str] = set()
     while weak := weakest(chain, judge, final.model):
-        progress(f"{weak} is not confirmed on held-out data: dropped")
+        search.progress(f"{weak} is not confirmed on held-out data: dropped")
         dropped.add(weak)
         rest = [name for name, _ in effects_of(final.model, baseline) if name != weak]
         fit = search.problem.fit(submodel(final.model, rest, baseline))
@@ -403,10 +399,23 @@ def standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[L
     return final, chain, dropped
 
 
-def added(model: Model, before: Model, baseline: Model) -> bool:
-    """Whether a model has an effect that another has not."""
-    known = dict(effects_of(before, baseline))
-    return any(name not in known for name, _ in effects_of(model, baseline))
+def _searched_on(
+    found: Searched, final: Scored, dropped: set[str]
+) -> tuple[Scored, dict[str, Standing]] | None:
+    """A model with further effects in the place of those dropped, compared with their rivals.
+
+    None where there are none. What has a shaft or a play was searched for with weights and data of
+    its own, and is not taken further.
+    """
+    baseline = found.prepared.baseline
+    if has_series(final.model):
+        return None
+    search = replace(found.search, found=[], excluded=frozenset({*dropped, *_DRIVE}))
+    search.progress(f"searching on without {', '.join(sorted(dropped))}")
+    more = identified(search, baseline, search.run(final.model, most=len(dropped)))
+    if not dict(effects_of(more.model, baseline)).keys() - dict(effects_of(final.model, baseline)):
+        return None
+    return compared(search, baseline, more)
 
 
 def _with_tone(found: Searched, fit: Fit) -> tuple[Fit, tuple[Link, float] | None]:
