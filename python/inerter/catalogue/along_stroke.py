@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -60,13 +61,18 @@ class Quantity:
 
     def node(self, number: int) -> str:
         """Coordinate of a curve's node, from 1 on."""
-        return f"{self.name}_node_{number}"
+        return self.nodes[number - 1]
 
-    @property
+    @cached_property
+    def nodes(self) -> tuple[str, ...]:
+        """Coordinates of a curve's nodes."""
+        return tuple(f"{self.name}_node_{i}" for i in range(1, NODES + 1))
+
+    @cached_property
     def coordinates(self) -> tuple[str, ...]:
         """Every coordinate."""
         periods = (name for i in range(1, PERIODS + 1) for name in self.period(i))
-        return (*periods, *(self.node(i) for i in range(1, NODES + 1)))
+        return (*periods, *self.nodes)
 
     @property
     def amplitudes(self) -> tuple[str, ...]:
@@ -78,7 +84,7 @@ class Quantity:
         """What a finding reports."""
         words = ("period", "amplitude", "phase")
         periods = (f"{self.name}_{word}_{i}" for i in range(1, PERIODS + 1) for word in words)
-        return (*periods, *(self.node(i) for i in range(1, NODES + 1)))
+        return (*periods, *self.nodes)
 
     def form(self, names: set[str]) -> str | None:
         """What some coordinates are of it: "curve", "period" or nothing."""
@@ -134,7 +140,7 @@ def _of(quantity: Quantity) -> tuple[Coordinate, ...]:
             )
         )
         found += [Coordinate(name=name, **how) for name in amplitudes]
-    nodes = (quantity.node(i) for i in range(1, NODES + 1))
+    nodes = quantity.nodes
     return (*found, *(Coordinate(name=n, words={n: n.replace("_", " ")}, **how) for n in nodes))
 
 
@@ -145,7 +151,7 @@ REPORTED_UNITS: Mapping[str, str] = {
     name: unit
     for q in QUANTITIES
     for name, unit in (
-        *((q.node(i), q.unit) for i in range(1, NODES + 1)),
+        *((name, q.unit) for name in q.nodes),
         *(
             pair
             for i in range(1, PERIODS + 1)
@@ -160,6 +166,7 @@ REPORTED_UNITS: Mapping[str, str] = {
 """Units of what findings report of it and no device has a parameter for."""
 
 
+_QUANTITY_OF = {name: quantity for quantity in QUANTITIES for name in quantity.nodes}
 _NAMES = {name for q in QUANTITIES for name in (*q.coordinates, *q.reported)}
 
 FORMS: Mapping[str, str] = {
@@ -172,7 +179,7 @@ FORMS: Mapping[str, str] = {
 
 def node_of(parameter: str) -> Quantity | None:
     """The quantity whose curve has a node of this name."""
-    return next((q for q in QUANTITIES if parameter.startswith(f"{q.name}_node_")), None)
+    return _QUANTITY_OF.get(parameter)
 
 
 def told(values: Values) -> None:
@@ -202,7 +209,9 @@ def lists(values: Values) -> dict[str, str]:
                 rows += row
         if rows:
             found[f"{quantity.name}_periods"] = " ".join(map(repr, rows))
-        nodes = [values.pop(quantity.node(i), None) for i in range(1, NODES + 1)]
+        if quantity.nodes[0] not in values:
+            continue
+        nodes = [values.pop(name, None) for name in quantity.nodes]
         if any(nodes):
             last = max(i for i, node in enumerate(nodes) if node is not None)
             curve = [float(node or 0.0) for node in nodes[: last + 1]]

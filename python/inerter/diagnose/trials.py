@@ -24,6 +24,9 @@ FEW = 8
 NEAR = 1.1
 # how far above what it has to reach, or the best, a candidate may be after these to be followed
 FAR = 2.0
+# evaluations of a fit at most, and steps that tell its pace
+MOST = 40
+STEPS = 3
 # evaluations on part of the data after which that is asked first
 FEWEST = 5
 # starting points of a free play that are tried, and how far above what it has to beat a fit to part
@@ -40,6 +43,32 @@ MEMORYLESS = {law.effect for law in FRICTION.values() if law.effect and not law.
 
 # errors [N] of all fit data and of the part that starting points are compared on
 Limits = tuple[float, float]
+
+
+class Pace:
+    """Whether a fit still comes down to a limit [N] at the pace of its last steps.
+
+    It slows down as it comes near its end: at a steady pace it would be there sooner.
+    """
+
+    def __init__(self, limit: float) -> None:
+        self.limit = limit
+        self._last: list[tuple[int, float]] = []
+
+    def hopeless(self, done: int, error: float) -> bool:
+        """Told evaluations so far and error [N]: not even twice as fast in all that are left."""
+        self._last.append((done, error))
+        if len(self._last) <= STEPS or error < self.limit:
+            return False
+        before, was = self._last[-1 - STEPS]
+        pace = (was - error) / max(done - before, 1)
+        return 2 * pace * (MOST - done) < error - self.limit
+
+
+def _within_shortlist(errors: Sequence[float]) -> float:
+    """The largest error of candidates that would be checked, if none came down any more."""
+    near = (1 + 5 * CRITERIA.tolerated_loss) * min(errors, default=np.inf)
+    return max(sorted(errors)[: CRITERIA.shortlist][-1], near) if errors else np.inf
 
 
 class Trials:
@@ -89,11 +118,14 @@ class Trials:
             starts = tuple(trial.model for trial in near or trials[:1])
         return [self.problem.fit(start, FEW, tolerance=ROUGH, rough=True) for start in starts]
 
-    def _followed(self, rough: Sequence[Fit], limit: float) -> Fit:
-        """The best of them; those below a limit [N] are followed to their end first."""
+    def _followed(self, rough: Sequence[Fit], limit: float, reach: float = np.inf) -> Fit:
+        """The best of them; those below a limit [N] are followed to their end first.
+
+        What cannot come down to what is within `reach` [N] at its pace is followed no further.
+        """
         masks = self.problem.masks
         fits = [
-            self.problem.fit(fit.model, tolerance=ROUGH)
+            self.problem.fit(fit.model, MOST, tolerance=ROUGH, give_up=Pace(reach).hopeless)
             if fit.evaluations >= FEW and fit.rmse(masks) < limit
             else fit
             for fit in rough
@@ -129,12 +161,12 @@ class Trials:
             new = [t for t in some if t.key not in known and promise.holds(t)]
             old = [(t, known[t.key]) for t in some if t.key in known]
             rough = parallel(lambda t: self._rough(t, limits), new)
-            so_far = [fit for _, fit in [*fitted, *old]] + [fit for each in rough for fit in each]
-            limit = min([limits[0], *(FAR * fit.rmse(masks) for fit in so_far)])
-            return [
-                *zip(new, parallel(lambda r: self._followed(r, limit), rough), strict=True),
-                *old,
-            ]
+            begun = [min(fit.rmse(masks) for fit in each) for each in rough]
+            so_far = [*begun, *(fit.rmse(masks) for _, fit in [*fitted, *old])]
+            limit = min([limits[0], *(FAR * error for error in so_far)])
+            reach = CRITERIA.beaten * aim.rmse(masks) if aim else _within_shortlist(so_far)
+            followed = parallel(lambda r: self._followed(r, limit, reach), rough)
+            return [*zip(new, followed, strict=True), *old]
 
         fitted: list[tuple[Candidate, Fit]] = []
         fitted += fits(plain)

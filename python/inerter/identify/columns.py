@@ -1,33 +1,76 @@
 """Derivatives of a problem's residual by the search variables of its model, one column each.
 
 Most are differences. A coordinate that enters the force in proportion to a function of the motion
-has that function as its column, which the model does not change: it is weighted once. Where the
-device has a state, this begins where the first force puts it; a coordinate acts on that through the
-share of the first force that it takes, so that one difference by the first force serves all.
+has that function as its column, which the model does not change: it is weighted once. That holds
+for a node of a curve along the stroke too, whose function is what the core gives of a device that
+has nothing else. Where the device has a state, this begins where the first force puts it; a
+coordinate acts on that through the share of the first force that it takes, so that one difference
+by the first force serves all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+import functools
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.catalogue.coordinates import COORDINATES, ENTANGLED, search_range
-from inerter.identify.channel import clips, delayed
+from inerter.catalogue.along_stroke import Quantity, node_of
+from inerter.catalogue.coordinates import COORDINATES, ENTANGLED, device_values, search_range
+from inerter.core import Device
+from inerter.identify.channel import clips, through_channel
+from inerter.identify.channel_filter import Filter, filter_of, without_start
 from inerter.identify.model import Model
-from inerter.identify.runs import BenchRun
+from inerter.identify.runs import BenchRun, forces_along
 
 if TYPE_CHECKING:
     from inerter.identify.fit import Problem
 
 Array = NDArray[np.float64]
 
+
+class ResidualAt(Protocol):
+    """The residual of every run at a point, with its first force `pressed` [N] more."""
+
+    def __call__(self, point: Array, pressed: float = 0.0, /) -> list[Array]: ...
+
+
+
 # difference of a search variable, and of the first force per its size
 _STEP = 1e-4
+# columns [bytes] that are kept of a problem, and of all runs in a process
+_MOST, _MOST_OF_RUNS = 2**25, 2**26
 # with one of these a column is no longer that of the motion as it is
-_FILTERS = ("force_filter", "displacement_filter")
+_FILTER = "displacement_filter"
+# what of the channel is a linear filter of the force
+_LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
+# what beside a node says what its curve adds to the force
+_PLACES = ("rest_length", "curve_lower", "curve_upper")
+
+
+class _Kept:
+    """Arrays that are worked out once, as long as they do not take too much memory."""
+
+    def __init__(self, most: int) -> None:
+        self.most, self.size = most, 0
+        self.arrays: dict[Hashable, Array] = {}
+
+    def found(self, key: Hashable, work_out: Callable[[], Array]) -> Array:
+        """The array of a key."""
+        known = self.arrays.get(key)
+        if known is None:
+            if self.size > self.most:
+                self.arrays.clear()
+                self.size = 0
+            known = self.arrays[key] = work_out()
+            self.size += known.nbytes
+        return known
+
+
+# what the channels of runs show of coordinates: of use to every problem that has the run
+_OF_RUNS = _Kept(_MOST_OF_RUNS)
 
 
 class Columns:
@@ -35,22 +78,22 @@ class Columns:
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self._kept: dict[tuple[object, ...], Array] = {}
+        self._kept = _Kept(_MOST)
 
     def __getstate__(self) -> Mapping[str, Any]:
         """What another process is told: what is kept is soon worked out again."""
-        return {**self.__dict__, "_kept": {}}
+        return {**self.__dict__, "_kept": _Kept(_MOST)}
 
     def of(
         self,
         model: Model,
         point: Array,
         names: Sequence[str],
-        residual: Callable[[Array], list[Array]],
+        residual: ResidualAt,
     ) -> list[Array]:
         """Derivative of the residual by each named variable, over all samples of all runs, (n,).
 
-        `residual` gives it at a point, the variables of the model's free coordinates.
+        `point` has the variables of the model's free coordinates.
         """
         base: list[Array] = []
         by_first_force: list[Array] = []
@@ -60,9 +103,10 @@ class Columns:
                 column = self._weighted(name, model)
                 if model.device().nstate and COORDINATES[name].belongs_to == "device":
                     base = base or residual(point)
-                    by_first_force = by_first_force or self._by_first_force(model, base)
+                    by_first_force = by_first_force or self._by_first_force(point, base, residual)
                     column = column - self._taken(name, model, by_first_force)
-                columns.append(column * search_range(name, self.problem.scales).size)
+                size = _factor(name, model) * search_range(name, self.problem.scales).size
+                columns.append(column * size)
             else:
                 base = base or residual(point)
                 columns.append(self._difference(name, model, point, base, residual))
@@ -72,11 +116,11 @@ class Columns:
         """Whether a coordinate enters the force times its column."""
         device = model.device()
         return bool(
-            COORDINATES[name].column
+            (COORDINATES[name].column or _curve(name))
             # a flywheel on its spring is set going by whatever acts
             and not (device.nstate and (device.series_stiffness or device.series_damping))
             and not clips(model.values)
-            and not any(each in model.values for each in (*_FILTERS, *ENTANGLED.get(name, ())))
+            and not any(each in model.values for each in (_FILTER, *_entangled(name)))
             and all(np.isinf(run.far) for run in self.problem.runs)
         )
 
@@ -86,7 +130,7 @@ class Columns:
         model: Model,
         point: Array,
         base: Sequence[Array],
-        residual: Callable[[Array], list[Array]],
+        residual: ResidualAt,
     ) -> Array:
         index = model.free.index(name)
         step = _STEP
@@ -98,34 +142,125 @@ class Columns:
 
     def _weighted(self, name: str, model: Model) -> Array:
         """Minus a column as it counts."""
-        key = (name, model.delay, model.values.get("rest_length", 0.0))
-        if key not in self._kept:
-            if len(self._kept) > 4 * len(COORDINATES):
-                self._kept.clear()
-            columns = [
-                -delayed(_column(name, model, run), model.delay, run.spacing)
-                for run in self.problem.runs
-            ]
-            self._kept[key] = np.concatenate(self.problem.weighted(columns))
-        return self._kept[key]
+        key = _key(name, model, _LINEAR)
 
-    def _by_first_force(self, model: Model, base: Sequence[Array]) -> list[Array]:
+        def column() -> Array:
+            low_pass = filter_of(model.values, "force")
+            columns = []
+            for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
+                of_run = functools.partial(_shown, name, model, run)
+                shown = _OF_RUNS.found((run.identity, *key), of_run)
+                columns.append(-_settled(shown, run, mask, low_pass))
+            return np.concatenate(self.problem.weighted(columns))
+
+        return self._kept.found(key, column)
+
+    def _by_first_force(
+        self, point: Array, base: Sequence[Array], residual: ResidualAt
+    ) -> list[Array]:
         """Derivative of the residual by the first force, of every run."""
         step = _STEP * self.problem.scales.force
-        there = self.problem.residual(model, step)
+        there = residual(point, step)
         return [(each - here) / step for each, here in zip(there, base, strict=True)]
 
     def _taken(self, name: str, model: Model, by_first_force: Sequence[Array]) -> Array:
         """What a coordinate does by the share of each run's first force that it takes."""
-        runs = self.problem.runs
-        shares = [float(_column(name, model, run)[run.first]) for run in runs]
-        pairs = zip(shares, by_first_force, strict=True)
-        return np.concatenate([share * column for share, column in pairs])
+        key, taken = _key(name, model), []
+        for run, column in zip(self.problem.runs, by_first_force, strict=True):
+
+            def share(run: BenchRun = run) -> Array:
+                return _column(name, model, run)[run.first : run.first + 1].copy()
+
+            taken.append(_OF_RUNS.found((run.identity, *key), share) * column)
+        return np.concatenate(taken)
+
+
+def _key(name: str, model: Model, channel: Sequence[str] = ()) -> tuple[Hashable, ...]:
+    """What of a model a coordinate's column depends on; `channel`: what the channel does to it."""
+    places = _PLACES if _curve(name) else ("rest_length",)
+    values = (model.values.get(each, 0.0) for each in (*places, *channel))
+    return name, _nodes(name, model), *values
+
+
+def _curve(name: str) -> Quantity | None:
+    """What a coordinate is a node of, where the force is in proportion to it."""
+    quantity = node_of(name)
+    return quantity if quantity and quantity.name in ("force", "inertance") else None
+
+
+def _entangled(name: str) -> Sequence[str]:
+    """Coordinates beside which the force is not in proportion to this one."""
+    quantity = _curve(name)
+    if quantity is None:
+        return ENTANGLED.get(name, ())
+    if quantity.name == "force":
+        return ()
+    # what the inertance gains along the stroke adds up
+    others = (each for each in ENTANGLED["inertance"] if each not in quantity.coordinates)
+    return tuple(each for each in others if each not in quantity.stands_for)
+
+
+def _factor(name: str, model: Model) -> float:
+    """What a column is multiplied by in this model."""
+    quantity = _curve(name)
+    return model.values["inertance"] if quantity and quantity.name == "inertance" else 1.0
+
+
+def _nodes(name: str, model: Model) -> int:
+    """Number of nodes of the curve that a coordinate is a node of, 0 where it is none."""
+    quantity = _curve(name)
+    return sum(node_of(each) is quantity for each in model.values) if quantity else 0
+
+
+def _shown(name: str, model: Model, run: BenchRun) -> Array:
+    """What one of a coordinate adds to a run's force channel, shape (n,)."""
+    channel = {each: model.values[each] for each in _LINEAR if each in model.values}
+    if _curve(name) and np.isfinite(run.cutoff):
+        # a curve bends more sharply than the motion: it passes the low-pass of the measured force
+        device, less = _alone(name, model)
+        fine = run.at_measured_rate(device, 0.0)["total"]
+        if less:
+            fine = fine - run.at_measured_rate(less, 0.0)["total"]
+        spacing = run.spacing / run.thinned
+        shown = run.in_band(through_channel(channel, fine, run.fine_elapsed, spacing))
+    else:
+        force = _column(name, model, run)
+        shown = through_channel(channel, force, run.elapsed, run.spacing)
+    return shown
+
+
+def _settled(
+    shown: Array, run: BenchRun, mask: NDArray[np.bool_], low_pass: Filter | None
+) -> Array:
+    """A column without what a low-pass that is switched on adds, as of a residual."""
+    if low_pass is None:
+        return shown
+    mask = mask & run.inner if mask.any() else run.inner
+    return without_start(shown, run.spacing, mask, low_pass, run.first)
 
 
 def _column(name: str, model: Model, run: BenchRun) -> Array:
+    """What one of a coordinate adds to a device's force along a run, shape (n,)."""
     column = COORDINATES[name].column
     if column is None:
-        raise ValueError(f"{name} does not enter the force in proportion")
+        pair = (each for each in _alone(name, model) if each)
+        totals = [
+            forces_along(each, run.spacing, run.followed, 0.0, run.force.size)["total"]
+            for each in pair
+        ]
+        return totals[0] - totals[1] if len(totals) > 1 else totals[0]
     stretch = run.displacement - model.values.get("rest_length", 0.0)
     return column(stretch, run.velocity, run.acceleration, run.elapsed)
+
+
+def _alone(name: str, model: Model) -> tuple[Device, Device | None]:
+    """A device whose only force is that of one node of a curve, or that and the other one's."""
+    quantity = _curve(name)
+    if quantity is None:
+        raise ValueError(f"{name} does not enter the force in proportion")
+    values = {each: 0.0 for each in model.values if node_of(each) is quantity}
+    values |= {each: model.values[each] for each in _PLACES if each in model.values}
+    if quantity.name == "force":
+        return Device(friction="none", **device_values({**values, name: 1.0})), None
+    plain = Device(friction="none", inertance=1.0)
+    return Device(friction="none", **device_values({**values, name: 1.0, "inertance": 1.0})), plain

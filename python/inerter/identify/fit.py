@@ -16,7 +16,7 @@ from inerter.catalogue.scales import Scales
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
 from inerter.estimation.least_squares import Secants, Tolerances, minimise
 from inerter.estimation.variables import Variables
-from inerter.identify.columns import Columns
+from inerter.identify.columns import Columns, ResidualAt
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.runs import BenchRun, head, head_size, scales
@@ -96,21 +96,26 @@ class Problem:
             self.scales,
         )
 
-    def residual(self, model: Model, pressed: float = 0.0) -> list[Array]:
+    def residual(
+        self, model: Model, pressed: float = 0.0, *, counted: bool = False
+    ) -> list[Array]:
         """Errors as they count against noise, of every run [N]."""
         shaft = model.shaft if model.is_possible else None
-        return self.weighted(self.errors(model, pressed), shaft)
+        return self.weighted(self.errors(model, pressed, counted=counted), shaft)
 
-    def errors(self, model: Model, pressed: float = 0.0) -> list[Array]:
+    def errors(self, model: Model, pressed: float = 0.0, *, counted: bool = False) -> list[Array]:
         """Measured minus predicted force of every run [N].
 
         States begin where a first force puts them that is the measured one and `pressed` [N].
+        Where only what is `counted` is asked for, runs that have no such samples are 0.
         """
         if not model.is_possible:
             # a search may try what no device can be: an inertance below 0 at a place, say
             return [np.full(run.force.size, np.inf) for run in self.runs]
         return [
-            settled(model, run, run.force - force_along(model, run, pressed), mask)
+            np.zeros(run.force.size)
+            if counted and not mask.any()
+            else settled(model, run, run.force - force_along(model, run, pressed), mask)
             for run, mask in zip(self.runs, self.masks, strict=True)
         ]
 
@@ -132,20 +137,22 @@ class Problem:
 
         `names` are the free coordinates asked for, by default all.
         """
-        return self.derivatives(model, names)[np.concatenate(self.masks)]
+        return self.derivatives(model, names, counted=True)[np.concatenate(self.masks)]
 
-    def derivatives(self, model: Model, names: Sequence[str] | None = None) -> Array:
-        """The same over all samples, those that do not count among them."""
+    def derivatives(
+        self, model: Model, names: Sequence[str] | None = None, *, counted: bool = False
+    ) -> Array:
+        """The same over all samples, those that do not count among them unless told otherwise."""
         here = self.variables(model).encode(model.values)
         wanted = model.free if names is None else names
-        return self._columns(model, here, wanted, lambda p: self.residual(self._decode(model, p)))
+
+        def at(point: Array, pressed: float = 0.0) -> list[Array]:
+            return self.residual(self._decode(model, point), pressed, counted=counted)
+
+        return self._columns(model, here, wanted, at)
 
     def _columns(
-        self,
-        model: Model,
-        point: Array,
-        names: Sequence[str],
-        residual: Callable[[Array], list[Array]],
+        self, model: Model, point: Array, names: Sequence[str], residual: ResidualAt
     ) -> Array:
         columns = self._derivatives.of(model, point, names, residual)
         samples = sum(run.force.size for run in self.runs)
@@ -186,11 +193,13 @@ class Problem:
         cache: dict[bytes, list[Array]] = {}
         selected = np.concatenate(self.masks)
 
-        def at(point: Array) -> list[Array]:
+        def at(point: Array, pressed: float = 0.0) -> list[Array]:
+            if pressed:
+                return self.residual(self._decode(model, point), pressed, counted=True)
             key = point.tobytes()
             if key not in cache:
                 cache.clear()
-                cache[key] = self.residual(self._decode(model, point))
+                cache[key] = self.residual(self._decode(model, point), counted=True)
             return cache[key]
 
         def jacobian(point: Array) -> Array:
@@ -224,6 +233,8 @@ class Problem:
         true = rough or not (secants.stale or loss != "linear")
         columns = solution.jacobian if true else jacobian(solution.variables)
         covariance = self._covariance(fitted, columns * size, flat, weight)
+        if not all(mask.any() for mask in self.masks):
+            residual = self.residual(fitted)
         return Fit(fitted, residual, covariance, solution.evaluations, solution.cost, rough)
 
     def told(self, fit: Fit, derivatives: Array) -> Fit:

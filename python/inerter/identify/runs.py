@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import itertools
+import os
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +27,8 @@ from inerter.records.motion import (
 )
 
 Array = NDArray[np.float64]
+
+_RUNS = itertools.count()
 
 # samples per period of the cut-off that a fit works on; more add time and no information
 SAMPLES_PER_PERIOD = 8
@@ -67,6 +70,8 @@ class BenchRun:
         Size [N] beyond which a residual counts little, see `weighted`.
     motion : str
         What the device does; in rotation read rad for m and N m for N.
+    identity : tuple of int
+        Tells its samples from those of all other runs, in other processes too.
     """
 
     name: str
@@ -87,6 +92,7 @@ class BenchRun:
     shaft: Shaft | None = None
     far: float = np.inf
     motion: Kind = TRANSLATION
+    identity: tuple[int, int] = field(init=False, default_factory=lambda: (os.getpid(), next(_RUNS)))
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
         """Forces of a device at the measured rate [N], shape (m,) each.
@@ -117,6 +123,8 @@ class BenchRun:
 
         What is beyond `far` counts by its logarithm: the sum of the squares is the Cauchy loss.
         """
+        if np.isfinite(self.corner) and not mask.any():
+            return np.zeros_like(values)
         if np.isfinite(self.corner) and np.isfinite(values).all():
             weight = self._weight if shaft is None else self._weight_of(shaft)
             values = apply_weight(np.where(mask, values, 0.0), weight)
