@@ -37,7 +37,6 @@ class ResidualAt(Protocol):
     def __call__(self, point: Array, pressed: float = 0.0, /) -> list[Array]: ...
 
 
-
 # difference of a search variable, and of the first force per its size
 _STEP = 1e-4
 # columns [bytes] that are kept of a problem, and of all runs in a process

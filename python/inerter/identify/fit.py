@@ -96,9 +96,7 @@ class Problem:
             self.scales,
         )
 
-    def residual(
-        self, model: Model, pressed: float = 0.0, *, counted: bool = False
-    ) -> list[Array]:
+    def residual(self, model: Model, pressed: float = 0.0, *, counted: bool = False) -> list[Array]:
         """Errors as they count against noise, of every run [N]."""
         shaft = model.shaft if model.is_possible else None
         return self.weighted(self.errors(model, pressed, counted=counted), shaft)

@@ -28,14 +28,18 @@ from inerter.records.motion import (
 
 Array = NDArray[np.float64]
 
-_RUNS = itertools.count()
-
 # samples per period of the cut-off that a fit works on; more add time and no information
 SAMPLES_PER_PERIOD = 8
 # a velocity within this many standard deviations of its noise may be none
 REST = 4
 # squared correlation of displacement and acceleration from which they count as proportional
 ONE_TONE = 0.98
+
+_made = itertools.count()
+
+
+def _new_identity() -> tuple[int, int]:
+    return os.getpid(), next(_made)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,7 +96,7 @@ class BenchRun:
     shaft: Shaft | None = None
     far: float = np.inf
     motion: Kind = TRANSLATION
-    identity: tuple[int, int] = field(init=False, default_factory=lambda: (os.getpid(), next(_RUNS)))
+    identity: tuple[int, int] = field(init=False, default_factory=_new_identity)
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
         """Forces of a device at the measured rate [N], shape (m,) each.
