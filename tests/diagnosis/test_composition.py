@@ -206,7 +206,9 @@ def test_what_stays_far_off_is_not_followed(error: float, follows: bool) -> None
     """After a few steps a fit goes on where it is below the limit, and else stays as it is."""
     asked: list[int] = []
 
-    def fit(model: Model, evaluations: int = 40, tolerance: float = 0.0) -> Fit:
+    def fit(
+        model: Model, evaluations: int = 40, tolerance: float = 0.0, give_up: object = None
+    ) -> Fit:
         asked.append(evaluations)
         return replace(fitted(model), residual=[np.full(9, error)], evaluations=evaluations)
 

@@ -13,7 +13,7 @@ from inerter.diagnose.run_constants import (
     contradicting,
     without_constants,
 )
-from inerter.diagnose.stages import Given, prepared
+from inerter.diagnose.start import Given, prepared
 from inerter.identify.runs import BenchRun, thin
 from inerter.records import Record
 from inerter.records.preparation import prepare

@@ -13,7 +13,7 @@ from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import ParameterValue
 from inerter.diagnose.rivals import Standing
 from inerter.diagnose.search import Search
-from inerter.diagnose.stages import Given
+from inerter.diagnose.start import Given, prepared
 from inerter.diagnose.wording import quantity
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
@@ -116,7 +116,7 @@ def test_what_is_held_out_does_not_choose_the_smoothing_of_what_is_fitted() -> N
     runs = [inerter(f"run {i}", f, seed=i) for i, f in enumerate((1.5, 1.8, 2.2))]
     walk = np.cumsum(np.random.default_rng(3).normal(0, 3.0, runs[1].samples))
     changed = [runs[0], replace(runs[1], force=runs[1].force + walk), runs[2]]
-    found = [stages.prepared(Given(records=each, holdout=["run 1"])) for each in (runs, changed)]
+    found = [prepared(Given(records=each, holdout=["run 1"])) for each in (runs, changed)]
     assert found[0].plain.cutoff == found[1].plain.cutoff
     assert found[0].weighed.cutoff == found[1].weighed.cutoff
 

@@ -6,15 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 from inerter.diagnose.composition import effects_of
-from inerter.diagnose.stages import (
-    Confirmed,
-    Given,
-    Settled,
-    compared,
-    confirmed,
-    prepared,
-    searched,
-)
+from inerter.diagnose.stages import Confirmed, Settled, compared, confirmed, searched
+from inerter.diagnose.start import Given, prepared
 from inerter.records import Record
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inerter.diagnose.tone import strongest_line, with_tone_above
+from inerter.diagnose.tone import Witness, strongest_line, with_tone_above
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, whole
@@ -60,7 +60,8 @@ def test_a_tone_above_the_band_is_fitted_to_the_raw_force(amplitude: float) -> N
     shaken = [replace(run, force=run.force + tone) for run in RUNS]
     problem = Problem(shaken, EVERYTHING)
     fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
-    found = with_tone_above(problem, fit, lowest=30.0)
+    witness = Witness(problem, [run.displacement for run in RUNS])
+    found = with_tone_above(witness, fit, lowest=30.0)
     if not amplitude:
         assert found is None
         return
@@ -71,4 +72,31 @@ def test_a_tone_above_the_band_is_fitted_to_the_raw_force(amplitude: float) -> N
     assert found.model.values["inertance"] == fit.model.values["inertance"]
     assert found.covariance.shape == (3, 3)
     assert found.covariance[0, 0] == fit.covariance[0, 0]
-    assert with_tone_above(problem, fit, lowest=100.0) is None
+    assert with_tone_above(witness, fit, lowest=100.0) is None
+
+
+@pytest.mark.parametrize("seen", [True, False])
+@pytest.mark.parametrize("hum", [0.0, 0.4])
+def test_what_rings_in_the_motion_is_no_tone(seen: bool, hum: float, effects_seed: int) -> None:
+    """Three near tones above the band; the displacement shows them, or its noise hides them."""
+    draw = np.random.default_rng(effects_seed)
+    runs, displacements = [], []
+    for run in RUNS:
+        ringing = np.zeros_like(TIME)
+        acceleration = np.zeros_like(TIME)
+        for frequency in 83.0 + np.array([-1.1, 0.0, 1.3]):
+            wave = np.sin(2 * np.pi * frequency * TIME + draw.uniform(0, 6))
+            ringing += 0.02 * wave / (2 * np.pi * frequency) ** 2
+            acceleration -= 0.02 * wave
+        mains = hum * np.sin(2 * np.pi * 50.0 * TIME + draw.uniform(0, 6))
+        noise = (1e-7 if seen else 2e-6) * draw.standard_normal(TIME.size)
+        runs.append(replace(run, force=run.force + 40.0 * acceleration + mains))
+        displacements.append(run.displacement + ringing + noise)
+    problem = Problem(runs, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    found = with_tone_above(Witness(problem, displacements), fit, lowest=30.0)
+    if not hum:
+        assert found is None
+        return
+    assert found is not None
+    assert found.model.values["disturbance_frequency"] == pytest.approx(50.0, abs=0.02)

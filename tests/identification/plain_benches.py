@@ -22,7 +22,8 @@ from pathlib import Path
 
 import numpy as np
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose.stages import Given, prepared, search_in
+from inerter.diagnose.stages import search_in
+from inerter.diagnose.start import Given, prepared
 from inerter.identify.choices import covered
 from inerter.identify.estimate import identify
 from inerter.identify.fit import parameter_errors

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inerter.diagnose.stages import Given, prepared, search_in
+from inerter.diagnose.stages import search_in
+from inerter.diagnose.start import Given, prepared
 from inerter.identify.choices import covered
 from inerter.identify.fit import parameter_errors
 from plain_benches import Case, by_fit, by_identify, drawn, table

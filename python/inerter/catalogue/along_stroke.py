@@ -5,6 +5,7 @@
                                            curve_upper, with a smooth curve between them
     friction_..., inertance_...            the same of the friction level and of the inertance,
                                            relative to what they are
+    inertance_back_node_1 ...              of the inertance for v < 0, where it differs
 
 A device has them as lists (`force_periods`: length, amplitude, phase of each; `force_curve`).
 """
@@ -43,6 +44,8 @@ class Quantity:
     nodes_zero
         Coordinates by which nodes of a curve are held at 0: the middle one by the first, the last
         one by the second.
+    flanks
+        Whether a curve may be another one for v < 0: where two flanks of a tooth carry in turn.
     """
 
     name: str
@@ -53,6 +56,7 @@ class Quantity:
     bound: OfScales
     stands_for: tuple[str, ...] = ()
     nodes_zero: tuple[str, ...] = ()
+    flanks: bool = False
 
     def period(self, number: int) -> tuple[str, str, str]:
         """Coordinates of a period: length, amplitude of the cosine and of the sine."""
@@ -69,10 +73,16 @@ class Quantity:
         return tuple(f"{self.name}_node_{i}" for i in range(1, NODES + 1))
 
     @cached_property
+    def back_nodes(self) -> tuple[str, ...]:
+        """Coordinates of the nodes of its curve for v < 0, if it may have one."""
+        numbers = range(1, NODES + 1) if self.flanks else ()
+        return tuple(f"{self.name}_back_node_{i}" for i in numbers)
+
+    @cached_property
     def coordinates(self) -> tuple[str, ...]:
         """Every coordinate."""
         periods = (name for i in range(1, PERIODS + 1) for name in self.period(i))
-        return (*periods, *self.nodes)
+        return (*periods, *self.nodes, *self.back_nodes)
 
     @property
     def amplitudes(self) -> tuple[str, ...]:
@@ -84,10 +94,12 @@ class Quantity:
         """What a finding reports."""
         words = ("period", "amplitude", "phase")
         periods = (f"{self.name}_{word}_{i}" for i in range(1, PERIODS + 1) for word in words)
-        return (*periods, *self.nodes)
+        return (*periods, *self.nodes, *self.back_nodes)
 
     def form(self, names: set[str]) -> str | None:
-        """What some coordinates are of it: "curve", "period" or nothing."""
+        """What some coordinates are of it: "flanks", "curve", "period" or nothing."""
+        if not names.isdisjoint(self.back_nodes):
+            return "flanks"
         if any(name.startswith(f"{self.name}_node_") for name in names):
             return "curve"
         return "period" if self.period(1)[0] in names else None
@@ -103,7 +115,7 @@ QUANTITIES = (
     Quantity(
         "inertance", "variable_inertance", "1", "inertance",
         lambda s: 0.02, lambda s: 0.2, ("inertance_gradient", "inertance_curvature"),
-        ("inertance",),
+        ("inertance",), flanks=True,
     ),
     Quantity(
         "friction", "position_dependent_friction", "1", "friction level",
@@ -140,7 +152,7 @@ def _of(quantity: Quantity) -> tuple[Coordinate, ...]:
             )
         )
         found += [Coordinate(name=name, **how) for name in amplitudes]
-    nodes = quantity.nodes
+    nodes = (*quantity.nodes, *quantity.back_nodes)
     return (*found, *(Coordinate(name=n, words={n: n.replace("_", " ")}, **how) for n in nodes))
 
 
@@ -151,7 +163,7 @@ REPORTED_UNITS: Mapping[str, str] = {
     name: unit
     for q in QUANTITIES
     for name, unit in (
-        *((name, q.unit) for name in q.nodes),
+        *((name, q.unit) for name in (*q.nodes, *q.back_nodes)),
         *(
             pair
             for i in range(1, PERIODS + 1)
@@ -166,12 +178,13 @@ REPORTED_UNITS: Mapping[str, str] = {
 """Units of what findings report of it and no device has a parameter for."""
 
 
-_QUANTITY_OF = {name: quantity for quantity in QUANTITIES for name in quantity.nodes}
+_QUANTITY_OF = {name: q for q in QUANTITIES for name in (*q.nodes, *q.back_nodes)}
 _NAMES = {name for q in QUANTITIES for name in (*q.coordinates, *q.reported)}
 
 FORMS: Mapping[str, str] = {
     "period": "periodic along the stroke",
     "curve": "a curve along the stroke",
+    "flanks": "a curve along the stroke in each direction of motion",
     "speed": "with the speed",
 }
 """What the law of such a finding is in running text."""
@@ -209,11 +222,12 @@ def lists(values: Values) -> dict[str, str]:
                 rows += row
         if rows:
             found[f"{quantity.name}_periods"] = " ".join(map(repr, rows))
-        if quantity.nodes[0] not in values:
-            continue
-        nodes = [values.pop(name, None) for name in quantity.nodes]
-        if any(nodes):
-            last = max(i for i, node in enumerate(nodes) if node is not None)
-            curve = [float(node or 0.0) for node in nodes[: last + 1]]
-            found[f"{quantity.name}_curve"] = " ".join(map(repr, curve))
+        forth, back = f"{quantity.name}_curve", f"{quantity.name}_back_curve"
+        for name, names in ((forth, quantity.nodes), (back, quantity.back_nodes)):
+            nodes = [values.pop(each, None) for each in names]
+            known = [i for i, node in enumerate(nodes) if node is not None]
+            # none for v < 0 would be that for v > 0
+            if any(nodes) or (known and name == back):
+                curve = [float(node or 0.0) for node in nodes[: known[-1] + 1]]
+                found[name] = " ".join(map(repr, curve))
     return found

@@ -52,7 +52,7 @@ def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
     for quantity in QUANTITIES:
         effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
         if effect is not None:
-            shown = _Shown(x, residual, effect, ends)
+            shown = _Shown(x, v > 0, residual, effect, ends)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
             yield from _curved(quantity, fit.model, shown)
 
@@ -73,9 +73,10 @@ def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -
 
 @dataclass(frozen=True)
 class _Shown:
-    """Where samples are, what is left there, and what it is asked for."""
+    """Where samples are, which way they go, what is left there, and what it is asked for."""
 
     x: Array
+    forward: NDArray[np.bool_]
     residual: Array
     effect: Effect
     ends: tuple[float, float]
@@ -89,6 +90,9 @@ def _periodic(
     free = [i for i in range(1, most + 1) if quantity.period(i)[0] not in model.values]
     # a level with a curve and a period might not stay above 0
     if not free or (quantity.name == "friction" and _has_curve(quantity, model)):
+        return
+    # periods of one direction alone
+    if _has_flanks(quantity, model):
         return
     bound = 0.9 * quantity.bound(sizes)
     starts = [
@@ -107,18 +111,36 @@ def _periodic(
 
 
 def _curved(quantity: Quantity, model: Model, shown: _Shown) -> Iterator[Candidate]:
-    """A curve of few nodes, of more."""
-    periods = quantity.name == "friction" and quantity.period(1)[0] in model.values
-    if periods or _has_curve(quantity, model):
-        return
-    for nodes in _CURVES:
-        if _gain_of_curve(shown, nodes) > _WORTH:
-            start = _with_curve(model, quantity, nodes, shown.ends)
-            yield Candidate(quantity.effect, "curve", (start,))
+    """A curve of few nodes, of more; one for each direction where that takes more."""
+    periods = quantity.period(1)[0] in model.values
+    known = sum(name in model.values for name in quantity.nodes)
+    for nodes in (known,) if known else _CURVES:
+        gain = 0.0
+        if not known and not (periods and quantity.name == "friction"):
+            gain = _gain_of_curve(shown, nodes)
+            if gain > _WORTH:
+                start = _with_curve(model, quantity, nodes, shown.ends)
+                yield Candidate(quantity.effect, "curve", (start,))
+        if not quantity.flanks or periods or _has_flanks(quantity, model):
+            continue
+        if _gain_of_curve(shown, nodes, flanks=True) > gain + _WORTH:
+            start = _with_flanks(model, quantity, nodes, shown.ends)
+            yield Candidate(quantity.effect, "flanks", (start,))
 
 
 def _has_curve(quantity: Quantity, model: Model) -> bool:
-    return any(quantity.node(i) in model.values for i in range(1, NODES + 1))
+    return not model.values.keys().isdisjoint(quantity.nodes)
+
+
+def _has_flanks(quantity: Quantity, model: Model) -> bool:
+    return not model.values.keys().isdisjoint(quantity.back_nodes)
+
+
+def _with_flanks(model: Model, quantity: Quantity, nodes: int, ends: tuple[float, float]) -> Model:
+    """The model with a curve for each direction; that for v < 0 begins as the other one."""
+    forth = model if _has_curve(quantity, model) else _with_curve(model, quantity, nodes, ends)
+    names = zip(quantity.back_nodes[:nodes], quantity.nodes, strict=False)
+    return forth.adding(None, **{back: forth.values[name] for back, name in names})
 
 
 def _with_curve(model: Model, quantity: Quantity, nodes: int, ends: tuple[float, float]) -> Model:
@@ -167,16 +189,19 @@ def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
     return found
 
 
-def _gain_of_curve(shown: _Shown, nodes: int) -> float:
-    """Share of the square of a residual that a smooth curve of the place takes."""
+def _gain_of_curve(shown: _Shown, nodes: int, flanks: bool = False) -> float:
+    """Share of the square of a residual that a smooth curve of the place takes, or two."""
     places = np.linspace(*shown.ends, nodes)
     spline = make_interp_spline(places, np.eye(nodes), k=3, bc_type="clamped")
     inside = np.clip(shown.x, *shown.ends)
     values, slopes = spline(inside), spline(inside, 1)
     columns = np.column_stack([shown.effect(values[:, i], slopes[:, i]) for i in range(nodes)])
+    if flanks:
+        ways = shown.forward[:, None], ~shown.forward[:, None]
+        columns = np.concatenate([np.where(way, columns, 0.0) for way in ways], axis=1)
     gain, _ = _gain(columns, shown.residual)
     # what as many columns take of noise
-    return gain - nodes / shown.residual.size
+    return gain - columns.shape[1] / shown.residual.size
 
 
 def _gain(columns: Array, residual: Array) -> tuple[float, Array]:

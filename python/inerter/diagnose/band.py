@@ -1,6 +1,8 @@
 """The band of the motion: whether a model that was found predicts the force better in another.
 
-The cut-offs were chosen with a linear model, which knows neither contacts nor a resonance.
+The cut-offs were chosen with a linear model, which knows neither contacts nor a resonance. What
+friction does where the motion turns, and what goes with the place along a fast stroke, is quicker
+than the motion: a force may show more of it above the motion's cut-off than below.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.decision import CRITERIA
@@ -19,7 +22,11 @@ from inerter.records import Record
 from inerter.records.motion import Motion
 from inerter.records.preparation import Preparation, prepare_again
 
+Array = NDArray[np.float64]
 Error = Callable[[Problem], float]
+
+# lines of a spectrum of errors
+_LINES = 250
 
 
 def best_band(
@@ -76,6 +83,45 @@ def narrower_band(
 
     again = _smoothed(records, preparation, held_out, model, sizes, error)
     return again if _lowered(preparation, again, -1) else None
+
+
+def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float:
+    """Band [Hz] that has what a model misses of the force, where most of that is above the motion.
+
+    0 where most is within the motion's band, or is the force's noise. `learnt` has the force as
+    measured.
+    """
+    cutoff = preparation.cutoff
+    power, frequency = _power_missed(learnt, model)
+    noise = preparation.noise_floor**2 / power.size
+    missed = np.maximum(power - noise, 0.0)
+    beyond = float(missed[frequency > cutoff].sum())
+    loud = CRITERIA.loud_beyond * preparation.noise_floor
+    if beyond < max(CRITERIA.share_beyond * float(missed.sum()), loud**2):
+        return 0.0
+    share = np.cumsum(missed) / missed.sum()
+    widest = float(frequency[np.searchsorted(share, CRITERIA.kept_beyond)])
+    return float(np.clip(widest, cutoff, CRITERIA.widest_force_band * cutoff))
+
+
+def _power_missed(learnt: Problem, model: Model) -> tuple[Array, Array]:
+    """Power of a model's error at frequencies [Hz] up to the lowest Nyquist's, summing to it."""
+    errors = learnt.errors(model, counted=True)
+    used = [
+        (np.where(mask, error, 0.0), run.spacing)
+        for run, mask, error in zip(learnt.runs, learnt.masks, errors, strict=True)
+        if mask.any()
+    ]
+    highest = min(0.5 / spacing for _, spacing in used)
+    edges = np.linspace(0.0, highest, _LINES + 1)
+    power = np.zeros(_LINES)
+    for error, spacing in used:
+        lines = np.abs(np.fft.rfft(error)) ** 2
+        power += np.histogram(np.fft.rfftfreq(error.size, spacing), edges, weights=lines)[0] / (
+            0.5 * error.size
+        )
+    samples = sum(int(mask.sum()) for mask in learnt.masks)
+    return power / samples, edges[1:]
 
 
 def _smoothed(

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from inerter.diagnose.play import forgiving, from_contact
+from inerter.diagnose.tone import Witness
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, on_clocks, scales, thin, whole
 from inerter.identify.split import Split, split
 from inerter.records import Record
+from inerter.records.motion import uniform
 from inerter.records.preparation import Preparation
 
 
@@ -50,6 +52,12 @@ class Data:
         return Problem(self.whole, self.full.fit, self.band.scales)
 
     @property
+    def witness(self) -> Witness:
+        """What the displacements as measured say of a tone in the fit data."""
+        told = [uniform(record)[1]["displacement"] for record in self.records]
+        return Witness(self.learnt, told)
+
+    @property
     def followed(self) -> Problem:
         """The same, each run followed from a contact on."""
         learnt = self.learnt
@@ -68,7 +76,8 @@ class Data:
 
 def divided(records: Sequence[Record], preparation: Preparation, holdout: Sequence[str]) -> Data:
     """Runs and splits of smoothed records; `holdout` as in `identify.split.split`."""
-    runs = on_clocks([thin(motion) for motion in preparation.motions])
+    force_band = preparation.force_band
+    runs = on_clocks([thin(motion, force_band=force_band) for motion in preparation.motions])
     raw = on_clocks([whole(motion) for motion in preparation.motions])
     parted = split(runs, holdout)
     held = [run.name for i, run in enumerate(runs) if parted.role(i) == "holdout"]

@@ -150,6 +150,24 @@ class Criteria:
     # bands
     band_gain: float = _bound(0.1, SHARE, "what another band takes away to be taken")
     more_bands: int = _bound(2, COUNT, "of wider bands in which a search goes on")
+    tone_of_motion: float = _bound(
+        0.5,
+        "share of a tone's power",
+        "that is left beside an inertance along the displacement as measured, below which the tone "
+        "is the motion's own",
+    )
+    tone_hidden: float = _bound(
+        0.25, "share of a tone's power", "of the displacement's noise, which may hide such a motion"
+    )
+    share_beyond: float = _bound(
+        0.5,
+        SHARE,
+        "of what is missed, above the motion's band, from which on forces are compared "
+        "in a wider one",
+    )
+    loud_beyond: float = _bound(3.0, "noise of the force", "the least rms of that")
+    kept_beyond: float = _bound(0.9, SHARE, "of what is missed that the wider band has")
+    widest_force_band: float = _bound(4.0, "cut-offs of the motion", "the widest such band")
     tones_from: float = _bound(
         0.7, "of the cut-off", "from where tones are looked for at the measured rate"
     )

@@ -36,14 +36,8 @@ from inerter.diagnose.result import (
     RunCurves,
 )
 from inerter.diagnose.run_constants import constants_in_words
-from inerter.diagnose.stages import (
-    Confirmed,
-    Given,
-    confirmed,
-    prepared,
-    searched,
-    settled,
-)
+from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
+from inerter.diagnose.start import Given, prepared
 from inerter.diagnose.statistics import gain_interval
 from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values

@@ -35,7 +35,7 @@ from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_neede
 from inerter.diagnose.low_passes import other_filter, where_late
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import Array, block_squares
-from inerter.diagnose.tone import strongest_line
+from inerter.diagnose.tone import Witness, tone_candidate
 from inerter.diagnose.trials import FAR, ROUGH, Trials
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
@@ -85,7 +85,10 @@ def _silent(text: str) -> None:
 
 @dataclass
 class Search:
-    """A search over the fit data of a split; effects `excluded` are not added."""
+    """A search over the fit data of a split; effects `excluded` are not added.
+
+    A `witness` is asked whether a tone is of the motion.
+    """
 
     runs: Sequence[BenchRun]
     split: Split
@@ -93,6 +96,7 @@ class Search:
     progress: Progress = _silent
     found: list[str] = field(default_factory=list)
     excluded: frozenset[str] = frozenset()
+    witness: Witness | None = None
 
     def __post_init__(self) -> None:
         self._divide()
@@ -119,7 +123,7 @@ class Search:
 
     def __getstate__(self) -> dict[str, object]:
         """What another process is told: it has nobody to report to."""
-        return {**self.__dict__, "progress": _silent}
+        return {**self.__dict__, "progress": _silent, "witness": None}
 
     def _problems(self, folds: Sequence[list[Mask]]) -> Folds:
         """The fit data without each fold, and the fold."""
@@ -220,7 +224,8 @@ class Search:
         masks = self.problem.masks
         self._refused = []
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
-        trials = [*candidates(current.model, self.problem.scales), *self._tones(current.fit)]
+        trials = [*candidates(current.model, self.problem.scales)]
+        trials += tone_candidate(self.runs, self.problem, current.fit, self.witness)
         trials += along_stroke.candidates(self.problem, current.fit)
         trials = [trial for trial in trials if self._may_be(trial.starts[0])]
         fitted = self.trials.fit_all(trials, current.fit)
@@ -344,19 +349,6 @@ class Search:
     def _may_be(self, model: Model) -> bool:
         """Whether a model has none of the effects excluded."""
         return not self.excluded.intersection(name for name, _ in effects_of(model, self.baseline))
-
-    def _tones(self, current: Fit) -> list[Candidate]:
-        """The tone that a residual shows, if any."""
-        if "disturbance_amplitude" in current.model.values:
-            return []
-        line = strongest_line(self.runs, self.problem.errors(current.model), self.problem.masks)
-        if line is None:
-            return []
-        frequency, amplitude = line
-        start = current.model.adding(
-            disturbance_amplitude=amplitude, disturbance_frequency=frequency
-        )
-        return [Candidate("periodic_disturbance", None, (start,))]
 
     def _better(self, simple: Scored, rich: Scored) -> bool:
         return better(simple, rich, self.advantage(simple, rich, rich.effect))

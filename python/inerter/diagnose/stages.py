@@ -10,15 +10,12 @@ confirm    each effect on data that no fit has seen
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from inerter.catalogue.effects import EFFECTS
-from inerter.core import Device
-from inerter.diagnose.band import best_band, narrower_band, wider_band
-from inerter.diagnose.baseline import baseline_of
-from inerter.diagnose.budget.carried import Carrying
+from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
 from inerter.diagnose.composition import (
     bristle_is_known,
@@ -29,84 +26,23 @@ from inerter.diagnose.composition import (
     stripped,
     submodel,
 )
-from inerter.diagnose.data import Data, divided
+from inerter.diagnose.data import Data
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
 from inerter.diagnose.rivals import Standing, standing
-from inerter.diagnose.run_constants import constants, contradicting, without_constants
 from inerter.diagnose.search import Scored, Search
+from inerter.diagnose.start import Prepared
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.choices import covered
-from inerter.identify.fit import Fit, Problem
+from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import on_clocks, thin
 from inerter.identify.split import split
-from inerter.records import Record
-from inerter.records.duplicates import without_copies
-from inerter.records.preparation import Preparation, prepare, refuse_unusable, weighed
-
-Progress = Callable[[str], None]
+from inerter.records.preparation import Preparation
 
 # effects that take away the rigid drive of the flywheel
 _DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Given:
-    """What a diagnosis is asked.
-
-    Attributes
-    ----------
-    records
-        All runs, copies of others among them.
-    device
-        The user's own; None: the ideal inerter with unknown inertance.
-    holdout
-        Names of runs to hold out.
-    progress
-        Told what is being done, a line each.
-    channel
-        What is known of the force channel, as coordinates: its `delay` [s], low-passes (see
-        `identify.channel_filter`).
-    carry
-        What the extended device may carry without a name.
-    """
-
-    records: Sequence[Record]
-    device: Device | None = None
-    holdout: Sequence[str] = ()
-    progress: Progress = lambda text: None
-    channel: Mapping[str, float] = field(default_factory=dict)
-    carry: Carrying = "any"
-
-
-@dataclass(frozen=True, kw_only=True)
-class Prepared:
-    """Records divided, and where the search starts.
-
-    Attributes
-    ----------
-    data
-        In the band in which a broad linear model predicts all the data best.
-    plain, weighed
-        In that in which it predicts the fit data best; the same where errors count by the motion's
-        noise.
-    baseline
-        The ideal inerter, or what the user states.
-    constants
-        Of each run, taken off its force [N]; empty where the runs have none of their own.
-    contradicting
-        Runs that contradict the others, with what they say.
-    """
-
-    given: Given
-    data: Data
-    plain: Preparation
-    weighed: Preparation
-    baseline: Model
-    constants: Mapping[str, float] = field(default_factory=dict)
-    contradicting: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,39 +89,6 @@ class Confirmed:
     standings: Mapping[str, Standing]
 
 
-# --- Given -> Prepared ---------------------------------------------------------------------------
-
-
-def prepared(given: Given) -> Prepared:
-    """Smoothed and divided records, and the baseline.
-
-    Raises
-    ------
-    ValueError
-        Runs that cannot be split or do not move.
-    """
-    records = without_copies(given.records, given.holdout)
-    refuse_unusable(records)
-    given.progress("smoothing: choosing the cut-off")
-    smoothed = prepare(records)
-    runs = [thin(motion) for motion in smoothed.motions]
-    apart = constants(runs)
-    if apart:
-        records = without_constants(records, apart)
-        smoothed = prepare(records)
-    data = divided(records, smoothed, given.holdout)
-    # what is held out has no say in the smoothing of what is fitted: its own motion may be faster,
-    # and is smoothed as the force that it makes tells
-    plain = prepare(records, data.full.fit)
-    baseline = baseline_of(given.device, data.band.scales)
-    baseline = baseline.holding(**{name: v for name, v in given.channel.items() if v})
-    return Prepared(
-        given=given, data=data, plain=plain, baseline=baseline,
-        weighed=weighed(records, plain, data.full.fit),
-        constants=apart, contradicting=contradicting(runs),
-    )  # fmt: skip
-
-
 # --- Prepared -> Searched ------------------------------------------------------------------------
 
 
@@ -211,6 +114,8 @@ def searched(start: Prepared) -> Searched:
     elif raw := _wider(data, data.preparation, final.model):
         data = data.in_band(raw)
     found = Searched(prepared=start, data=data, search=search, final=final)
+    if more := _beyond_motion(found, band):
+        return more
     if play := _play(found):
         return _with_play(found, play)
     return _in_narrower_band(found)
@@ -220,9 +125,10 @@ def search_in(start: Prepared, band: Preparation) -> Search:
     """A search in which errors count by the noise of the motion."""
     runs = [
         replace(run, corner=band.corner)
-        for run in on_clocks([thin(motion) for motion in band.motions])
+        for run in on_clocks([thin(motion, force_band=band.force_band) for motion in band.motions])
     ]
-    return Search(runs, split(runs, start.data.held), start.baseline, start.given.progress)
+    parted, progress = split(runs, start.data.held), start.given.progress
+    return Search(runs, parted, start.baseline, progress, witness=start.data.witness)
 
 
 def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:
@@ -244,6 +150,27 @@ def _calmer(start: Prepared, band: Preparation, model: Model) -> tuple[Search, M
     if best.rmse(masks) > (1 - CRITERIA.band_gain) * search.problem.fit(model).rmse(masks):
         return None
     return search, best.model
+
+
+def _beyond_motion(found: Searched, band: Preparation) -> Searched | None:
+    """The search gone on with forces compared above the motion's band, where that tells more.
+
+    It does where most of what is missed is there, and an effect more takes enough of it away.
+    """
+    data, model = found.data, found.final.model
+    wide = force_band(data.learnt, model, band)
+    if "backlash" in model.free or not wide:
+        return None
+    start = found.prepared
+    start.given.progress(f"most of what is missed lies above {band.cutoff:.3g} Hz: searching there")
+    search = search_in(start, replace(band, force_band=wide))
+    final = search.run(model)
+    learnt = data.learnt
+    before, after = (rms(learnt.errors(m), learnt.masks) for m in (model, final.model))
+    if after > (1 - CRITERIA.band_gain) * before:
+        return None
+    data = data.in_band(replace(data.preparation, force_band=wide))
+    return Searched(prepared=start, data=data, search=search, final=final)
 
 
 def _play(found: Searched) -> Model | None:
@@ -271,7 +198,8 @@ def _with_play(found: Searched, play: Model) -> Searched:
         play = fit_play(data.followed, play)
     data = data.with_play(play)
     learnt = forgiving(data.learnt, play)
-    search = Search(learnt.runs, data.full, start.baseline, start.given.progress)
+    told = start.given.progress
+    search = Search(learnt.runs, data.full, start.baseline, told, witness=data.witness)
     return Searched(prepared=start, data=data, search=search, final=search.run(play))
 
 
@@ -423,7 +351,7 @@ def _with_tone(found: Searched, fit: Fit) -> tuple[Fit, tuple[Link, float] | Non
     learnt = found.data.learnt
     fit = with_tone_from_raw(learnt, fit)
     lowest = CRITERIA.tones_from * found.data.preparation.cutoff
-    after = with_tone_above(learnt, fit, lowest)
+    after = with_tone_above(found.data.witness, fit, lowest)
     if after is None:
         return fit, None
     link, confidence = tone_link(found.judge, fit, after)

@@ -1,9 +1,14 @@
-"""A tone that the motion does not contain: where to look for it."""
+"""A tone that the motion does not contain: where to look for it.
+
+What rings in an actuator is in the motion, but may lie above its band, or be lost in the noise of
+the displacement. The displacement as measured is a witness: it has the tone, it has not, or its
+noise hides what it has. Then only a tone at a frequency of the mains is taken for one from outside.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +16,11 @@ from scipy.linalg import block_diag
 from scipy.ndimage import median_filter
 
 from inerter.catalogue.coordinates import LOWEST_TONE
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.decision import CRITERIA
+from inerter.identify.channel_filter import filter_of
 from inerter.identify.fit import Fit, Problem
+from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 
 Array = NDArray[np.float64]
@@ -23,6 +32,14 @@ _REQUIRED = 15.0
 _OWN_LINE = {"velocity": 0.1, "acceleration": 0.1, "friction": 1e-4}
 _STANDS_OUT = 15.0
 _NEIGHBOURS = 2
+# samples of a run below which it tells nothing of lines
+_FEWEST = 64
+# bins about a line whose power is its own, and farther ones that tell the noise
+_WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
+# lines that are asked about, one after another
+_ASKED = 8
+# mains [Hz] and multiples of it that are heard, and how far its frequency may be off
+_MAINS, _HARMONICS, _OFF = (50.0, 60.0), 6, 2e-3
 _PADDING = 2
 _TONE = ("disturbance_amplitude", "disturbance_frequency")
 
@@ -33,6 +50,7 @@ def strongest_line(
     masks: Sequence[NDArray[np.bool_]],
     lowest: float = LOWEST_TONE,
     highest: float = np.inf,
+    but: Sequence[float] = (),
 ) -> tuple[float, float] | None:
     """Frequency [Hz] and amplitude [N] of the clearest line in what a model leaves, or None.
 
@@ -46,8 +64,10 @@ def strongest_line(
         Of every run: measured minus predicted force [N], and the samples that count.
     lowest, highest
         Band to look in [Hz].
+    but
+        Lines that do not count either [Hz].
     """
-    used = [i for i, mask in enumerate(masks) if mask.sum() > 64]
+    used = [i for i, mask in enumerate(masks) if mask.sum() > _FEWEST]
     if not used:
         return None
     longest = max(runs[i].spacing * runs[i].force.size for i in used)
@@ -75,6 +95,9 @@ def strongest_line(
         clear += np.where(own, 0.0, power / floor)
         amplitude += np.where(own, 0.0, 2 * np.sqrt(power) / window.sum())
         free += ~own
+    shortest = min(runs[i].spacing * runs[i].force.size for i in used)
+    for line in but:
+        free[np.abs(frequency - line) < _WIDTH / shortest] = 0
     clear = np.where(2 * free >= len(used), clear / np.maximum(free, 1), 0.0)
     best = int(np.argmax(clear))
     if clear[best] < _REQUIRED:
@@ -94,22 +117,106 @@ def _power(values: Array, spacing: float, frequency: Array, longest: float) -> A
     return np.interp(frequency, np.fft.rfftfreq(count, spacing), power)
 
 
-def with_tone_above(raw: Problem, fit: Fit, lowest: float) -> Fit | None:
+@dataclass(frozen=True)
+class Witness:
+    """The displacements as measured, which may have a tone that the force shows.
+
+    Attributes
+    ----------
+    raw
+        The fit data at the measured rate with the force as measured.
+    displacements
+        Of every run, at the times of its samples [m].
+    """
+
+    raw: Problem
+    displacements: Sequence[Array]
+
+    def clears(self, model: Model, frequency: float) -> bool:
+        """Whether a tone in what a model leaves is none of the motion, as far as can be told."""
+        omega, values = 2 * np.pi * frequency, model.values
+        follows = -values.get("inertance", 0.0) * omega**2
+        follows = follows * np.exp(-1j * omega * values.get("delay", 0.0))
+        for channel, way in (("force", 1), ("displacement", -1)):
+            if (low_pass := filter_of(values, channel)) is not None:
+                follows = follows * low_pass.response(np.array([frequency]))[0] ** way
+        shown = left = hidden = 0.0
+        errors = self.raw.errors(model)
+        everything = zip(
+            self.raw.runs, self.raw.masks, errors, self.displacements, strict=True
+        )  # fmt: skip
+        for run, mask, error, displacement in everything:
+            if mask.sum() <= _FEWEST or displacement.size != error.size:
+                continue
+            # what the smoothing leaves of the motion is in the prediction already
+            moved, window = displacement - run.displacement, np.hanning(mask.size) * mask
+            bin_ = 1 / (run.spacing * int(mask.sum()))
+            (line, there), *beside = (
+                (wave @ error, follows * (wave @ moved))
+                for offset in (0, *_BESIDE)
+                for wave in [window * np.exp(-2j * np.pi * (frequency + offset * bin_) * run.time)]
+            )
+            shown += abs(line) ** 2
+            left += abs(line - there) ** 2
+            hidden += float(np.mean([abs(noise) ** 2 for _, noise in beside]))
+        if left < CRITERIA.tone_of_motion * shown:
+            return False
+        longest = max(run.spacing * run.force.size for run in self.raw.runs)
+        told = hidden < CRITERIA.tone_hidden * shown
+        return bool(told) or _is_of_mains(frequency, 1 / longest)
+
+
+def _is_of_mains(frequency: float, resolution: float) -> bool:
+    harmonics = np.outer(_MAINS, np.arange(1, _HARMONICS + 1))
+    return bool(np.any(np.abs(frequency - harmonics) < _OFF * harmonics + resolution))
+
+
+def tone_candidate(
+    runs: Sequence[BenchRun], problem: Problem, fit: Fit, witness: Witness | None
+) -> list[Candidate]:
+    """The tone that what a fit leaves shows and the motion does not contain, if any."""
+    if _TONE[0] in fit.model.values:
+        return []
+    line = _line(runs, problem, fit.model, witness)
+    if line is None:
+        return []
+    start = fit.model.adding(disturbance_amplitude=line[1], disturbance_frequency=line[0])
+    return [Candidate("periodic_disturbance", None, (start,))]
+
+
+def _line(
+    runs: Sequence[BenchRun],
+    problem: Problem,
+    model: Model,
+    witness: Witness | None,
+    lowest: float = LOWEST_TONE,
+) -> tuple[float, float] | None:
+    """Frequency [Hz] and amplitude [N] of the clearest line that is none of the motion."""
+    errors, but = problem.errors(model), []
+    for _ in range(_ASKED):
+        line = strongest_line(runs, errors, problem.masks, lowest, but=but)
+        if line is None or witness is None or witness.clears(model, line[0]):
+            return line
+        but.append(line[0])
+    return None
+
+
+def with_tone_above(witness: Witness, fit: Fit, lowest: float) -> Fit | None:
     """A fit with a tone at frequencies that the fits' band does not hold, or None.
 
     Parameters
     ----------
-    raw
-        The fit data at the measured rate with the force as measured.
+    witness
+        The fit data with force and displacement as measured.
     fit
         What is found in the band; it stays as it is.
     lowest
         From where on to look [Hz].
     """
-    model = fit.model
+    model, raw = fit.model, witness.raw
     if _TONE[0] in model.values:
         return None
-    line = strongest_line(raw.runs, raw.errors(model), raw.masks, lowest)
+    line = _line(raw.runs, raw, model, witness, lowest)
     if line is None:
         return None
     frequency, amplitude = line

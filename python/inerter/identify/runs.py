@@ -193,15 +193,17 @@ class BenchRun:
         return self.start + self.spacing * np.arange(self.force.size, dtype=float)
 
 
-def thin(motion: Motion, rate: float | None = None) -> BenchRun:
+def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> BenchRun:
     """A run for fitting: force low-passed like the motion, thinned to the rate its band needs.
 
-    `rate` [Hz] overrides the rate; None takes `SAMPLES_PER_PERIOD` times the cut-off.
+    `rate` [Hz] overrides the rate; None takes `SAMPLES_PER_PERIOD` times the cut-off. A
+    `force_band` [Hz] above the motion's cut-off takes its place for the force.
     """
-    rate = rate or SAMPLES_PER_PERIOD * motion.cutoff
+    cutoff = max(motion.cutoff, force_band)
+    rate = rate or SAMPLES_PER_PERIOD * cutoff
     step = max(1, int(1 / (rate * motion.spacing)))
     first = int(np.argmax(motion.inner[::step]))
-    force = lowpass(motion.force, motion.spacing, motion.cutoff)
+    force = lowpass(motion.force, motion.spacing, cutoff)
     velocity = np.where(_resting(motion), 0.0, motion.velocity)
     return BenchRun(
         name=motion.name,
@@ -213,7 +215,7 @@ def thin(motion: Motion, rate: float | None = None) -> BenchRun:
         force=np.ascontiguousarray(force[::step]),
         inner=motion.inner[::step],
         first_force=_force_at(motion, first * step),
-        cutoff=motion.cutoff,
+        cutoff=cutoff,
         measured=(motion.displacement, velocity, motion.acceleration),
         thinned=step,
         first=first,

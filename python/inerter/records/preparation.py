@@ -50,6 +50,8 @@ class Preparation:
         Rms of the force channel's white noise [N].
     corner : float
         Frequency [Hz] above which errors were taken to count less, see `weighed`.
+    force_band : float
+        Band [Hz] in which forces are compared where it is wider than that of the motion, else 0.
     """
 
     motions: list[Motion]
@@ -59,6 +61,7 @@ class Preparation:
     channels: tuple[str, ...]
     noise_floor: float
     corner: float = np.inf
+    force_band: float = 0.0
 
 
 def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparation:
