@@ -48,6 +48,24 @@ def of_period() -> tuple[Finding, Diagnosis]:
     return finding, found(finding)
 
 
+def of_flanks() -> tuple[Finding, Diagnosis]:
+    back = (0.01, -0.02, 0.03, 0.0, 0.04)
+    parameters = {
+        f"inertance{side}_node_{i + 1}": ParameterValue(node, 0.001, "1")
+        for side, nodes in (("", NODES), ("_back", back))
+        for i, node in enumerate(0.01 * np.array(nodes) if not side else nodes)
+    }
+    base = diagnosis().findings[0]
+    finding = replace(base, effect="variable_inertance", law="flanks", parameters=parameters)
+    ends = {"curve_lower": -0.015, "curve_upper": 0.015}
+    return finding, found(
+        finding,
+        inertance_curve=" ".join(str(0.01 * node) for node in NODES),
+        inertance_back_curve=" ".join(map(str, back)),
+        **ends,
+    )
+
+
 def drawn(plot: Any, trace: int) -> tuple[np.ndarray, np.ndarray]:
     """Places and values of a trace: 0 the band, 1 the line."""
     assert plot is not None
@@ -77,7 +95,16 @@ def test_periods_are_the_ratio_of_the_device() -> None:
     np.testing.assert_allclose(1 + y / 100, force, atol=1e-6)
 
 
-@pytest.mark.parametrize("case", [of_curve, of_period])
+@pytest.mark.parametrize(("trace", "way"), [(1, 1e-9), (3, -1e-9)])
+def test_flanks_are_the_ratio_of_the_device_each_way(trace: int, way: float) -> None:
+    finding, made = of_flanks()
+    x, y = drawn(stroke_plot(finding, made), trace)
+    device = Device(**{**made.extended.device, "inertance": 1.0})
+    force = device.evaluate(x, way, 1.0, 0.0)["total"]
+    np.testing.assert_allclose(1 + y / 100, force, atol=1e-6)
+
+
+@pytest.mark.parametrize("case", [of_curve, of_period, of_flanks])
 def test_the_page_shows_it(case: Callable[[], tuple[Finding, Diagnosis]]) -> None:
     finding, made = case()
     page = render_report(made, TOML, XML)

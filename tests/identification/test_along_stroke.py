@@ -78,6 +78,32 @@ def test_a_curve_is_found_where_no_sine_fits() -> None:
     assert "force_curve" in found.model.device().given
 
 
+def test_two_flanks_are_found_and_one_is_not_taken_for_two() -> None:
+    forth, back = (
+        [0.0, 0.08, -0.05, 0.0, 0.09, -0.06, 0.03],
+        [0.02, -0.07, 0.06, 0.01, -0.08, 0.05, 0.0],
+    )
+    x, _, _ = motion()
+    ends = {"curve_lower": float(x.min()), "curve_upper": float(x.max())}
+    truth = Device(inertance=50, inertance_curve=forth, inertance_back_curve=back, **ends)
+    data = problem(truth)
+    first = plain(data)
+    trials = list(along_stroke.candidates(data, first))
+    found = best(data, trials, "variable_inertance", "flanks")
+    assert found.rmse(data.masks) == pytest.approx(NOISE, rel=0.05)
+    assert ("variable_inertance", "flanks") in effects_of(found.model, first.model)
+    assert {"inertance_curve", "inertance_back_curve"} <= found.model.device().given.keys()
+    # only what one direction alone cannot say is asked for
+    alike = problem(Device(inertance=50, inertance_curve=forth, **ends))
+    trials = list(along_stroke.candidates(alike, plain(alike)))
+    assert {trial.law for trial in trials} & {"curve", "flanks"} == {"curve"}
+    # a curve that is known already gets its other direction
+    one = data.fit(best(alike, trials, "variable_inertance", "curve").model)
+    (more,) = [t for t in along_stroke.candidates(data, one) if t.law == "flanks"]
+    values = more.starts[0].values
+    assert values["inertance_back_node_2"] == values["inertance_node_2"]
+
+
 def test_a_curve_leaves_offset_and_spring_what_is_theirs() -> None:
     data = problem(Device(inertance=50, stiffness=800, force_offset=5, force_periods=(0.02, 4, 0)))
     first = plain(data, stiffness=1.0, force_offset=1.0)

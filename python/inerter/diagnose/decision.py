@@ -167,7 +167,7 @@ class Criteria:
     )
     loud_beyond: float = _bound(3.0, "noise of the force", "the least rms of that")
     kept_beyond: float = _bound(0.9, SHARE, "of what is missed that the wider band has")
-    widest_force_band: float = _bound(4.0, "cut-offs of the motion", "the widest such band")
+    widest_force_band: float = _bound(8.0, "cut-offs of the motion", "the widest such band")
     tones_from: float = _bound(
         0.7, "of the cut-off", "from where tones are looked for at the measured rate"
     )

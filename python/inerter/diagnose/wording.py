@@ -118,7 +118,8 @@ def curves_in_words(
     others = {}
     for name, value in parameters.items():
         if quantity := node_of(name):
-            nodes.setdefault(f"{quantity.name}_curve", []).append(value)
+            back = "_back" if name in quantity.back_nodes else ""
+            nodes.setdefault(f"{quantity.name}{back}_curve", []).append(value)
         else:
             others[name] = value
     curves = {}

@@ -10,7 +10,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from inerter.catalogue.along_stroke import NODES, PERIODS, QUANTITIES, Quantity
+from inerter.catalogue.along_stroke import PERIODS, QUANTITIES, Quantity
 from inerter.diagnose.result import Diagnosis, Finding
 from inerter.motion_units import unit
 from inerter.pictures.plotting import band, figure, line
@@ -28,22 +28,26 @@ def stroke_plot(finding: Finding, diagnosis: Diagnosis) -> go.Figure | None:
     """A finding's curve or periods over the stroke; None where it has neither."""
     quantity = next((q for q in QUANTITIES if q.effect == finding.effect), None)
     ends = None if quantity is None else _ends(diagnosis)
-    if quantity is None or ends is None or finding.law not in ("curve", "period"):
+    if quantity is None or ends is None or finding.law not in ("curve", "flanks", "period"):
         return None
     x = np.linspace(*ends, _places(quantity, finding, ends))
-    values, variance = np.zeros_like(x), np.zeros_like(x)
-    for part in (_curve, _periods):
-        more, spread = part(quantity, finding, diagnosis, x)
-        values, variance = values + more, variance + spread
+    periods = _periods(quantity, finding, diagnosis, x)
+    forth = _curve(f"{quantity.name}_curve", quantity.nodes, finding, diagnosis, x)
+    sides = [("after", quantity.words, forth[0] + periods[0], forth[1] + periods[1])]
+    if finding.law == "flanks":
+        back = _curve(f"{quantity.name}_back_curve", quantity.back_nodes, finding, diagnosis, x)
+        sides = [("after", "while x grows", *forth), ("before", "while x shrinks", *back)]
     relative = quantity.unit == "1"
     metre = shown(unit(diagnosis.motion, "m"))
     newton = shown(unit(diagnosis.motion, "N"))
     name = f"change of the {quantity.words} [%]" if relative else f"{quantity.words} [{newton}]"
     scale = 100.0 if relative else 1.0
     plot = figure(f"displacement [{metre}]", name)
-    error = BAND * np.sqrt(variance)
-    band(plot, x, scale * (values - error), scale * (values + error), "after", "2 standard errors")
-    line(plot, x, scale * values, "after", quantity.words, 1.8)
+    for color, words, values, variance in sides:
+        error = BAND * np.sqrt(variance)
+        low, high = scale * (values - error), scale * (values + error)
+        band(plot, x, low, high, color, "2 standard errors")
+        line(plot, x, scale * values, color, words, 1.8)
     return plot
 
 
@@ -64,12 +68,12 @@ def _places(quantity: Quantity, finding: Finding, ends: tuple[float, float]) -> 
 
 
 def _curve(
-    quantity: Quantity, finding: Finding, diagnosis: Diagnosis, x: Array
+    name: str, coordinates: tuple[str, ...], finding: Finding, diagnosis: Diagnosis, x: Array
 ) -> tuple[Array, Array]:
     """A smooth curve's values and their variance: nodes count as apart from one another."""
     device: dict[str, Any] = diagnosis.extended.device
-    nodes = len(str(device.get(f"{quantity.name}_curve", "")).split())
-    found = {i: finding.parameters.get(quantity.node(i + 1)) for i in range(min(nodes, NODES))}
+    nodes = len(str(device.get(name, "")).split())
+    found = {each: finding.parameters.get(each) for each in coordinates[:nodes]}
     if not any(found.values()):
         return np.zeros_like(x), np.zeros_like(x)
     low, high = float(device["curve_lower"]), float(device["curve_upper"])

@@ -1,0 +1,48 @@
+"""Forces are compared above the band of the motion where most of what is missed lies there."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.diagnose.band import force_band
+from inerter.diagnose.start import Given, Prepared, prepared
+from inerter.records import Record
+
+STEP, SECONDS = 1e-3, 6.0
+TIME = np.arange(0, SECONDS, STEP)
+
+
+def records(draw: np.random.Generator, ripple: float) -> list[Record]:
+    """Fast strokes of an inerter of 40 kg over teeth of 6.4 mm [N]; noise of 0.5 N and 3 um."""
+    found = []
+    for name, frequency in (("a", 1.7), ("b", 2.3), ("c", 1.3)):
+        omega, phase = 2 * np.pi * frequency, draw.uniform(0, 6)
+        x = 0.04 * np.sin(omega * TIME + phase)
+        force = -40 * omega**2 * x + ripple * np.sin(2 * np.pi * x / 6.4e-3)
+        found.append(
+            Record(
+                name=name,
+                time=TIME,
+                displacement=x + 3e-6 * draw.standard_normal(TIME.size),
+                force=force + 0.5 * draw.standard_normal(TIME.size),
+            )
+        )
+    return found
+
+
+def start(draw: np.random.Generator, ripple: float) -> Prepared:
+    return prepared(Given(records=records(draw, ripple), holdout=["c"]))
+
+
+@pytest.mark.parametrize(("ripple", "more"), [(0.0, False), (0.5, False), (8.0, True)])
+def test_it_takes_more_than_noise_above_the_motion(
+    ripple: float, more: bool, effects_seed: int
+) -> None:
+    begun = start(np.random.default_rng(effects_seed), ripple)
+    preparation = begun.weighed
+    band = force_band(begun.data.learnt, begun.baseline, preparation)
+    # where the stroke is fastest, teeth pass at 2 pi 0.04 m 2.3 Hz / 6.4 mm = 90 per second
+    if more:
+        assert 1.5 * preparation.cutoff < band < 120.0
+    else:
+        assert band == 0.0
