@@ -109,6 +109,7 @@ def test_the_page_shows_it(case: Callable[[], tuple[Finding, Diagnosis]]) -> Non
     finding, made = case()
     page = render_report(made, TOML, XML)
     assert f'data-plot="stroke-{finding.effect}"' in page
+    assert ("while x shrinks" in page) == (finding.law == "flanks")
 
 
 def test_what_is_no_curve_has_none() -> None:
