@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter import Device
-from inerter.diagnose import wording
+from inerter.diagnose import diagnose_bench, wording
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import bristle_is_known, effects_of
@@ -211,3 +211,15 @@ def test_along_one_sine_a_play_has_to_do_more_than_its_shaft(
     search, fit = searched(made, IDEAL.adding(None, backlash=play or 2e-5, **contact))
     scored = search.score("backlash", None, fit)
     assert search._is_shaft_alone(scored) is (play == 0.0)
+
+
+def test_along_one_sine_no_stiffness_stands_for_the_inertance(effects_seed: int) -> None:
+    """Of a fast record the acceleration has noise in the search's band, the displacement none."""
+    draw = np.random.default_rng(effects_seed)
+    time, omega = np.arange(0, 9.7, 5e-4), 2 * np.pi * draw.uniform(3.5, 5.0)
+    x = 0.9e-3 * np.sin(omega * time + draw.uniform(0, 6))
+    force = -100 * omega**2 * x + 0.45 * draw.standard_normal(time.size)
+    noisy = x + 2e-6 * draw.standard_normal(time.size)
+    made = Record(name="one sine", time=time, displacement=noisy, force=force)
+    named = {each.effect for each in diagnose_bench([made], carry="nothing").findings}
+    assert "parallel_stiffness" not in named

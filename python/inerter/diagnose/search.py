@@ -39,7 +39,7 @@ from inerter.diagnose.tone import Witness, tone_candidate
 from inerter.diagnose.trials import FAR, ROUGH, Trials
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
-from inerter.identify.runs import BenchRun
+from inerter.identify.runs import BenchRun, scales
 from inerter.identify.split import Mask, Split, blocks, spread_folds
 
 Progress = Callable[[str], None]
@@ -87,7 +87,7 @@ def _silent(text: str) -> None:
 class Search:
     """A search over the fit data of a split; effects `excluded` are not added.
 
-    A `witness` is asked whether a tone is of the motion.
+    A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
     """
 
     runs: Sequence[BenchRun]
@@ -97,6 +97,7 @@ class Search:
     found: list[str] = field(default_factory=list)
     excluded: frozenset[str] = frozenset()
     witness: Witness | None = None
+    one_tone: bool = False
 
     def __post_init__(self) -> None:
         self._divide()
@@ -105,7 +106,10 @@ class Search:
 
     def _divide(self) -> None:
         """What is fitted, and the folds of it."""
-        self.problem = Problem(self.runs, self.split.fit)
+        sizes = scales(self.runs)
+        # noise of the acceleration may hide it in a wide band
+        sizes = replace(sizes, one_tone=sizes.one_tone or self.one_tone)
+        self.problem = Problem(self.runs, self.split.fit, sizes)
         self.blocks = blocks(self.problem.masks)
         self.trials = Trials(self.problem)
         self._folds = self._problems(self.split.folds)

@@ -128,7 +128,10 @@ def search_in(start: Prepared, band: Preparation) -> Search:
         for run in on_clocks([thin(motion, force_band=band.force_band) for motion in band.motions])
     ]
     parted, progress = split(runs, start.data.held), start.given.progress
-    return Search(runs, parted, start.baseline, progress, witness=start.data.witness)
+    return Search(
+        runs, parted, start.baseline, progress, witness=start.data.witness,
+        one_tone=start.data.band.scales.one_tone,
+    )  # fmt: skip
 
 
 def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:
