@@ -87,6 +87,29 @@ def test_one_sine_tells_no_delay_from_damping() -> None:
     assert "nearly as well" not in told.evidence
 
 
+@pytest.mark.parametrize("asked", ["hardening_stiffness", "variable_inertance"])
+def test_one_sine_tells_no_hardening_from_an_inertance_that_varies(
+    asked: str, effects_seed: int
+) -> None:
+    draw = np.random.default_rng(effects_seed)
+    omega, size = 2 * np.pi * draw.uniform(1.5, 2.5), 0.01
+    x = size * np.sin(omega * TIME)
+    cubic = draw.uniform(0.2, 0.5) * 60 * omega**2 / size**2
+    force = -60 * omega**2 * x + cubic * x**3 + draw.normal(0, 0.5, TIME.size)
+    made = Record(
+        name="run", time=TIME, displacement=x + draw.normal(0, 2e-6, TIME.size), force=force
+    )
+    curved = {"inertance_gradient": 0.0, "inertance_curvature": 0.0}
+    begin = {"stiffness_cubic": 0.0} if asked == "hardening_stiffness" else curved
+    search, fit = searched(made, IDEAL.adding(None, **begin))
+    found = exchanges(search, fit, [asked])[asked]
+    assert not found.is_told_apart
+    # what it would be in the other's place; b takes what of x the inertance has
+    left = 60 - cubic * size**2 / (2 * omega**2)
+    instead = -cubic / (2 * left * omega**2) if asked == "hardening_stiffness" else cubic
+    assert found.instead[0] == pytest.approx(instead, rel=0.05)
+
+
 def test_several_sines_tell_them_apart() -> None:
     search, fit = searched(record((0.5, 2.0, 5.0)), IDEAL.adding(None, viscous=0.0))
     found = exchanges(search, fit, ["viscous_friction"])["viscous_friction"]

@@ -1,9 +1,12 @@
 """Causes that these data cannot tell apart: told as one finding, with the error that this leaves.
 
 A delay of the force adds b tau times the jerk, which along one sine is a damper, and nearly so in a
-narrow band. Each finding with such a counterpart is fitted once more with the counterpart beside
-it. Where its own parameter may then be none, the two are one finding with two members; where the
-parameter only moves, its error is at least as large as that.
+narrow band. Along one sine of amplitude A a stiffness k3 x^3 is an inertance b (1 + c x^2) with
+c = -k3 / (2 b w^2), and another b: what c adds to the force is b c w^2 (A^2 x - 2 x^3).
+
+Each finding with such a counterpart is fitted once more with the counterpart beside it. Where its
+own parameter may then be none, the two are one finding with two members; where the parameter only
+moves, its error is at least as large as that.
 """
 
 from __future__ import annotations
@@ -23,8 +26,17 @@ from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 
 # the effects that make up for each other, each by one coordinate
-COUNTERPARTS = {"viscous_friction": "sensor_delay", "sensor_delay": "viscous_friction"}
-_COORDINATE = {"viscous_friction": "viscous", "sensor_delay": "delay"}
+_PAIRS = (("viscous_friction", "sensor_delay"), ("hardening_stiffness", "variable_inertance"))
+COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
+# those that do along one sine alone, where the inertance is free
+_OF_ONE_SINE = _PAIRS[1]
+_COORDINATE = {
+    "viscous_friction": "viscous",
+    "sensor_delay": "delay",
+    "hardening_stiffness": "stiffness_cubic",
+    "variable_inertance": "inertance_curvature",
+}
+_GOES_WITH = {"variable_inertance": ("inertance_gradient",)}
 
 
 @dataclass(frozen=True)
@@ -69,25 +81,31 @@ def exchanges(
 
     covered: a fit with errors that allow for what its residuals do not show.
     """
+    one_tone = search.problem.scales.one_tone
+    values, free = fit.model.values, fit.model.free
     asked = [
         effect
         for effect in effects
-        if COUNTERPARTS.get(effect) and _COORDINATE[COUNTERPARTS[effect]] not in fit.model.values
+        if COUNTERPARTS.get(effect) and _COORDINATE[COUNTERPARTS[effect]] not in values
+        if effect not in _OF_ONE_SINE
+        or (one_tone and "inertance" in free and _COORDINATE[effect] in free)
     ]
     spacing = max(run.spacing for run in search.runs)
     models = [_beside(fit.model, COUNTERPARTS[effect], spacing) for effect in asked]
     fits = parallel(search.problem.fit, models) if models else []
     # friction jumps where the motion turns, and tells a delay along one sine, too; without it what
     # tells them apart there is noise of the motion
-    same = search.problem.scales.one_tone and fit.model.friction == "none"
+    quiet = one_tone and fit.model.friction == "none"
     found = {}
     for effect, both in zip(asked, fits, strict=True):
         known, other = parameter_errors(covered(both)), COUNTERPARTS[effect]
         if _COORDINATE[effect] in known and _COORDINATE[other] in known:
             value, error = known[_COORDINATE[effect]]
+            same = quiet or effect in _OF_ONE_SINE
             exchange = Exchange(other, value, error, known[_COORDINATE[other]][0], same)
             if not exchange.is_told_apart:
-                bare = _beside(fit.model.without([_COORDINATE[effect]]), other, spacing)
+                taken = (_COORDINATE[effect], *_GOES_WITH.get(effect, ()))
+                bare = _beside(fit.model.without(taken), other, spacing)
                 alone = parameter_errors(covered(search.problem.fit(bare)))
                 exchange = replace(exchange, instead=alone[_COORDINATE[other]])
             found[effect] = exchange
@@ -95,9 +113,8 @@ def exchanges(
 
 
 def _beside(model: Model, effect: str, spacing: float) -> Model:
-    if effect == "sensor_delay":
-        return model.adding(None, delay=0.1 * spacing)
-    return model.adding(None, viscous=0.0)
+    begin = 0.1 * spacing if effect == "sensor_delay" else 0.0
+    return model.adding(None, **{_COORDINATE[effect]: begin})
 
 
 def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:

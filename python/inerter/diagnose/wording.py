@@ -107,6 +107,10 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
     """Such as "a delay of 3.8 ms", of an effect that one number describes."""
     if effect == "sensor_delay":
         return f"a delay of {1e3 * value:.3g} ms"
+    if effect == "hardening_stiffness":
+        return f"a stiffness of {value:.3g} {words(motion, 'N/m^3')} x^3"
+    if effect == "variable_inertance":
+        return f"an inertance that changes with the place, as 1 {value:+.3g} x^2"
     return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
 
 
@@ -136,7 +140,8 @@ def curves_in_words(
 
 def either_in_words(finding: Finding) -> str:
     """Such as "viscous friction of 120 N s/m or a delay of 3.8 ms": what members would be."""
-    coordinates = {member: EFFECTS[member].parameters[0] for member in finding.members}
+    one = {"variable_inertance": "inertance_curvature"}
+    coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     return " or ".join(
         amount_in_words(member, finding.parameters[name].value, finding.motion)
         for member, name in coordinates.items()
