@@ -246,3 +246,20 @@ def test_along_one_sine_no_stiffness_stands_for_the_inertance(effects_seed: int)
     made = Record(name="one sine", time=time, displacement=noisy, force=force)
     named = {each.effect for each in diagnose_bench([made], carry="nothing").findings}
     assert "parallel_stiffness" not in named
+
+
+def test_along_one_slow_sine_a_delay_is_no_shaft(effects_seed: int) -> None:
+    """The acceleration has more noise than size: the displacement shows that it is one sine."""
+    draw = np.random.default_rng(effects_seed)
+    time, omega = np.arange(0, 9.7, 1e-3), 2 * np.pi * draw.uniform(0.5, 0.7)
+    late, phase = draw.uniform(4e-3, 8e-3), draw.uniform(0, 6)
+    x = 0.06 * np.sin(omega * time + phase)
+    a = -0.06 * omega**2 * np.sin(omega * (time - late) + phase)
+    steps = np.round((x + 4e-5 * draw.standard_normal(time.size)) / 6e-5) * 6e-5
+    force = 62 * a + 0.3 * draw.standard_normal(time.size)
+    made = Record(name="one sine", time=time, displacement=steps, force=force)
+    found = diagnose_bench([made], carry="nothing")
+    assert found.parameters["inertance"].value == pytest.approx(62, rel=0.01)
+    (told,) = found.findings
+    assert set(told.members) == {"viscous_friction", "sensor_delay"}
+    assert told.parameters["delay"].value == pytest.approx(late, rel=0.2)

@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 from inerter.identify.runs import BenchRun
 from inerter.records import Record
-from inerter.records.motion import Motion, apply_weight, motion_noise, response, weight_above
+from inerter.records.motion import (
+    Motion,
+    apply_weight,
+    has_one_line,
+    motion_noise,
+    response,
+    smooth,
+    weight_above,
+)
 from inerter.records.preparation import prepare, prepare_again, weighed
 
 RATE = 500.0
@@ -134,3 +142,36 @@ def test_a_run_at_rest_chooses_no_cutoff() -> None:
     without, beside = prepare(records), prepare([*records, rest])
     assert beside.cutoffs[0] == pytest.approx(without.cutoffs[0])
     assert beside.cutoff == pytest.approx(without.cutoff, rel=0.5)
+
+
+def along(sines: Sequence[float], noise: float, draw: np.random.Generator) -> Record:
+    """62 kg along sines of equal speeds, the displacement in steps of 60 um."""
+    time = np.arange(0, 9.7, 1e-3)
+    waves = [(2 * np.pi * f, draw.uniform(0, 6)) for f in sines]
+    x = sum(0.15 / w * np.sin(w * time + p) for w, p in waves)
+    a = sum(-0.15 * w * np.sin(w * time + p) for w, p in waves)
+    steps = np.round((x + noise * draw.standard_normal(time.size)) / 6e-5) * 6e-5
+    force = 62 * a + 0.3 * draw.standard_normal(time.size)
+    return Record(name=f"{sines}", time=time, displacement=steps, force=force)
+
+
+@pytest.mark.parametrize(
+    ("runs", "one"),
+    [([[0.6]], True), ([[0.6], [0.6]], True), ([[0.6, 1.4]], False), ([[0.6], [1.1]], False)],
+)
+def test_one_line_is_told_whatever_the_noise(
+    runs: list[list[float]], one: bool, effects_seed: int
+) -> None:
+    draw = np.random.default_rng(effects_seed)
+    records = [along(sines, 4e-5, draw) for sines in runs]
+    for cutoff in (5.0, 60.0):
+        motions = [smooth(record, cutoff, ()) for record in records]
+        assert has_one_line(motions, [motion.velocity_noise for motion in motions]) == one
+
+
+def test_along_one_sine_the_acceleration_chooses_the_cutoff(effects_seed: int) -> None:
+    """The displacement would foretell the force at any cut-off, and has no noise to speak of."""
+    record = along([0.6], 4e-5, np.random.default_rng(effects_seed))
+    (motion,) = prepare([record]).motions
+    acceleration, force = motion.acceleration[motion.inner], motion.force[motion.inner]
+    assert np.std(force - 62 * acceleration) < 1.0

@@ -21,6 +21,7 @@ from inerter.records.motion import (
     apply_weight,
     band_response,
     filtered,
+    has_one_line,
     lowpass,
     response,
     weight_above,
@@ -326,7 +327,7 @@ def scales(runs: Sequence[BenchRun]) -> Scales:
         velocity=size("velocity"),
         acceleration=size("acceleration"),
         cutoff=min(run.cutoff for run in runs),
-        one_tone=correlation**2 > ONE_TONE,
+        one_tone=correlation**2 > ONE_TONE or has_one_line(runs),
         travel=travel,
         # not of the travel: one large stroke to one side moves that beyond a stop
         middle=float(np.mean(np.quantile(x, (0.25, 0.75)))),

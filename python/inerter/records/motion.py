@@ -16,8 +16,9 @@ those samples out.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.fft import irfft, rfft, rfftfreq
@@ -37,6 +38,9 @@ EDGE_PERIODS = 2.5
 LEAST_LOSS = 0.01
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
+# share of a velocity's power within so much of one frequency, or so many bins of a windowed line,
+# from which it has no other; samples below which a run tells nothing of it
+_ONE_LINE, _WITHIN, _MAIN_LOBE, _FEWEST = 0.99, 0.1, 2.5, 16
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,6 +211,47 @@ def apply_weight(values: Array, weight: Array) -> Array:
     """Channels (..., n) times a weight at their frequencies, no shift; zero beyond the ends."""
     length = 2 * weight.size - 2
     return irfft(rfft(values, length) * weight, length)[..., : values.shape[-1]]
+
+
+class Moving(Protocol):
+    """What has a velocity (n,) [m/s], its samples `spacing` apart [s], and says which are known."""
+
+    @property
+    def spacing(self) -> float: ...
+    @property
+    def velocity(self) -> Array: ...
+    @property
+    def inner(self) -> NDArray[np.bool_]: ...
+
+
+def has_one_line(runs: Sequence[Moving], noises: Sequence[float] = ()) -> bool:
+    """Whether all velocities have one frequency, the same one.
+
+    Then displacement and acceleration are proportional, however much noise the latter has. `noises`
+    are those of the velocities, rms [m/s].
+    """
+    spectra, noise = [], 0.0
+    for run, rms in zip(runs, noises or [0.0] * len(runs), strict=True):
+        known = np.flatnonzero(run.inner)
+        if known.size < _FEWEST:
+            continue
+        part = slice(known[0], known[-1] + 1)
+        mask = run.inner[part]
+        velocity = np.where(mask, run.velocity[part] - np.mean(run.velocity[known]), 0.0)
+        window = np.hanning(mask.size) * mask
+        power = np.abs(rfft(velocity * window)) ** 2
+        spectra.append((rfftfreq(mask.size, run.spacing), power))
+        noise += 0.5 * mask.size * rms**2 * float(window @ window)
+    if not any(power.any() for _, power in spectra):
+        return False
+    frequency, power = max(spectra, key=lambda pair: float(pair[1].max()))
+    line = frequency[np.argmax(power)]
+    near = everything = 0.0
+    for frequency, power in spectra:
+        width = max(_WITHIN * line, _MAIN_LOBE * frequency[1])
+        near += float(power[np.abs(frequency - line) <= width].sum())
+        everything += float(power.sum())
+    return near > _ONE_LINE * (everything - noise)
 
 
 def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) -> Motion:

@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.records.motion import Motion, apply_weight, lowpass, smooth, weight_above, white_noise
+from inerter.records.motion import (
+    Motion,
+    apply_weight,
+    has_one_line,
+    lowpass,
+    smooth,
+    weight_above,
+    white_noise,
+)
 from inerter.records.record import Record
 
 Array = NDArray[np.float64]
@@ -52,6 +60,8 @@ class Preparation:
         Frequency [Hz] above which errors were taken to count less, see `weighed`.
     force_band : float
         Band [Hz] in which forces are compared where it is wider than that of the motion, else 0.
+    one_line : bool
+        Whether the motion has one frequency.
     """
 
     motions: list[Motion]
@@ -62,6 +72,7 @@ class Preparation:
     noise_floor: float
     corner: float = np.inf
     force_band: float = 0.0
+    one_line: bool = False
 
 
 def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparation:
@@ -85,8 +96,11 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
     measured = [name for name in ("velocity", "acceleration") if _usable(name, records)]
     choices = [use for count in range(len(measured) + 1) for use in combinations(measured, count)]
 
+    widest = [smooth(record, float(cutoffs[-1]), ()) for record in records]
+    one_line = has_one_line(widest, [motion.velocity_noise for motion in widest])
+
     def error(motions: Sequence[Motion], masks: Masks) -> float:
-        return _force_error(motions, _both(masks, learnt))
+        return _force_error(motions, _both(masks, learnt), one_line)
 
     errors = np.array([_errors(records, cutoffs, use, error) for use in choices])
     if not np.isfinite(errors).any():
@@ -108,6 +122,7 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
         errors=row,
         channels=use,
         noise_floor=float(np.sqrt(np.mean([white_noise(record.force) ** 2 for record in records]))),
+        one_line=one_line,
     )
 
 
@@ -142,7 +157,7 @@ def weighed(
     corner = float(max(corner, preparation.cutoffs[0]))
 
     def error(motions: Sequence[Motion], masks: Masks) -> float:
-        return _force_error(motions, _both(masks, learnt), corner)
+        return _force_error(motions, _both(masks, learnt), preparation.one_line, corner)
 
     return replace(prepare_again(records, preparation, error), corner=corner)
 
@@ -243,7 +258,9 @@ def _inside(force: Array) -> NDArray[np.bool_]:
     return (force > force.min() + margin) & (force < force.max() - margin)
 
 
-def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf) -> float:
+def _force_error(
+    motions: Sequence[Motion], masks: Masks, one_line: bool, corner: float = np.inf
+) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory.
 
     Above a `corner` [Hz] errors count less, see `weight_above`.
@@ -253,10 +270,14 @@ def _force_error(motions: Sequence[Motion], masks: Masks, corner: float = np.inf
         for name in ("displacement", "velocity")
     )
     columns, forces = [], []
+    # along one sine the displacement would foretell what the acceleration does, at any cut-off
+    shares = (0.003, 0.03) if one_line else (0.003, 0.03, 0.3)
     for motion, mask in zip(motions, masks, strict=True):
         x, v, a = motion.displacement, motion.velocity, motion.acceleration
-        rows = [a, v, x, np.ones_like(x), v * np.abs(v), np.tanh(v / (0.01 * v_rms))]
-        for share in (0.003, 0.03, 0.3):
+        rows = [a, v, np.ones_like(x), v * np.abs(v), np.tanh(v / (0.01 * v_rms))]
+        if not one_line:
+            rows.append(x)
+        for share in shares:
             bristle = Device(
                 friction="dahl", coulomb_force=1.0, bristle_stiffness=float(1 / (share * x_rms))
             )
