@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter.diagnose.band import force_band
@@ -46,3 +48,12 @@ def test_it_takes_more_than_noise_above_the_motion(
         assert 1.5 * preparation.cutoff < band < 120.0
     else:
         assert band == 0.0
+
+
+def test_a_tone_needs_no_wider_band(effects_seed: int) -> None:
+    made = [
+        replace(record, force=record.force + 8.0 * np.sin(2 * np.pi * 61.3 * TIME))
+        for record in records(np.random.default_rng(effects_seed), 0.0)
+    ]
+    begun = prepared(Given(records=made, holdout=["c"]))
+    assert force_band(begun.data.learnt, begun.baseline, begun.weighed) == 0.0

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.decision import CRITERIA
@@ -25,8 +26,8 @@ from inerter.records.preparation import Preparation, prepare_again
 Array = NDArray[np.float64]
 Error = Callable[[Problem], float]
 
-# lines of a spectrum of errors
-_LINES = 250
+# lines of a spectrum of errors; how far one of a tone is above the median of so many about it
+_LINES, _TONE, _BESIDE = 250, 4.0, 21
 
 
 def best_band(
@@ -88,11 +89,12 @@ def narrower_band(
 def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float:
     """Band [Hz] that has what a model misses of the force, where most of that is above the motion.
 
-    0 where most is within the motion's band, or is the force's noise. `learnt` has the force as
-    measured.
+    0 where most is within the motion's band, or is the force's noise, or tones. `learnt` has the
+    force as measured.
     """
     cutoff = preparation.cutoff
     power, frequency = _power_missed(learnt, model)
+    power = np.minimum(power, _TONE * median_filter(power, _BESIDE))
     noise = preparation.noise_floor**2 / power.size
     missed = np.maximum(power - noise, 0.0)
     beyond = float(missed[frequency > cutoff].sum())
