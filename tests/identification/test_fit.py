@@ -135,7 +135,7 @@ def test_delayed_is_a_shift_of_third_order() -> None:
 def test_bounds_hold() -> None:
     """Friction that pushes cannot be fitted by a damper: it stays at zero."""
     force = run(Device(inertance=50.0, force_offset=1.0), 0.1)
-    pushed = BenchRun(**{**force.__dict__, "force": force.force - 30 * force.velocity})
+    pushed = replace(force, force=force.force - 30 * force.velocity)
     fit = problem(pushed).fit(
         Model("none", {"inertance": 50.0, "viscous": 5.0}, ("inertance", "viscous"))
     )
