@@ -231,9 +231,9 @@ def _problem(record: Record, counted: Counted) -> Problem:
     """The record as a fit has it; every prediction of it is counted."""
 
     class Counting(Problem):
-        def errors(self, model: Model, pressed: float = 0.0) -> list[Any]:
+        def errors(self, model: Model, pressed: float = 0.0, **which: bool) -> list[Any]:
             counted.evaluations += 1
-            return super().errors(model, pressed)
+            return super().errors(model, pressed, **which)
 
     runs = [thin(motion) for motion in prepare([record]).motions]
     return Counting(runs, [np.ones(run.force.size, bool) for run in runs])
