@@ -26,7 +26,7 @@ from inerter.records.preparation import Preparation, prepare_again
 Array = NDArray[np.float64]
 Error = Callable[[Problem], float]
 
-# lines of a spectrum of errors; how far one of a tone is above the median of so many about it
+# lines of a spectrum of errors, at most; how far one of a tone is above the median of so many about it
 _LINES, _TONE, _BESIDE = 250, 4.0, 21
 
 
@@ -98,8 +98,10 @@ def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float
     noise = preparation.noise_floor**2 / power.size
     missed = np.maximum(power - noise, 0.0)
     beyond = float(missed[frequency > cutoff].sum())
-    loud = CRITERIA.loud_beyond * preparation.noise_floor
-    if beyond < max(CRITERIA.share_beyond * float(missed.sum()), loud**2):
+    loud = max(
+        CRITERIA.loud_beyond * preparation.noise_floor, CRITERIA.force_share * learnt.scales.force
+    )
+    if not beyond or beyond < max(CRITERIA.share_beyond * float(missed.sum()), loud**2):
         return 0.0
     share = np.cumsum(missed) / missed.sum()
     widest = float(frequency[np.searchsorted(share, CRITERIA.kept_beyond)])
@@ -115,13 +117,13 @@ def _power_missed(learnt: Problem, model: Model) -> tuple[Array, Array]:
         if mask.any()
     ]
     highest = min(0.5 / spacing for _, spacing in used)
-    edges = np.linspace(0.0, highest, _LINES + 1)
-    power = np.zeros(_LINES)
+    # each with some lines of every run
+    lines = int(np.clip(min(error.size for error, _ in used) // 8, 1, _LINES))
+    edges = np.linspace(0.0, highest, lines + 1)
+    power = np.zeros(lines)
     for error, spacing in used:
-        lines = np.abs(np.fft.rfft(error)) ** 2
-        power += np.histogram(np.fft.rfftfreq(error.size, spacing), edges, weights=lines)[0] / (
-            0.5 * error.size
-        )
+        squares = np.abs(np.fft.rfft(error)) ** 2 / (0.5 * error.size)
+        power += np.histogram(np.fft.rfftfreq(error.size, spacing), edges, weights=squares)[0]
     samples = sum(int(mask.sum()) for mask in learnt.masks)
     return power / samples, edges[1:]
 
