@@ -26,7 +26,7 @@ from inerter.records.preparation import Preparation, prepare_again
 Array = NDArray[np.float64]
 Error = Callable[[Problem], float]
 
-# lines of a spectrum of errors, at most; how far one of a tone is above the median of so many about it
+# lines of a spectrum of errors, at most; how far one of a tone is above the median of those about
 _LINES, _TONE, _BESIDE = 250, 4.0, 21
 
 
