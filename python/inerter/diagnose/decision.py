@@ -161,12 +161,14 @@ class Criteria:
     )
     share_beyond: float = _bound(
         0.5,
-        SHARE,
+        "share of the power",
         "of what is missed, above the motion's band, from which on forces are compared "
         "in a wider one",
     )
     loud_beyond: float = _bound(3.0, "noise of the force", "the least rms of that")
-    kept_beyond: float = _bound(0.9, SHARE, "of what is missed that the wider band has")
+    kept_beyond: float = _bound(
+        0.9, "share of the power", "of what is missed that the wider band has"
+    )
     widest_force_band: float = _bound(8.0, "cut-offs of the motion", "the widest such band")
     tones_from: float = _bound(
         0.7, "of the cut-off", "from where tones are looked for at the measured rate"

@@ -77,7 +77,10 @@ def other_split(search: Search, data: Data, final: Model, doubt: bool) -> tuple[
     if not others:
         return None
     name = data.runs[min(others, key=lambda i: known[i])].name
-    again = Search(search.runs, split(search.runs, [name]), search.baseline, search.progress)
+    again = Search(
+        search.runs, split(search.runs, [name]), search.baseline, search.progress,
+        witness=search.witness, one_tone=search.one_tone,
+    )  # fmt: skip
     effect = again.next_effect(final)
     present = [found for found, _ in effects_of(final, search.baseline)]
     return (name, effect) if effect and effect not in present else None

@@ -114,11 +114,10 @@ def searched(start: Prepared) -> Searched:
     elif raw := _wider(data, data.preparation, final.model):
         data = data.in_band(raw)
     found = Searched(prepared=start, data=data, search=search, final=final)
-    if more := _beyond_motion(found, band):
-        return more
+    # what a play does lies above the motion's band too, and is asked for first
     if play := _play(found):
         return _with_play(found, play)
-    return _in_narrower_band(found)
+    return _beyond_motion(found, band) or _in_narrower_band(found)
 
 
 def search_in(start: Prepared, band: Preparation) -> Search:
@@ -167,10 +166,10 @@ def _beyond_motion(found: Searched, band: Preparation) -> Searched | None:
     start = found.prepared
     start.given.progress(f"most of what is missed lies above {band.cutoff:.3g} Hz: searching there")
     search = search_in(start, replace(band, force_band=wide))
-    final = search.run(model)
+    final = search.run(model, until="backlash")
     learnt = data.learnt
     before, after = (rms(learnt.errors(m), learnt.masks) for m in (model, final.model))
-    if after > (1 - CRITERIA.band_gain) * before:
+    if "backlash" in final.model.free or after > (1 - CRITERIA.band_gain) * before:
         return None
     data = data.in_band(replace(data.preparation, force_band=wide))
     return Searched(prepared=start, data=data, search=search, final=final)

@@ -205,10 +205,12 @@ def _factor(name: str, model: Model) -> float:
     return model.values["inertance"] if quantity and quantity.name == "inertance" else 1.0
 
 
-def _nodes(name: str, model: Model) -> int:
-    """Number of nodes of the curve that a coordinate is a node of, 0 where it is none."""
-    quantity = _curve(name)
-    return sum(node_of(each) is quantity for each in model.values) if quantity else 0
+def _nodes(name: str, model: Model) -> tuple[int, ...]:
+    """Numbers of nodes of the curve that a coordinate is a node of, and of that for v < 0."""
+    if (quantity := _curve(name)) is None:
+        return ()
+    names = model.values.keys()
+    return tuple(len(names & set(each)) for each in (quantity.nodes, quantity.back_nodes))
 
 
 def _shown(name: str, model: Model, run: BenchRun) -> Array:

@@ -251,7 +251,8 @@ def has_one_line(runs: Sequence[Moving], noises: Sequence[float] = ()) -> bool:
         width = max(_WITHIN * line, _MAIN_LOBE * frequency[1])
         near += float(power[np.abs(frequency - line) <= width].sum())
         everything += float(power.sum())
-    return near > _ONE_LINE * (everything - noise)
+    # where more than half is noise, nothing is told
+    return noise < 0.5 * everything and near > _ONE_LINE * (everything - noise)
 
 
 def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) -> Motion:
