@@ -78,11 +78,10 @@ def test_a_curve_is_found_where_no_sine_fits() -> None:
     assert "force_curve" in found.model.device().given
 
 
-def test_two_flanks_are_found_and_one_is_not_taken_for_two() -> None:
-    forth, back = (
-        [0.0, 0.08, -0.05, 0.0, 0.09, -0.06, 0.03],
-        [0.02, -0.07, 0.06, 0.01, -0.08, 0.05, 0.0],
-    )
+def test_two_flanks_are_found_and_one_is_not_taken_for_two(effects_seed: int) -> None:
+    draw = np.random.default_rng(effects_seed)
+    forth = (draw.uniform(0.04, 0.1, 7) * [0, 1, -1, 0, 1, -1, 1]).tolist()
+    back = (draw.uniform(0.04, 0.1, 7) * [1, -1, 1, 1, -1, 1, 0]).tolist()
     x, _, _ = motion()
     ends = {"curve_lower": float(x.min()), "curve_upper": float(x.max())}
     truth = Device(inertance=50, inertance_curve=forth, inertance_back_curve=back, **ends)

@@ -57,9 +57,18 @@ def test_columns_are_differences_of_the_residual(
 @pytest.mark.parametrize("low_pass", [{}, LOW_PASS], ids=["", "low-pass"])
 @pytest.mark.parametrize("band", [np.inf, 60.0])
 @pytest.mark.parametrize("law", ["none", "dahl", "bouc_wen", "lugre"])
-@pytest.mark.parametrize("quantity", QUANTITIES[:2], ids=lambda quantity: quantity.name)
+@pytest.mark.parametrize(
+    ("quantity", "flanks"),
+    [(QUANTITIES[0], False), (QUANTITIES[1], False), (QUANTITIES[1], True)],
+    ids=["force", "inertance", "flanks"],
+)
 def test_nodes_of_a_curve_are_differences_of_the_residual(
-    quantity: Quantity, law: str, band: float, low_pass: dict[str, float], effects_seed: int
+    quantity: Quantity,
+    flanks: bool,
+    law: str,
+    band: float,
+    low_pass: dict[str, float],
+    effects_seed: int,
 ) -> None:
     data = problem()
     if np.isfinite(band):
@@ -71,7 +80,8 @@ def test_nodes_of_a_curve_are_differences_of_the_residual(
     low, high = data.scales.travel
     draw = np.random.default_rng(effects_seed)
     size = 0.05 if quantity.name == "inertance" else 5.0
-    nodes = dict(zip(quantity.nodes[:7], draw.uniform(-size, size, 7).tolist(), strict=True))
+    names = (*quantity.nodes[:7], *(quantity.back_nodes[:7] if flanks else ()))
+    nodes = {name: float(draw.uniform(-size, size)) for name in names}
     also = {"inertance": 40.0, "viscous": 90.0, "inertance_gradient": 1.5, "delay": 1.3 * H}
     ends = {"curve_lower": low, "curve_upper": high}
     model = Model(law, also | LAWS[law] | low_pass | ends | nodes, (*nodes, "viscous"))

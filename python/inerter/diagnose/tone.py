@@ -38,8 +38,13 @@ _FEWEST = 64
 _WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
 # lines that are asked about, one after another
 _ASKED = 8
-# mains [Hz] and multiples of it that are heard, and how far its frequency may be off
-_MAINS, _HARMONICS, _OFF = (50.0, 60.0), 6, 2e-3
+
+MAINS = (50.0, 60.0)
+"""Frequencies of the mains [Hz]."""
+MAINS_DRIFT = 0.2
+"""By how much the mains stray from it [Hz]."""
+MOST_HARMONICS = 7
+"""Multiples of it that are heard."""
 _PADDING = 2
 _TONE = ("disturbance_amplitude", "disturbance_frequency")
 
@@ -163,12 +168,17 @@ class Witness:
             return False
         longest = max(run.spacing * run.force.size for run in self.raw.runs)
         told = hidden < CRITERIA.tone_hidden * shown
-        return bool(told) or _is_of_mains(frequency, 1 / longest)
+        return bool(told) or of_mains(frequency, 1 / longest) is not None
 
 
-def _is_of_mains(frequency: float, resolution: float) -> bool:
-    harmonics = np.outer(_MAINS, np.arange(1, _HARMONICS + 1))
-    return bool(np.any(np.abs(frequency - harmonics) < _OFF * harmonics + resolution))
+def of_mains(frequency: float, resolution: float = 0.0) -> tuple[int, float] | None:
+    """Which multiple of which mains [Hz] a tone is, told to a resolution [Hz]; None of none."""
+    for mains in MAINS:
+        times = round(frequency / mains)
+        off = abs(frequency - times * mains)
+        if 1 <= times <= MOST_HARMONICS and off < times * MAINS_DRIFT + resolution:
+            return times, mains
+    return None
 
 
 def tone_candidate(

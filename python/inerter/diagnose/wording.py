@@ -19,15 +19,10 @@ from inerter.diagnose.result import (
     Rival,
     StatedValue,
 )
+from inerter.diagnose.tone import of_mains
 from inerter.measured_text import measured
 from inerter.motion_units import Kind, force_word, words
 from inerter.printable import in_digits
-
-MAINS = (50.0, 60.0)
-"""Frequencies of the mains [Hz]."""
-MAINS_DRIFT = 0.2
-"""By how much the mains stray from it [Hz]."""
-MOST_HARMONICS = 7
 
 
 def quantity(value: ParameterValue) -> str:
@@ -198,14 +193,12 @@ def _of_a_gear(finding: Finding) -> str:
 def _of_the_mains(finding: Finding) -> str:
     """That a tone is hum, where it lies at a multiple of the frequency of the mains."""
     tone = finding.parameters.get("disturbance_frequency")
-    if tone is None:
+    found = of_mains(tone.value) if tone else None
+    if found is None:
         return ""
-    for mains in MAINS:
-        times = round(tone.value / mains)
-        if 1 <= times <= MOST_HARMONICS and abs(tone.value - times * mains) < times * MAINS_DRIFT:
-            what = "the frequency" if times == 1 else f"{times} times the frequency"
-            return f"; this is {what} of the mains ({mains:g} Hz): hum, and no part of the device"
-    return ""
+    times, mains = found
+    what = "the frequency" if times == 1 else f"{times} times the frequency"
+    return f"; this is {what} of the mains ({mains:g} Hz): hum, and no part of the device"
 
 
 def is_right(diagnosis: Diagnosis) -> bool:
