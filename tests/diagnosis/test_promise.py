@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidates import Candidate, candidates
-from inerter.diagnose.promise import Promise
+from inerter.diagnose.promise import Known, Promise
 from inerter.diagnose.trials import FEW, Trials
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
@@ -55,7 +55,7 @@ def fitted(given: Problem) -> tuple[Fit, list[Candidate]]:
 
 def holding(given: Problem, share: float) -> set[str]:
     fit, trials = fitted(given)
-    promise = Promise(given, fit, (1 - share) * fit.rmse(given.masks))
+    promise = Promise(given, Known(given, fit.model), (1 - share) * fit.rmse(given.masks))
     return {trial.effect for trial in trials if promise.holds(trial)}
 
 
@@ -82,8 +82,9 @@ def test_of_a_linear_term_the_step_tells_what_the_fit_gains() -> None:
     viscous = next(trial for trial in trials if trial.effect == "viscous_friction")
     reached = given.fit(viscous.starts[0])
     error = rms(reached.residual, given.masks)
-    assert Promise(given, fit, 1.001 * error).holds(viscous)
-    assert not Promise(given, fit, 0.999 * error).holds(viscous)
+    known = Known(given, fit.model)
+    assert Promise(given, known, 1.001 * error).holds(viscous)
+    assert not Promise(given, known, 0.999 * error).holds(viscous)
 
 
 def test_only_what_comes_near_the_best_is_followed_to_its_end() -> None:

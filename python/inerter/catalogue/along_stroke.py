@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
 
 from inerter.catalogue.combinations import Values
 from inerter.catalogue.coordinate import Coordinate, OfScales
@@ -188,6 +189,15 @@ FORMS: Mapping[str, str] = {
     "speed": "with the speed",
 }
 """What the law of such a finding is in running text."""
+
+
+def curves_of_nodes(lower: float, upper: float, nodes: int) -> BSpline:
+    """The curves (nodes,) over the place [m] of which each is 1 at one node and 0 at the others.
+
+    A device's curve: a cubic spline whose slope is 0 at both ends.
+    """
+    places = np.linspace(lower, upper, nodes)
+    return make_interp_spline(places, np.eye(nodes), k=3, bc_type="clamped")
 
 
 def node_of(parameter: str) -> Quantity | None:

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
 
-from inerter.catalogue.along_stroke import NODES, PERIODS, QUANTITIES, Quantity
+from inerter.catalogue.along_stroke import NODES, PERIODS, QUANTITIES, Quantity, curves_of_nodes
 from inerter.catalogue.friction import FRICTION
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
@@ -191,8 +190,7 @@ def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
 
 def _gain_of_curve(shown: _Shown, nodes: int, flanks: bool = False) -> float:
     """Share of the square of a residual that a smooth curve of the place takes, or two."""
-    places = np.linspace(*shown.ends, nodes)
-    spline = make_interp_spline(places, np.eye(nodes), k=3, bc_type="clamped")
+    spline = curves_of_nodes(*shown.ends, nodes)
     inside = np.clip(shown.x, *shown.ends)
     values, slopes = spline(inside), spline(inside, 1)
     columns = np.column_stack([shown.effect(values[:, i], slopes[:, i]) for i in range(nodes)])

@@ -9,10 +9,44 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
-from inerter.identify.fit import Fit, Problem
+from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 
 Array = NDArray[np.float64]
+
+
+class Known:
+    """Derivatives of a problem's residual at a model, which candidates on top of it begin with."""
+
+    def __init__(self, problem: Problem, model: Model) -> None:
+        self.problem, self.model = problem, model
+
+    @cached_property
+    def columns(self) -> Array:
+        """By the model's free coordinates, over all samples, (n, p)."""
+        return self.problem.derivatives(self.model, counted=True)
+
+    def near(self, problem: Problem, start: Model) -> Array | None:
+        """Derivatives of a problem near a start that adds to the model; None of another one.
+
+        The problem may have the first parts of the runs.
+        """
+        same = all(start.values.get(name) == self.model.values[name] for name in self.model.free)
+        if start.friction != self.model.friction or not set(self.model.free) <= set(start.free):
+            return None
+        if not same:
+            return None
+        sizes = [run.force.size for run in self.problem.runs]
+        begins = np.cumsum([0, *sizes[:-1]])
+        pairs = zip(begins, problem.runs, strict=True)
+        rows = np.concatenate([begin + np.arange(run.force.size) for begin, run in pairs])
+        added = [name for name in start.free if name not in self.model.free]
+        columns = np.empty((rows.size, len(start.free)))
+        columns[:, [start.free.index(name) for name in self.model.free]] = self.columns[rows]
+        columns[:, [start.free.index(name) for name in added]] = problem.derivatives(
+            start, added, counted=True
+        )
+        return columns
 
 
 class Promise:
@@ -22,12 +56,8 @@ class Promise:
     by one step of Gauss and Newton from its starting points, for much less than by a fit.
     """
 
-    def __init__(self, problem: Problem, current: Fit, limit: float) -> None:
-        self.problem, self.current, self.limit = problem, current, limit
-
-    @cached_property
-    def _known(self) -> Array:
-        return self.problem.jacobian(self.current.model)
+    def __init__(self, problem: Problem, known: Known, limit: float) -> None:
+        self.problem, self.known, self.limit = problem, known, limit
 
     def holds(self, candidate: Candidate) -> bool:
         """False where no starting point leads below the limit [N]."""
@@ -36,10 +66,10 @@ class Promise:
         return any(self._error_after_a_step(start) < self.limit for start in candidate.starts)
 
     def _error_after_a_step(self, start: Model) -> float:
-        free = self.current.model.free
-        added = [name for name in start.free if name not in free]
+        added = [name for name in start.free if name not in self.known.model.free]
         flat = self.problem.masked(self.problem.residual(start))
-        columns = np.concatenate([self._known, self.problem.jacobian(start, added)], axis=1)
+        known = self.known.columns[np.concatenate(self.problem.masks)]
+        columns = np.concatenate([known, self.problem.jacobian(start, added)], axis=1)
         columns = columns / (np.linalg.norm(columns, axis=0) + 1e-300)
         step = np.linalg.lstsq(columns, flat, rcond=1e-10)[0]
         return float(np.sqrt(np.mean((flat - columns @ step) ** 2)))

@@ -6,14 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.promise import Promise
+from inerter.diagnose.promise import Known, Promise
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
+
+Array = NDArray[np.float64]
 
 # share of the cost below which a step of a fit that is only compared changes nothing
 ROUGH = 1e-5
@@ -33,6 +36,8 @@ FEWEST = 5
 # of the data may be to be followed
 NEAREST = 3
 AT_LEAST = 1.5
+# share of the way to the error that a rival needs which one step of Gauss and Newton has to foretell
+FORETOLD = 0.5
 # errors this near belong to the same fit
 SAME = 1e-5
 # share of every run on which the starting points of a fit are compared
@@ -91,8 +96,12 @@ class Trials:
         """
         return self._followed(self._rough(candidate, limits), limits[0])
 
-    def _rough(self, candidate: Candidate, limits: Limits) -> list[Fit]:
-        """A few steps from the best starting points."""
+    def _rough(self, candidate: Candidate, limits: Limits, known: Known | None = None) -> list[Fit]:
+        """A few steps from the best starting points, with derivatives `known` of most of it."""
+
+        def near(problem: Problem, start: Model) -> Array | None:
+            return None if known is None else known.near(problem, start)
+
         starts = candidate.starts
         limit, limit_of_part = limits
         if candidate.effect == "backlash":
@@ -106,7 +115,14 @@ class Trials:
                 return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
 
             trials = [
-                part.fit(start, evaluations, tolerance=1e-3, give_up=hopeless, rough=True)
+                part.fit(
+                    start,
+                    evaluations,
+                    tolerance=1e-3,
+                    give_up=hopeless,
+                    rough=True,
+                    derivatives=near(part, start),
+                )
                 for start in starts
             ]
             trials.sort(key=lambda fit: fit.rmse(part.masks))
@@ -114,9 +130,14 @@ class Trials:
             if best > (limit if fast else AT_LEAST * limit_of_part):
                 residual = self.problem.residual(trials[0].model)
                 return [replace(trials[0], residual=residual, evaluations=1)]
-            near = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
-            starts = tuple(trial.model for trial in near or trials[:1])
-        return [self.problem.fit(start, FEW, tolerance=ROUGH, rough=True) for start in starts]
+            best_two = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
+            starts = tuple(trial.model for trial in best_two or trials[:1])
+        return [
+            self.problem.fit(
+                start, FEW, tolerance=ROUGH, rough=True, derivatives=near(self.problem, start)
+            )
+            for start in starts
+        ]  # fmt: skip
 
     def _followed(self, rough: Sequence[Fit], limit: float, reach: float = np.inf) -> Fit:
         """The best of them; those below a limit [N] are followed to their end first.
@@ -151,16 +172,19 @@ class Trials:
         if aim:
             far = self._limits(aim, FAR)
             limits = min(limits[0], far[0]), min(limits[1], far[1])
-            likely = min(likely, far[0])
+            # a step is to foretell some of the way to where a rival is looked at further
+            reach, error = CRITERIA.beaten * aim.rmse(masks), current.rmse(masks)
+            likely = min(likely, far[0], error - FORETOLD * max(error - reach, 0.0))
         known = self._fitted_before(current)
-        promise = Promise(self.problem, current, likely)
+        at_current = Known(self.problem, current.model)
+        promise = Promise(self.problem, at_current, likely)
         rich = [t for t in candidates if t.is_rich]
         plain = [t for t in candidates if not t.is_rich]
 
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
             new = [t for t in some if t.key not in known and promise.holds(t)]
             old = [(t, known[t.key]) for t in some if t.key in known]
-            rough = parallel(lambda t: self._rough(t, limits), new)
+            rough = parallel(lambda t: self._rough(t, limits, at_current), new)
             begun = [min(fit.rmse(masks) for fit in each) for each in rough]
             so_far = [*begun, *(fit.rmse(masks) for _, fit in [*fitted, *old])]
             limit = min([limits[0], *(FAR * error for error in so_far)])

@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 from inerter.catalogue.along_stroke import Quantity, node_of
 from inerter.catalogue.coordinates import COORDINATES, ENTANGLED, device_values, search_range
 from inerter.core import Device
+from inerter.identify import along_friction
+from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import clips, through_channel
 from inerter.identify.channel_filter import Filter, filter_of, without_start
 from inerter.identify.model import Model
@@ -41,6 +43,8 @@ class ResidualAt(Protocol):
 _STEP = 1e-4
 # columns [bytes] that are kept of a problem, and of all runs in a process
 _MOST, _MOST_OF_RUNS = 2**25, 2**26
+# coordinates that are solved for apart, at least; bases of such that are kept of a problem
+_WORTH_WHILE, _MOST_BASES = 5, 4
 # with one of these a column is no longer that of the motion as it is
 _FILTER = "displacement_filter"
 # what of the channel is a linear filter of the force
@@ -78,10 +82,11 @@ class Columns:
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
         self._kept = _Kept(_MOST)
+        self._bases: dict[Hashable, Basis] = {}
 
     def __getstate__(self) -> Mapping[str, Any]:
         """What another process is told: what is kept is soon worked out again."""
-        return {**self.__dict__, "_kept": _Kept(_MOST)}
+        return {**self.__dict__, "_kept": _Kept(_MOST), "_bases": {}}
 
     def of(
         self,
@@ -96,9 +101,13 @@ class Columns:
         """
         base: list[Array] = []
         by_first_force: list[Array] = []
+        of_friction = self._of_friction(names, model)
         columns = []
         for name in names:
-            if self._in_proportion(name, model):
+            if name in of_friction:
+                size = search_range(name, self.problem.scales).size
+                columns.append(of_friction[name] * size)
+            elif self._in_proportion(name, model):
                 column = self._weighted(name, model)
                 if model.device().nstate and COORDINATES[name].belongs_to == "device":
                     base = base or residual(point)
@@ -111,6 +120,21 @@ class Columns:
                 columns.append(self._difference(name, model, point, base, residual))
         return columns
 
+    def apart(self, model: Model) -> Apart | None:
+        """What the residual is linear in, where that is so much that it is worth while."""
+        names = [name for name in model.free if self._in_proportion(name, model)]
+        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*_PLACES, *_LINEAR)):
+            return None
+        key = tuple(_key(name, model, _LINEAR) for name in names)
+        basis = self._bases.get(key)
+        if basis is None:
+            if len(self._bases) == _MOST_BASES:
+                self._bases.clear()
+            weighted = np.column_stack([self._weighted(name, model) for name in names])
+            basis = Basis.of(weighted[np.concatenate(self.problem.masks)])
+            self._bases[key] = basis
+        return Apart(names, basis, [_times_inertance(name) for name in names])
+
     def _in_proportion(self, name: str, model: Model) -> bool:
         """Whether a coordinate enters the force times its column."""
         device = model.device()
@@ -122,6 +146,26 @@ class Columns:
             and not any(each in model.values for each in (_FILTER, *_entangled(name)))
             and all(np.isinf(run.far) for run in self.problem.runs)
         )
+
+    def _of_friction(self, names: Sequence[str], model: Model) -> dict[str, Array]:
+        """Derivatives by nodes of a friction curve, where there are enough of them."""
+        nodes = along_friction.nodes_of(names, model)
+        if len(nodes) < _WORTH_WHILE:
+            return {}
+        channel = {each: model.values[each] for each in _LINEAR if each in model.values}
+        low_pass = filter_of(model.values, "force")
+        shown: dict[str, list[Array]] = {name: [] for name in nodes}
+        for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
+            if np.isfinite(run.corner) and not mask.any():
+                for name in nodes:
+                    shown[name].append(np.zeros(run.force.size))
+                continue
+            response = along_friction.Response(model, run)
+            for name in nodes:
+                column = _through(channel, response.of(name), run)
+                shown[name].append(-_settled(column, run, mask, low_pass))
+        weighted = self.problem.weighted
+        return {name: np.concatenate(weighted(columns)) for name, columns in shown.items()}
 
     def _difference(
         self,
@@ -201,8 +245,12 @@ def _entangled(name: str) -> Sequence[str]:
 
 def _factor(name: str, model: Model) -> float:
     """What a column is multiplied by in this model."""
+    return model.values["inertance"] if _times_inertance(name) else 1.0
+
+
+def _times_inertance(name: str) -> bool:
     quantity = _curve(name)
-    return model.values["inertance"] if quantity and quantity.name == "inertance" else 1.0
+    return quantity is not None and quantity.name == "inertance"
 
 
 def _nodes(name: str, model: Model) -> tuple[int, ...]:
@@ -222,12 +270,16 @@ def _shown(name: str, model: Model, run: BenchRun) -> Array:
         fine = run.at_measured_rate(device, 0.0)["total"]
         if less:
             fine = fine - run.at_measured_rate(less, 0.0)["total"]
-        spacing = run.spacing / run.thinned
-        shown = run.in_band(through_channel(channel, fine, run.fine_elapsed, spacing))
-    else:
-        force = _column(name, model, run)
-        shown = through_channel(channel, force, run.elapsed, run.spacing)
-    return shown
+        return _through(channel, fine, run)
+    return through_channel(channel, _column(name, model, run), run.elapsed, run.spacing)
+
+
+def _through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
+    """A force that bends sharply, (m,), as the force channel shows it in the run's band, (n,)."""
+    if np.isinf(run.cutoff):
+        return through_channel(channel, force, run.elapsed, run.spacing)
+    spacing = run.spacing / run.thinned
+    return run.in_band(through_channel(channel, force, run.fine_elapsed, spacing))
 
 
 def _settled(

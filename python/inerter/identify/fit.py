@@ -16,6 +16,7 @@ from inerter.catalogue.scales import Scales
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
 from inerter.estimation.least_squares import Secants, Tolerances, minimise
 from inerter.estimation.variables import Variables
+from inerter.identify.apart import Apart
 from inerter.identify.columns import Columns, ResidualAt
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
@@ -23,6 +24,9 @@ from inerter.identify.runs import BenchRun, head, head_size, scales
 from inerter.records.motion import Shaft
 
 Array = NDArray[np.float64]
+# evaluations that are left for a search over everything, at least
+_LAST = 4
+
 Masks = Sequence[NDArray[np.bool_]]
 
 
@@ -187,38 +191,34 @@ class Problem:
         """
         if not model.free:
             return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
-        variables, size = self.variables(model), self.scales.force
-        cache: dict[bytes, list[Array]] = {}
-        selected = np.concatenate(self.masks)
-
-        def at(point: Array, pressed: float = 0.0) -> list[Array]:
-            if pressed:
-                return self.residual(self._decode(model, point), pressed, counted=True)
-            key = point.tobytes()
-            if key not in cache:
-                cache.clear()
-                cache[key] = self.residual(self._decode(model, point), counted=True)
-            return cache[key]
+        size, selected = self.scales.force, np.concatenate(self.masks)
+        first = None if derivatives is None else derivatives[selected]
+        spent = 0
+        apart = self._derivatives.apart(model) if loss == "linear" else None
+        if apart and (near := self._near(apart, model, evaluations, tolerance, give_up, first)):
+            model, spent, first = near
+        variables, at = self.variables(model), self._remembered(model)
 
         def jacobian(point: Array) -> Array:
             columns = self._columns(self._decode(model, point), point, model.free, at)
             return columns[selected] / size
 
         def hopeless(done: int, error: float) -> bool:
-            return bool(give_up and give_up(done, size * error))
+            return bool(give_up and give_up(spent + done, size * error))
 
         def flat_at(point: Array) -> Array:
             return self.masked(at(point)) / size
 
-        first = None if derivatives is None else derivatives[selected] / size
-        secants = Secants(flat_at, jacobian, tolerance, rough, first)
+        secants = Secants(
+            flat_at, jacobian, tolerance, rough, None if first is None else first / size
+        )
         solution = minimise(
             flat_at,
             variables.encode(model.values),
             variables.bounds,
             jacobian,
             tolerances=Tolerances(1e-7, tolerance, 1e-10),
-            evaluations=evaluations,
+            evaluations=max(evaluations - spent, _LAST) if spent else evaluations,
             loss=loss,
             give_up=hopeless if give_up else None,
             secants=secants,
@@ -233,7 +233,86 @@ class Problem:
         covariance = self._covariance(fitted, columns * size, flat, weight)
         if not all(mask.any() for mask in self.masks):
             residual = self.residual(fitted)
-        return Fit(fitted, residual, covariance, solution.evaluations, solution.cost, rough)
+        spent += solution.evaluations
+        return Fit(fitted, residual, covariance, spent, solution.cost, rough)
+
+    def _near(
+        self,
+        apart: Apart,
+        model: Model,
+        evaluations: int,
+        tolerance: float,
+        give_up: Callable[[int, float], bool] | None,
+        derivatives: Array | None,
+    ) -> tuple[Model, int, Array] | None:
+        """A search in which what the residual is linear in is solved for at every point.
+
+        The model where it ends, evaluations, and derivatives there, masked and near. None where no
+        such model is possible or better: what is solved for may be beyond its bounds.
+        """
+        inner = replace(model, free=tuple(n for n in model.free if n not in apart.names))
+        begin, at = self.variables(inner).encode(inner.values), self._remembered(inner)
+        if apart.solved(model, self.masked(at(begin)), self.scales) is None:
+            return None
+        size, selected = self.scales.force, np.concatenate(self.masks)
+        which = [model.free.index(name) for name in inner.free]
+        last = np.empty((int(selected.sum()), 0))
+
+        def jacobian(point: Array) -> Array:
+            nonlocal last
+            columns = self._columns(self._decode(inner, point), point, inner.free, at)
+            last = columns[selected]
+            return apart.rest(last) / size
+
+        def flat_at(point: Array) -> Array:
+            return apart.rest(self.masked(at(point))) / size
+
+        def hopeless(done: int, error: float) -> bool:
+            return bool(give_up and give_up(done, size * error))
+
+        here, spent = begin, 0
+        if inner.free:
+            first = None
+            if derivatives is not None:
+                last = derivatives[:, which]
+                first = apart.rest(last) / size
+            found = minimise(
+                flat_at, begin, self.variables(inner).bounds, jacobian,
+                tolerances=Tolerances(1e-7, tolerance, 1e-10), evaluations=evaluations,
+                give_up=hopeless if give_up else None,
+                secants=Secants(flat_at, jacobian, tolerance, True, first),
+            )  # fmt: skip
+            here, spent = found.variables, found.evaluations
+        reached = replace(self._decode(inner, here), free=model.free)
+        reached = apart.solved(reached, self.masked(at(here)), self.scales)
+        if reached is None or not reached.is_possible:
+            return None
+        before, after = (
+            float(np.sum(self.masked(self.residual(each, counted=True)) ** 2))
+            for each in (model, reached)
+        )
+        if not after < before:
+            return None
+        columns = np.empty((last.shape[0], len(model.free)))
+        columns[:, which] = last
+        others = [model.free.index(name) for name in apart.names]
+        columns[:, others] = apart.columns(reached, self.scales)
+        return reached, spent, columns
+
+    def _remembered(self, model: Model) -> ResidualAt:
+        """The residual at a point of a model's variables; the last one asked for is kept."""
+        cache: dict[bytes, list[Array]] = {}
+
+        def at(point: Array, pressed: float = 0.0) -> list[Array]:
+            if pressed:
+                return self.residual(self._decode(model, point), pressed, counted=True)
+            key = point.tobytes()
+            if key not in cache:
+                cache.clear()
+                cache[key] = self.residual(self._decode(model, point), counted=True)
+            return cache[key]
+
+        return at
 
     def told(self, fit: Fit, derivatives: Array) -> Fit:
         """A rough fit with the covariance that the derivatives at its end tell."""
