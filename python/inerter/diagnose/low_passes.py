@@ -15,6 +15,7 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA, loss, visible
 from inerter.diagnose.parallel import parallel
+from inerter.diagnose.trials import within_shortlist
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
@@ -71,7 +72,7 @@ def where_late(search: Search, current: Scored, fitted: Fitted) -> list[tuple[Ca
         near = late.rmse(masks) < CRITERIA.late_enough * fitted[0][1].rmse(masks)
         gains = late.rmse(masks) < (1 - CRITERIA.gain) * here.rmse(masks)
         delay = late.model.delay if near and gains else 0.0
-    return _best(search, here, delay)
+    return _best(search, here, within_shortlist([fit.rmse(masks) for _, fit in fitted]), delay)
 
 
 def as_delay(model: Model) -> Model:
@@ -83,11 +84,14 @@ def as_delay(model: Model) -> Model:
     return model.without(EFFECTS["sensor_filter"].coordinates).adding(None, delay=late)
 
 
-def _best(search: Search, here: Fit, delay: float = 0.0) -> list[tuple[Candidate, Fit]]:
+def _best(
+    search: Search, here: Fit, reach: float, delay: float = 0.0
+) -> list[tuple[Candidate, Fit]]:
+    """The best fits of low-passes; what comes nowhere near a `reach` [N] is left as it is."""
     masks = search.problem.masks
     trials = list(filters(here.model, delay))
     limit = (here.rmse(masks), np.inf)
-    fits = parallel(lambda trial: search.trials.fit(trial, limit), trials)
+    fits = parallel(lambda trial: search.trials.fit(trial, limit, reach), trials)
     pairs = sorted(zip(trials, fits, strict=True), key=lambda pair: pair[1].rmse(masks))
     return pairs[: CRITERIA.filters_kept]
 
@@ -105,7 +109,7 @@ def other_filter(search: Search, current: Scored) -> Scored | None:
     # also where the two differ by no more than what interpolation between samples leaves
     if loss(delayed, current) < CRITERIA.gain or not visible(*errors, 0.0, force):
         return delayed
-    for _, fit in _best(search, current.fit):
+    for _, fit in _best(search, current.fit, current.fit.rmse(masks)):
         scored = search.score("exchange", None, fit)
         least = CRITERIA.gain if scored.complexity == current.complexity else 0.0
         if loss(current, scored) > least:

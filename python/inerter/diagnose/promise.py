@@ -50,20 +50,20 @@ class Known:
 
 
 class Promise:
-    """Whether a candidate may lower the error of a model, by the residual's derivatives.
+    """To which error a candidate may lower that of a model, by the residual's derivatives.
 
     Most candidates add a term that is nearly linear in its size. What such a one can gain is told
     by one step of Gauss and Newton from its starting points, for much less than by a fit.
     """
 
-    def __init__(self, problem: Problem, known: Known, limit: float) -> None:
-        self.problem, self.known, self.limit = problem, known, limit
+    def __init__(self, problem: Problem, known: Known) -> None:
+        self.problem, self.known = problem, known
 
-    def holds(self, candidate: Candidate) -> bool:
-        """False where no starting point leads below the limit [N]."""
+    def foretold(self, candidate: Candidate) -> float:
+        """The least error [N] after a step from a starting point; 0 of what no step tells."""
         if EFFECTS[candidate.effect].far:
-            return True
-        return any(self._error_after_a_step(start) < self.limit for start in candidate.starts)
+            return 0.0
+        return min(map(self._error_after_a_step, candidate.starts))
 
     def _error_after_a_step(self, start: Model) -> float:
         added = [name for name in start.free if name not in self.known.model.free]

@@ -13,6 +13,7 @@ from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
+from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 
 
@@ -54,14 +55,19 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         and is_distinct(candidate.effect, fit, baseline)
         and not search.is_blur(fit, without.fit, known)
     ]
+    # a rival with more parameters has to win by more than such a one can by chance
+    handicap = 1 / (1 - CRITERIA.handicap) ** 2
+
+    def counted(fit: Fit) -> float:
+        more = fit.model.complexity > final.complexity
+        return fit.rmse(masks) ** 2 * (handicap if more else 1.0)
+
+    trials.sort(key=lambda pair: counted(pair[1]))
     scored = parallel(
         lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]),
         trials[: CRITERIA.rivals_checked],
     )
-
-    # a rival with more parameters has to win by more than such a one can by chance
     richer = [s.complexity > final.complexity for s in scored]
-    handicap = 1 / (1 - CRITERIA.handicap) ** 2
     fair = [s.squares * (handicap if more else 1.0) for s, more in zip(scored, richer, strict=True)]
     shares = win_shares(
         [final.squares, without.squares, *fair],

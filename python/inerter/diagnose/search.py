@@ -387,7 +387,7 @@ class Search:
         trials = [trial for trial in plainer if self._may_be(trial.starts[0])]
         limit = current.fit.rmse(masks) * (1 + CRITERIA.tolerated_loss)
         fits = sorted(
-            parallel(lambda trial: self.trials.fit(trial, (FAR * limit, np.inf)), trials),
+            parallel(lambda trial: self.trials.fit(trial, (FAR * limit, np.inf), limit), trials),
             key=lambda fit: fit.rmse(masks),
         )
         near = [fit for fit in fits if fit.rmse(masks) < limit][:2]

@@ -161,9 +161,12 @@ class Witness:
                 for offset in (0, *_BESIDE)
                 for wave in [window * np.exp(-2j * np.pi * (frequency + offset * bin_) * run.time)]
             )
-            shown += abs(line) ** 2
-            left += abs(line - there) ** 2
-            hidden += float(np.mean([abs(noise) ** 2 for _, noise in beside]))
+            # a run counts by how clearly it tells
+            of_error, of_motion = np.mean(np.abs(beside) ** 2, axis=0) + 1e-300
+            noise = of_error + of_motion
+            shown += abs(line) ** 2 / noise
+            left += abs(line - there) ** 2 / noise
+            hidden += of_motion / noise
         if left < CRITERIA.tone_of_motion * shown:
             return False
         longest = max(run.spacing * run.force.size for run in self.raw.runs)

@@ -38,6 +38,8 @@ NEAREST = 3
 AT_LEAST = 1.5
 # share of the way to the error that a rival needs which one step of Gauss and Newton has to foretell
 FORETOLD = 0.5
+# how many times what a step foretells a candidate may take of the square of an error
+AT_BEST = 3.0
 # errors this near belong to the same fit
 SAME = 1e-5
 # share of every run on which the starting points of a fit are compared
@@ -70,10 +72,20 @@ class Pace:
         return 2 * pace * (MOST - done) < error - self.limit
 
 
-def _within_shortlist(errors: Sequence[float]) -> float:
+def within_shortlist(errors: Sequence[float]) -> float:
     """The largest error of candidates that would be checked, if none came down any more."""
     near = (1 + 5 * CRITERIA.tolerated_loss) * min(errors, default=np.inf)
     return max(sorted(errors)[: CRITERIA.shortlist][-1], near) if errors else np.inf
+
+
+def _at_best(foretold: float, current: float) -> float:
+    """Error [N] of a candidate that takes several times what a step foretells of the square."""
+    return float(np.sqrt(max(current**2 - AT_BEST * (current**2 - foretold**2), 0.0)))
+
+
+def _asked_for(candidate: Candidate, model: Model) -> bool:
+    """Whether other candidates are judged by it: another friction law, a delay."""
+    return candidate.effect == "sensor_delay" or candidate.starts[0].friction != model.friction
 
 
 class Trials:
@@ -88,13 +100,16 @@ class Trials:
         """What another process is told: it looks nothing up."""
         return {**self.__dict__, "_rounds": []}
 
-    def fit(self, candidate: Candidate, limits: Limits = (np.inf, np.inf)) -> Fit:
+    def fit(
+        self, candidate: Candidate, limits: Limits = (np.inf, np.inf), reach: float = np.inf
+    ) -> Fit:
         """Best fit over a candidate's starting points, which are compared on part of the data.
 
         What after a few steps from each of them is not below the first of the `limits` [N], or on
-        that part anywhere near the second, is not followed further.
+        that part anywhere near the second, is not followed further; nor what does not come down to
+        what is within `reach` [N] at its pace.
         """
-        return self._followed(self._rough(candidate, limits), limits[0])
+        return self._followed(self._rough(candidate, limits), limits[0], reach)
 
     def _rough(self, candidate: Candidate, limits: Limits, known: Known | None = None) -> list[Fit]:
         """A few steps from the best starting points, with derivatives `known` of most of it."""
@@ -177,20 +192,38 @@ class Trials:
             likely = min(likely, far[0], error - FORETOLD * max(error - reach, 0.0))
         known = self._fitted_before(current)
         at_current = Known(self.problem, current.model)
-        promise = Promise(self.problem, at_current, likely)
+        promise = Promise(self.problem, at_current)
         rich = [t for t in candidates if t.is_rich]
         plain = [t for t in candidates if not t.is_rich]
 
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
-            new = [t for t in some if t.key not in known and promise.holds(t)]
-            old = [(t, known[t.key]) for t in some if t.key in known]
-            rough = parallel(lambda t: self._rough(t, limits, at_current), new)
-            begun = [min(fit.rmse(masks) for fit in each) for each in rough]
-            so_far = [*begun, *(fit.rmse(masks) for _, fit in [*fitted, *old])]
-            limit = min([limits[0], *(FAR * error for error in so_far)])
-            reach = CRITERIA.beaten * aim.rmse(masks) if aim else _within_shortlist(so_far)
-            followed = parallel(lambda r: self._followed(r, limit, reach), rough)
-            return [*zip(new, followed, strict=True), *old]
+            new = [t for t in some if t.key not in known]
+            found = [(t, known[t.key]) for t in some if t.key in known]
+            foretold = {t.key: promise.foretold(t) for t in new}
+            new = sorted(
+                (t for t in new if foretold[t.key] < likely), key=lambda t: foretold[t.key]
+            )
+            # in a second turn what may come so near as to be looked at further
+            told = [t for t in new if foretold[t.key] and not _asked_for(t, current.model)]
+            later = told[CRITERIA.shortlist :]
+            for part in ([t for t in new if t not in later], later):
+                so_far = [fit.rmse(masks) for _, fit in [*fitted, *found]]
+                reach = CRITERIA.beaten * aim.rmse(masks) if aim else within_shortlist(so_far)
+                error = current.rmse(masks)
+                likely_enough = [
+                    t for t in part
+                    if part is not later or _at_best(foretold[t.key], error) < reach
+                ]  # fmt: skip
+                rough = parallel(lambda t: self._rough(t, limits, at_current), likely_enough)
+                so_far += [min(fit.rmse(masks) for fit in each) for each in rough]
+                limit = min([limits[0], *(FAR * error for error in so_far)])
+                if not aim:
+                    reach = within_shortlist(so_far)
+                followed = parallel(
+                    lambda r, limit=limit, reach=reach: self._followed(r, limit, reach), rough
+                )
+                found += zip(likely_enough, followed, strict=True)
+            return found
 
         fitted: list[tuple[Candidate, Fit]] = []
         fitted += fits(plain)
