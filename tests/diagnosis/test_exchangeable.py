@@ -47,10 +47,10 @@ def record(
     return Record(name=name, time=TIME, displacement=x, force=force)
 
 
-def searched(made: Record, model: Model) -> tuple[Search, Fit]:
+def searched(made: Record, model: Model, baseline: Model = IDEAL) -> tuple[Search, Fit]:
     """A search over one record, and a model fitted to it."""
     data = divided([made], prepare([made]), ())
-    search = Search(data.runs, data.split, IDEAL)
+    search = Search(data.runs, data.split, baseline)
     return search, search.problem.fit(model)
 
 
@@ -108,6 +108,40 @@ def test_one_sine_tells_no_hardening_from_an_inertance_that_varies(
     left = 60 - cubic * size**2 / (2 * omega**2)
     instead = -cubic / (2 * left * omega**2) if asked == "hardening_stiffness" else cubic
     assert found.instead[0] == pytest.approx(instead, rel=0.05)
+
+
+@pytest.mark.parametrize("asked", ["parallel_stiffness", "inertance_error"])
+def test_one_sine_tells_no_stiffness_from_a_wrong_inertance(asked: str, effects_seed: int) -> None:
+    draw = np.random.default_rng(effects_seed)
+    omega = 2 * np.pi * draw.uniform(1.5, 2.5)
+    x = 0.01 * np.sin(omega * TIME)
+    stiffness = -draw.uniform(0.1, 0.3) * 60 * omega**2
+    force = -60 * omega**2 * x + stiffness * x + draw.normal(0, 0.5, TIME.size)
+    made = Record(
+        name="run", time=TIME, displacement=x + draw.normal(0, 2e-6, TIME.size), force=force
+    )
+    stated = Model("none", IDEAL.values, ())
+    begin = {"stiffness": 0.0} if asked == "parallel_stiffness" else {"inertance": 60.0}
+    search, fit = searched(made, stated.adding(None, **begin), stated)
+    found = exchanges(search, fit, [asked])[asked]
+    assert not found.is_told_apart
+    wrong = 60 - stiffness / omega**2
+    instead = wrong if asked == "parallel_stiffness" else stiffness
+    assert found.instead[0] == pytest.approx(instead, rel=0.02)
+    name = "stiffness" if asked == "parallel_stiffness" else "inertance"
+    said = Finding(
+        effect=asked, law=None, confidence=0.9,
+        parameters={name: ParameterValue(fit.model.values[name], 0.1, "N/m")},
+        rmse_before=9.0, rmse_after=0.5, evidence="", rivals=[],
+    )  # fmt: skip
+    told = with_exchange(said, found)
+    assert set(told.members) == {"parallel_stiffness", "inertance_error"}
+    assert told.parameters["inertance"].value == pytest.approx(wrong, rel=0.02)
+    assert told.parameters["stiffness"].value == pytest.approx(stiffness, rel=0.05)
+    # either may be none: the stated inertance, no stiffness
+    off = abs(told.parameters["inertance"].value - 60)
+    assert told.parameters["inertance"].stderr >= off / 3 * (1 - 1e-9)
+    assert "an inertance of" in told.evidence
 
 
 def test_several_sines_tell_them_apart() -> None:

@@ -2,7 +2,8 @@
 
 A delay of the force adds b tau times the jerk, which along one sine is a damper, and nearly so in a
 narrow band. Along one sine of amplitude A a stiffness k3 x^3 is an inertance b (1 + c x^2) with
-c = -k3 / (2 b w^2), and another b: what c adds to the force is b c w^2 (A^2 x - 2 x^3).
+c = -k3 / (2 b w^2), and another b: what c adds to the force is b c w^2 (A^2 x - 2 x^3). Beside a
+stated inertance a stiffness k along one sine is an inertance that is wrong by -k / w^2.
 
 Each finding with such a counterpart is fitted once more with the counterpart beside it. Where its
 own parameter may then be none, the two are one finding with two members; where the parameter only
@@ -17,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from inerter.diagnose import wording
+from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue, Rival
@@ -26,17 +28,22 @@ from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 
 # the effects that make up for each other, each by one coordinate
-_PAIRS = (("viscous_friction", "sensor_delay"), ("hardening_stiffness", "variable_inertance"))
+_PAIRS = (
+    ("viscous_friction", "sensor_delay"),
+    ("hardening_stiffness", "variable_inertance"),
+    ("parallel_stiffness", "inertance_error"),
+)
 COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
-# those that do along one sine alone, where the inertance is free
-_OF_ONE_SINE = _PAIRS[1]
+# those that do along one sine alone: where the inertance is free, and where it is stated
+_OF_ONE_SINE, _OF_STATED = _PAIRS[1:]
 _COORDINATE = {
     "viscous_friction": "viscous",
     "sensor_delay": "delay",
     "hardening_stiffness": "stiffness_cubic",
     "variable_inertance": "inertance_curvature",
+    "parallel_stiffness": "stiffness",
+    "inertance_error": "inertance",
 }
-_GOES_WITH = {"variable_inertance": ("inertance_gradient",)}
 
 
 @dataclass(frozen=True)
@@ -56,6 +63,8 @@ class Exchange:
         not told apart.
     same : bool
         Whether the two are the same force along the motion.
+    none, other_none : float
+        The parameter, and the counterpart's, where there is no such effect.
     """
 
     counterpart: str
@@ -64,11 +73,13 @@ class Exchange:
     other: float
     same: bool = False
     instead: tuple[float, float] = (0.0, 0.0)
+    none: float = 0.0
+    other_none: float = 0.0
 
     @property
     def is_told_apart(self) -> bool:
         """Whether the effect is needed beside its counterpart."""
-        return not self.same and abs(self.value) > CRITERIA.distinction * self.error
+        return not self.same and abs(self.value - self.none) > CRITERIA.distinction * self.error
 
 
 def exchanges(
@@ -81,15 +92,21 @@ def exchanges(
 
     covered: a fit with errors that allow for what its residuals do not show.
     """
-    one_tone = search.problem.scales.one_tone
-    values, free = fit.model.values, fit.model.free
-    asked = [
-        effect
-        for effect in effects
-        if COUNTERPARTS.get(effect) and _COORDINATE[COUNTERPARTS[effect]] not in values
-        if effect not in _OF_ONE_SINE
-        or (one_tone and "inertance" in free and _COORDINATE[effect] in free)
-    ]
+    baseline, one_tone = search.baseline, search.problem.scales.one_tone
+    free, stated = fit.model.free, "inertance" not in baseline.free
+    none = {"inertance": baseline.values.get("inertance", 0.0)}
+
+    def may_be_exchanged(effect: str) -> bool:
+        other = COUNTERPARTS.get(effect)
+        if other is None or _COORDINATE[effect] not in free:
+            return False
+        if effect in _OF_STATED:
+            return one_tone and stated and _COORDINATE[other] not in free
+        if _COORDINATE[other] in fit.model.values:
+            return False
+        return effect not in _OF_ONE_SINE or (one_tone and "inertance" in free)
+
+    asked = [effect for effect in effects if may_be_exchanged(effect)]
     spacing = max(run.spacing for run in search.runs)
     models = [_beside(fit.model, COUNTERPARTS[effect], spacing) for effect in asked]
     fits = parallel(search.problem.fit, models) if models else []
@@ -101,11 +118,12 @@ def exchanges(
         known, other = parameter_errors(covered(both)), COUNTERPARTS[effect]
         if _COORDINATE[effect] in known and _COORDINATE[other] in known:
             value, error = known[_COORDINATE[effect]]
-            same = quiet or effect in _OF_ONE_SINE
-            exchange = Exchange(other, value, error, known[_COORDINATE[other]][0], same)
+            same = quiet or effect in (*_OF_ONE_SINE, *_OF_STATED)
+            zeros = (none.get(_COORDINATE[each], 0.0) for each in (effect, other))
+            amount = known[_COORDINATE[other]][0]
+            exchange = Exchange(other, value, error, amount, same, (0.0, 0.0), *zeros)
             if not exchange.is_told_apart:
-                taken = (_COORDINATE[effect], *_GOES_WITH.get(effect, ()))
-                bare = _beside(fit.model.without(taken), other, spacing)
+                bare = _beside(stripped(fit.model, effect, baseline), other, spacing)
                 alone = parameter_errors(covered(search.problem.fit(bare)))
                 exchange = replace(exchange, instead=alone[_COORDINATE[other]])
             found[effect] = exchange
@@ -113,8 +131,9 @@ def exchanges(
 
 
 def _beside(model: Model, effect: str, spacing: float) -> Model:
-    begin = 0.1 * spacing if effect == "sensor_delay" else 0.0
-    return model.adding(None, **{_COORDINATE[effect]: begin})
+    name = _COORDINATE[effect]
+    begin = 0.1 * spacing if effect == "sensor_delay" else model.values.get(name, 0.0)
+    return model.adding(None, **{name: begin})
 
 
 def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
@@ -138,10 +157,10 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
             evidence=f"{finding.evidence} {beside[0].upper()}{beside[1:]} {found.unit}.",
         )
     # it may be none, and so may be what stands in for it
-    size = abs(found.value)
+    size = abs(found.value - exchange.none)
     error = float(np.clip(error, size / CRITERIA.distinction, max(size, found.stderr)))
     value, spread = exchange.instead
-    spread = max(spread, error / size * abs(value)) if size else spread
+    spread = max(spread, error / size * abs(value - exchange.other_none)) if size else spread
     other = _COORDINATE[exchange.counterpart]
     unit = parameter_units(finding.motion)[other]
     share = finding.confidence / 2

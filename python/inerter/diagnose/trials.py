@@ -36,7 +36,7 @@ FEWEST = 5
 # of the data may be to be followed
 NEAREST = 3
 AT_LEAST = 1.5
-# share of the way to the error that a rival needs which one step of Gauss and Newton has to foretell
+# share of the way to the error that a rival needs which a step of Gauss and Newton has to foretell
 FORETOLD = 0.5
 # how many times what a step foretells a candidate may take of the square of an error
 AT_BEST = 3.0

@@ -106,6 +106,10 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
         return f"a stiffness of {value:.3g} {words(motion, 'N/m^3')} x^3"
     if effect == "variable_inertance":
         return f"an inertance that changes with the place, as 1 {value:+.3g} x^2"
+    if effect == "inertance_error":
+        return f"an inertance of {value:.4g} {words(motion, 'kg')}"
+    if effect == "parallel_stiffness":
+        return f"a parallel stiffness of {value:.3g} {words(motion, 'N/m')}"
     return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
 
 

@@ -30,7 +30,10 @@ _NONE = 1e-10
 
 @dataclass(frozen=True, kw_only=True)
 class Basis:
-    """Masked columns (n, q) of coordinates, and their singular value decomposition."""
+    """Columns (n, q) of coordinates, and their singular value decomposition.
+
+    Their rows are the masked samples and what is counted of second differences (`smoothness`).
+    """
 
     columns: Array
     left: Array
@@ -65,17 +68,17 @@ class Apart:
     of_inertance: Sequence[bool]
 
     def rest(self, values: Array) -> Array:
-        """What the coordinates cannot take of masked residuals, (n,) or (n, k)."""
+        """What the coordinates cannot take of values in the basis' rows, (n,) or (n, k)."""
         left = self.basis.left
         return values - left @ (left.T @ values)
 
     def columns(self, model: Model, sizes: Scales) -> Array:
-        """Derivatives of the masked residual by the search variables, (n, q)."""
+        """Derivatives of what counts by the search variables, (n, q)."""
         units = np.array([search_range(name, sizes).size for name in self.names])
         return self.basis.columns * (units * self._factors(model))
 
     def solved(self, model: Model, residual: Array, sizes: Scales) -> Model | None:
-        """The model with the coordinates that leave least of its masked residual (n,).
+        """The model with the coordinates that leave least of what counts of it (n,).
 
         None where one of them is beyond its bounds.
         """

@@ -26,6 +26,7 @@ from inerter.identify.channel import clips, through_channel
 from inerter.identify.channel_filter import Filter, filter_of, without_start
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
+from inerter.identify.smoothness import smoothness
 
 if TYPE_CHECKING:
     from inerter.identify.fit import Problem
@@ -125,13 +126,19 @@ class Columns:
         names = [name for name in model.free if self._in_proportion(name, model)]
         if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*_PLACES, *_LINEAR)):
             return None
-        key = tuple(_key(name, model, _LINEAR) for name in names)
+        which = [model.free.index(name) for name in names]
+        smooth = smoothness(model)[:, which]
+        key = (*(_key(name, model, _LINEAR) for name in names), len(smooth))
         basis = self._bases.get(key)
         if basis is None:
             if len(self._bases) == _MOST_BASES:
                 self._bases.clear()
             weighted = np.column_stack([self._weighted(name, model) for name in names])
-            basis = Basis.of(weighted[np.concatenate(self.problem.masks)])
+            sizes = self.problem.scales
+            # by one of each, as the columns; of an inertance that of the first model
+            units = [search_range(name, sizes).size * _factor(name, model) for name in names]
+            rows = weighted[np.concatenate(self.problem.masks)]
+            basis = Basis.of(np.concatenate([rows, sizes.force * smooth / units]))
             self._bases[key] = basis
         return Apart(names, basis, [_times_inertance(name) for name in names])
 

@@ -21,6 +21,7 @@ from inerter.identify.columns import Columns, ResidualAt
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.runs import BenchRun, head, head_size, scales
+from inerter.identify.smoothness import smoothness
 from inerter.records.motion import Shaft
 
 Array = NDArray[np.float64]
@@ -197,21 +198,21 @@ class Problem:
         apart = self._derivatives.apart(model) if loss == "linear" else None
         if apart and (near := self._near(apart, model, evaluations, tolerance, give_up, first)):
             model, spent, first = near
-        variables, at = self.variables(model), self._remembered(model)
+        variables, at, smooth = self.variables(model), self._remembered(model), smoothness(model)
+        samples = int(selected.sum())
 
         def jacobian(point: Array) -> Array:
             columns = self._columns(self._decode(model, point), point, model.free, at)
-            return columns[selected] / size
+            return np.concatenate([columns[selected] / size, smooth])
 
         def hopeless(done: int, error: float) -> bool:
             return bool(give_up and give_up(spent + done, size * error))
 
         def flat_at(point: Array) -> Array:
-            return self.masked(at(point)) / size
+            return np.concatenate([self.masked(at(point)) / size, smooth @ point])
 
-        secants = Secants(
-            flat_at, jacobian, tolerance, rough, None if first is None else first / size
-        )
+        near_start = None if first is None else np.concatenate([first / size, smooth])
+        secants = Secants(flat_at, jacobian, tolerance, rough, near_start)
         solution = minimise(
             flat_at,
             variables.encode(model.values),
@@ -230,7 +231,7 @@ class Problem:
         # a robust loss scales the derivatives
         true = rough or not (secants.stale or loss != "linear")
         columns = solution.jacobian if true else jacobian(solution.variables)
-        covariance = self._covariance(fitted, columns * size, flat, weight)
+        covariance = self._covariance(fitted, columns[:samples] * size, flat, weight)
         if not all(mask.any() for mask in self.masks):
             residual = self.residual(fitted)
         spent += solution.evaluations
@@ -252,20 +253,31 @@ class Problem:
         """
         inner = replace(model, free=tuple(n for n in model.free if n not in apart.names))
         begin, at = self.variables(inner).encode(inner.values), self._remembered(inner)
-        if apart.solved(model, self.masked(at(begin)), self.scales) is None:
-            return None
         size, selected = self.scales.force, np.concatenate(self.masks)
         which = [model.free.index(name) for name in inner.free]
+        smooth, whole = smoothness(model), self.variables(model).encode(model.values)
         last = np.empty((int(selected.sum()), 0))
+
+        def counted(point: Array) -> Array:
+            now = whole.copy()
+            now[which] = point
+            return np.concatenate([self.masked(at(point)), size * (smooth @ now)])
+
+        if apart.solved(model, counted(begin), self.scales) is None:
+            return None
+
+        def beside(columns: Array) -> Array:
+            columns = np.concatenate([columns, size * smooth[:, which]])
+            return apart.rest(columns) / size
 
         def jacobian(point: Array) -> Array:
             nonlocal last
             columns = self._columns(self._decode(inner, point), point, inner.free, at)
             last = columns[selected]
-            return apart.rest(last) / size
+            return beside(last)
 
         def flat_at(point: Array) -> Array:
-            return apart.rest(self.masked(at(point))) / size
+            return apart.rest(counted(point)) / size
 
         def hopeless(done: int, error: float) -> bool:
             return bool(give_up and give_up(done, size * error))
@@ -275,7 +287,7 @@ class Problem:
             first = None
             if derivatives is not None:
                 last = derivatives[:, which]
-                first = apart.rest(last) / size
+                first = beside(last)
             found = minimise(
                 flat_at, begin, self.variables(inner).bounds, jacobian,
                 tolerances=Tolerances(1e-7, tolerance, 1e-10), evaluations=evaluations,
@@ -284,7 +296,7 @@ class Problem:
             )  # fmt: skip
             here, spent = found.variables, found.evaluations
         reached = replace(self._decode(inner, here), free=model.free)
-        reached = apart.solved(reached, self.masked(at(here)), self.scales)
+        reached = apart.solved(reached, counted(here), self.scales)
         if reached is None or not reached.is_possible:
             return None
         before, after = (
@@ -296,7 +308,7 @@ class Problem:
         columns = np.empty((last.shape[0], len(model.free)))
         columns[:, which] = last
         others = [model.free.index(name) for name in apart.names]
-        columns[:, others] = apart.columns(reached, self.scales)
+        columns[:, others] = apart.columns(reached, self.scales)[: last.shape[0]]
         return reached, spent, columns
 
     def _remembered(self, model: Model) -> ResidualAt:
