@@ -7,15 +7,17 @@ What order it has shows better once the other effects are known: it is asked aga
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA, loss, visible
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.trials import within_shortlist
+from inerter.diagnose.trials import FEW, within_shortlist
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
@@ -89,11 +91,28 @@ def _best(
 ) -> list[tuple[Candidate, Fit]]:
     """The best fits of low-passes; what comes nowhere near a `reach` [N] is left as it is."""
     masks = search.problem.masks
-    trials = list(filters(here.model, delay))
+    trials = _likeliest(search, list(filters(here.model, delay)))
     limit = (here.rmse(masks), np.inf)
     fits = parallel(lambda trial: search.trials.fit(trial, limit, reach), trials)
     pairs = sorted(zip(trials, fits, strict=True), key=lambda pair: pair[1].rmse(masks))
     return pairs[: CRITERIA.filters_kept]
+
+
+def _likeliest(search: Search, trials: list[Candidate]) -> list[Candidate]:
+    """Low-passes that do best while curves along the stroke stay as they are, where there are some.
+
+    Behind a low-pass of the displacement nothing is linear, and each node costs a prediction.
+    """
+    if not any(node_of(name) for trial in trials for name in trial.starts[0].free):
+        return trials
+
+    def error(trial: Candidate) -> float:
+        start = trial.starts[0]
+        held = replace(start, free=tuple(name for name in start.free if not node_of(name)))
+        return search.problem.fit(held, FEW, rough=True).rmse(search.problem.masks)
+
+    errors = parallel(error, trials)
+    return [trials[i] for i in np.argsort(errors)[: CRITERIA.filters_kept]]
 
 
 def other_filter(search: Search, current: Scored) -> Scored | None:
