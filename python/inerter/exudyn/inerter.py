@@ -6,6 +6,7 @@ import functools
 import math
 from dataclasses import dataclass, field
 from typing import Any
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.readings import FORCES, READINGS, Readings
+from inerter.exudyn.sensors import Sensor
 from inerter.exudyn.terminals import Terminals
 from inerter.exudyn.user_functions import UserFunctions
 
@@ -61,10 +63,18 @@ class Model:
     given: dict[str, float]
     free_length: bool
     _needs: dict[tuple[str, ...], tuple[bool, bool, bool]] = field(default_factory=dict)
+    sensors: WeakSet[Sensor] = field(default_factory=WeakSet)
 
     def take(self, element: Element) -> None:
         """Be of this element from now on."""
         self.element, self.readings, self._needs = element, Readings(element), {}
+        for sensor in self.sensors:
+            sensor.take(self.readings)
+
+    def forget(self) -> None:
+        """Where its coordinates are in the system may have changed: it is assembled anew."""
+        for sensor in self.sensors:
+            sensor.forget()
 
     def read(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
         """Readings and states by name, and "stored_energy"."""
@@ -82,6 +92,22 @@ class Model:
         if not math.isfinite(sum(found)):
             self._explain(*parts)
         return found
+
+    def sensor_function(self, names: tuple[str, ...]) -> Any:
+        """The user function of a sensor that tells these."""
+
+        def whole(
+            mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
+        ) -> list[float]:
+            if sensor is not None:
+                sensor.locate(mbs, self.objectNumber)
+            return self.read(mbs, configuration, names)
+
+        sensor = None if "stored_energy" in names else Sensor(self.readings, names, whole)
+        if sensor is None:
+            return whole
+        self.sensors.add(sensor)
+        return sensor.function()
 
     def _explain(self, *parts: Any) -> None:
         """Raise ValueError for readings that are not finite."""
@@ -227,17 +253,11 @@ class Inerter:
         name = f"{self.name}_{quantity}"
         if int(self.mbs.GetSensorNumber(name)) >= 0:
             name = f"{name}_{self.mbs.systemData.NumberOfSensors()}"
-        model, names = self._model, tuple(together.get(quantity, (quantity,)))
-
-        def sensorUserFunction(  # noqa: N802
-            mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
-        ) -> list[float]:
-            return model.read(mbs, configuration, names)
-
+        function = self._model.sensor_function(tuple(together.get(quantity, (quantity,))))
         return self.mbs.AddSensor(
             exudyn("itemInterface").SensorUserFunction(
                 name=name,
-                sensorUserFunction=sensorUserFunction,
+                sensorUserFunction=function,
                 fileName=fileName,
                 writeToFile=bool(fileName),
                 storeInternal=storeInternal,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,7 +20,7 @@ class Readings:
     """`READINGS` and the states of an element, by name."""
 
     def __init__(self, element: Element) -> None:
-        n = element.size
+        self.size = n = element.size
         tape = Tape(3 * n)
         parts = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
         told = _told(element, tape.functions, *parts)
@@ -36,6 +37,15 @@ class Readings:
             not inputs.isdisjoint(range(each.start, each.stop)) for each in self._slices
         )
         return first, second, third
+
+    @property
+    def tape(self) -> int:
+        """Address of the tape; its inputs are coordinates, velocities, accelerations."""
+        return ctypes.addressof(self._finished.c)
+
+    def place(self, name: str) -> int:
+        """Where a reading lies among the values of the tape."""
+        return self._places[name]
 
     def at(self, *parts: Any, names: Sequence[str] = ()) -> list[float]:
         """Those named, at coordinates, velocities and accelerations, each of shape (size,).
