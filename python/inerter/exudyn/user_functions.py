@@ -7,24 +7,16 @@ built-in functions that Exudyn calls without running any Python.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inerter.exudyn import control
-from inerter.exudyn import device as law
-from inerter.exudyn.element import HEAT, Element
+from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import Functions, Value, expressions
-from inerter.exudyn.kinematics import SHORTEST, Line, Span
+from inerter.exudyn.expressions import split, vector_function
+from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.library import CElement, built_in, listed
-from inerter.exudyn.tape import Number, Tape
-
-Matrix = NDArray[np.float64]
-
+from inerter.exudyn.tape import Tape
 
 MOST_SYMBOLIC = 7
 """Up to this size Exudyn's symbolic vectors hold; of eight elements they end the process (1.13)."""
@@ -68,12 +60,12 @@ class UserFunctions:
                 "forceUserFunction": compiled.force,
                 "jacobianUserFunction": compiled.jacobian,
             }
-        linear, rest = _split(element)
+        linear, rest = split(element)
         return found | {
             "stiffnessMatrix": hold + linear.stiffness,
             "dampingMatrix": linear.damping,
             "forceVector": linear.force,
-            "forceUserFunction": _symbolic(element, mbs, rest),
+            "forceUserFunction": vector_function(mbs, element.size, rest),
         }
 
 
@@ -143,87 +135,3 @@ def _taped(element: Element) -> tuple[Tape, Any]:
     tape = Tape((3 if element.loaded else 2) * n)
     q, q_t, q_tt = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
     return tape, element.record(tape.functions, q, q_t, q_tt)
-
-
-@dataclass(frozen=True)
-class Linear:
-    """Constant part of an element: f = force - stiffness q - damping q'."""
-
-    stiffness: Matrix
-    damping: Matrix
-    force: Matrix
-
-
-def _parts(element: Element, f: Functions, q: Any, q_t: Any) -> list[tuple[Any, Matrix]]:
-    """Every expression of an element on a line, with its factors on all coordinates."""
-    p, line = element.device, element.kinematics
-    assert isinstance(line, Line)
-    x, v = line.difference(q) - p.rest_length, line.difference(q_t)
-    z = element.states(x, q, q_t)
-    p = control.present(f, p, z)
-    found = []
-    for term in law.terms(f, p, x, v, z):
-        weights = np.zeros(element.size)
-        weights[: element.first] = [-term.terminals * share for share in line.row]
-        for place, share in element.own_shares(term):
-            weights[place] += share
-        found.append((term.value, weights))
-    if element.heat:
-        # with load friction only behind a series element: it asks for no acceleration there
-        through = law.carried(f, p, x, v, 0.0, z) if law.rubs_by_load(p) else 0.0
-        weights = np.zeros(element.size)
-        weights[element.first + element.own.index(HEAT)] = 1.0
-        found.append((law.dissipated_power(f, p, x, v, z, through), weights))
-    return found
-
-
-def _split(element: Element) -> tuple[Linear, list[bool]]:
-    """The linear part in matrices, and which of `_parts` are not in it."""
-    n = element.size
-    tape = Tape(2 * n)
-    parts = _parts(element, tape.functions, tape.inputs[:n], tape.inputs[n:])
-    rest = [isinstance(value, Number) and not value.affine for value, _ in parts]
-    keys = [tape.key(0.0 if left else value) for (value, _), left in zip(parts, rest, strict=True)]
-    finished = tape.finish()
-    constant = finished.run([0.0] * (2 * n))
-    finished.run_slopes()
-    slopes = np.zeros((n, 2 * n))
-    force = np.zeros(n)
-    for key, (_, weights) in zip(keys, parts, strict=True):
-        place = finished.place(key)
-        force += weights * constant[place]
-        slopes += np.outer(weights, finished.slopes[place, : 2 * n])
-    return Linear(-slopes[:, :n], -slopes[:, n:], force), rest
-
-
-def _symbolic(element: Element, mbs: Any, rest: Sequence[bool]) -> Any:
-    """What is not linear as a symbolic user function, every expression once; 0 if there is none."""
-    if not any(rest):
-        return 0
-    symbolic = exudyn("symbolic")
-    recording = symbolic.GetRecording()
-    symbolic.SetRecording(True)
-    try:
-        q = symbolic.Vector("q", [0.0] * element.size)
-        q_t = symbolic.Vector("q_t", [0.0] * element.size)
-        result: Value = None
-        for (value, weights), left in zip(
-            _parts(element, expressions(), q, q_t), rest, strict=True
-        ):
-            if left:
-                part = value * symbolic.Vector(weights.tolist())
-                result = part if result is None else result + part
-        arguments = [symbolic.Real("t", 0.0), symbolic.Real("itemNumber", 0), q, q_t]
-    finally:
-        symbolic.SetRecording(recording)
-    function = symbolic.UserFunction()
-    contents = {
-        "functionName": "forceUserFunction",
-        # Exudyn never reads the system here; naming it would keep it alive for ever
-        "argList": [None, *arguments],
-        "argTypeList": ["MainSystem", "Real", "Index", "StdVector", "StdVector"],
-        "returnValue": result,
-        "returnType": "StdVector",
-    }
-    function.SetUserFunctionFromDict(mbs, contents, "forceUserFunction", None, "ObjectGenericODE2")
-    return function
