@@ -92,7 +92,7 @@ def vector_function(mbs: Any, size: int, rest: Rest) -> Any:
     def made(symbolic: Any) -> tuple[list[Any], Value]:
         q = symbolic.Vector("q", [0.0] * size)
         q_t = symbolic.Vector("q_t", [0.0] * size)
-        recorded = _Expressions(
+        recorded = Expressions(
             rest.tape, lambda place: q[place] if place < size else q_t[place - size]
         )
         result: Value = None
@@ -101,10 +101,10 @@ def vector_function(mbs: Any, size: int, rest: Rest) -> Any:
             result = part if result is None else result + part
         return [q, q_t], result
 
-    return _function(mbs, "ObjectGenericODE2", "forceUserFunction", "StdVector", made)
+    return symbolic_function(mbs, "ObjectGenericODE2", "forceUserFunction", "StdVector", made)
 
 
-def _function(
+def symbolic_function(
     mbs: Any, item: str, name: str, kind: str, made: Callable[[Any], tuple[list[Any], Value]]
 ) -> Any:
     """A user function (mbs, t, itemNumber, ...) of further arguments and a value of a kind."""
@@ -129,7 +129,7 @@ def _function(
     return function
 
 
-class _Expressions:
+class Expressions:
     """What stands on a tape as expressions of Exudyn, without what it has folded.
 
     `leaf` gives the expression of an input.

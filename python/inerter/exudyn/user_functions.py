@@ -7,10 +7,12 @@ built-in functions that Exudyn calls without running any Python.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from inerter.exudyn import connector
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
 from inerter.exudyn.expressions import split, vector_function
@@ -29,18 +31,34 @@ class UserFunctions:
     ----------
     parameters
         Those of an ObjectGenericODE2, by name.
+    spring_force
+        The user function of the connector that has what is not linear, if there is one; else None.
+    connector
+        Its number, once it is added.
     """
 
     def __init__(self, mbs: Any, element: Element, name: str, symbolic: bool) -> None:
         self._symbolic = symbolic
         only_matrices = symbolic and element.constant_mass
         self._compiled = None if only_matrices else Compiled(element, name)
+        self.spring_force, self.connector = None, None
+        if symbolic and connector.fits(element):
+            # 0 if there is nothing for it to do
+            self.spring_force = connector.spring_force(mbs, element) or None
         self.parameters = self._made_of(mbs, element)
+
+    def add_connector(self, mbs: Any, name: str, element: Element, nodes: Sequence[Any]) -> None:
+        """Add the connector, if there is to be one."""
+        if self.spring_force is not None:
+            self.connector = connector.add(mbs, name, element, nodes, self.spring_force)
 
     def take(self, mbs: Any, objectNumber: Any, element: Element) -> None:
         """Let the object be this element from now on; it has the same coordinates."""
         if self._compiled is not None:
             self._compiled.take(element)
+        if self.connector is not None:
+            self.spring_force = connector.spring_force(mbs, element)
+            mbs.SetObjectParameter(self.connector, "springForceUserFunction", self.spring_force)
         before, self.parameters = self.parameters, self._made_of(mbs, element)
         for key, value in self.parameters.items():
             same = value is before[key] or (
@@ -61,11 +79,12 @@ class UserFunctions:
                 "jacobianUserFunction": compiled.jacobian,
             }
         linear, rest = split(element)
+        alone = self.spring_force is None
         return found | {
             "stiffnessMatrix": hold + linear.stiffness,
             "dampingMatrix": linear.damping,
             "forceVector": linear.force,
-            "forceUserFunction": vector_function(mbs, element.size, rest),
+            "forceUserFunction": vector_function(mbs, element.size, rest) if alone else 0,
         }
 
 
