@@ -12,18 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.exudyn import control
-from inerter.exudyn import device as law
 from inerter.exudyn.carriers import Carrier
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.readings import FORCES, READINGS, Readings
 from inerter.exudyn.sensors import Sensor
 from inerter.exudyn.terminals import Terminals
 from inerter.exudyn.user_functions import UserFunctions
 
-QUANTITIES = (*READINGS, "stored_energy")
+QUANTITIES = READINGS
 """What `Inerter.Evaluate` tells, and sensors can measure."""
 
 
@@ -77,9 +74,7 @@ class Model:
             sensor.forget()
 
     def read(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
-        """Readings and states by name, and "stored_energy"."""
-        if "stored_energy" in names:
-            return self._with_energy(mbs, configuration, names)
+        """Readings and states by name."""
         where = _questions()[-1] if configuration is None else configuration
         if names not in self._needs:
             self._needs[names] = self.readings.needs(names)
@@ -99,13 +94,10 @@ class Model:
         def whole(
             mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
         ) -> list[float]:
-            if sensor is not None:
-                sensor.locate(mbs, self.objectNumber)
+            sensor.locate(mbs, self.objectNumber)
             return self.read(mbs, configuration, names)
 
-        sensor = None if "stored_energy" in names else Sensor(self.readings, names, whole)
-        if sensor is None:
-            return whole
+        sensor = Sensor(self.readings, names, whole)
         self.sensors.add(sensor)
         return sensor.function()
 
@@ -116,16 +108,6 @@ class Model:
                 f'inerter "{self.name}": its coordinates are not finite; the run has diverged. '
                 "Shorten the step, or take GeneralizedAlpha, or DOPRI5 with tolerances"
             )
-
-    def _with_energy(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
-        others = tuple(name for name in names if name != "stored_energy")
-        wanted = (*others, "displacement", "velocity", *self.device.state_names)
-        found = self.read(mbs, configuration, wanted)
-        x, v, *states = found[len(others) :]
-        p = control.present(NUMBERS, self.element.device, states)
-        energy = law.stored_energy(p, x, v, states)
-        told = dict(zip(others, found, strict=False)) | {"stored_energy": energy}
-        return [told[name] for name in names]
 
 
 class Inerter:

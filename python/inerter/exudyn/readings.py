@@ -13,7 +13,11 @@ from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.tape import Tape
 
 FORCES = ("total", "inertance", "friction")
-READINGS = ("displacement", "velocity", "acceleration", *FORCES, "dissipated_power", "length")
+READINGS = (
+    "displacement", "velocity", "acceleration", *FORCES, "dissipated_power", "length",
+    "stored_energy",
+)  # fmt: skip
+"""What can be read, and a sensor can measure, beside the states."""
 
 
 class Readings:
@@ -88,5 +92,6 @@ def _told(
     forces = law.forces(p, x, v, a, z, f)
     heat = law.dissipated_power(f, p, x, v, z, forces["inertance"])
     told = {"length": motion.length, "displacement": x, "velocity": v, "acceleration": a, **forces}
-    told |= {"dissipated_power": heat, **dict(zip(p.state_names, z, strict=True))}
+    told |= {"dissipated_power": heat, "stored_energy": law.stored_energy(p, x, v, z, f)}
+    told |= dict(zip(p.state_names, z, strict=True))
     return told | ({HEAT: q_t[element.first + element.own.index(HEAT)]} if element.heat else {})
