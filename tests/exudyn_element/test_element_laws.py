@@ -217,12 +217,16 @@ def coordinates(
 def forces(mbs: Any, functions: Any, q: list[float], q_t: list[float]) -> Array:
     """What an ObjectGenericODE2 with these parameters does, and the connector if there is one."""
     item = functions.parameters
-    total = np.array(item.get("forceVector", np.zeros(len(q))))
+    total = np.zeros(len(q))
+    if len(item.get("forceVector", [])):
+        total += item["forceVector"]
     if function := item["forceUserFunction"]:
         evaluate = getattr(function, "Evaluate", function)
         total += evaluate(mbs, 0.0, 0, q, q_t)
     if function := functions.spring_force:
         between = function.Evaluate(mbs, 0.0, 0, q[1] - q[0], q_t[1] - q_t[0], 0.0, 0.0, 0.0)
         total[:2] += between, -between
-    total -= item["stiffnessMatrix"] @ q
-    return total - item["dampingMatrix"] @ q_t if "dampingMatrix" in item else total
+    for name, values in (("stiffnessMatrix", q), ("dampingMatrix", q_t)):
+        if len(item.get(name, [])):
+            total -= item[name] @ values
+    return total

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.exudyn import connector
 from inerter.exudyn.element import Element
@@ -62,7 +63,7 @@ class UserFunctions:
         before, self.parameters = self.parameters, self._made_of(mbs, element)
         for key, value in self.parameters.items():
             same = value is before[key] or (
-                isinstance(value, np.ndarray) and np.array_equal(value, before[key])
+                isinstance(value, np.ndarray | list) and np.array_equal(value, before[key])
             )
             if not same:
                 mbs.SetObjectParameter(objectNumber, key, value)
@@ -74,18 +75,23 @@ class UserFunctions:
             found["massMatrixUserFunction"] = compiled.mass
         if compiled is not None and not self._symbolic:
             return found | {
-                "stiffnessMatrix": hold,
+                "stiffnessMatrix": _unless_zero(hold),
                 "forceUserFunction": compiled.force,
                 "jacobianUserFunction": compiled.jacobian,
             }
         linear, rest = split(element)
         alone = self.spring_force is None
         return found | {
-            "stiffnessMatrix": hold + linear.stiffness,
-            "dampingMatrix": linear.damping,
-            "forceVector": linear.force,
+            "stiffnessMatrix": _unless_zero(hold + linear.stiffness),
+            "dampingMatrix": _unless_zero(linear.damping),
+            "forceVector": _unless_zero(linear.force),
             "forceUserFunction": vector_function(mbs, element.size, rest) if alone else 0,
         }
+
+
+def _unless_zero(array: NDArray[np.float64]) -> NDArray[np.float64] | list[float]:
+    """An array, or what stands for none: Exudyn would multiply with every 0."""
+    return array if array.any() else []
 
 
 class Compiled:
