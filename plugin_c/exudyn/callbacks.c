@@ -1,4 +1,4 @@
-// The user functions of an ObjectGenericODE2, and what sensors ask, evaluated on a tape.
+// The user functions of an ObjectGenericODE2, evaluated on a tape; what sensors ask is in sensor.c.
 //
 //   M = B J'J (+ the constant part),   f = forces,   K = -df/dq f_q - df/dq' f_v
 //
@@ -46,21 +46,21 @@ typedef struct InerterElement_ {
   const char* message;    // with this text
 } InerterElement;
 
-static Python python;
+Python inerter_python;
 
 static InerterElement* element_of(Object* self) {
-  return python.PyLong_AsVoidPtr(python.PyTuple_GetItem(self, 0));
+  return inerter_python.PyLong_AsVoidPtr(inerter_python.PyTuple_GetItem(self, 0));
 }
 
 // copy a list of numbers, at least n; returns whether something differed, -1 if it was no such list
 static int copy(Object* list, double* to, int32_t n) {
-  if (!list || python.PyList_Size(list) < n) {
+  if (!list || inerter_python.PyList_Size(list) < n) {
     return -1;
   }
   int changed = 0;
   for (int32_t i = 0; i < n; i++) {
-    double value = python.PyFloat_AsDouble(python.PyList_GetItem(list, i));
-    if (value == -1.0 && python.PyErr_Occurred()) {
+    double value = inerter_python.PyFloat_AsDouble(inerter_python.PyList_GetItem(list, i));
+    if (value == -1.0 && inerter_python.PyErr_Occurred()) {
       return -1;
     }
     // NaN differs from itself: the run goes on with it as it would without us
@@ -72,10 +72,10 @@ static int copy(Object* list, double* to, int32_t n) {
 
 // accelerations of the object, as Exudyn knows them at this moment
 static int read_accelerations(InerterElement* element, Object* arguments, double* to) {
-  Object* found = python.PyObject_CallObject(element->reader, arguments);
+  Object* found = inerter_python.PyObject_CallObject(element->reader, arguments);
   int changed = found ? copy(found, to, element->size) : -1;
   if (found) {
-    python.Py_DecRef(found);
+    inerter_python.Py_DecRef(found);
   }
   return changed;
 }
@@ -84,16 +84,17 @@ static int read_accelerations(InerterElement* element, Object* arguments, double
 static int update(InerterElement* element, Object* arguments) {
   double* inputs = element->tape.values;
   const int32_t n = element->size;
-  int by_place = copy(python.PyTuple_GetItem(arguments, 3), inputs, n);
-  int by_speed = copy(python.PyTuple_GetItem(arguments, 4), inputs + n, n);
+  int by_place = copy(inerter_python.PyTuple_GetItem(arguments, 3), inputs, n);
+  int by_speed = copy(inerter_python.PyTuple_GetItem(arguments, 4), inputs + n, n);
   int by_load = 0;
   if (by_place >= 0 && by_speed >= 0 && element->loaded) {
     by_load = read_accelerations(element, arguments, inputs + 2 * n);
   }
   if (by_place < 0 || by_speed < 0 || by_load < 0) {
     element->known = 0;
-    if (!python.PyErr_Occurred()) {
-      python.PyErr_SetString(element->error, "coordinates of another number than the element's");
+    if (!inerter_python.PyErr_Occurred()) {
+      inerter_python.PyErr_SetString(element->error,
+                                     "coordinates of another number than the element's");
     }
     return -1;
   }
@@ -104,7 +105,7 @@ static int update(InerterElement* element, Object* arguments) {
   element->known = 1;
   if (element->length >= 0 && element->tape.values[element->length] < element->shortest) {
     element->known = 0;
-    python.PyErr_SetString(element->error, element->message);
+    inerter_python.PyErr_SetString(element->error, element->message);
     return -1;
   }
   return 0;
@@ -115,10 +116,10 @@ static Object* force(Object* self, Object* arguments) {
   if (!element || update(element, arguments)) {
     return NULL;
   }
-  Object* list = python.PyList_New(element->size);
+  Object* list = inerter_python.PyList_New(element->size);
   for (int32_t i = 0; list && i < element->size; i++) {
-    Object* value = python.PyFloat_FromDouble(element->tape.values[element->forces[i]]);
-    python.PyList_SetItem(list, i, value);
+    Object* value = inerter_python.PyFloat_FromDouble(element->tape.values[element->forces[i]]);
+    inerter_python.PyList_SetItem(list, i, value);
   }
   return list;
 }
@@ -128,22 +129,22 @@ static int write_lists(const InerterElement* element) {
   const double* values = element->tape.values;
   Object* made[INERTER_LISTED * INERTER_LISTED];
   for (int32_t i = 0; i < element->ndistinct; i++) {
-    made[i] = python.PyFloat_FromDouble(values[element->distinct[i]]);
+    made[i] = inerter_python.PyFloat_FromDouble(values[element->distinct[i]]);
     if (!made[i]) {
-      while (i-- > 0) python.Py_DecRef(made[i]);
+      while (i-- > 0) inerter_python.Py_DecRef(made[i]);
       return -1;
     }
   }
   const int32_t* entry = element->entries;
   for (int32_t i = 0; i < element->nrow; i++) {
-    Object* row = python.PyList_GetItem(element->mass_list, i);
+    Object* row = inerter_python.PyList_GetItem(element->mass_list, i);
     for (int32_t k = 0; k < element->nrow; k++) {
       Object* value = made[*entry++];
-      python.Py_IncRef(value);
-      python.PyList_SetItem(row, k, value);
+      inerter_python.Py_IncRef(value);
+      inerter_python.PyList_SetItem(row, k, value);
     }
   }
-  for (int32_t i = 0; i < element->ndistinct; i++) python.Py_DecRef(made[i]);
+  for (int32_t i = 0; i < element->ndistinct; i++) inerter_python.Py_DecRef(made[i]);
   return 0;
 }
 
@@ -170,20 +171,20 @@ static Object* mass(Object* self, Object* arguments) {
   } else {
     write_array(element);
   }
-  python.Py_IncRef(matrix);
+  inerter_python.Py_IncRef(matrix);
   return matrix;
 }
 
 // put a matrix into a list of lists; 0, or -1 with an error set
 static int list_matrix(const double* matrix, int32_t n, Object* lists) {
   for (int32_t i = 0; i < n; i++) {
-    Object* row = python.PyList_GetItem(lists, i);
+    Object* row = inerter_python.PyList_GetItem(lists, i);
     for (int32_t k = 0; k < n; k++) {
-      Object* value = python.PyFloat_FromDouble(*matrix++);
+      Object* value = inerter_python.PyFloat_FromDouble(*matrix++);
       if (!value) {
         return -1;
       }
-      python.PyList_SetItem(row, k, value);
+      inerter_python.PyList_SetItem(row, k, value);
     }
   }
   return 0;
@@ -194,9 +195,9 @@ static Object* jacobian(Object* self, Object* arguments) {
   if (!element || update(element, arguments)) {
     return NULL;
   }
-  double by_place = python.PyFloat_AsDouble(python.PyTuple_GetItem(arguments, 5));
-  double by_speed = python.PyFloat_AsDouble(python.PyTuple_GetItem(arguments, 6));
-  if (python.PyErr_Occurred()) {
+  double by_place = inerter_python.PyFloat_AsDouble(inerter_python.PyTuple_GetItem(arguments, 5));
+  double by_speed = inerter_python.PyFloat_AsDouble(inerter_python.PyTuple_GetItem(arguments, 6));
+  if (inerter_python.PyErr_Occurred()) {
     return NULL;
   }
   inerter_tape_slopes(&element->tape);
@@ -214,7 +215,7 @@ static Object* jacobian(Object* self, Object* arguments) {
       return NULL;
     }
   }
-  python.Py_IncRef(matrix);
+  inerter_python.Py_IncRef(matrix);
   return matrix;
 }
 
@@ -227,13 +228,16 @@ static Method methods[] = {
 
 // hand over Python's functions, in the order of INERTER_PYTHON
 INERTER_API void inerter_exudyn_begin(const Python* functions) {
-  python = *functions;
+  inerter_python = *functions;
 }
 
-// the method of a number: force, mass matrix, Jacobian
+// the method of a number: force, mass matrix, Jacobian, sensor
 INERTER_API Method* inerter_exudyn_method(int number) {
-  int known = number >= 0 && number < (int)(sizeof methods / sizeof *methods);
-  return known ? methods + number : NULL;
+  int count = (int)(sizeof methods / sizeof *methods);
+  if (number == count) {
+    return &inerter_sensor_method;
+  }
+  return number >= 0 && number < count ? methods + number : NULL;
 }
 
 // the name of an operation, or NULL past the last

@@ -65,6 +65,12 @@ static void partials(InerterOperation operation, double a, double b, double y, d
     case INERTER_OPERATION_log:
       p[0] = 1.0 / a;
       break;
+    case INERTER_OPERATION_log1p:
+      p[0] = 1.0 / (1.0 + a);
+      break;
+    case INERTER_OPERATION_expm1:
+      p[0] = y + 1.0;
+      break;
     case INERTER_OPERATION_tanh:
       p[0] = 1.0 - y * y;
       break;

@@ -23,6 +23,8 @@
   X(cos, cos(a))                                 \
   X(exp, exp(a))                                 \
   X(log, log(a))                                 \
+  X(log1p, log1p(a))                             \
+  X(expm1, expm1(a))                             \
   X(tanh, tanh(a))                               \
   X(power, pow(a, b))                            \
   X(arctan2, atan2(a, b))                        \

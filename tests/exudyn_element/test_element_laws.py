@@ -188,7 +188,7 @@ def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:
             for symbolic in (None if several else True, False)
         ]  # fmt: skip
         system.mbs.Assemble()
-        element, items = made[0].element, [each.functions.parameters for each in made]
+        element, items = made[0].element, [each.functions for each in made]
         for i, (x, v, _) in enumerate(motion.tolist()):
             z = dict(zip(device.state_names, states[i].tolist(), strict=True))
             q, q_t = coordinates(element, x, v, z)
@@ -214,11 +214,19 @@ def coordinates(
     return [-0.4 * x, 0.6 * x, *places], [-0.1 * v, 0.9 * v, *own]
 
 
-def forces(mbs: Any, item: dict[str, Any], q: list[float], q_t: list[float]) -> Array:
-    """What an ObjectGenericODE2 with these parameters does."""
-    total = np.array(item.get("forceVector", np.zeros(len(q))))
+def forces(mbs: Any, functions: Any, q: list[float], q_t: list[float]) -> Array:
+    """What an ObjectGenericODE2 with these parameters does, and the connector if there is one."""
+    item = functions.parameters
+    total = np.zeros(len(q))
+    if len(item.get("forceVector", [])):
+        total += item["forceVector"]
     if function := item["forceUserFunction"]:
         evaluate = getattr(function, "Evaluate", function)
         total += evaluate(mbs, 0.0, 0, q, q_t)
-    total -= item["stiffnessMatrix"] @ q
-    return total - item["dampingMatrix"] @ q_t if "dampingMatrix" in item else total
+    if function := functions.spring_force:
+        between = function.Evaluate(mbs, 0.0, 0, q[1] - q[0], q_t[1] - q_t[0], 0.0, 0.0, 0.0)
+        total[:2] += between, -between
+    for name, values in (("stiffnessMatrix", q), ("dampingMatrix", q_t)):
+        if len(item.get(name, [])):
+            total -= item[name] @ values
+    return total

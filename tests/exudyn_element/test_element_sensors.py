@@ -11,8 +11,8 @@ from inerter.reference import ReferenceDevice
 
 pytest.importorskip("exudyn.itemInterface")
 
-from element_systems import LUGRE, PLAY, Array, System, bodies, line, settings, solve
-from inerter.exudyn import CreateInerter
+from element_systems import LUGRE, PLAY, Array, System, bodies, body, line, settings, solve
+from inerter.exudyn import CreateInerter, sensors
 from inerter.exudyn.inerter import QUANTITIES
 
 END, STEP = 0.2, 1e-3
@@ -129,3 +129,23 @@ def test_names() -> None:
     assert [system.mbs.GetSensor(s)["name"] for s in sensors] == ["a_total", "b_total"]
     first, second = (stored(system, sensor)[1:, 0] for sensor in sensors)
     np.testing.assert_allclose(second, 3.0 * first, rtol=1e-12)
+
+
+@pytest.mark.parametrize("most", [0, 2000])
+def test_a_system_that_grows(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is read stays the device's when a system is assembled again, however large it is."""
+    monkeypatch.setattr(sensors, "MOST", most)
+    system, inerter = build("line", **DEVICE)
+    names = ("displacement", "total", "states")
+    read = [inerter.AddSensor(name) for name in names]
+    solve(system.mbs, settings(END, STEP))
+    for place in (1, 0):
+        body(system.mbs, "RigidBodyRxyz", place)
+    second = CreateInerter(system.mbs, "other", [system.parts[0], None], inertance=1.0)
+    force = second.AddSensor("total")
+    solve(system.mbs, settings(END, STEP))
+    last = inerter.Evaluate()
+    assert abs(last["total"]) > 1.0
+    for name, sensor in zip(names, read, strict=True):
+        np.testing.assert_array_equal(stored(system, sensor)[-1], np.ravel(last[name]))
+    np.testing.assert_array_equal(stored(system, force)[-1], second.Evaluate()["total"])

@@ -24,8 +24,9 @@ def mixed(f: Functions, x: Any) -> list[Any]:
     c = f.choose(a < b, f.greatest(a, x[4]), f.least(b, -x[4])) + f.tanh(f.cos(x[3]))
     d = f.power(f.abs(x[0]) + 0.5, 1.7) * f.log(f.abs(x[3]) + 2.0) + f.arctan2(a, b)
     e = f.sign(x[4]) * f.choose(x[0] >= x[1], -a, -b) + f.round(x[2]) * 0.25
+    g = f.log1p(f.abs(x[1])) * f.expm1(0.5 * x[4])
     less = -a
-    return [a, b, c, d, e, -less, (-a) * (-b) - b * less]
+    return [a, b, c, d, e, g, -less, (-a) * (-b) - b * less]
 
 
 def recorded(sloped: bool) -> tuple[Any, list[int]]:

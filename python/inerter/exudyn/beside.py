@@ -58,14 +58,16 @@ def _damper(f: Functions, p: Parameters, x: Value, v: Value) -> Value | None:
     return total + p.damping_asymmetry * f.abs(total)
 
 
-def stored_energy(p: Parameters, x: float) -> float:
+def stored_energy(f: Functions, p: Parameters, x: Value) -> Value:
     """Energy in springs and stops [J]."""
-    energy = 0.5 * p.stiffness * x**2 + 0.25 * p.stiffness_cubic * x**4
-    energy += stroke.integral(p, "force", x)
+    square = x * x
+    energy = 0.5 * p.stiffness * square + 0.25 * p.stiffness_cubic * square * square
+    energy = energy + stroke.integral(f, p, "force", x)
     if p.force_map:
-        energy += force_map.stored_energy(p, x)
+        energy = energy + force_map.stored_energy(f, p, x)
     for direction, place in _stops(p):
-        energy += 0.5 * p.stop_stiffness * max(0.0, direction * (x - place)) ** 2
+        depth = f.greatest(0.0, direction * (x - place))
+        energy = energy + 0.5 * p.stop_stiffness * depth * depth
     return energy
 
 

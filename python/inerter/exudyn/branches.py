@@ -36,7 +36,7 @@ def force(p: Parameters, z: Sequence[Value]) -> Value:
     return total
 
 
-def stored_energy(p: Parameters, z: Sequence[float]) -> float:
+def stored_energy(p: Parameters, z: Sequence[Value]) -> Value:
     """Energy in the springs [J]."""
     return sum(0.5 * spring * e * e for spring, _, e, _ in deflections(p, z))
 

@@ -163,6 +163,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
             visualization=items_of.VObjectGenericODE2(show=False),
         )
     )
+    functions.add_connector(mbs, name, element, nodes)
     drawn = isinstance(kinematics, Span)
     shown = draw(mbs, name, places, show, drawSize, color) if drawn else None
     model = Model(

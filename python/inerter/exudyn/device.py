@@ -167,16 +167,18 @@ def forces(
     return {"total": total, "inertance": through, "friction": rub}
 
 
-def stored_energy(p: Parameters, x: float, v: float, z: Sequence[float]) -> float:
+def stored_energy(
+    p: Parameters, x: Value, v: Value, z: Sequence[Value], f: Functions = NUMBERS
+) -> Value:
     """Kinetic, elastic, bristle, gas and stop energy [J]."""
     state = states_of(p, z)
     place = x - state.deflection if rubs_flywheel(p) else x
-    energy = beside.stored_energy(p, x) + branches.stored_energy(p, z)
-    energy += friction.stored_energy(p, place, state.friction)
+    energy = beside.stored_energy(f, p, x) + branches.stored_energy(p, z)
+    energy = energy + friction.stored_energy(f, p, place, state.friction)
     if not series.is_there(p):
-        return energy + flywheel.stored_energy(p, x, v)
-    shaft = series.stored_energy(p, state.deflection, state.gap)
-    return energy + shaft + flywheel.stored_energy(p, x - state.deflection, state.speed)
+        return energy + flywheel.stored_energy(f, p, x, v)
+    shaft = series.stored_energy(f, p, state.deflection, state.gap)
+    return energy + shaft + flywheel.stored_energy(f, p, x - state.deflection, state.speed)
 
 
 def dissipated_power(

@@ -40,10 +40,18 @@ def exudyn(module: str = "") -> Any:
     return importlib.import_module(f"exudyn.{module}")
 
 
+def version(package: Any) -> tuple[int, ...]:
+    """Major and minor version of Exudyn's package."""
+    return tuple(int(part) for part in _told(package).split(".")[:2] if part.isdigit())
+
+
+def _told(package: Any) -> str:
+    return str(getattr(package, "__version__", None) or package.GetVersionString())
+
+
 def _check_version(package: Any) -> None:
     """Raise ImportError for a version that does not work as those which are tested."""
-    told = getattr(package, "__version__", None) or package.GetVersionString()
-    numbers = tuple(int(part) for part in str(told).split(".")[:2] if part.isdigit())
+    told, numbers = _told(package), version(package)
     if not OLDEST <= numbers <= NEWEST:
         raise ImportError(
             f"Exudyn {told} is not one of the versions that inerter works with, "

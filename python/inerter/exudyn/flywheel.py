@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from inerter.exudyn import stroke
-from inerter.exudyn.functions import NUMBERS, Functions, Value
+from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.parameters import Parameters
 
 FLOOR = 0.01
@@ -55,10 +55,10 @@ def force(f: Functions, p: Parameters, y: Value, w: Value) -> Value:
     return total
 
 
-def stored_energy(p: Parameters, y: float, w: float) -> float:
+def stored_energy(f: Functions, p: Parameters, y: Value, w: Value) -> Value:
     """Kinetic energy and energy of the gas [J]."""
-    kinetic = p.inertance * _along(NUMBERS, p, y, w)[0] * _kinetic(NUMBERS, p, w)
-    return kinetic + (_gas_energy(p, y) if p.gas_pressure else 0.0)
+    kinetic = p.inertance * _along(f, p, y, w)[0] * _kinetic(f, p, w)
+    return kinetic + (_gas_energy(f, p, y) if p.gas_pressure else 0.0)
 
 
 def dissipated_power(f: Functions, p: Parameters, w: Value) -> Value:
@@ -145,19 +145,20 @@ def _gas(f: Functions, p: Parameters, y: Value) -> Value:
     return push * (1.0 - f.power(1.0 + fill * within, -gamma)) + tangent * (y - within)
 
 
-def _gas_energy(p: Parameters, y: float) -> float:
+def _gas_energy(f: Functions, p: Parameters, y: Value) -> Value:
     """Integral of the gas force from 0 to y [J]."""
     push, fill, gamma = _gas_numbers(p)
     if p.gas_law == "expanded":
-        within = min(y, 1.0 / ((gamma + 1.0) * fill))
+        within = f.least(y, 1.0 / ((gamma + 1.0) * fill))
         share = 0.5 - (gamma + 1.0) * fill * within / 6.0
-        return gamma * push * fill * within**2 * share + _gas(NUMBERS, p, within) * (y - within)
-    within = max(y, (LEAST_VOLUME - 1.0) / fill)
-    swell = math.log1p(fill * within)
-    work = swell if gamma == 1.0 else math.expm1((1.0 - gamma) * swell) / (1.0 - gamma)
+        inside = gamma * push * fill * within * within * share
+        return inside + _gas(f, p, within) * (y - within)
+    within = f.greatest(y, (LEAST_VOLUME - 1.0) / fill)
+    swell = f.log1p(fill * within)
+    work = swell if gamma == 1.0 else f.expm1((1.0 - gamma) * swell) / (1.0 - gamma)
     beyond = y - within
     tangent = gamma * push * fill * LEAST_VOLUME ** (-gamma - 1.0)
-    outside = (_gas(NUMBERS, p, within) + 0.5 * tangent * beyond) * beyond
+    outside = (_gas(f, p, within) + 0.5 * tangent * beyond) * beyond
     return push * (within - work / fill) + outside
 
 

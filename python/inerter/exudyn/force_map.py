@@ -35,12 +35,13 @@ def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     return _moving(f, p, x, v, _at(f, p, x, 0.0)) * v
 
 
-def stored_energy(p: Parameters, x: float) -> float:
+def stored_energy(f: Functions, p: Parameters, x: Value) -> Value:
     """The integral of F(x, 0) from 0 to x [J]: that of a curve along the stroke."""
     lower, upper, rows = p.force_map_lower, p.force_map_upper, _shape(p)[0]
     places = (lower + (upper - lower) * i / (rows - 1) for i in range(rows))
     still = stroke.curve_moments(tuple(_at(NUMBERS, p, x, 0.0) for x in places), lower, upper)
-    return stroke.spline_integral(still, x) - stroke.spline_integral(still, 0.0)
+    at_zero = stroke.spline_integral(NUMBERS, still, 0.0)
+    return stroke.spline_integral(f, still, x) - at_zero
 
 
 def _moving(f: Functions, p: Parameters, x: Value, v: Value, still: Value) -> Value:

@@ -20,7 +20,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from inerter.exudyn import stroke
-from inerter.exudyn.functions import NUMBERS, Functions, Value
+from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.parameters import Parameters
 
 
@@ -262,13 +262,13 @@ LAWS = {law.__name__: law for law in _ALL}
 """The laws by their names."""
 
 
-def stored_energy(p: Parameters, x: float, z: Any) -> float:
+def stored_energy(f: Functions, p: Parameters, x: Value, z: Any) -> Value:
     """Energy in the bristle, the elements or the elastic branch [J]."""
     if p.friction == "maxwell_slip":
         return sum(
             0.5 * spring * each * each for (spring, _), each in zip(elements(p), z, strict=True)
         )
-    z = bristle(NUMBERS, p, z)
+    z = bristle(f, p, z)
     if p.friction in ("dahl", "lugre"):
         return 0.5 * p.bristle_stiffness * z * z
     if p.friction == "bouc_wen":

@@ -30,6 +30,8 @@ class Functions:
     cos: Function
     exp: Function
     log: Function
+    log1p: Function
+    expm1: Function
     tanh: Function
     round: Function
     power: Callable[[Value, Value], Value]
@@ -60,6 +62,8 @@ NUMBERS = Functions(
     cos=math.cos,
     exp=_exp,
     log=math.log,
+    log1p=math.log1p,
+    expm1=math.expm1,
     tanh=math.tanh,
     round=round,
     power=math.pow,
@@ -88,6 +92,9 @@ def expressions() -> Functions:
         cos=symbolic.cos,
         exp=symbolic.exp,
         log=symbolic.log,
+        # nothing that Exudyn evaluates needs them exact near 0
+        log1p=lambda value: symbolic.log(1.0 + value),
+        expm1=lambda value: symbolic.exp(value) - 1.0,
         tanh=symbolic.tanh,
         round=symbolic.round,
         power=symbolic.pow,

@@ -6,22 +6,21 @@ import functools
 import math
 from dataclasses import dataclass, field
 from typing import Any
+from weakref import WeakSet
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.exudyn import control
-from inerter.exudyn import device as law
 from inerter.exudyn.carriers import Carrier
 from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.readings import FORCES, READINGS, Readings
+from inerter.exudyn.sensors import Sensor
 from inerter.exudyn.terminals import Terminals
 from inerter.exudyn.user_functions import UserFunctions
 
-QUANTITIES = (*READINGS, "stored_energy")
+QUANTITIES = READINGS
 """What `Inerter.Evaluate` tells, and sensors can measure."""
 
 
@@ -61,15 +60,21 @@ class Model:
     given: dict[str, float]
     free_length: bool
     _needs: dict[tuple[str, ...], tuple[bool, bool, bool]] = field(default_factory=dict)
+    sensors: WeakSet[Sensor] = field(default_factory=WeakSet)
 
     def take(self, element: Element) -> None:
         """Be of this element from now on."""
         self.element, self.readings, self._needs = element, Readings(element), {}
+        for sensor in self.sensors:
+            sensor.take(self.readings)
+
+    def forget(self) -> None:
+        """Where its coordinates are in the system may have changed: it is assembled anew."""
+        for sensor in self.sensors:
+            sensor.forget()
 
     def read(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
-        """Readings and states by name, and "stored_energy"."""
-        if "stored_energy" in names:
-            return self._with_energy(mbs, configuration, names)
+        """Readings and states by name."""
         where = _questions()[-1] if configuration is None else configuration
         if names not in self._needs:
             self._needs[names] = self.readings.needs(names)
@@ -83,6 +88,19 @@ class Model:
             self._explain(*parts)
         return found
 
+    def sensor_function(self, names: tuple[str, ...]) -> Any:
+        """The user function of a sensor that tells these."""
+
+        def whole(
+            mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
+        ) -> list[float]:
+            sensor.locate(mbs, self.objectNumber)
+            return self.read(mbs, configuration, names)
+
+        sensor = Sensor(self.readings, names, whole)
+        self.sensors.add(sensor)
+        return sensor.function()
+
     def _explain(self, *parts: Any) -> None:
         """Raise ValueError for readings that are not finite."""
         if not all(part is None or np.isfinite(part).all() for part in parts):
@@ -90,16 +108,6 @@ class Model:
                 f'inerter "{self.name}": its coordinates are not finite; the run has diverged. '
                 "Shorten the step, or take GeneralizedAlpha, or DOPRI5 with tolerances"
             )
-
-    def _with_energy(self, mbs: Any, configuration: Any, names: tuple[str, ...]) -> list[float]:
-        others = tuple(name for name in names if name != "stored_energy")
-        wanted = (*others, "displacement", "velocity", *self.device.state_names)
-        found = self.read(mbs, configuration, wanted)
-        x, v, *states = found[len(others) :]
-        p = control.present(NUMBERS, self.element.device, states)
-        energy = law.stored_energy(p, x, v, states)
-        told = dict(zip(others, found, strict=False)) | {"stored_energy": energy}
-        return [told[name] for name in names]
 
 
 class Inerter:
@@ -227,17 +235,11 @@ class Inerter:
         name = f"{self.name}_{quantity}"
         if int(self.mbs.GetSensorNumber(name)) >= 0:
             name = f"{name}_{self.mbs.systemData.NumberOfSensors()}"
-        model, names = self._model, tuple(together.get(quantity, (quantity,)))
-
-        def sensorUserFunction(  # noqa: N802
-            mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any
-        ) -> list[float]:
-            return model.read(mbs, configuration, names)
-
+        function = self._model.sensor_function(tuple(together.get(quantity, (quantity,))))
         return self.mbs.AddSensor(
             exudyn("itemInterface").SensorUserFunction(
                 name=name,
-                sensorUserFunction=sensorUserFunction,
+                sensorUserFunction=function,
                 fileName=fileName,
                 writeToFile=bool(fileName),
                 storeInternal=storeInternal,

@@ -12,11 +12,12 @@ from inerter.core import library_path
 PYTHON = (
     "PyTuple_GetItem", "PyLong_AsVoidPtr", "PyList_Size", "PyList_GetItem", "PyList_New",
     "PyList_SetItem", "PyFloat_FromDouble", "PyFloat_AsDouble", "PyErr_Occurred",
-    "PyErr_SetString", "PyObject_CallObject", "Py_IncRef", "Py_DecRef",
+    "PyErr_SetString", "PyObject_CallObject", "PyObject_GetAttr", "PyObject_CallMethodObjArgs",
+    "PyObject_GetBuffer", "PyBuffer_Release", "Py_IncRef", "Py_DecRef",
 )  # fmt: skip
 """Functions of Python that the library calls, in its order."""
 
-METHODS = ("force", "mass", "jacobian")
+METHODS = ("force", "mass", "jacobian", "sensor")
 
 
 class CTape(ctypes.Structure):
@@ -58,6 +59,23 @@ class CElement(ctypes.Structure):
         ("none", ctypes.py_object),
         ("error", ctypes.py_object),
         ("message", ctypes.c_char_p),
+    )
+
+
+class CSensor(ctypes.Structure):
+    """InerterSensor of plugin_c/exudyn/sensor.c."""
+
+    _fields_ = (
+        ("tape", ctypes.c_void_p),
+        ("size", ctypes.c_int32),
+        ("ntold", ctypes.c_int32),
+        ("total", ctypes.c_int32),
+        ("needed", ctypes.c_int32 * 3),
+        ("places", ctypes.c_void_p),
+        ("coordinates", ctypes.c_void_p),
+        ("data", ctypes.py_object),
+        ("question", ctypes.py_object * 3),
+        ("whole", ctypes.py_object),
     )
 
 
@@ -110,12 +128,12 @@ def run_slopes(tape: Any) -> None:
     _library().inerter_exudyn_run_slopes(tape)
 
 
-def built_in(method: str, element: CElement, *kept: Any) -> Any:
-    """A built-in function of Python over an element, which lives as long as the function."""
+def built_in(method: str, own: CElement | CSensor, *kept: Any) -> Any:
+    """A built-in function of Python over an element or a sensor, which live as long as it."""
     make = ctypes.pythonapi.PyCFunction_NewEx
     make.argtypes, make.restype = (
         [ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p],
         ctypes.py_object,
     )
     definition = _library().inerter_exudyn_method(METHODS.index(method))
-    return make(definition, (ctypes.addressof(element), element, *kept), None)
+    return make(definition, (ctypes.addressof(own), own, *kept), None)

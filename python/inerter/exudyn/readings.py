@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,14 +13,18 @@ from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.tape import Tape
 
 FORCES = ("total", "inertance", "friction")
-READINGS = ("displacement", "velocity", "acceleration", *FORCES, "dissipated_power", "length")
+READINGS = (
+    "displacement", "velocity", "acceleration", *FORCES, "dissipated_power", "length",
+    "stored_energy",
+)  # fmt: skip
+"""What can be read, and a sensor can measure, beside the states."""
 
 
 class Readings:
     """`READINGS` and the states of an element, by name."""
 
     def __init__(self, element: Element) -> None:
-        n = element.size
+        self.size = n = element.size
         tape = Tape(3 * n)
         parts = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
         told = _told(element, tape.functions, *parts)
@@ -36,6 +41,15 @@ class Readings:
             not inputs.isdisjoint(range(each.start, each.stop)) for each in self._slices
         )
         return first, second, third
+
+    @property
+    def tape(self) -> int:
+        """Address of the tape; its inputs are coordinates, velocities, accelerations."""
+        return ctypes.addressof(self._finished.c)
+
+    def place(self, name: str) -> int:
+        """Where a reading lies among the values of the tape."""
+        return self._places[name]
 
     def at(self, *parts: Any, names: Sequence[str] = ()) -> list[float]:
         """Those named, at coordinates, velocities and accelerations, each of shape (size,).
@@ -78,5 +92,6 @@ def _told(
     forces = law.forces(p, x, v, a, z, f)
     heat = law.dissipated_power(f, p, x, v, z, forces["inertance"])
     told = {"length": motion.length, "displacement": x, "velocity": v, "acceleration": a, **forces}
-    told |= {"dissipated_power": heat, **dict(zip(p.state_names, z, strict=True))}
+    told |= {"dissipated_power": heat, "stored_energy": law.stored_energy(p, x, v, z, f)}
+    told |= dict(zip(p.state_names, z, strict=True))
     return told | ({HEAT: q_t[element.first + element.own.index(HEAT)]} if element.heat else {})

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from inerter.exudyn.functions import NUMBERS, Functions, Value
+from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.parameters import Parameters
 
 EAGER = 10.0
@@ -69,12 +69,13 @@ def position(f: Functions, p: Parameters, s: Value, gap: Value) -> Value:
     return f.least(p.backlash, f.greatest(-p.backlash, place))
 
 
-def stored_energy(p: Parameters, s: float, gap: float) -> float:
+def stored_energy(f: Functions, p: Parameters, s: Value, gap: Value) -> Value:
     """Energy in the shaft [J]."""
-    deflection = s - position(NUMBERS, p, s, gap)
-    inside = _inside(NUMBERS, p, deflection)
-    energy = p.series_stiffness * inside**2 * (0.5 + p.series_hardening * inside / 3.0)
-    return energy + _spring(NUMBERS, p, deflection) * (deflection - inside)
+    deflection = s - position(f, p, s, gap)
+    inside = _inside(f, p, deflection)
+    share = 0.5 + p.series_hardening * inside / 3.0
+    energy = p.series_stiffness * inside * inside * share
+    return energy + _spring(f, p, deflection) * (deflection - inside)
 
 
 def dissipated_power(f: Functions, p: Parameters, s: Value, rate: Value, gap: Value) -> Value:

@@ -67,14 +67,15 @@ def slope(f: Functions, p: Parameters, name: str, x: Value) -> Value:
     return total
 
 
-def integral(p: Parameters, name: str, x: float) -> float:
+def integral(f: Functions, p: Parameters, name: str, x: Value) -> Value:
     """Integral of f from 0 to x."""
-    total = 0.0
+    total: Value = 0.0
     if values := getattr(p, f"{name}_curve"):
         moments = curve_moments(values, p.curve_lower, p.curve_upper)
-        total += spline_integral(moments, x) - spline_integral(moments, 0.0)
+        from_zero = spline_integral(f, moments, x) - spline_integral(NUMBERS, moments, 0.0)
+        total = total + from_zero
     for wave, amplitude, phase in _waves(p, name):
-        total += amplitude / wave * (math.cos(phase) - math.cos(wave * x + phase))
+        total = total + amplitude / wave * (math.cos(phase) - f.cos(wave * x + phase))
     return total
 
 
@@ -100,15 +101,16 @@ def _spline(f: Functions, m: Moments, x: Value) -> Value:
     return total
 
 
-def spline_integral(m: Moments, x: float) -> float:
+def spline_integral(f: Functions, m: Moments, x: Value) -> Value:
     """Integral from the first place to x."""
-    h, before = m.spacing, min(0.0, x - m.lower)
+    h, before = m.spacing, f.least(0.0, x - m.lower)
     total = m.values[0] * before
-    for i, t in enumerate(_passed(NUMBERS, m, x)):
+    for i, t in enumerate(_passed(f, m, x)):
         first, second = float(m.curvatures[i]), float(m.curvatures[i + 1])
         quartic = first / 6.0 + (second - first) / 24.0 * t
-        total += h * (m.values[i] + (0.5 * h * float(m.slopes[i]) + h * h * quartic * t) * t) * t
-    return total + m.values[-1] * max(0.0, x - m.lower - h * (len(m.values) - 1))
+        inside = (0.5 * h * float(m.slopes[i]) + h * h * quartic * t) * t
+        total = total + h * (m.values[i] + inside) * t
+    return total + m.values[-1] * f.greatest(0.0, x - m.lower - h * (len(m.values) - 1))
 
 
 @lru_cache(maxsize=64)

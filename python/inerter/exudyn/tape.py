@@ -132,6 +132,14 @@ class Tape:
             return value.key
         return "constant", self._constants.setdefault(float(value), len(self._constants))
 
+    def definition(self, key: Key) -> tuple[str, Sequence[Any]]:
+        """Operation and keys of its operands; "constant" and its value, "input" and its number."""
+        kind, number = key
+        if kind == "step":
+            name, *operands = list(self._steps)[number]
+            return name, operands
+        return kind, [list(self._constants)[number] if kind == "constant" else number]
+
     def finish(self, sloped: Sequence[Key] | None = None) -> Finished:
         """What is recorded up to now, in the library's form.
 

@@ -8,23 +8,18 @@ built-in functions that Exudyn calls without running any Python.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.exudyn import control
-from inerter.exudyn import device as law
-from inerter.exudyn.element import HEAT, Element
+from inerter.exudyn import connector
+from inerter.exudyn.element import Element
 from inerter.exudyn.engine import exudyn
-from inerter.exudyn.functions import Functions, Value, expressions
-from inerter.exudyn.kinematics import SHORTEST, Line, Span
+from inerter.exudyn.expressions import split, vector_function
+from inerter.exudyn.kinematics import SHORTEST, Span
 from inerter.exudyn.library import CElement, built_in, listed
-from inerter.exudyn.tape import Number, Tape
-
-Matrix = NDArray[np.float64]
-
+from inerter.exudyn.tape import Tape
 
 MOST_SYMBOLIC = 7
 """Up to this size Exudyn's symbolic vectors hold; of eight elements they end the process (1.13)."""
@@ -37,22 +32,38 @@ class UserFunctions:
     ----------
     parameters
         Those of an ObjectGenericODE2, by name.
+    spring_force
+        The user function of the connector that has what is not linear, if there is one; else None.
+    connector
+        Its number, once it is added.
     """
 
     def __init__(self, mbs: Any, element: Element, name: str, symbolic: bool) -> None:
         self._symbolic = symbolic
         only_matrices = symbolic and element.constant_mass
         self._compiled = None if only_matrices else Compiled(element, name)
+        self.spring_force, self.connector = None, None
+        if symbolic and connector.fits(element):
+            # 0 if there is nothing for it to do
+            self.spring_force = connector.spring_force(mbs, element) or None
         self.parameters = self._made_of(mbs, element)
+
+    def add_connector(self, mbs: Any, name: str, element: Element, nodes: Sequence[Any]) -> None:
+        """Add the connector, if there is to be one."""
+        if self.spring_force is not None:
+            self.connector = connector.add(mbs, name, element, nodes, self.spring_force)
 
     def take(self, mbs: Any, objectNumber: Any, element: Element) -> None:
         """Let the object be this element from now on; it has the same coordinates."""
         if self._compiled is not None:
             self._compiled.take(element)
+        if self.connector is not None:
+            self.spring_force = connector.spring_force(mbs, element)
+            mbs.SetObjectParameter(self.connector, "springForceUserFunction", self.spring_force)
         before, self.parameters = self.parameters, self._made_of(mbs, element)
         for key, value in self.parameters.items():
             same = value is before[key] or (
-                isinstance(value, np.ndarray) and np.array_equal(value, before[key])
+                isinstance(value, np.ndarray | list) and np.array_equal(value, before[key])
             )
             if not same:
                 mbs.SetObjectParameter(objectNumber, key, value)
@@ -64,17 +75,23 @@ class UserFunctions:
             found["massMatrixUserFunction"] = compiled.mass
         if compiled is not None and not self._symbolic:
             return found | {
-                "stiffnessMatrix": hold,
+                "stiffnessMatrix": _unless_zero(hold),
                 "forceUserFunction": compiled.force,
                 "jacobianUserFunction": compiled.jacobian,
             }
-        linear, rest = _split(element)
+        linear, rest = split(element)
+        alone = self.spring_force is None
         return found | {
-            "stiffnessMatrix": hold + linear.stiffness,
-            "dampingMatrix": linear.damping,
-            "forceVector": linear.force,
-            "forceUserFunction": _symbolic(element, mbs, rest),
+            "stiffnessMatrix": _unless_zero(hold + linear.stiffness),
+            "dampingMatrix": _unless_zero(linear.damping),
+            "forceVector": _unless_zero(linear.force),
+            "forceUserFunction": vector_function(mbs, element.size, rest) if alone else 0,
         }
+
+
+def _unless_zero(array: NDArray[np.float64]) -> NDArray[np.float64] | list[float]:
+    """An array, or what stands for none: Exudyn would multiply with every 0."""
+    return array if array.any() else []
 
 
 class Compiled:
@@ -143,87 +160,3 @@ def _taped(element: Element) -> tuple[Tape, Any]:
     tape = Tape((3 if element.loaded else 2) * n)
     q, q_t, q_tt = (tape.inputs[i * n : (i + 1) * n] for i in range(3))
     return tape, element.record(tape.functions, q, q_t, q_tt)
-
-
-@dataclass(frozen=True)
-class Linear:
-    """Constant part of an element: f = force - stiffness q - damping q'."""
-
-    stiffness: Matrix
-    damping: Matrix
-    force: Matrix
-
-
-def _parts(element: Element, f: Functions, q: Any, q_t: Any) -> list[tuple[Any, Matrix]]:
-    """Every expression of an element on a line, with its factors on all coordinates."""
-    p, line = element.device, element.kinematics
-    assert isinstance(line, Line)
-    x, v = line.difference(q) - p.rest_length, line.difference(q_t)
-    z = element.states(x, q, q_t)
-    p = control.present(f, p, z)
-    found = []
-    for term in law.terms(f, p, x, v, z):
-        weights = np.zeros(element.size)
-        weights[: element.first] = [-term.terminals * share for share in line.row]
-        for place, share in element.own_shares(term):
-            weights[place] += share
-        found.append((term.value, weights))
-    if element.heat:
-        # with load friction only behind a series element: it asks for no acceleration there
-        through = law.carried(f, p, x, v, 0.0, z) if law.rubs_by_load(p) else 0.0
-        weights = np.zeros(element.size)
-        weights[element.first + element.own.index(HEAT)] = 1.0
-        found.append((law.dissipated_power(f, p, x, v, z, through), weights))
-    return found
-
-
-def _split(element: Element) -> tuple[Linear, list[bool]]:
-    """The linear part in matrices, and which of `_parts` are not in it."""
-    n = element.size
-    tape = Tape(2 * n)
-    parts = _parts(element, tape.functions, tape.inputs[:n], tape.inputs[n:])
-    rest = [isinstance(value, Number) and not value.affine for value, _ in parts]
-    keys = [tape.key(0.0 if left else value) for (value, _), left in zip(parts, rest, strict=True)]
-    finished = tape.finish()
-    constant = finished.run([0.0] * (2 * n))
-    finished.run_slopes()
-    slopes = np.zeros((n, 2 * n))
-    force = np.zeros(n)
-    for key, (_, weights) in zip(keys, parts, strict=True):
-        place = finished.place(key)
-        force += weights * constant[place]
-        slopes += np.outer(weights, finished.slopes[place, : 2 * n])
-    return Linear(-slopes[:, :n], -slopes[:, n:], force), rest
-
-
-def _symbolic(element: Element, mbs: Any, rest: Sequence[bool]) -> Any:
-    """What is not linear as a symbolic user function, every expression once; 0 if there is none."""
-    if not any(rest):
-        return 0
-    symbolic = exudyn("symbolic")
-    recording = symbolic.GetRecording()
-    symbolic.SetRecording(True)
-    try:
-        q = symbolic.Vector("q", [0.0] * element.size)
-        q_t = symbolic.Vector("q_t", [0.0] * element.size)
-        result: Value = None
-        for (value, weights), left in zip(
-            _parts(element, expressions(), q, q_t), rest, strict=True
-        ):
-            if left:
-                part = value * symbolic.Vector(weights.tolist())
-                result = part if result is None else result + part
-        arguments = [symbolic.Real("t", 0.0), symbolic.Real("itemNumber", 0), q, q_t]
-    finally:
-        symbolic.SetRecording(recording)
-    function = symbolic.UserFunction()
-    contents = {
-        "functionName": "forceUserFunction",
-        # Exudyn never reads the system here; naming it would keep it alive for ever
-        "argList": [None, *arguments],
-        "argTypeList": ["MainSystem", "Real", "Index", "StdVector", "StdVector"],
-        "returnValue": result,
-        "returnType": "StdVector",
-    }
-    function.SetUserFunctionFromDict(mbs, contents, "forceUserFunction", None, "ObjectGenericODE2")
-    return function

@@ -71,6 +71,8 @@ def _telling_of_assembly(original: Callable[..., Any]) -> Callable[..., Any]:
             for model in models:
                 read_start(self, model)
             done = original(self)
+        for model in models:
+            model.forget()
         return done
 
     return Assemble
