@@ -123,7 +123,7 @@ def _described(
     notes += [
         f"best {LIMITS[limit]}"
         for limit in problem.network.limits
-        if limit[0] in problem.variables and limit[0] not in best.variables
+        if limit[0] in problem.variables and limit in best.fixed
     ]
     notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return Optimum(

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -28,12 +28,24 @@ Array = NDArray[np.float64]
 Catalogue = tuple[tuple[str, tuple[float, ...]], ...]
 
 _COMPLEX_STEP = 1e-30
+_LITTLE = 1e-3
 
 
 def in_limit(name: str, value: float) -> tuple[tuple[str, float], ...]:
     """What is fixed where a variable is 0 or without limit: itself, and what then means nothing."""
     more = (("centring_ratio", 1.0),) if name == "centring_share" else ()
     return ((name, value), *more)
+
+
+def without_inertance(network: Layout, free: Collection[str]) -> tuple[tuple[str, float], ...]:
+    """What of the `free` variables means nothing more in a layout that has lost its inertance.
+
+    Of centred layouts springs and damper are left: a damper behind one spring (SR) for any share.
+    """
+    if not network.centred:
+        return ()
+    values = {"centring_share": _LITTLE, "relaxation_stiffness": math.inf}
+    return tuple((name, value) for name, value in values.items() if name in free)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +128,8 @@ class SuspensionProblem:
 
     def without(self) -> SuspensionProblem:
         """The same without inertance."""
-        return replace(self, massless=True)
+        more = without_inertance(self.network, self.variables)
+        return replace(self, massless=True, fixed=(*self.fixed, *more))
 
     def picked(self) -> list[SuspensionProblem]:
         """The problem with each choice from its catalogue fixed; itself without a catalogue."""
@@ -134,8 +147,8 @@ class SuspensionProblem:
         return found + [
             replace(one, fixed=(*one.fixed, *in_limit(name, value)))
             for name, value in self.network.limits
-            if name in self.variables
             for one in found
+            if name in one.variables
         ]
 
     def inner(self) -> list[SuspensionProblem]:
@@ -157,6 +170,9 @@ class SuspensionProblem:
             if LAYOUTS[layout].own == "S6" and spring:
                 # k_1 is the relaxation spring of S6
                 values["centring_ratio"] = 1e6 * spring / self.stiffness
+            elif LAYOUTS[layout].own == "SR":
+                # without inertance k_2 is the relaxation spring of SR
+                values |= {"centring_ratio": 0.0, "inertance": 0.0}
             else:
                 values["centring_ratio"] = 1.0
         low, high = np.exp(self.bounds.T)

@@ -125,8 +125,9 @@ def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
         if now and not before
     ]
     for limit in problem.network.limits:
-        free = [any(limit[0] == n for _, n in one.variables) for one in (problem, best)]
-        notes += [f"best {LIMITS[limit]}"] if free == [True, False] else []
+        free = any(limit[0] == name for _, name in problem.variables)
+        held = all(limit in own for own in best.fixed)
+        notes += [f"best {LIMITS[limit]}"] if free and held else []
     notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return VehicleOptimum(
         value=value,

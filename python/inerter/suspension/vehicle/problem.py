@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
-from inerter.suspension.problem import Array, Catalogue, SuspensionProblem, in_limit
+from inerter.suspension.problem import (
+    Array,
+    Catalogue,
+    SuspensionProblem,
+    in_limit,
+    without_inertance,
+)
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.variations import Scene
 from inerter.suspension.vehicle.cars import Vehicle
@@ -136,7 +142,18 @@ class VehicleProblem:
 
     def without(self, massless: tuple[bool, bool]) -> VehicleProblem:
         """The same without inertance in front, at the rear or at both."""
-        return replace(self, massless=massless)
+        front, rear = (
+            (*own, *without_inertance(self.network, names)) if no_inerter else own
+            for own, no_inerter, names in zip(self.fixed, massless, self._free(), strict=True)
+        )
+        return replace(self, massless=massless, fixed=(front, rear))
+
+    def _free(self) -> tuple[list[str], list[str]]:
+        """The names of the variables, by axle."""
+        names: tuple[list[str], list[str]] = ([], [])
+        for axle, name in self.variables:
+            names[axle].append(name)
+        return (names[0], names[0]) if self.equal else names
 
     def picked(self) -> list[VehicleProblem]:
         """The problem with each choice from its catalogue fixed; itself without a catalogue."""
