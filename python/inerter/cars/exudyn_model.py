@@ -30,7 +30,15 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
     Raises
     ------
     ValueError
-        A road that the car has not, or a layout whose damper is behind a relaxation spring.
+        A road that the car has not, an inerter with friction, play or a shaft, or a damper table
+        behind a relaxation spring.
+
+    Notes
+    -----
+    Of SR, S5 and SW8 the elongation of the relaxation spring is the velocity of a coordinate with
+    unit mass, as the states of an inerter are (`inerter.exudyn.element`); it is not among
+    `coordinates`. An explicit solver needs steps below 2 c / (k_b + k_1); for stiffer springs take
+    "GeneralizedAlpha".
     """
     from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2, VObjectGenericODE2
 
@@ -63,4 +71,5 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
             visualization=VObjectGenericODE2(show=False),
         )
     )
-    return Model(mbs, {name: (node, n) for n, name in enumerate(equations.names)}, {})
+    moving = equations.names[: count - len(equations.states)]
+    return Model(mbs, {name: (node, n) for n, name in enumerate(moving)}, {})
