@@ -56,6 +56,9 @@ UNITS = {
 }  # fmt: skip
 """Figures of a run, with their units; an index that is asked for beside has its own."""
 
+TYRE = "a tyre is"
+"""How a note on tyres that leave the road begins."""
+
 _SLOWEST = 1e-3
 
 
@@ -189,7 +192,7 @@ def evaluate_own(
     lifted = next(each.value for each in figures if each.name == "lift_off")
     if lifted > 0.0:
         what = "off the road" if one_sided else "pulled on the road, where a real one would lift,"
-        notes.append(f"a tyre is {what} for {100.0 * lifted:.2g} % of the time")
+        notes.append(f"{TYRE} {what} for {100.0 * lifted:.2g} % of the time")
     return OwnEvaluation(tuple(figures), count, period, settle, tuple(notes))
 
 
