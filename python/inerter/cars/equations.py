@@ -5,7 +5,8 @@ with a node between damper and inerter the displacement y of each inerter. With 
 struts' elongations x = e . q,
 
     M = diag(masses) + sum b e_b e_b^T
-    f = - sum e_k k x_k - sum e_c F(x_c') - stops + sum e_w max(kt (road - w), -static load)
+    f = - sum e_k k x_k - sum e_c F(x_c') - stops + sum e_w max(T, -static load)
+    T = kt (road - w) + ct (road' - w')
 
 A damper c behind a relaxation spring k_b (SR, S5, SW8; in SW8 with k_1 beside the damper) has no
 mass between them: the spring's elongation r is a state, which the forces at that point give,
@@ -16,7 +17,7 @@ It stands among the coordinates as one whose velocity is r and whose mass is 1, 
 it is r'; nothing else feels that coordinate. The spring pulls body and node with k_b r.
 
 Sign: upward positive, positive roll lifts the left side, positive pitch lowers the front.
-Not modelled: tyre damping, geometry that bends, friction, play and shafts of the inerter.
+Not modelled: geometry that bends, friction, play and shafts of the inerter.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from inerter.cars.parts import AxleParts, CarParts, Table
 Array = NDArray[np.float64]
 Road = Callable[[float], float]
 
+_NEAR = 1e-6
 _NODES = ("S3", "S4", "S5", "S6", "SW7", "SW8")
 _BEHIND_SPRING = ("SR", "S5", "SW8")
 _CENTRED = ("SW7", "SW8")
@@ -53,6 +55,7 @@ class CarEquations:
     dampers: list[tuple[Array, float, Table, Table]] = field(default_factory=list)
     stops: list[tuple[Array, float, float]] = field(default_factory=list)
     tyres: list[tuple[int, float, float]] = field(default_factory=list)
+    tyre_dampings: list[float] = field(default_factory=list)
     states: tuple[str, ...] = ()
     relaxations: list[tuple[Array, int, float, float, float]] = field(default_factory=list)
 
@@ -65,8 +68,11 @@ class CarEquations:
         rates = [(kb + k1) / c for *_, kb, k1, c in self.relaxations]
         return max(rates, default=0.0)
 
-    def forces(self, q: Array, v: Array, heights: Array) -> Array:
-        """Generalised forces (n,) at positions, velocities and heights of the road [m]."""
+    def forces(self, q: Array, v: Array, heights: Array, rates: Array | None = None) -> Array:
+        """Generalised forces (n,) at positions, velocities and heights of the road [m].
+
+        `rates` of the heights [m/s], 0 where not given; only damping of tyres feels them.
+        """
         total = np.zeros(len(q))
         for row, k in self.springs:
             total -= row * (k * float(row @ q))
@@ -84,15 +90,21 @@ class CarEquations:
             pull = kb * longer
             total -= row * pull
             total[state] += float(row @ v) - (pull - k1 * (float(row @ q) - longer)) / c
-        for (place, kt, load), height in zip(self.tyres, heights, strict=True):
-            total[place] += max(kt * (height - q[place]), -load)
+        pressed = self.tyre_forces(q, heights, v, rates)
+        for (place, *_), force in zip(self.tyres, pressed, strict=True):
+            total[place] += force
         return total
 
-    def tyre_forces(self, q: Array, heights: Array) -> Array:
-        """Dynamic forces that press the tyres [N], (wheels,)."""
+    def tyre_forces(
+        self, q: Array, heights: Array, v: Array | None = None, rates: Array | None = None
+    ) -> Array:
+        """Dynamic forces that press the tyres [N], (wheels,); velocities 0 where not given."""
+        v = np.zeros(len(q)) if v is None else v
+        rates = np.zeros(len(heights)) if rates is None else rates
+        every = zip(self.tyres, self.tyre_dampings, heights, rates, strict=True)
         pressed = [
-            max(kt * (height - q[place]), -load)
-            for (place, kt, load), height in zip(self.tyres, heights, strict=True)
+            max(kt * (height - q[place]) + ct * (rate - v[place]), -load)
+            for (place, kt, load), ct, height, rate in every
         ]
         return np.array(pressed)
 
@@ -145,6 +157,7 @@ def car_equations(car: CarParts) -> CarEquations:
         _add_strut(found, axle, stroke, unit.get(f"device{place}", stroke), f"relaxation{place}")
         load = car.static_loads["rear" if "rear" in place else "front"]
         found.tyres.append((names.index(f"wheel{place}"), axle.tyre_stiffness, load))
+        found.tyre_dampings.append(axle.tyre_damping)
     for name, axle in car.axles.items():
         if axle.anti_roll_stiffness:
             row = travels[f"_{name}_left"] - travels[f"_{name}_right"]
@@ -206,3 +219,9 @@ def _add_strut(found: CarEquations, axle: AxleParts, x: Array, y: Array, state: 
 def heights(roads: Mapping[str, Road], names: tuple[str, ...], t: float) -> Array:
     """Heights of the roads at an instant [m]; flat where there is none."""
     return np.array([float(roads[name](t)) if name in roads else 0.0 for name in names])
+
+
+def rising(roads: Mapping[str, Road], names: tuple[str, ...], t: float) -> Array:
+    """Rates of the heights at an instant [m/s], from the road a microsecond before and after."""
+    after, before = (heights(roads, names, t + late) for late in (_NEAR, -_NEAR))
+    return (after - before) / (2.0 * _NEAR)

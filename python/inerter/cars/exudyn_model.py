@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.cars.equations import Road, car_equations, heights
+from inerter.cars.equations import Road, car_equations, heights, rising
 from inerter.cars.parts import CarParts
 from inerter.exudyn.model_parts import Model
 
@@ -26,6 +26,7 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
         As from `inerter.cars.read.read_car`.
     roads
         "road", "road_front", ...: time [s] -> height of the road [m]; flat where not given.
+        With damping of tyres it may not jump.
 
     Raises
     ------
@@ -47,7 +48,7 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
     for name in given:
         if name not in equations.roads:
             raise ValueError(f"no road {name!r}: there are {', '.join(equations.roads)}")
-    count = len(equations.names)
+    count, damped = len(equations.names), any(equations.tyre_dampings)
     zeros = [0.0] * count
     node = mbs.AddNode(
         NodeGenericODE2(
@@ -60,7 +61,8 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
 
     def force(mbs: Any, t: float, itemNumber: int, q: Any, q_t: Any) -> Any:
         road = heights(given, equations.roads, t)
-        return equations.forces(np.asarray(q), np.asarray(q_t), road)
+        rates = rising(given, equations.roads, t) if damped else None
+        return equations.forces(np.asarray(q), np.asarray(q_t), road, rates)
 
     mbs.AddObject(
         ObjectGenericODE2(

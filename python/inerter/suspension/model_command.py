@@ -11,6 +11,7 @@ from inerter.console import Folder, out, refusing
 
 _EXUDYN = '''"""The car of {name} in Exudyn; needs the extra `exudyn`. Run it for a bump."""
 
+from math import cos, pi
 from pathlib import Path
 
 import exudyn as exu
@@ -23,7 +24,7 @@ CAR = read_car(Path(__file__).with_name("car.toml"))
 
 def bump(t: float) -> float:
     """30 mm high, felt by every wheel at once."""
-    return 0.03 if 0.1 < t < 0.15 else 0.0
+    return 0.015 * (1.0 - cos(40.0 * pi * (t - 0.1))) if 0.1 < t < 0.15 else 0.0
 
 
 if __name__ == "__main__":

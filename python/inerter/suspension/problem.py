@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.indices import INDICES, Index
+from inerter.suspension.indices import INDICES, Index, is_infinite
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.rational import Rational
@@ -124,7 +124,7 @@ class SuspensionProblem:
             "centring_ratio": (1.0, 1e-6, 1e6),
         }
         chosen = (ranges[name] for name in self.variables)
-        return np.log([[unit * low, unit * high] for unit, low, high in chosen])
+        return np.log([[unit * low, unit * high] for unit, low, high in chosen]).reshape(-1, 2)
 
     def without(self) -> SuspensionProblem:
         """The same without inertance."""
@@ -141,15 +141,22 @@ class SuspensionProblem:
             for chosen in itertools.product(*(values for _, values in free))
         ]
 
+    def infinite(self, index: str) -> bool:
+        """Whether an index of (nearly) every design is infinite, see `indices.is_infinite`."""
+        if not self.car.tyre_damping:
+            return False
+        return is_infinite(index, self.car, self.strut(self.bounds.mean(axis=1)))
+
     def variants(self) -> list[SuspensionProblem]:
         """The problem, then those in which what may be absent is."""
         found: list[SuspensionProblem] = [self, *([self.without()] if self.may_vanish else [])]
-        return found + [
+        more = [
             replace(one, fixed=(*one.fixed, *in_limit(name, value)))
             for name, value in self.network.limits
             for one in found
             if name in one.variables
         ]
+        return found + [one for one in more if not one.infinite(self.index)]
 
     def inner(self) -> list[SuspensionProblem]:
         """The problems of the layouts that this one contains."""
@@ -159,7 +166,7 @@ class SuspensionProblem:
             fixed = tuple((n, value) for n, value in self.fixed if n in names)
             massless = self.massless and LAYOUTS[name].may_vanish
             found.append(replace(self, layout=name, fixed=fixed, massless=massless))
-        return found
+        return [one for one in found if not one.infinite(self.index)]
 
     def embedded(self, layout: str, values: Mapping[str, float]) -> Array:
         """The point that is most like a design of a layout that this one contains."""

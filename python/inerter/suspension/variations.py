@@ -94,6 +94,7 @@ def _changed(car: Any, factors: Mapping[str, float]) -> Any:
             sprung_mass=car.sprung_mass * body,
             unsprung_mass=car.unsprung_mass * wheel,
             tyre_stiffness=car.tyre_stiffness * tyre,
+            tyre_damping=car.tyre_damping,
         )
     values = {
         f"{name}": getattr(car, name) * body

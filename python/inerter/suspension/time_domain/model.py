@@ -124,7 +124,10 @@ def car_parts(car: Car, layout: str, case: Case, design: Design) -> CarParts:
 
     if isinstance(car, QuarterCar):
         axle = AxleParts(
-            wheel_mass=car.unsprung_mass, tyre_stiffness=car.tyre_stiffness, strut=strut(design)
+            wheel_mass=car.unsprung_mass,
+            tyre_stiffness=car.tyre_stiffness,
+            tyre_damping=car.tyre_damping,
+            strut=strut(design),
         )
         return CarParts(kind="quarter", name="quarter", body_mass=car.sprung_mass, front=axle)
 
@@ -134,6 +137,7 @@ def car_parts(car: Car, layout: str, case: Case, design: Design) -> CarParts:
             wheel_mass=own.wheel_mass,
             tyre_stiffness=own.tyre_stiffness,
             anti_roll_stiffness=own.anti_roll_stiffness,
+            tyre_damping=own.tyre_damping,
             strut=strut(values),
         )
 

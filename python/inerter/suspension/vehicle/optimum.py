@@ -17,6 +17,7 @@ from inerter.suspension.optimum import LIMITS, finite
 from inerter.suspension.problem import Array
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.variations import scene_notes
+from inerter.suspension.white_road import refuse_infinite
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.load_bound import NEAR, softest_at_bound, start_point
 from inerter.suspension.vehicle.load_peaks import peaks
@@ -92,7 +93,14 @@ def vehicle_optimum(
 
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
-    """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
+    """Minimise an index over all designs of a layout; `more` as in `starting_points`.
+
+    Raises
+    ------
+    InfiniteIndexError
+        No design has a finite value, for tyre damping.
+    """
+    refuse_infinite(problem)
     if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     notes = []

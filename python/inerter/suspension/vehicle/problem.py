@@ -28,7 +28,9 @@ from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
 from inerter.suspension.vehicle.load import Load
 from inerter.suspension.vehicle.load_peaks import largest_gain
+from inerter.suspension.vehicle.state_space import system
 from inerter.suspension.vehicle.strut import VehicleStrut, branch
+from inerter.suspension.vehicle.white_noise import is_white
 
 _COMPLEX_STEP = 1e-30
 
@@ -116,7 +118,7 @@ class VehicleProblem:
         )
         if self.equal:
             front = rear = {name: 0.5 * (front[name] + rear[name]) for name in front}
-        return np.array([(front, rear)[axle][name] for axle, name in self.variables])
+        return np.array([(front, rear)[axle][name] for axle, name in self.variables]).reshape(-1, 2)
 
     def corners(self) -> tuple[SuspensionProblem, SuspensionProblem]:
         """The problems of the quarter-cars at the axles; where they turn, of their comfort."""
@@ -164,6 +166,18 @@ class VehicleProblem:
             pairs = [(one.fixed, other.fixed) for one in front for other in rear]
         return [replace(self, catalogue=(), fixed=pair) for pair in pairs]
 
+    def infinite(self, index: str) -> bool:
+        """Whether an index of (nearly) every design is infinite: it follows a white road at once."""
+        own, car = INDICES[index], self.car
+        if index == "J5" or not (car.front.tyre_damping or car.rear.tyre_damping):
+            return False
+        branches = self.branches(self.bounds.mean(axis=1))
+        return any(
+            is_white(system(plane, branches), part)
+            for plane in car.planes
+            for part in own.parts or (index,)
+        )
+
     def variants(self) -> list[VehicleProblem]:
         """The problem, then those in which what may be absent at an axle or both is."""
         found: list[VehicleProblem] = [self]
@@ -179,7 +193,7 @@ class VehicleProblem:
             if any(name == free for _, free in self.variables):
                 front, rear = (own + in_limit(name, value) for own in self.fixed)
                 found.append(replace(self, fixed=(front, rear)))
-        return found
+        return [one for one in found if one is self or not one.infinite(self.index)]
 
     def inner(self) -> list[VehicleProblem]:
         """The problems of the layouts that this one contains."""
@@ -191,7 +205,7 @@ class VehicleProblem:
             )
             massless = self.massless if LAYOUTS[name].may_vanish else (False, False)
             found.append(replace(self, layout=name, fixed=(front, rear), massless=massless))
-        return found
+        return [one for one in found if not one.infinite(self.index)]
 
     def embedded(self, struts: tuple[VehicleStrut, VehicleStrut], layout: str) -> Array:
         """The point that is most like a design of a layout that this one contains."""
