@@ -49,9 +49,7 @@ def car_mjcf(car: CarParts) -> str:
     ET.SubElement(root, "option", timestep="0.001", integrator="RK4", gravity="0 0 0")
     extension = ET.SubElement(root, "extension")
     world = ET.SubElement(root, "worldbody")
-    parts = {
-        name: ET.SubElement(root, name) for name in ("tendon", "actuator", "sensor", "custom")
-    }
+    parts = {name: ET.SubElement(root, name) for name in ("tendon", "actuator", "sensor", "custom")}
     _add_body(world, car)
     _sensor(parts, "framelinacc", "body_acceleration", objtype="body", objname="sprung")
     if car.kind != "quarter":

@@ -10,8 +10,9 @@ with the strut's dynamic stiffness D = N / P. Eliminating zu,
     zs/Fs = ((mu s^2 + T) P + N) / A
 
 so the powers of s that make the indices finite are there by structure, not by cancellation.
-Source: Wang and Su, ACC 2008, eqs. (2), (3). With a tyre's damper, ct > 0, the tyre force follows the road's velocity at once: where that is white
-noise Fr has no finite rms, nor has the acceleration of a body that an inerter couples to the wheel.
+Source: Wang and Su, ACC 2008, eqs. (2), (3), there without ct. With a tyre's damper, ct > 0, the
+tyre force follows the road's velocity at once: where that is white noise Fr has no finite rms, nor
+has the acceleration of a body that an inerter couples to the wheel.
 Not modelled: loss of contact.
 """
 

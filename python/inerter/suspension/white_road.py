@@ -33,15 +33,14 @@ def refuse_infinite(problem: SuspensionProblem | VehicleProblem) -> None:
         if not problem.infinite(name):
             continue
         own = INDICES[name]
+        where = "the network" if hasattr(problem, "netlist") else f"layout {problem.layout}"
         signals = {INDICES[part].signal or part for part in own.parts or (name,)}
         what = "the tyre force" if "J3" in signals else "through its inerter the body"
         finite = [
-            each
-            for each in ("J1", "J1w", "travel")
-            if each != name and not problem.infinite(each)
+            each for each in ("J1", "J1w", "travel") if each != name and not problem.infinite(each)
         ]
         raise InfiniteIndexError(
-            f"index {name} of layout {problem.layout} is infinite: with tyre_damping {what} "
+            f"index {name} of {where} is infinite: with tyre_damping {what} "
             "follows the road's velocity at once, which is white noise here; take "
             f"{', '.join(finite)}, leave tyre_damping out, or see `evaluate --layout own --road "
             "iso:C`, whose roads end at a shortest wave"

@@ -283,7 +283,8 @@ def _run(built: _Model, held: Array, heights: Array, skip: int) -> tuple[Array, 
     # sensors are those of the beginning of a step, states those of its end
     before = np.vstack([start[0], states[0][:-1]])[skip:]
     sensed = sensors[0][skip:]
-    wheels, rates = (before[:, [corner[n] for corner in built.corners]] for n in (1, 2))
+    wheels = before[:, [corner[1] for corner in built.corners]]
+    rates = before[:, [corner[2] for corner in built.corners]]
     if not np.isfinite(sensed).all() or abs(wheels).max(initial=0.0) > 100.0:
         raise ValueError(f"the car diverges with steps of {model.opt.timestep:g} s: shorten --step")
     stiffness, loads, damping = (np.array([c[n] for c in built.corners]) for n in (3, 4, 5))

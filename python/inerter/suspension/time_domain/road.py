@@ -191,7 +191,7 @@ class PeriodicRoad:
 
     @staticmethod
     def _factors(lead: float, f: Array) -> NDArray[np.complex128]:
-        return 1.0 + 2j * np.pi * f * lead
+        return np.asarray(1.0 + 2j * np.pi * f * lead, dtype=np.complex128)
 
     def _later(self, seed: int, behind: float) -> Array:
         """Phases [rad] under an axle that is `behind` [m]."""

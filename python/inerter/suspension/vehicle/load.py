@@ -1,8 +1,8 @@
 """Displacement of the centre of mass per vertical load on it, zc/F, over frequency.
 
 Seen from the body, the strut and the wheel of an axle are one dynamic stiffness to the ground,
-K = D W / (D + W) with the wheel's W = mu s^2 + ct s + kt. Then zc/F = g^T (M s^2 + diag(K))^-1 g with the
-lever g, and d(zc/F) = -sum of (h_i)^2 dK_i for h = (M s^2 + diag(K))^-1 g.
+K = D W / (D + W) with the wheel's W = mu s^2 + ct s + kt. Then zc/F = g^T (M s^2 + diag(K))^-1 g
+with the lever g, and d(zc/F) = -sum of (h_i)^2 dK_i for h = (M s^2 + diag(K))^-1 g.
 """
 
 from __future__ import annotations

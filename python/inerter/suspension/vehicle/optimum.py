@@ -17,13 +17,13 @@ from inerter.suspension.optimum import LIMITS, finite
 from inerter.suspension.problem import Array
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.variations import scene_notes
-from inerter.suspension.white_road import refuse_infinite
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.load_bound import NEAR, softest_at_bound, start_point
 from inerter.suspension.vehicle.load_peaks import peaks
 from inerter.suspension.vehicle.problem import VehicleProblem
 from inerter.suspension.vehicle.search import at_bound
 from inerter.suspension.vehicle.strut import VehicleStrut
+from inerter.suspension.white_road import refuse_infinite
 
 
 @dataclass(frozen=True)

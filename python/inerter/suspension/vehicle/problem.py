@@ -167,7 +167,7 @@ class VehicleProblem:
         return [replace(self, catalogue=(), fixed=pair) for pair in pairs]
 
     def infinite(self, index: str) -> bool:
-        """Whether an index of (nearly) every design is infinite: it follows a white road at once."""
+        """Whether an index of (nearly) every design is infinite, see `white_road`."""
         own, car = INDICES[index], self.car
         if index == "J5" or not (car.front.tyre_damping or car.rear.tyre_damping):
             return False
