@@ -221,7 +221,7 @@ def test_the_own_car_meets_its_exact_values(kind: str, layout: str) -> None:
             assert each.value == pytest.approx(each.linear, rel=3e-3), each.name
     (note,) = (note for note in found.notes if "tyre_damping" in note)
     assert note.startswith("J1, J3:" if layout == "S2" else "J3:")
-    assert "ends at 250 Hz" in note
+    assert "ends, here at 250 Hz" in note
 
 
 def test_designs_meet_their_exact_values() -> None:

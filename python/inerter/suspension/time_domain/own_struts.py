@@ -181,8 +181,8 @@ def evaluate_own(
         bound = bound_by_band(car, tuple(linear))
         if bound:
             notes.append(
-                f"{', '.join(bound)}: with tyre_damping as large as the road is quick; it ends at "
-                f"{road.limits[1]:g} Hz here, one without end has no finite value"
+                f"{', '.join(bound)}: with tyre_damping the value depends on where the road ends, "
+                f"here at {road.limits[1]:g} Hz; it grows with that end without limit"
             )
     found = [{**one, **{name: _index(name, one) for name in more}} for one in found]
     names = [name for name in (*UNITS, *more) if name in found[0]]
