@@ -123,7 +123,9 @@ def test_the_command_tells_nominal_mean_and_worst(tmp_path: Path) -> None:
         ("--vary weight=1.3", "vary 'weight' is not known: choose from body_mass"),
         ("--vary body_mass=0", "body_mass"),
         (f"--vary speed={'/'.join(map(str, range(1, 70)))}", "69 combinations, at most 64"),
-        ("--layout own --vary speed=1.2", "--vary: with --layout own"),
+        ("--layout own --vary weight=1.2", "vary 'weight' is not known: choose from body_mass"),
+        ("--layout own --vary inerter_stiffness=1.2", "vary inerter_stiffness: no strut of the"),
+        ("--layout own --vary speed=0", "speed"),
     ],
 )
 def test_bad_variations_are_one_line(tmp_path: Path, words: str, said: str) -> None:

@@ -68,9 +68,11 @@ def responses(
         ends[:modes], ends[modes + n] = place, -1.0
         force = np.broadcast_to(dynamic_stiffness(layout, strut, pair, s), s.shape)
         matrix += force[:, None, None] * np.outer(ends, ends)
-        matrix[:, modes + n, modes + n] += axle.wheel_mass * s * s + axle.tyre_stiffness
+        matrix[:, modes + n, modes + n] += axle.wheel_mass * s * s
+        matrix[:, modes + n, modes + n] += axle.tyre_stiffness + axle.tyre_damping * s
     # the road's displacement is its velocity over s
-    stiffness = np.diag([axle.tyre_stiffness for axle, _, _ in wheels])
+    stiffness = np.array([np.diag([axle.tyre_stiffness + axle.tyre_damping * one
+                                   for axle, _, _ in wheels]) for one in s])  # fmt: skip
     push = np.zeros((len(s), count, len(wheels)), dtype=complex)
     push[:, modes:] = stiffness / s[:, None, None]
     found = np.linalg.solve(matrix, push)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.cars.equations import Road, car_equations, heights
+from inerter.cars.equations import Road, car_equations, heights, rising
 from inerter.cars.parts import CarParts
 from inerter.exudyn.model_parts import Model
 
@@ -26,11 +26,20 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
         As from `inerter.cars.read.read_car`.
     roads
         "road", "road_front", ...: time [s] -> height of the road [m]; flat where not given.
+        With damping of tyres it may not jump.
 
     Raises
     ------
     ValueError
-        A road that the car has not, or a layout whose damper is behind a relaxation spring.
+        A road that the car has not, an inerter with friction, play or a shaft, or a damper table
+        behind a relaxation spring.
+
+    Notes
+    -----
+    Of SR, S5 and SW8 the elongation of the relaxation spring is the velocity of a coordinate with
+    unit mass, as the states of an inerter are (`inerter.exudyn.element`); it is not among
+    `coordinates`. An explicit solver needs steps below 2 c / (k_b + k_1); for stiffer springs take
+    "GeneralizedAlpha".
     """
     from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2, VObjectGenericODE2
 
@@ -39,7 +48,7 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
     for name in given:
         if name not in equations.roads:
             raise ValueError(f"no road {name!r}: there are {', '.join(equations.roads)}")
-    count = len(equations.names)
+    count, damped = len(equations.names), any(equations.tyre_dampings)
     zeros = [0.0] * count
     node = mbs.AddNode(
         NodeGenericODE2(
@@ -52,7 +61,8 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
 
     def force(mbs: Any, t: float, itemNumber: int, q: Any, q_t: Any) -> Any:
         road = heights(given, equations.roads, t)
-        return equations.forces(np.asarray(q), np.asarray(q_t), road)
+        rates = rising(given, equations.roads, t) if damped else None
+        return equations.forces(np.asarray(q), np.asarray(q_t), road, rates)
 
     mbs.AddObject(
         ObjectGenericODE2(
@@ -63,4 +73,5 @@ def build_car(mbs: Any, car: CarParts, roads: Mapping[str, Road] | None = None) 
             visualization=VObjectGenericODE2(show=False),
         )
     )
-    return Model(mbs, {name: (node, n) for n, name in enumerate(equations.names)}, {})
+    moving = equations.names[: count - len(equations.states)]
+    return Model(mbs, {name: (node, n) for n, name in enumerate(moving)}, {})

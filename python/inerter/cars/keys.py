@@ -52,6 +52,7 @@ AXLE_KEYS: Mapping[str, Key] = {
     "distance": Key("length", 0.2, 10.0, "from the centre of mass to the axle"),
     "wheel_mass": Key("mass", 2.0, 1000.0, "unsprung mass of one wheel", needed=True),
     "tyre_stiffness": Key("stiffness", 30e3, 2e6, "of one tyre", needed=True),
+    "tyre_damping": Key("damping", 5.0, 5e3, "of one tyre"),
     "anti_roll_stiffness": Key("stiffness", 500.0, 500e3, "at each wheel in roll"),
 }
 """Of the tables [front] and [rear]."""

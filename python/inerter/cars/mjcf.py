@@ -11,6 +11,7 @@ not bend. Names are those of the shipped cars: controls `road`, `road_front` ...
 | friction, play, shaft of the inerter | the plugin's, in the device |
 | damper table, bump stop | actuators whose force is linear and clipped, one for each piece |
 | tyre | position actuator with a force range: it pulls by at most its static load |
+| damping of a tyre | that actuator's `kv`; its control is then the road's height plus `lead` times its rate, lead = ct / kt [s] in a numeric `lead_road...` |
 """  # noqa: E501
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from xml.etree import ElementTree as ET
 from inerter.cars.parts import AxleParts, CarParts, StrutParts
 from inerter.core import Device
 
+LEAD = "lead_"
+"""Before the name of a tyre's control: the numeric with its lead."""
 FAR = 1e9
 """A force that no tyre and no stop reaches [N]."""
 _HEIGHT, _WHEEL = 0.55, 0.31
@@ -46,7 +49,7 @@ def car_mjcf(car: CarParts) -> str:
     ET.SubElement(root, "option", timestep="0.001", integrator="RK4", gravity="0 0 0")
     extension = ET.SubElement(root, "extension")
     world = ET.SubElement(root, "worldbody")
-    parts = {name: ET.SubElement(root, name) for name in ("tendon", "actuator", "sensor")}
+    parts = {name: ET.SubElement(root, name) for name in ("tendon", "actuator", "sensor", "custom")}
     _add_body(world, car)
     _sensor(parts, "framelinacc", "body_acceleration", objtype="body", objname="sprung")
     if car.kind != "quarter":
@@ -67,6 +70,8 @@ def car_mjcf(car: CarParts) -> str:
             _add_bar(parts["tendon"], name, axle.anti_roll_stiffness, car.track)
     if plugin is None:
         root.remove(extension)
+    if not len(parts["custom"]):
+        root.remove(parts["custom"])
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 
@@ -160,6 +165,11 @@ class _Corner:
             parts["actuator"], "position", name=f"road{place}", joint=f"wheel{place}",
             kp=f"{self.axle.tyre_stiffness:.10g}", forcerange=f"{-load:.10g} {FAR:.0f}",
         )  # fmt: skip
+        if self.axle.tyre_damping:
+            parts["actuator"][-1].set("kv", f"{self.axle.tyre_damping:.10g}")
+            lead = self.axle.tyre_damping / self.axle.tyre_stiffness
+            data = f"{lead:.10g}"
+            ET.SubElement(parts["custom"], "numeric", name=f"{LEAD}road{place}", data=data)
         if self.strut.layout in NODES:
             node = ET.SubElement(body, "body", name=f"node{place}")
             joint = ET.SubElement(node, "joint", name=self.node, type="slide", axis="0 0 1")

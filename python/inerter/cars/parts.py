@@ -4,7 +4,7 @@ Forces count from rest, displacements from the ride height, upward. A strut move
 times what the body moves against the wheel: springs and dampers count for the wheel with its
 square. Damper tables are pairs of strut speed and force, both positive: bump while the strut
 shortens, rebound while it lengthens; from the origin, straight between the points and beyond the
-last with its last slope. Not modelled: tyre damping, geometry that bends.
+last with its last slope. Not modelled: geometry that bends.
 """
 
 from __future__ import annotations
@@ -74,6 +74,7 @@ class StrutParts:
 class AxleParts:
     """One wheel of an axle: `distance` [m] from the centre of mass, wheel, tyre and strut.
 
+    `tyre_damping` [N s/m]: spring and damper of a tyre act side by side.
     `anti_roll_stiffness` [N/m]: force on each wheel per its travel where both wheels of the axle
     move against each other.
     """
@@ -81,6 +82,7 @@ class AxleParts:
     distance: float = 0.0
     wheel_mass: float
     tyre_stiffness: float
+    tyre_damping: float = 0.0
     anti_roll_stiffness: float = 0.0
     strut: StrutParts
 

@@ -15,6 +15,9 @@ tau is applied such that the joint has the prescribed acceleration:
 [tau]: N or N m. So the bodies that hang on the joint feel its acceleration. Setting the position
 alone would let them fall as if the joint were free between two steps.
 Not modelled: what drives the joint; its force is whatever is needed.
+
+A tyre with damping (`inerter.cars.mjcf`) takes the road's height plus its lead times its rate; the
+table gives heights, the rate is that of the straight line between two of them.
 """
 
 from __future__ import annotations
@@ -28,6 +31,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.cars.mjcf import LEAD
 from inerter.engine_errors import SimulationError
 from inerter.records import RecordError
 from inerter.records.raw_table import RawTable
@@ -46,7 +50,8 @@ class Inputs:
     """What drives a model.
 
     times: [s], from 0. controls: values by index of `ctrl`. mocap: values by (mocap body, axis).
-    joints: cubic spline by joint. driven: names for people.
+    joints: cubic spline by joint. driven: names for people. leads: [s] by index of `ctrl`, of
+    tyres with damping.
     """
 
     times: Array
@@ -55,6 +60,7 @@ class Inputs:
     joints: dict[int, Any] = field(default_factory=dict)
     driven: list[str] = field(default_factory=list)
     ignored: list[str] = field(default_factory=list)
+    leads: dict[int, float] = field(default_factory=dict)
     _response: Array | None = None
 
     @property
@@ -69,10 +75,27 @@ class Inputs:
         """
         for index, values in self.controls.items():
             data.ctrl[index] = np.interp(t + ahead, self.times, values)
+            if index in self.leads:
+                data.ctrl[index] += self.leads[index] * self._rate(values, t + ahead)
         for (body, axis), values in self.mocap.items():
             data.mocap_pos[body, axis] = np.interp(t, self.times, values)
         if self.joints:
             self._impose(model, data, min(t, self.duration), ahead if t < self.duration else 0.0)
+
+    def _rate(self, values: Array, t: float) -> float:
+        """Rate of a control at t [s] since the start; 0 before and after the table."""
+        row = int(np.searchsorted(self.times, t, side="right")) - 1
+        if not 0 <= row < len(self.times) - 1:
+            return 0.0
+        return float((values[row + 1] - values[row]) / (self.times[row + 1] - self.times[row]))
+
+    def heights(self, model: mujoco.MjModel, times: Array) -> dict[str, Array]:
+        """Of tyres with damping, by the name of the control: the road itself at times [s]."""
+        names = {int(model.actuator_ctrladr[i]): model.actuator(i).name
+                 for i in range(model.nactuator)}  # fmt: skip
+        return {
+            names[index]: np.interp(times, self.times, self.controls[index]) for index in self.leads
+        }
 
     def imposed(self, model: mujoco.MjModel, t: float) -> tuple[list[int], list[float]]:
         """Dofs of the imposed joints, and their accelerations at t [s] since the start."""
@@ -170,7 +193,11 @@ def _connect(
         if joint in scalar_joints(model):
             taken += f" (it comes before the joint {name!r}; rename one to move that)"
         values = _numbers(table, index, unit, quantity_of_control(model, actuator), taken)
-        inputs.controls[int(model.actuator_ctrladr[actuator])] = values
+        control = int(model.actuator_ctrladr[actuator])
+        inputs.controls[control] = values
+        lead = mujoco.mj_name2id(model, objects.mjOBJ_NUMERIC, LEAD + name)
+        if lead >= 0:
+            inputs.leads[control] = float(model.numeric_data[model.numeric_adr[lead]])
     elif joint in scalar_joints(model):
         from scipy.interpolate import CubicSpline
 

@@ -177,6 +177,8 @@ def _march(path: Path, plan: _Plan, frame_rate: float, progress: Progress) -> Si
     instants = np.asarray([round(t0 + h * every * k, 12) for k in range(steps // every + 1)])
     devices = sampler.devices(instants)
     vehicle = sampler.vehicle.columns(instants)
+    if inputs and vehicle:
+        vehicle |= inputs.heights(model, instants - t0)
     return SimulatedRun(
         path=path,
         model=model,

@@ -123,6 +123,7 @@ def linear_car(parts: CarParts) -> QuarterCar | Vehicle:
             sprung_mass=parts.body_mass,
             unsprung_mass=parts.front.wheel_mass,
             tyre_stiffness=parts.front.tyre_stiffness,
+            tyre_damping=parts.front.tyre_damping,
         )
     front, rear = _axle(parts.front), _axle(parts.rear)
     if parts.kind == "half":
@@ -147,6 +148,7 @@ def _axle(axle: AxleParts) -> Axle:
         tyre_stiffness=axle.tyre_stiffness,
         stiffness=axle.strut.wheel_rate,
         anti_roll_stiffness=axle.anti_roll_stiffness,
+        tyre_damping=axle.tyre_damping,
     )
 
 

@@ -62,7 +62,7 @@ def tyre_function(car: QuarterCar, strut: Rational) -> Rational:
 
 def ride_comfort(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
     """J1 [m/s^2] of each design; infinite where it is not stable."""
-    return _times(road.slope, h2_norm(comfort_function(car, strut)))
+    return _rms(road.slope, comfort_function(car, strut))
 
 
 def travel_function(car: QuarterCar, strut: Rational) -> Rational:
@@ -73,12 +73,12 @@ def travel_function(car: QuarterCar, strut: Rational) -> Rational:
 
 def rms_travel(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
     """Rms travel [m] of each design; infinite where it is not stable."""
-    return _times(road.slope, h2_norm(travel_function(car, strut)))
+    return _rms(road.slope, travel_function(car, strut))
 
 
 def tyre_load(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
-    """J3 [N] of each design; infinite where it is not stable."""
-    return _times(road.slope, h2_norm(tyre_function(car, strut)))
+    """J3 [N] of each design; infinite where it is not stable, or tyres have damping."""
+    return _rms(road.slope, tyre_function(car, strut))
 
 
 def load_carrying(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
@@ -86,7 +86,11 @@ def load_carrying(car: QuarterCar, road: Road, strut: Rational) -> NDArray[Any]:
     return largest_gain(car.body_per_load(strut))
 
 
-def _times(slope: float, norm: NDArray[Any]) -> NDArray[Any]:
+def _rms(slope: float, function: Rational) -> NDArray[Any]:
+    if _follows(function):
+        shape = np.broadcast_shapes(function.numerator.shape[:-1], function.denominator.shape[:-1])
+        return np.full(shape, np.inf)
+    norm = h2_norm(function)
     # an infinite norm with an imaginary part has no product
     with np.errstate(invalid="ignore"):
         return slope * norm
@@ -107,7 +111,35 @@ def _weighted(signal: str, felt: Rational, car: QuarterCar, road: Road, strut: R
     function = _FUNCTIONS[signal](car, strut)
     top = multiply(function.numerator, felt.numerator)
     below = multiply(function.denominator, felt.denominator)
-    return _times(road.slope, h2_norm(Rational(top, below)))
+    return _rms(road.slope, Rational(top, below))
+
+
+def _follows(function: Rational) -> bool:
+    """Whether a signal follows white noise at once: its degrees are equal."""
+    degrees = [
+        max((n for n in range(p.shape[-1]) if p[..., n].any()), default=0)
+        for p in (function.numerator, function.denominator)
+    ]
+    return degrees[0] >= degrees[1]
+
+
+def is_infinite(name: str, car: QuarterCar, strut: Rational) -> bool:
+    """Whether an index is infinite on a road whose velocity is white, by its relative degree.
+
+    With tyre damping that of the tyre force is 0, as is that of the body where an inerter couples
+    it to the wheel.
+    """
+    own = INDICES[name]
+    if own.function is not None:
+        return any(is_infinite(part, car, strut) for part in own.parts)
+    signal = own.signal or name
+    if signal not in _FUNCTIONS:
+        return False
+    function = _FUNCTIONS[signal](car, strut)
+    if own.filter is not None:
+        top = multiply(function.numerator, own.filter.numerator)
+        function = Rational(top, multiply(function.denominator, own.filter.denominator))
+    return _follows(function)
 
 
 def _filtered(name: str, unit: str, meaning: str, signal: str, felt: Rational) -> Index:

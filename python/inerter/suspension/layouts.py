@@ -242,12 +242,12 @@ _OWN = _declared(
     Layout(
         "SW7", _centred, (*_TWO, *_CENTRED),
         "spring beside damper and inerter in series, each with a centring spring",
-        limits=(_UNCENTRED,), inner=("S3", "S6"),
+        may_vanish=True, limits=(_UNCENTRED,), inner=("S3", "S6", "SR"),
     ),
     Layout(
         "SW8", lambda p: series(p.kb, _centred(p)), (*_THREE, *_CENTRED),
         "as SW7, all of it behind a relaxation spring",
-        limits=(_RIGID, _UNCENTRED), inner=("SW7", "S5"),
+        may_vanish=True, limits=(_RIGID, _UNCENTRED), inner=("SW7", "S5"),
     ),
 )  # fmt: skip
 

@@ -23,6 +23,7 @@ from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.vehicle.load_peaks import peaks as vehicle_peaks
 from inerter.suspension.vehicle.load_peaks import span
 from inerter.suspension.vehicle.problem import VehicleProblem
+from inerter.suspension.white_road import refuse_infinite
 
 Problem = SuspensionProblem | VehicleProblem
 
@@ -62,7 +63,10 @@ def best_within(problem: Problem, starts: Sequence[Array] = ()) -> Limited:
     ------
     LimitError
         No design was found that keeps the limits: says how low each index can be.
+    InfiniteIndexError
+        The index or one of the limits has no finite value, for tyre damping.
     """
+    refuse_infinite(problem)
     best: Limited | None = None
     picked = [one for choice in problem.picked() for one in choice.variants()]
     # what is best without limits bounds what is best within them: most promising first, and where
@@ -98,10 +102,12 @@ def values_of(problem: Problem, point: Array) -> dict[str, float]:
     sides = problem.car.sides if isinstance(problem, VehicleProblem) else None
     own = (problem.index, *(name for name, _ in problem.limits))
     shown = dict.fromkeys((*indices_of(sides), *own))
-    return {
+    found = {
         name: float(np.ravel(replace(problem, index=name, limits=()).value(point[None]))[0])
         for name in shown
     }
+    # what tyre damping makes infinite is not told
+    return {name: x for name, x in found.items() if name in own or np.isfinite(x)}
 
 
 def _alone_or_inf(problem: Problem) -> tuple[float, Array]:

@@ -11,6 +11,7 @@ from inerter.console import Folder, out, refusing
 
 _EXUDYN = '''"""The car of {name} in Exudyn; needs the extra `exudyn`. Run it for a bump."""
 
+from math import cos, pi
 from pathlib import Path
 
 import exudyn as exu
@@ -23,16 +24,20 @@ CAR = read_car(Path(__file__).with_name("car.toml"))
 
 def bump(t: float) -> float:
     """30 mm high, felt by every wheel at once."""
-    return 0.03 if 0.1 < t < 0.15 else 0.0
+    return 0.015 * (1.0 - cos(40.0 * pi * (t - 0.1))) if 0.1 < t < 0.15 else 0.0
 
 
 if __name__ == "__main__":
     names = {roads!r}
     mbs = exu.SystemContainer().AddSystem()
-    run = simulate(build_car(mbs, CAR, dict.fromkeys(names, bump)), 2.0, write_period=2e-3)
+    model = build_car(mbs, CAR, dict.fromkeys(names, bump))
+    run = simulate(model, 2.0, write_period=2e-3, solver="{solver}")
     for name, values in run.displacement.items():
         print(f"{{name}}: {{values.min():.4g}} to {{values.max():.4g}}")
 '''
+
+
+_STIFF = 1000.0
 
 
 def model_command(
@@ -41,7 +46,7 @@ def model_command(
 ) -> None:
     """Write a car file as models: model.xml for MuJoCo, model.py for Exudyn, and the file itself.
 
-    Exudyn has no damper behind a relaxation spring (SR, S5, SW8): then model.xml alone.
+    An inerter with friction, play or a shaft (device = ...) is MuJoCo's: then model.xml alone.
 
     \b
     Example:
@@ -57,8 +62,10 @@ def model_command(
         files = {"model.xml": car_mjcf(parts), "car.toml": car.read_text(encoding="utf-8")}
         told = ""
         try:
-            roads = car_equations(parts).roads
-            files["model.py"] = _EXUDYN.format(name=car.name, roads=roads)
+            equations = car_equations(parts)
+            # steps of 1 ms are too long for a relaxation spring that is stiffer than that
+            solver = "RK44" if equations.relaxation_rate < _STIFF else "GeneralizedAlpha"
+            files["model.py"] = _EXUDYN.format(name=car.name, roads=equations.roads, solver=solver)
         except ValueError as error:
             told = f"No model.py: {error}"
         names = write_files(out_dir, files)

@@ -52,6 +52,7 @@ def network_command(
     from inerter.suspension.network_problem import NetworkProblem
     from inerter.suspension.optimum import best_point
     from inerter.suspension.study import StudyError, read_indices, read_pairs
+    from inerter.suspension.white_road import refuse_infinite
 
     with refusing(None):
         which = chosen_car(car, {})
@@ -78,6 +79,7 @@ def network_command(
             )
         except NetlistError as error:
             raise StudyError(f"{netlist}: {error}") from None
+        refuse_infinite(problem)
         reached: tuple[str, ...] = ()
         if problem.limits:
             found = best_within(problem)
@@ -105,7 +107,7 @@ def _tell_admittance(path: Path, car: QuarterCar, road: Road, as_json: bool) -> 
 
     from inerter.folder import json_text
     from inerter.suspension.admittance import ladder, read_admittance, stiffness_of
-    from inerter.suspension.indices import INDICES, indices_of
+    from inerter.suspension.indices import INDICES, indices_of, is_infinite
 
     admittance = read_admittance(path)
     strut, network = stiffness_of(admittance), ladder(admittance)
@@ -130,7 +132,10 @@ def _tell_admittance(path: Path, car: QuarterCar, road: Road, as_json: bool) -> 
         return
     out.print(f"positive real; {rest:.6g} N/m at rest", markup=False)
     for name, value in values.items():
-        out.print(f"{name} = {value:.6g} {INDICES[name].unit}", markup=False)
+        told = f"{value:.6g} {INDICES[name].unit}"
+        if not np.isfinite(value) and is_infinite(name, car, strut):
+            told = "infinite: with tyre_damping it follows a road of white velocity at once"
+        out.print(f"{name} = {told}", markup=False)
     if network is None:
         out.print("no network of few elements is known here; it was used as it is", markup=False)
     for e in elements:

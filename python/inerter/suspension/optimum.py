@@ -25,6 +25,7 @@ from inerter.suspension.polish_peaks import local_peaks, polish_peaks
 from inerter.suspension.polish_smooth import polish_smooth
 from inerter.suspension.problem import Array, SuspensionProblem
 from inerter.suspension.variations import scene_notes
+from inerter.suspension.white_road import refuse_infinite
 
 # relative: what counts as equal to the lower bound of J5
 _EQUAL = 1e-9
@@ -81,7 +82,14 @@ class Optimum:
 
 
 def optimise(problem: SuspensionProblem) -> Optimum:
-    """Minimise an index over all designs of a layout."""
+    """Minimise an index over all designs of a layout.
+
+    Raises
+    ------
+    InfiniteIndexError
+        No design has a finite value, for tyre damping.
+    """
+    refuse_infinite(problem)
     if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     best, value, point = problem, *best_point(problem)
@@ -123,7 +131,7 @@ def _described(
     notes += [
         f"best {LIMITS[limit]}"
         for limit in problem.network.limits
-        if limit[0] in problem.variables and limit[0] not in best.variables
+        if limit[0] in problem.variables and limit in best.fixed
     ]
     notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return Optimum(

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.suspension.indices import INDICES, Index
+from inerter.suspension.indices import INDICES, Index, is_infinite
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
 from inerter.suspension.quarter_car import QuarterCar, Road
 from inerter.suspension.rational import Rational
@@ -28,12 +28,24 @@ Array = NDArray[np.float64]
 Catalogue = tuple[tuple[str, tuple[float, ...]], ...]
 
 _COMPLEX_STEP = 1e-30
+_LITTLE = 1e-3
 
 
 def in_limit(name: str, value: float) -> tuple[tuple[str, float], ...]:
     """What is fixed where a variable is 0 or without limit: itself, and what then means nothing."""
     more = (("centring_ratio", 1.0),) if name == "centring_share" else ()
     return ((name, value), *more)
+
+
+def without_inertance(network: Layout, free: Collection[str]) -> tuple[tuple[str, float], ...]:
+    """What of the `free` variables means nothing more in a layout that has lost its inertance.
+
+    Of centred layouts springs and damper are left: a damper behind one spring (SR) for any share.
+    """
+    if not network.centred:
+        return ()
+    values = {"centring_share": _LITTLE, "relaxation_stiffness": math.inf}
+    return tuple((name, value) for name, value in values.items() if name in free)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,11 +124,12 @@ class SuspensionProblem:
             "centring_ratio": (1.0, 1e-6, 1e6),
         }
         chosen = (ranges[name] for name in self.variables)
-        return np.log([[unit * low, unit * high] for unit, low, high in chosen])
+        return np.log([[unit * low, unit * high] for unit, low, high in chosen]).reshape(-1, 2)
 
     def without(self) -> SuspensionProblem:
         """The same without inertance."""
-        return replace(self, massless=True)
+        more = without_inertance(self.network, self.variables)
+        return replace(self, massless=True, fixed=(*self.fixed, *more))
 
     def picked(self) -> list[SuspensionProblem]:
         """The problem with each choice from its catalogue fixed; itself without a catalogue."""
@@ -128,15 +141,22 @@ class SuspensionProblem:
             for chosen in itertools.product(*(values for _, values in free))
         ]
 
+    def infinite(self, index: str) -> bool:
+        """Whether an index of (nearly) every design is infinite, see `indices.is_infinite`."""
+        if not self.car.tyre_damping:
+            return False
+        return is_infinite(index, self.car, self.strut(self.bounds.mean(axis=1)))
+
     def variants(self) -> list[SuspensionProblem]:
         """The problem, then those in which what may be absent is."""
         found: list[SuspensionProblem] = [self, *([self.without()] if self.may_vanish else [])]
-        return found + [
+        more = [
             replace(one, fixed=(*one.fixed, *in_limit(name, value)))
             for name, value in self.network.limits
-            if name in self.variables
             for one in found
+            if name in one.variables
         ]
+        return found + [one for one in more if not one.infinite(self.index)]
 
     def inner(self) -> list[SuspensionProblem]:
         """The problems of the layouts that this one contains."""
@@ -146,7 +166,7 @@ class SuspensionProblem:
             fixed = tuple((n, value) for n, value in self.fixed if n in names)
             massless = self.massless and LAYOUTS[name].may_vanish
             found.append(replace(self, layout=name, fixed=fixed, massless=massless))
-        return found
+        return [one for one in found if not one.infinite(self.index)]
 
     def embedded(self, layout: str, values: Mapping[str, float]) -> Array:
         """The point that is most like a design of a layout that this one contains."""
@@ -157,6 +177,9 @@ class SuspensionProblem:
             if LAYOUTS[layout].own == "S6" and spring:
                 # k_1 is the relaxation spring of S6
                 values["centring_ratio"] = 1e6 * spring / self.stiffness
+            elif LAYOUTS[layout].own == "SR":
+                # without inertance k_2 is the relaxation spring of SR
+                values |= {"centring_ratio": 0.0, "inertance": 0.0}
             else:
                 values["centring_ratio"] = 1.0
         low, high = np.exp(self.bounds.T)

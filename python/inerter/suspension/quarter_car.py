@@ -1,16 +1,19 @@
 """Quarter-car over a road: transfer functions as polynomials, exactly.
 
-`ms s^2 zs = Fs - u`, `mu s^2 zu = u - Fr`, `Fr = kt (zu - zr)`, `u = D(s) (zs - zu)` with the
-strut's dynamic stiffness D = N / P. Eliminating zu,
+`ms s^2 zs = Fs - u`, `mu s^2 zu = u - Fr`, `Fr = T (zu - zr)`, T = kt + ct s, `u = D(s) (zs - zu)`
+with the strut's dynamic stiffness D = N / P. Eliminating zu,
 
-    A     = ms s^2 (mu s^2 + kt) P + ((ms + mu) s^2 + kt) N
-    zs/zr = kt N / A
-    (zs - zu)/zr = -kt ms s^2 P / A
-    Fr/zr = -kt s^2 (ms mu s^2 P + (ms + mu) N) / A
-    zs/Fs = ((mu s^2 + kt) P + N) / A
+    A     = ms s^2 (mu s^2 + T) P + ((ms + mu) s^2 + T) N
+    zs/zr = T N / A
+    (zs - zu)/zr = -T ms s^2 P / A
+    Fr/zr = -T s^2 (ms mu s^2 P + (ms + mu) N) / A
+    zs/Fs = ((mu s^2 + T) P + N) / A
 
 so the powers of s that make the indices finite are there by structure, not by cancellation.
-Source: Wang and Su, ACC 2008, eqs. (2), (3). Not modelled: tyre damping, loss of contact.
+Source: Wang and Su, ACC 2008, eqs. (2), (3), there without ct. With a tyre's damper, ct > 0, the
+tyre force follows the road's velocity at once: where that is white noise Fr has no finite rms, nor
+has the acceleration of a body that an inerter couples to the wheel.
+Not modelled: loss of contact.
 """
 
 from __future__ import annotations
@@ -34,24 +37,34 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True, kw_only=True)
 class QuarterCar:
-    """`sprung_mass` ms, `unsprung_mass` mu [kg], `tyre_stiffness` kt [N/m].
+    """`sprung_mass` ms, `unsprung_mass` mu [kg], `tyre_stiffness` kt [N/m], `tyre_damping` ct.
+
+    ct [N s/m] may be 0, the others are positive.
 
     Raises
     ------
     ValueError
-        A value is not positive.
+        A value that cannot be.
     """
 
     sprung_mass: float = QUARTER_CAR.sprung_mass
     unsprung_mass: float = QUARTER_CAR.unsprung_mass
     tyre_stiffness: float = QUARTER_CAR.tyre_stiffness
+    tyre_damping: float = 0.0
 
     def __post_init__(self) -> None:
         positive(self, ("sprung_mass", "unsprung_mass", "tyre_stiffness"))
+        not_negative(self, ("tyre_damping",))
+
+    @property
+    def tyre(self) -> Coefficients:
+        """T(s) = kt + ct s [N/m]."""
+        more = (self.tyre_damping,) if self.tyre_damping else ()
+        return polynomial(self.tyre_stiffness, *more)
 
     def body_per_road(self, strut: Rational) -> Rational:
         """zs/zr."""
-        top = self.tyre_stiffness * strut.numerator
+        top = multiply(self.tyre, strut.numerator)
         return Rational(top, self._denominator(strut))
 
     def tyre_force_per_road(self, strut: Rational) -> Rational:
@@ -61,16 +74,16 @@ class QuarterCar:
             shift(self.sprung_mass * self.unsprung_mass * strut.denominator, 2),
             both * strut.numerator,
         )
-        return Rational(shift(self.tyre_stiffness * top, 2), self._denominator(strut))
+        return Rational(shift(multiply(self.tyre, top), 2), self._denominator(strut))
 
     def travel_per_road(self, strut: Rational) -> Rational:
         """(zs - zu)/zr."""
-        top = -self.tyre_stiffness * self.sprung_mass * shift(strut.denominator, 2)
+        top = multiply(-self.sprung_mass * self.tyre, shift(strut.denominator, 2))
         return Rational(top, self._denominator(strut))
 
     def body_per_load(self, strut: Rational) -> Rational:
         """zs/Fs [m/N]."""
-        wheel = polynomial(self.tyre_stiffness, 0.0, self.unsprung_mass)
+        wheel = self._with_inertia(self.unsprung_mass)
         top = add(multiply(wheel, strut.denominator), strut.numerator)
         return Rational(top, self._denominator(strut))
 
@@ -83,9 +96,12 @@ class QuarterCar:
         """1/k + 1/kt [m/N]: zs/Fs at rest, whatever the layout."""
         return 1.0 / stiffness + 1.0 / self.tyre_stiffness
 
+    def _with_inertia(self, mass: float) -> Coefficients:
+        return polynomial(self.tyre_stiffness, self.tyre_damping, mass)
+
     def _denominator(self, strut: Rational) -> Coefficients:
-        wheel = polynomial(self.tyre_stiffness, 0.0, self.unsprung_mass)
-        both = polynomial(self.tyre_stiffness, 0.0, self.sprung_mass + self.unsprung_mass)
+        wheel = self._with_inertia(self.unsprung_mass)
+        both = self._with_inertia(self.sprung_mass + self.unsprung_mass)
         return add(
             shift(self.sprung_mass * multiply(wheel, strut.denominator), 2),
             multiply(both, strut.numerator),
@@ -122,3 +138,11 @@ def positive(thing: object, names: tuple[str, ...]) -> None:
         value = getattr(thing, name)
         if not (math.isfinite(value) and value > 0.0):
             raise ValueError(f"{name} is {value:g}: give a positive number")
+
+
+def not_negative(thing: object, names: tuple[str, ...]) -> None:
+    """Refuse values that are negative or not finite, by name."""
+    for name in names:
+        value = getattr(thing, name)
+        if not (math.isfinite(value) and value >= 0.0):
+            raise ValueError(f"{name} is {value:g}: give 0 or a positive number")

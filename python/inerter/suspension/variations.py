@@ -47,8 +47,24 @@ def scenes_of(car: Any, road: Road, factors: Mapping[str, tuple[float, ...]]) ->
     ValueError
         More than `MOST` of them.
     """
+    found = []
+    for name, own in combinations(factors):
+        at = replace(road, velocity=road.velocity * own.get("speed", 1.0))
+        parts = tuple((key, own[key]) for key in OF_PARTS if key in own)
+        found.append(Scene(_changed(car, own), at, parts, name))
+    return tuple(found)
+
+
+def combinations(factors: Mapping[str, tuple[float, ...]]) -> list[tuple[str, dict[str, float]]]:
+    """Every combination of factors by what it is called, "as planned" where all are 1; or none.
+
+    Raises
+    ------
+    ValueError
+        More than `MOST` of them.
+    """
     if not factors:
-        return ()
+        return []
     count = math.prod(map(len, factors.values()))
     if count > MOST:
         raise ValueError(f"vary: {count} combinations, at most {MOST}; leave values out")
@@ -56,10 +72,8 @@ def scenes_of(car: Any, road: Road, factors: Mapping[str, tuple[float, ...]]) ->
     for chosen in itertools.product(*factors.values()):
         own = dict(zip(factors, chosen, strict=True))
         name = ", ".join(f"{key} x {value:g}" for key, value in own.items() if value != 1.0)
-        at = replace(road, velocity=road.velocity * own.get("speed", 1.0))
-        parts = tuple((key, own[key]) for key in OF_PARTS if key in own)
-        found.append(Scene(_changed(car, own), at, parts, name or "as planned"))
-    return tuple(found)
+        found.append((name or "as planned", own))
+    return found
 
 
 def scene_notes(problem: Any, point: Any) -> list[str]:
@@ -80,6 +94,7 @@ def _changed(car: Any, factors: Mapping[str, float]) -> Any:
             sprung_mass=car.sprung_mass * body,
             unsprung_mass=car.unsprung_mass * wheel,
             tyre_stiffness=car.tyre_stiffness * tyre,
+            tyre_damping=car.tyre_damping,
         )
     values = {
         f"{name}": getattr(car, name) * body

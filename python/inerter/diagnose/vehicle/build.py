@@ -27,6 +27,7 @@ from xml.sax.saxutils import escape
 import mujoco
 import numpy as np
 
+from inerter.cars.mjcf import LEAD
 from inerter.cars.read import CarError
 from inerter.cars.spec import model_spec
 from inerter.catalogue.coordinates import parameters_of
@@ -84,6 +85,12 @@ class UserModel:
     def with_inputs(self, targets: Iterable[str]) -> None:
         """Say what the records drive, as `Channels.inputs` has it."""
         named = list(targets)
+        for target in named:
+            if mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_NUMERIC, LEAD + target) >= 0:
+                raise ValueError(
+                    f"{target}: its tyre has damping (tyre_damping), which a diagnosis does not "
+                    "drive; leave it out of the car's file"
+                )
         actuators = [actuator_of(self.model, target) for target in named]
         bodies = [mocap_of(self.model, target) for target in named]
         self.with_roads([i for i in actuators if i >= 0], [b for b in bodies if b >= 0])

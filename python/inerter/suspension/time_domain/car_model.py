@@ -37,7 +37,8 @@ class WheelPlace:
     """`road` control, `height` sensor, `tyre_stiffness` [N/m], `behind` the first axle [m].
 
     `travel` sensor of the strut above; `static_load` [N] on the tyre; `side` 1 left, -1 right, 0
-    where the car has one track; `axle` 0 front, 1 rear.
+    where the car has one track; `axle` 0 front, 1 rear; `tyre_damping` [N s/m] and `rate` sensor of
+    the wheel's velocity.
     """
 
     road: int
@@ -48,6 +49,13 @@ class WheelPlace:
     static_load: float = math.inf
     side: int = 0
     axle: int = 0
+    tyre_damping: float = 0.0
+    rate: int = 0
+
+    @property
+    def lead(self) -> float:
+        """What the tyre's control has of the road's rate [s]."""
+        return self.tyre_damping / self.tyre_stiffness
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

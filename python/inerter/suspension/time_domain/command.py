@@ -90,7 +90,8 @@ def evaluate_command(
         str | None,
         typer.Option(
             help="Also the index of each design under all combinations of factors, nominal, mean "
-            f"and worst: {options.FACTORS}"
+            f"and worst: {options.FACTORS} With --layout own also stiffness, damper_stiffness, "
+            "inerter_stiffness."
         ),
     ] = None,
     amplitude: Annotated[
@@ -159,11 +160,12 @@ def evaluate_command(
         others = {
             "--case": case, "--device": device, "--stiffness": stiffness, "--damping": damping,
             "--inertance": inertance, "--amplitude": amplitude, "--scheduler": scheduler,
-            "--reoptimize": reoptimise or None, "--vary": vary,
+            "--reoptimize": reoptimise or None,
         }  # fmt: skip
         own_command(
             car=car, road=road, speed=speed, seeds=seeds, tyre=tyre, step=step, settle=settle,
-            jobs=jobs or 0, indices=index, others=others, out_dir=out_dir, as_json=as_json,
+            jobs=jobs or 0, indices=index, vary=vary, others=others, out_dir=out_dir,
+            as_json=as_json,
         )  # fmt: skip
         return
     files_of = ("evaluation.json", "evaluation.csv", *(["variations.csv"] if vary else []))

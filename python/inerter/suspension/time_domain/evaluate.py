@@ -24,7 +24,7 @@ from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.cases import CASES, numbers_of
 from inerter.suspension.time_domain.design import Design
 from inerter.suspension.time_domain.evaluation import Evaluation
-from inerter.suspension.time_domain.linear import exact_index, spectrum
+from inerter.suspension.time_domain.linear import damped_tyres, exact_index, spectrum
 from inerter.suspension.time_domain.piece import NOTED, Found, Piece, linear_design, work
 from inerter.suspension.time_domain.plan import Plan
 from inerter.suspension.time_domain.resolution import (
@@ -202,7 +202,7 @@ def _measured(piece: Piece, found: Found) -> tuple[float, float, float, float, f
     plan, case, index = piece.plan, piece.case, piece.index
     value, low, high = interval(found.samples.values)
     asked = (index, piece.layout, found.design, case.pair, plan.car)
-    if index == "J5" or plan.road.name == "paper":
+    if index == "J5" or (plan.road.name == "paper" and not damped_tyres(plan.car)):
         linear = exact_index(*asked, spectrum(plan.road))
     else:
         linear = exact_on_road(*asked, plan.road)

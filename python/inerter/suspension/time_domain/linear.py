@@ -20,7 +20,7 @@ from inerter.suspension.time_domain.road import PeriodicRoad
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.state_space import system
 from inerter.suspension.vehicle.strut import Branch, VehicleStrut, branch
-from inerter.suspension.vehicle.white_noise import signals
+from inerter.suspension.vehicle.white_noise import feed_of, signals
 
 Array = NDArray[np.float64]
 
@@ -34,6 +34,12 @@ def spectrum(road: PeriodicRoad) -> Road:
     Optima are those of that slope; norms are exact for the paper's own road.
     """
     return Road(velocity=road.speed, roughness=0.5 * road.strength / road.speed)
+
+
+def damped_tyres(car: Car) -> bool:
+    """Whether a tyre has damping."""
+    axles = (car,) if isinstance(car, QuarterCar) else (car.front, car.rear)
+    return any(axle.tyre_damping > 0.0 for axle in axles)
 
 
 def stiffnesses_of(car: Car, stiffness: float) -> tuple[float, ...]:
@@ -226,6 +232,7 @@ def plane_densities(
     total = {name: np.zeros(len(s)) for name in names}
     for plane in car.planes:
         m = system(plane, branches)
+        roads = np.stack([np.ones_like(later), later], axis=-1)
         drive = m.front + later[:, None] * m.rear
         if m.warp is not None:
             drive = drive + warp[:, None] * m.warp
@@ -234,6 +241,9 @@ def plane_densities(
         for name in names:
             rows, bent = signals(m, name)
             signal = x @ rows.T + (0.0 if bent is None else warp[:, None] * bent)
+            feed = feed_of(m, name)
+            if feed is not None:
+                signal = signal + roads @ feed.T
             total[name] += plane.weight * np.mean(np.abs(signal) ** 2, axis=1)
     return total
 

@@ -124,7 +124,10 @@ def car_parts(car: Car, layout: str, case: Case, design: Design) -> CarParts:
 
     if isinstance(car, QuarterCar):
         axle = AxleParts(
-            wheel_mass=car.unsprung_mass, tyre_stiffness=car.tyre_stiffness, strut=strut(design)
+            wheel_mass=car.unsprung_mass,
+            tyre_stiffness=car.tyre_stiffness,
+            tyre_damping=car.tyre_damping,
+            strut=strut(design),
         )
         return CarParts(kind="quarter", name="quarter", body_mass=car.sprung_mass, front=axle)
 
@@ -134,6 +137,7 @@ def car_parts(car: Car, layout: str, case: Case, design: Design) -> CarParts:
             wheel_mass=own.wheel_mass,
             tyre_stiffness=own.tyre_stiffness,
             anti_roll_stiffness=own.anti_roll_stiffness,
+            tyre_damping=own.tyre_damping,
             strut=strut(values),
         )
 
@@ -210,6 +214,9 @@ def _compiled(parts: CarParts, one_sided: bool) -> mujoco.MjModel:
     for name in ("heave", *(road.replace("road", "wheel") for road in roads)):
         spec.add_sensor(name=name, type=kind, objtype=joint, objname=name)
     for road in roads:
+        wheel = road.replace("road", "wheel")
+        speed = mujoco.mjtSensor.mjSENS_JOINTVEL
+        spec.add_sensor(name=f"rate_{wheel}", type=speed, objtype=joint, objname=wheel)
         if not one_sided:
             spec.actuator(road).forcerange = [-FAR, FAR]
     load = spec.add_actuator(
@@ -266,9 +273,11 @@ def _placed(
             place += {1: "_left", -1: "_right", 0: ""}[side]
             if isinstance(car, QuarterCar):
                 tyre, behind, load, x = car.tyre_stiffness, 0.0, car.static_load, 0.0
+                damping = car.tyre_damping
             else:
                 own = (car.front, car.rear)[n]
                 tyre, behind = own.tyre_stiffness, n * car.wheelbase
+                damping = own.tyre_damping
                 load, x = car.side.static_loads[n], (own.distance, -own.distance)[n]
             wheels.append(
                 WheelPlace(
@@ -280,6 +289,8 @@ def _placed(
                     load,
                     side,
                     n,
+                    damping,
+                    int(model.sensor(f"rate_wheel{place}").adr[0]),
                 )
             )
             per = {"heave": 1.0, "roll": 0.5 * side * track, "pitch": -x}

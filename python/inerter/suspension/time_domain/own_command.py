@@ -6,6 +6,7 @@ import csv
 import io
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +18,20 @@ from inerter.console import out, progress_bar, refusing
 from inerter.folder import json_text, write_files
 from inerter.suspension.car_options import CARS
 from inerter.suspension.indices import INDICES
-from inerter.suspension.study import read_indices
+from inerter.suspension.study import read_catalogue, read_indices
 from inerter.suspension.time_domain.asked import tyre_named
 from inerter.suspension.time_domain.own_struts import UNITS, OwnEvaluation, evaluate_own
+from inerter.suspension.time_domain.own_varied import (
+    OF_STRUT,
+    OwnVaried,
+    evaluate_varied,
+    varied_cars,
+)
 from inerter.suspension.time_domain.profile import Profile, profile_named
-from inerter.suspension.time_domain.road import road_named
+from inerter.suspension.time_domain.road import PeriodicRoad, road_named
 from inerter.suspension.time_domain.simulate import RunSettings
+from inerter.suspension.time_domain.varied import summary
+from inerter.suspension.variations import OF_CAR
 
 OWN = "own"
 """What --layout is where the struts are those of the car's file."""
@@ -41,31 +50,44 @@ def own_command(
     settle: float | None,
     jobs: int,
     indices: str | None,
+    vary: str | None,
     others: Mapping[str, Any],
     out_dir: Path,
     as_json: bool,
 ) -> None:
     """Work it out, print it, write evaluation.json and .csv; `others`: options that do not fit."""
-    with refusing(out_dir, "evaluation.json", "evaluation.csv"):
+    names = ("evaluation.json", "evaluation.csv", *(["variations.csv"] if vary else []))
+    with refusing(out_dir, *names):
+        factors = dict(read_catalogue(vary, (*OF_CAR, *OF_STRUT), "vary"))
         for name, value in others.items():
             if value is not None:
                 raise ValueError(f"{name}: with --layout own the car's file states it; change it")
         parts = _car(car)
-        chosen = profile_named(road, speed) or road_named(road, speed)
+        chosen = _road(road, speed)
         one_sided = tyre_named(tyre)
+        settings = RunSettings(step=step, settle=settle or _SETTLE, jobs=jobs)
+        more: dict[str, Any] = {
+            "one_sided": road != "paper" if one_sided is None else one_sided,
+            "keep_settle": settle is not None,
+            "indices": read_indices(indices) if indices else (),
+        }
         with progress_bar("driving", as_json) as progress:
-            found = evaluate_own(
-                parts,
-                chosen,
-                seeds,
-                RunSettings(step=step, settle=settle or _SETTLE, jobs=jobs),
-                one_sided=road != "paper" if one_sided is None else one_sided,
-                keep_settle=settle is not None,
-                indices=read_indices(indices) if indices else (),
-                progress=progress,
-            )
+            # what cannot be varied is told before anything is driven
+            varied_cars(parts, factors)
+            found = evaluate_own(parts, chosen, seeds, settings, progress=progress, **more)
+        varied = OwnVaried({}, ())
+        if factors:
+            with progress_bar("driving the variations", as_json) as progress:
+                varied = evaluate_varied(
+                    parts, factors, partial(_road, road, speed), seeds, settings,
+                    progress=progress, **more,
+                )  # fmt: skip
         document = _document(parts, chosen.name, speed, found)
+        if factors:
+            document |= _varied_document(factors, found, varied)
         files = {"evaluation.json": json_text(document), "evaluation.csv": _csv(found)}
+        if factors:
+            files["variations.csv"] = _varied_csv(varied)
         written = write_files(out_dir, files)
     if as_json:
         print(json_text(document), end="")
@@ -84,7 +106,9 @@ def own_command(
         shown = [each.name, _number(each.value), *([] if profile else cells), _unit(each.name)]
         table.add_row(*shown)
     out.print(table)
-    for note in found.notes:
+    if factors:
+        out.print(_varied_table(found, varied))
+    for note in (*found.notes, *varied.notes):
         out.print(note, markup=False, soft_wrap=True)
     out.print(f"Written to {out_dir}: {', '.join(written)}")
 
@@ -95,6 +119,10 @@ def _car(name: str) -> CarParts:
     if name.lower() in CARS:
         return shipped_car(name.lower())
     raise ValueError(f"car {name!r}: take {', '.join(CARS)}, or a file car.toml")
+
+
+def _road(name: str, speed: float, factor: float = 1.0) -> Profile | PeriodicRoad:
+    return profile_named(name, speed * factor) or road_named(name, speed * factor)
 
 
 def _unit(name: str) -> str:
@@ -127,3 +155,42 @@ def _csv(found: OwnEvaluation) -> str:
         line = [each.value, each.low, each.high, "" if each.linear is None else each.linear]
         writer.writerow([each.name, _unit(each.name), *line])
     return table.getvalue()
+
+
+def _varied_document(
+    factors: Mapping[str, tuple[float, ...]], found: OwnEvaluation, varied: OwnVaried
+) -> dict[str, Any]:
+    nominal = {each.name: each.value for each in found.figures}
+    return {
+        "vary": {name: list(values) for name, values in factors.items()},
+        "variations": {
+            name: {**summary(nominal[name], each), "each": [asdict(one) for one in each]}
+            for name, each in varied.figures.items()
+        },
+        "variation_notes": list(varied.notes),
+    }
+
+
+def _varied_csv(varied: OwnVaried) -> str:
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerow(["figure", "unit", "variation", "value", "low", "high", "linear"])
+    for name, each in varied.figures.items():
+        for one in each:
+            linear = "" if one.linear is None else one.linear
+            writer.writerow([name, _unit(name), one.name, one.value, one.low, one.high, linear])
+    return table.getvalue()
+
+
+def _varied_table(found: OwnEvaluation, varied: OwnVaried) -> Table:
+    """As planned, mean and worst of each figure."""
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    table.add_column("figure", no_wrap=True)
+    for name in ("as planned", "mean", "worst"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("worst when", overflow="fold")
+    for each in found.figures:
+        told = summary(each.value, varied.figures[each.name])
+        cells = [_number(told[name]) for name in ("nominal", "mean", "worst")]
+        table.add_row(each.name, *cells, told["worst_when"])
+    return table

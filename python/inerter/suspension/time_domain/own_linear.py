@@ -14,13 +14,21 @@ from numpy.typing import NDArray
 
 from inerter.cars.parts import AxleParts, CarParts, StrutParts
 from inerter.suspension.car_options import linear_car
-from inerter.suspension.indices import comfort_function, travel_function, tyre_function
+from inerter.suspension.indices import (
+    INDICES,
+    comfort_function,
+    is_infinite,
+    travel_function,
+    tyre_function,
+)
 from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.time_domain.linear import centring_of, plane_densities
 from inerter.suspension.time_domain.road import PeriodicRoad
 from inerter.suspension.time_domain.signals import gain_of, index_of, parts_of, signal_of
+from inerter.suspension.vehicle.state_space import system
 from inerter.suspension.vehicle.strut import Branch, branch
+from inerter.suspension.vehicle.white_noise import is_white
 
 Array = NDArray[np.float64]
 _POINTS = 12_000
@@ -52,6 +60,22 @@ def linear_figures(
     found = {part: np.asarray(2.0 * np.pi * root) for part, root in found.items()}
     names = dict.fromkeys(("J1", "J1w", "J3", "travel", *more))
     return {name: float(index_of(name, found)) for name in names}
+
+
+def bound_by_band(car: CarParts, names: tuple[str, ...]) -> list[str]:
+    """Which indices tyre damping makes infinite on a road without end."""
+    linear = linear_car(car)
+    if isinstance(linear, QuarterCar):
+        k, values = _values(car.front.strut)
+        network = LAYOUTS[car.front.strut.layout].stiffness(k, **values)
+        return [name for name in names if is_infinite(name, linear, network)]
+    assert car.rear is not None
+    planes = [system(plane, (_branch(car.front), _branch(car.rear))) for plane in linear.planes]
+    return [
+        name
+        for name in names
+        if any(is_white(one, part) for one in planes for part in INDICES[name].parts or (name,))
+    ]
 
 
 def _gains(

@@ -56,6 +56,9 @@ UNITS = {
 }  # fmt: skip
 """Figures of a run, with their units; an index that is asked for beside has its own."""
 
+TYRE = "a tyre is"
+"""How a note on tyres that leave the road begins."""
+
 _SLOWEST = 1e-3
 
 
@@ -83,10 +86,12 @@ class OwnEvaluation:
 
 @dataclass(frozen=True, eq=False)
 class _Model:
-    """The compiled car: corners as (control, joint of the wheel, kt, load, behind, x, y)."""
+    """The compiled car: corners as (control, place of the wheel, its velocity's, kt, load, ct,
+    behind, x, y), places in the state of the engine.
+    """
 
     model: mujoco.MjModel
-    corners: tuple[tuple[int, int, float, float, float, float, float], ...]
+    corners: tuple[tuple[int, int, int, float, float, float, float, float, float], ...]
     tyres: tuple[int, ...]
     travels: tuple[int, ...]
     at_once: Array
@@ -130,7 +135,7 @@ def evaluate_own(
     ValueError
         Fewer than two seeds, a layout that has no model, or a step that diverges.
     """
-    from inerter.suspension.time_domain.own_linear import linear_figures
+    from inerter.suspension.time_domain.own_linear import bound_by_band, linear_figures
 
     if "J5" in indices:
         raise ValueError("index J5: a car as its file states it has none; give a --layout")
@@ -173,6 +178,12 @@ def evaluate_own(
         linear = linear_figures(car, road, more)
         lines = linear_figures(car, road, more, on_sinusoids=True)
         missing = max(abs(lines[name] / linear[name] - 1.0) for name in linear)
+        bound = bound_by_band(car, tuple(linear))
+        if bound:
+            notes.append(
+                f"{', '.join(bound)}: with tyre_damping the value depends on where the road ends, "
+                f"here at {road.limits[1]:g} Hz; it grows with that end without limit"
+            )
     found = [{**one, **{name: _index(name, one) for name in more}} for one in found]
     names = [name for name in (*UNITS, *more) if name in found[0]]
     figures = []
@@ -189,7 +200,7 @@ def evaluate_own(
     lifted = next(each.value for each in figures if each.name == "lift_off")
     if lifted > 0.0:
         what = "off the road" if one_sided else "pulled on the road, where a real one would lift,"
-        notes.append(f"a tyre is {what} for {100.0 * lifted:.2g} % of the time")
+        notes.append(f"{TYRE} {what} for {100.0 * lifted:.2g} % of the time")
     return OwnEvaluation(tuple(figures), count, period, settle, tuple(notes))
 
 
@@ -220,10 +231,13 @@ def _build(car: CarParts, step: float, one_sided: bool) -> _Model:
         x = -axle.distance if rear else axle.distance
         y = {"left": 0.5, "right": -0.5}.get(place.rpartition("_")[2], 0.0) * car.track
         load = car.static_loads["rear" if rear else "front"]
-        joint = int(model.joint(f"wheel{place}").qposadr[0])
+        # time stands first
+        joint = model.joint(f"wheel{place}")
+        at, rate = 1 + int(joint.qposadr[0]), 1 + model.nq + int(joint.dofadr[0])
         control = int(model.actuator_ctrladr[model.actuator(name).id])
         behind = wheelbase if rear else 0.0
-        corners.append((control, joint, axle.tyre_stiffness, load, behind, x, y))
+        tyre = (axle.tyre_stiffness, load, axle.tyre_damping)
+        corners.append((control, at, rate, *tyre, behind, x, y))
         tyres.append(int(model.sensor(f"tyre_force{place}").adr[0]))
         travels.append(int(model.sensor(f"suspension_travel{place}").adr[0]))
     return _Model(
@@ -236,7 +250,7 @@ def _at_once(model: mujoco.MjModel, corners: Sequence[tuple]) -> Array:
     data, rows = mujoco.MjData(model), []
     mujoco.mj_forward(model, data)
     rest = data.sensordata.copy()
-    for control, _, stiffness, *_ in corners:
+    for control, _, _, stiffness, *_ in corners:
         data.ctrl[:] = 0.0
         data.ctrl[control] = 1.0 / stiffness
         mujoco.mj_forward(model, data)
@@ -256,7 +270,8 @@ def _slowest(model: mujoco.MjModel) -> float:
 def _run(built: _Model, held: Array, heights: Array, skip: int) -> tuple[Array, Array]:
     """Sensors (n, sensors) and dynamic tyre forces (n, wheels) after `skip` steps, put right.
 
-    `held`, `heights`: what stands over a step, and the road at its beginning, (n, wheels).
+    `held`, `heights`: what stands over a step, and the road at its beginning, (n, wheels), both
+    with its rate times the tyre's lead.
     """
     model = built.model
     data = mujoco.MjData(model)
@@ -265,16 +280,17 @@ def _run(built: _Model, held: Array, heights: Array, skip: int) -> tuple[Array, 
     start = np.zeros((1, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
     mujoco.mj_getState(model, data, start[0], mujoco.mjtState.mjSTATE_FULLPHYSICS)
     states, sensors = rollout.rollout(model, data, start, control)
-    # sensors are those of the beginning of a step, states those of its end; time stands first
+    # sensors are those of the beginning of a step, states those of its end
     before = np.vstack([start[0], states[0][:-1]])[skip:]
     sensed = sensors[0][skip:]
-    wheels = before[:, [1 + corner[1] for corner in built.corners]]
+    wheels = before[:, [corner[1] for corner in built.corners]]
+    rates = before[:, [corner[2] for corner in built.corners]]
     if not np.isfinite(sensed).all() or abs(wheels).max(initial=0.0) > 100.0:
         raise ValueError(f"the car diverges with steps of {model.opt.timestep:g} s: shorten --step")
-    stiffness = np.array([corner[2] for corner in built.corners])
-    forces = stiffness * (heights[skip:] - wheels)
+    stiffness, loads, damping = (np.array([c[n] for c in built.corners]) for n in (3, 4, 5))
+    forces = stiffness * (heights[skip:] - wheels) - damping * rates
     if built.one_sided:
-        forces = np.maximum(forces, [-corner[3] for corner in built.corners])
+        forces = np.maximum(forces, -loads)
     return sensed + (forces - sensed[:, built.tyres]) @ built.at_once, forces
 
 
@@ -298,16 +314,20 @@ def _over_random(
     times = (np.arange(lead + count) - lead) % count
     fade = np.clip((np.arange(lead + count) + 0.5) * step / FADE, 0.0, 1.0)
     held, heights = [], []
-    for *_, behind, _, y in built.corners:
+    leads = [corner[5] / corner[3] for corner in built.corners]
+    for ahead, (*_, behind, _, y) in zip(leads, built.corners, strict=True):
         side = round(math.copysign(1.0, y)) if car.kind == "full" else 0
-        for f, into, rising in ((road.held, held, fade), (road.instants, heights, 1.0)):
+        own = road.led(ahead)
+        for f, into, rising in ((own.held, held, fade), (own.instants, heights, 1.0)):
             into.append(track(f, seed, count, behind, side, car.correlation)[times] * rising)
     sensed, forces = _run(built, np.array(held).T, np.array(heights).T, lead)
     # what the steps cannot follow acts on the tyre, and through a rigid inerter on the body
-    stiffness = np.array([corner[2] for corner in built.corners])
+    stiffness = np.array([corner[3] for corner in built.corners])
 
     def missed(part: str) -> Array:
-        return road.left_out(count, gain=partial(gain_of, part))[0, 0] * stiffness**2
+        gain = partial(gain_of, part)
+        squares = [road.left_out(count, gain=gain, leads=(ahead,))[0, 0] for ahead in leads]
+        return np.array(squares) * stiffness**2
 
     return _figures(built, sensed, forces, step, parts, missed)
 
@@ -315,15 +335,18 @@ def _over_random(
 def _over_profile(
     built: _Model, profile: Profile, step: float, after: float, parts: tuple[str, ...]
 ) -> dict[str, float]:
-    wheelbase = max(corner[4] for corner in built.corners)
+    wheelbase = max(corner[6] for corner in built.corners)
     seconds = profile.duration + wheelbase / profile.speed + after
     times = step * np.arange(math.ceil(seconds / step), dtype=np.float64)
 
     def at(shift: float) -> Array:
         shifted: Array = np.asarray(times + shift, dtype=np.float64)
-        return np.array(
-            [profile.height(shifted, behind, y) for *_, behind, _, y in built.corners]
-        ).T
+        after, before = shifted + 0.5 * step, shifted - 0.5 * step
+        tracks = []
+        for _, _, _, kt, _, ct, behind, _, y in built.corners:
+            rise = profile.height(after, behind, y) - profile.height(before, behind, y)
+            tracks.append(profile.height(shifted, behind, y) + ct / kt * rise / step)
+        return np.array(tracks).T
 
     sensed, forces = _run(built, at(0.5 * step), at(0.0), 0)
     return _figures(built, sensed, forces, step, parts)
@@ -378,7 +401,7 @@ def _figures(
             series = filtered[:, : series.shape[1]]
         extra = 0.0 if missed is None else float(np.mean(per_force**2 @ missed(part)))
         found[part] = math.sqrt(_rms(series) ** 2 + extra)
-    loads = np.array([corner[3] for corner in built.corners])
+    loads = np.array([corner[4] for corner in built.corners])
     return {
         **found,
         "lift_off": float(np.mean(forces <= -loads)),

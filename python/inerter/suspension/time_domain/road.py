@@ -17,6 +17,8 @@ A simulation holds the road over each of its steps. `held` gives those values: t
 middle of the step, each sinusoid divided by sinc(f h). The staircase then contains every sinusoid
 exactly, in amplitude and phase, and only images beyond 1/(2h) are wrong, to which a car hardly
 answers. Sinusoids at and above 1/(2h) cannot be followed; `left_out` has their mean square.
+A tyre with damping takes zr + lead zr', lead = ct / kt [s]: the same sinusoids, each by
+1 + i w lead.
 Not modelled: discrete events, changes along the road.
 """
 
@@ -57,6 +59,7 @@ class PeriodicRoad:
 
     `name` to be shown, `strength` [m^2 Hz] one-sided, `speed` V [m/s] at which later axles follow.
     `band` [Hz] that the sinusoids stand for, however close; from 0 to the last one if not given.
+    `lead` [s] as tyres with damping take it, see `led`.
 
     Raises
     ------
@@ -71,6 +74,7 @@ class PeriodicRoad:
     speed: float = 25.0
     spacing: float = SPACING
     band: tuple[float, float] | None = None
+    lead: float = 0.0
 
     def __post_init__(self) -> None:
         """Check what was given, see Raises."""
@@ -117,6 +121,10 @@ class PeriodicRoad:
             band=(low, high),
         )
 
+    def led(self, lead: float) -> PeriodicRoad:
+        """The road plus `lead` [s] times its rate."""
+        return replace(self, lead=lead) if lead else self
+
     @property
     def frequencies(self) -> Array:
         """[Hz], shape (sinusoids,)."""
@@ -125,7 +133,8 @@ class PeriodicRoad:
     @property
     def amplitudes(self) -> Array:
         """[m], shape (sinusoids,)."""
-        return math.sqrt(2.0 * self.strength * self.spacing) / self.frequencies
+        own = math.sqrt(2.0 * self.strength * self.spacing) / self.frequencies
+        return own * np.abs(self._factors(self.lead, self.frequencies)) if self.lead else own
 
     @property
     def rms(self) -> float:
@@ -138,7 +147,7 @@ class PeriodicRoad:
 
     def at(self, times: Array | float, seed: int) -> Array:
         """The road [m] at times [s] of any shape, sinusoid by sinusoid."""
-        angles = np.multiply.outer(times, 2.0 * np.pi * self.frequencies) + self.phases(seed)
+        angles = np.multiply.outer(times, 2.0 * np.pi * self.frequencies) + self._later(seed, 0.0)
         return np.sin(angles) @ self.amplitudes
 
     def instants(self, seed: int, count: int, behind: float = 0.0) -> Array:
@@ -162,20 +171,32 @@ class PeriodicRoad:
         count: int,
         behind: Sequence[float] = (0.0,),
         gain: Callable[[Array], Array] = np.ones_like,
+        leads: Sequence[float] = (),
     ) -> Array:
         """Mean products [m^2] of what `count` steps per period cannot follow, (axles, axles).
 
-        `gain`: of frequencies [Hz], a factor of each sinusoid's mean square.
+        `gain`: of frequencies [Hz], a factor of each sinusoid's mean square. `leads` [s] of the
+        axles' tyres, as in `led`.
         """
         kept = self._kept(count)
         lags = np.subtract.outer(behind, behind) / self.speed
         f = self.frequencies[kept:]
         turns = np.multiply.outer(lags, 2.0 * np.pi * f)
-        return np.cos(turns) @ (0.5 * self.amplitudes[kept:] ** 2 * gain(f))
+        weights = 0.5 * self.amplitudes[kept:] ** 2 * gain(f)
+        if not any(leads):
+            return np.cos(turns) @ weights
+        one = np.array([self._factors(lead, f) for lead in leads])
+        pairs = one[:, None, :] * np.conj(one)[None, :, :] * np.exp(-1j * turns)
+        return np.real(pairs) @ weights
+
+    @staticmethod
+    def _factors(lead: float, f: Array) -> NDArray[np.complex128]:
+        return np.asarray(1.0 + 2j * np.pi * f * lead, dtype=np.complex128)
 
     def _later(self, seed: int, behind: float) -> Array:
         """Phases [rad] under an axle that is `behind` [m]."""
-        return self.phases(seed) - 2.0 * np.pi * self.frequencies * (behind / self.speed)
+        late = self.phases(seed) - 2.0 * np.pi * self.frequencies * (behind / self.speed)
+        return late + np.angle(self._factors(self.lead, self.frequencies)) if self.lead else late
 
     def _kept(self, count: int) -> int:
         """Number of sinusoids below half the sampling rate."""

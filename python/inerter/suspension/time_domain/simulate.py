@@ -1,6 +1,7 @@
 """Indices of many designs on many roads, and gains under a sinusoidal load.
 
-    J1 = sqrt(mean zs''^2),   J3 = sqrt(mean Fr^2),   Fr = kt (zu - zr)          over a road
+    J1 = sqrt(mean zs''^2),   J3 = sqrt(mean Fr^2)                               over a road
+    Fr = kt (zu - zr) + ct (zu' - zr')
     gain(w) = sqrt(int zs^2 / int Fs^2)                                          Fs = A sin(w t)
 
 zs is the body above a wheel, zu the wheel; with several axles the mean is also over them, each on
@@ -241,21 +242,25 @@ def _road_squares(
     step = road.period / count
     settle = math.ceil(settings.settle / step)
     seen = _once(seeds)
-    make = road.instants if car.implicit else road.held
     behind = [wheel.behind for wheel in car.wheels]
     # shape (roads, count, wheels)
     sides, shared = [wheel.side for wheel in car.wheels], getattr(car.car, "correlation", 1.0)
-    places = list(zip(behind, sides, strict=True))
-    shown, driven = (
-        np.moveaxis(
-            np.array([[track(f, seed, count, x, s, shared) for x, s in places] for seed in seen]),
-            1,
-            2,
-        )
-        for f in (road.instants, make)
-    )
+    leads = [wheel.lead for wheel in car.wheels]
+    places = list(zip([road.led(lead) for lead in leads], behind, sides, strict=True))
+
+    def tracks(make: str) -> Array:
+        each = [
+            [track(getattr(own, make), seed, count, x, s, shared) for own, x, s in places]
+            for seed in seen
+        ]
+        return np.moveaxis(np.array(each), 1, 2)
+
+    # with what a tyre's damper adds of the road's rate
+    shown = tracks("instants")
+    driven = shown if car.implicit else tracks("held")
     which = [seen.index(seed) for seed in seeds]
     kt = np.array([wheel.tyre_stiffness for wheel in car.wheels])
+    ct = np.array([wheel.tyre_damping for wheel in car.wheels])
     # accelerations per height of the road, (simulations, points, wheels)
     at_once = np.array([car.accelerations_per_force(design) * kt for design in designs])
 
@@ -277,7 +282,7 @@ def _road_squares(
         height = shown[:, now][which]
         sudden = height - chunk.control[:, skip:]
         # tension positive, as in the paper
-        force = kt * (chunk.wheels[:, skip:] - height)
+        force = kt * (chunk.wheels[:, skip:] - height) + ct * chunk.rates[:, skip:]
         off = force >= loads
         corrected = chunk.accelerations[:, skip:]
         if car.one_sided:
@@ -292,14 +297,14 @@ def _road_squares(
         if whole is not None:
             whole.add(int(now[0]), corrected, force, chunk.travels[:, skip:])
     # sinusoids too quick for the step move nothing; they press the tyres
-    rest = road.left_out(count, behind) * correlations(sides, shared)
+    rest = road.left_out(count, behind, leads=leads) * correlations(sides, shared)
     quick = np.einsum("spw,wv,spv->s", at_once, rest, at_once)
     points, wheels = at_once.shape[1:]
     felt = np.zeros((0, len(designs)))
     if whole is not None:
         felt = whole.mean_squares(step)
         for n, name in enumerate(kept):
-            beyond = road.left_out(count, behind, partial(gain_of, name))
+            beyond = road.left_out(count, behind, partial(gain_of, name), leads)
             beyond = beyond * correlations(sides, shared)
             if signal_of(name) == "J3":
                 felt[n] += float(np.sum(kt**2 * np.diag(beyond))) / wheels

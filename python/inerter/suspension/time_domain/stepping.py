@@ -35,8 +35,8 @@ CHUNK = 500
 class Chunk:
     """Steps `first` to `first + n`, arrays (simulations, n, ...): at the beginning of each step.
 
-    `body` displacement under the load [m], `wheels` displacements and `travels` of the struts [m]
-    (..., wheels),
+    `body` displacement under the load [m], `wheels` displacements, `rates` of them [m/s] and
+    `travels` of the struts [m] (..., wheels),
     `accelerations` of the body's points [m/s^2] (..., points) under the held control, `control` as
     given.
     """
@@ -47,6 +47,7 @@ class Chunk:
     accelerations: Array
     control: Array
     travels: Array
+    rates: Array
 
 
 class StepError(ValueError):
@@ -91,6 +92,7 @@ def step_all(
     worlds = _worlds(car, designs, steps, threads)
     heights = [wheel.height for wheel in car.wheels]
     travels = [wheel.travel for wheel in car.wheels]
+    speeds = [wheel.rate for wheel in car.wheels]
     before = np.zeros((len(designs), 1, model.nv))
     for first in range(0, count, CHUNK):
         number = min(CHUNK, count - first)
@@ -111,8 +113,9 @@ def step_all(
             before = after[:, -1:].copy()
         else:
             accelerations = sensors @ car.by_sensors.T
-        body, wheels, moves = (sensors[:, :, at] for at in (car.body, heights, travels))
-        yield Chunk(first, body, wheels, accelerations, held, moves)
+        shown = (sensors[:, :, at] for at in (car.body, heights, travels, speeds))
+        body, wheels, moves, moving = shown
+        yield Chunk(first, body, wheels, accelerations, held, moves, moving)
     _refuse_divergence(car, worlds, designs, count * steps)
 
 

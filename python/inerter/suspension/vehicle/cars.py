@@ -13,7 +13,7 @@ A full car that is alike on both sides splits exactly into the half-car of one s
 mean of the left and the right road, and a roll plane, driven by half their difference: a body with
 one displacement x = phi track / 2 of mass 2 I_roll / track^2 on the same two axles.
 
-Not modelled: tyre damping, loss of contact, large angles.
+Not modelled: loss of contact, large angles.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.model_parameters import FULL_CAR, HALF_CAR, AxleParameters
-from inerter.suspension.quarter_car import GRAVITY, QuarterCar, positive
+from inerter.suspension.quarter_car import GRAVITY, QuarterCar, not_negative, positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,11 +34,12 @@ class Axle:
     `distance` [m] from the centre of mass to the axle, `wheel_mass` [kg], `tyre_stiffness` [N/m],
     `stiffness` [N/m] of the strut's spring as published; optima take their own.
     `anti_roll_stiffness` [N/m] on each wheel of the axle as the car rolls, of a full car.
+    `tyre_damping` [N s/m] beside the tyre's spring.
 
     Raises
     ------
     ValueError
-        A value is not positive.
+        A value is not positive, or a damping negative.
     """
 
     distance: float
@@ -46,9 +47,11 @@ class Axle:
     tyre_stiffness: float
     stiffness: float
     anti_roll_stiffness: float = 0.0
+    tyre_damping: float = 0.0
 
     def __post_init__(self) -> None:
         positive(self, ("distance", "wheel_mass", "tyre_stiffness", "stiffness"))
+        not_negative(self, ("tyre_damping",))
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,8 @@ class Plane:
         Stiffness beside the struts, front and rear [N/m]: anti-roll bars.
     turn
         Angle per displacement [rad/m]: pitch per rise of the rear above the front, roll per rise.
+    tyre_dampings
+        [N s/m], front and rear.
     """
 
     inertia: tuple[tuple[float, ...], ...]
@@ -76,6 +81,7 @@ class Plane:
     weight: float = 1.0
     bars: tuple[float, float] = (0.0, 0.0)
     turn: float = 0.0
+    tyre_dampings: tuple[float, float] = (0.0, 0.0)
 
     @property
     def shape(self) -> NDArray[np.float64]:
@@ -138,6 +144,7 @@ class HalfCar:
             (self.front.tyre_stiffness, self.rear.tyre_stiffness),
             weight,
             turn=1.0 / self.wheelbase,
+            tyre_dampings=(self.front.tyre_damping, self.rear.tyre_damping),
         )
 
     @property
@@ -156,6 +163,7 @@ class HalfCar:
                 sprung_mass=self.body_mass * share,
                 unsprung_mass=axle.wheel_mass,
                 tyre_stiffness=axle.tyre_stiffness,
+                tyre_damping=axle.tyre_damping,
             )
             for share, axle in zip(self.lever.tolist(), (self.front, self.rear), strict=True)
         )
@@ -232,6 +240,7 @@ class FullCar:
             apart,
             (self.front.anti_roll_stiffness, self.rear.anti_roll_stiffness),
             turn=2.0 / self.track,
+            tyre_dampings=side.tyre_dampings,
         )
         return (side, roll) if apart > 0.0 else (side,)
 

@@ -1,8 +1,8 @@
 """Displacement of the centre of mass per vertical load on it, zc/F, over frequency.
 
 Seen from the body, the strut and the wheel of an axle are one dynamic stiffness to the ground,
-K = D W / (D + W) with the wheel's W = mu s^2 + kt. Then zc/F = g^T (M s^2 + diag(K))^-1 g with the
-lever g, and d(zc/F) = -sum of (h_i)^2 dK_i for h = (M s^2 + diag(K))^-1 g.
+K = D W / (D + W) with the wheel's W = mu s^2 + ct s + kt. Then zc/F = g^T (M s^2 + diag(K))^-1 g
+with the lever g, and d(zc/F) = -sum of (h_i)^2 dK_i for h = (M s^2 + diag(K))^-1 g.
 """
 
 from __future__ import annotations
@@ -59,10 +59,11 @@ class Load:
         stiffness, change = [], []
         for branch, axle in zip(self.branches, (self.car.front, self.car.rear), strict=True):
             strut, strut_slope = branch.dynamic_stiffness(s)
-            wheel = axle.wheel_mass * s * s + axle.tyre_stiffness
+            wheel = axle.wheel_mass * s * s + axle.tyre_damping * s + axle.tyre_stiffness
+            wheel_slope = 2.0 * axle.wheel_mass * s + axle.tyre_damping
             share, other = wheel / (strut + wheel), strut / (strut + wheel)
             stiffness.append(strut * share)
-            change.append((share**2, share**2 * strut_slope + other**2 * 2.0 * axle.wheel_mass * s))
+            change.append((share**2, share**2 * strut_slope + other**2 * wheel_slope))
         a, b = m11 * s * s + stiffness[0], m22 * s * s + stiffness[1]
         across = m12 * s * s
         determinant = a * b - across * across

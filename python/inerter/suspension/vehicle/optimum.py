@@ -23,6 +23,7 @@ from inerter.suspension.vehicle.load_peaks import peaks
 from inerter.suspension.vehicle.problem import VehicleProblem
 from inerter.suspension.vehicle.search import at_bound
 from inerter.suspension.vehicle.strut import VehicleStrut
+from inerter.suspension.white_road import refuse_infinite
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,14 @@ def vehicle_optimum(
 
 
 def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
-    """Minimise an index over all designs of a layout; `more` as in `starting_points`."""
+    """Minimise an index over all designs of a layout; `more` as in `starting_points`.
+
+    Raises
+    ------
+    InfiniteIndexError
+        No design has a finite value, for tyre damping.
+    """
+    refuse_infinite(problem)
     if problem.limits or problem.catalogue or not problem.variables:
         return _limited(problem)
     notes = []
@@ -125,8 +133,9 @@ def optimise_vehicle(problem: VehicleProblem, more: int = 1) -> VehicleOptimum:
         if now and not before
     ]
     for limit in problem.network.limits:
-        free = [any(limit[0] == n for _, n in one.variables) for one in (problem, best)]
-        notes += [f"best {LIMITS[limit]}"] if free == [True, False] else []
+        free = any(limit[0] == name for _, name in problem.variables)
+        held = all(limit in own for own in best.fixed)
+        notes += [f"best {LIMITS[limit]}"] if free and held else []
     notes += [*_at_bounds(best, point), *scene_notes(best, point)]
     return VehicleOptimum(
         value=value,

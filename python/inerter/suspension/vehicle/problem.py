@@ -15,14 +15,22 @@ from numpy.typing import NDArray
 
 from inerter.suspension.indices import INDICES, Index
 from inerter.suspension.layouts import LAYOUTS, Layout, SeriesPair
-from inerter.suspension.problem import Array, Catalogue, SuspensionProblem, in_limit
+from inerter.suspension.problem import (
+    Array,
+    Catalogue,
+    SuspensionProblem,
+    in_limit,
+    without_inertance,
+)
 from inerter.suspension.quarter_car import Road
 from inerter.suspension.variations import Scene
 from inerter.suspension.vehicle.cars import Vehicle
 from inerter.suspension.vehicle.indices import Branches, load_of, quick_rms_index, rms_index
 from inerter.suspension.vehicle.load import Load
 from inerter.suspension.vehicle.load_peaks import largest_gain
+from inerter.suspension.vehicle.state_space import system
 from inerter.suspension.vehicle.strut import VehicleStrut, branch
+from inerter.suspension.vehicle.white_noise import is_white
 
 _COMPLEX_STEP = 1e-30
 
@@ -110,7 +118,7 @@ class VehicleProblem:
         )
         if self.equal:
             front = rear = {name: 0.5 * (front[name] + rear[name]) for name in front}
-        return np.array([(front, rear)[axle][name] for axle, name in self.variables])
+        return np.array([(front, rear)[axle][name] for axle, name in self.variables]).reshape(-1, 2)
 
     def corners(self) -> tuple[SuspensionProblem, SuspensionProblem]:
         """The problems of the quarter-cars at the axles; where they turn, of their comfort."""
@@ -136,7 +144,18 @@ class VehicleProblem:
 
     def without(self, massless: tuple[bool, bool]) -> VehicleProblem:
         """The same without inertance in front, at the rear or at both."""
-        return replace(self, massless=massless)
+        front, rear = (
+            (*own, *without_inertance(self.network, names)) if no_inerter else own
+            for own, no_inerter, names in zip(self.fixed, massless, self._free(), strict=True)
+        )
+        return replace(self, massless=massless, fixed=(front, rear))
+
+    def _free(self) -> tuple[list[str], list[str]]:
+        """The names of the variables, by axle."""
+        names: tuple[list[str], list[str]] = ([], [])
+        for axle, name in self.variables:
+            names[axle].append(name)
+        return (names[0], names[0]) if self.equal else names
 
     def picked(self) -> list[VehicleProblem]:
         """The problem with each choice from its catalogue fixed; itself without a catalogue."""
@@ -146,6 +165,18 @@ class VehicleProblem:
         else:
             pairs = [(one.fixed, other.fixed) for one in front for other in rear]
         return [replace(self, catalogue=(), fixed=pair) for pair in pairs]
+
+    def infinite(self, index: str) -> bool:
+        """Whether an index of (nearly) every design is infinite, see `white_road`."""
+        own, car = INDICES[index], self.car
+        if index == "J5" or not (car.front.tyre_damping or car.rear.tyre_damping):
+            return False
+        branches = self.branches(self.bounds.mean(axis=1))
+        return any(
+            is_white(system(plane, branches), part)
+            for plane in car.planes
+            for part in own.parts or (index,)
+        )
 
     def variants(self) -> list[VehicleProblem]:
         """The problem, then those in which what may be absent at an axle or both is."""
@@ -162,7 +193,7 @@ class VehicleProblem:
             if any(name == free for _, free in self.variables):
                 front, rear = (own + in_limit(name, value) for own in self.fixed)
                 found.append(replace(self, fixed=(front, rear)))
-        return found
+        return [one for one in found if one is self or not one.infinite(self.index)]
 
     def inner(self) -> list[VehicleProblem]:
         """The problems of the layouts that this one contains."""
@@ -174,7 +205,7 @@ class VehicleProblem:
             )
             massless = self.massless if LAYOUTS[name].may_vanish else (False, False)
             found.append(replace(self, layout=name, fixed=(front, rear), massless=massless))
-        return found
+        return [one for one in found if not one.infinite(self.index)]
 
     def embedded(self, struts: tuple[VehicleStrut, VehicleStrut], layout: str) -> Array:
         """The point that is most like a design of a layout that this one contains."""

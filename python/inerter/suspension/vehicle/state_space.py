@@ -4,11 +4,14 @@ The inputs are the velocities of the road under the two axles. States are veloci
 of the wheels, elongations e of the struts and deflections y of the tyres, which stay bounded on a
 road that wanders, and the states of the struts. With the strut force u = k e + m e'' + d e' + r,
 
-    M q'' = -S^T u         mu w'' = u - kt y        e' = S q' - w'        y' = w' - road'
+    M q'' = -S^T u         mu w'' = u - kt y - ct y'      e' = S q' - w'      y' = w' - road'
 
 A body of two displacements has two elongations and two deflections. One of a single displacement
 has e_r = e_f + y_f - y_r - p with the warp p = road_r - road_f, which is no state: it is driven by
 the road alone, p' = wr' - wf', and stays where it is. So every state is strictly stable.
+
+A tyre's damper hands the road's velocity on at once: to the wheels (Bf, Br), through an inerter to
+the body, and to the tyre force; what a signal has of it at once is its feed.
 """
 
 from __future__ import annotations
@@ -35,7 +38,7 @@ class System:
     matrix, warp
         A (..., n, n) and a (..., n); a is None for a body of two displacements.
     front, rear
-        Bf, Br, shape (n,).
+        Bf, Br, shape (n,), with tyre damping (..., n).
     acceleration, acceleration_warp
         Of the body above the axles [m/s^2]: rows (..., 2, n), per p (..., 2).
     tyre
@@ -48,6 +51,9 @@ class System:
         As of the plane.
     height
         Displacement of the body above the axles on a flat road: rows (2, n).
+    acceleration_feed, tyre_feed
+        Of the road's velocities in these signals at once, (..., 2, 2): signal, axle of the road.
+        None without tyre damping.
     """
 
     matrix: Matrix
@@ -62,6 +68,8 @@ class System:
     travel: NDArray[np.float64]
     travel_warp: NDArray[np.float64]
     turn: float = 0.0
+    acceleration_feed: Matrix | None = None
+    tyre_feed: Matrix | None = None
 
 
 def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
@@ -114,6 +122,8 @@ def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
     inverse = np.linalg.inv(total)
     tyre = np.array(plane.tyre_stiffnesses)[:, None] * deflection
     push = np.zeros((speeds, count))
+    dampers = np.array(plane.tyre_dampings)
+    tyre[:, body:speeds] += np.diag(dampers)
     push[body:] = -tyre
     matrix[..., :speeds, :] = inverse @ (pull @ force + push)
 
@@ -126,7 +136,13 @@ def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
     front, rear = np.zeros(count), np.zeros(count)
     front[first + body] = rear[first + body + 1] = -1.0
 
-    warp = acceleration_warp = None
+    warp = acceleration_warp = acceleration_feed = tyre_feed = None
+    if dampers.any():
+        at_once = inverse[..., :, body:] * dampers
+        still = np.zeros((*shape, count - speeds))
+        front = np.concatenate([at_once[..., 0], still], axis=-1) + front
+        rear = np.concatenate([at_once[..., 1], still], axis=-1) + rear
+        acceleration_feed, tyre_feed = plane.shape @ at_once[..., :body, :], -np.diag(dampers)
     if body == 1:
         springs = np.stack([branch.stiffness * by_warp[n] for n, branch in enumerate(branches)], -1)
         warp = np.zeros((*shape, count), dtype=kind)
@@ -147,6 +163,8 @@ def system(plane: Plane, branches: tuple[Branch, Branch]) -> System:
         travel=elongation,
         travel_warp=by_warp,
         turn=plane.turn,
+        acceleration_feed=acceleration_feed,
+        tyre_feed=tyre_feed,
     )
 
 

@@ -20,9 +20,13 @@ Matrix = NDArray[Any]
 
 
 def weighted(
-    plane: System, signals: Matrix, by_warp: Matrix | None, felt: Rational
-) -> tuple[System, Matrix, Matrix | None]:
-    """The plane with the filters' states, and the filtered signals.
+    plane: System,
+    signals: Matrix,
+    by_warp: Matrix | None,
+    felt: Rational,
+    feed: Matrix | None = None,
+) -> tuple[System, Matrix, Matrix | None, Matrix | None]:
+    """The plane with the filters' states, and the filtered signals: rows, per warp, feed.
 
     Parameters
     ----------
@@ -32,6 +36,8 @@ def weighted(
         Rows (..., 2, n), and per warp (..., 2).
     felt
         W(s), stable and proper.
+    feed
+        Of the roads' velocities in the signals at once (..., 2, 2), None without.
     """
     through = 0.0
     if felt.numerator.shape[-1] == felt.denominator.shape[-1]:
@@ -39,7 +45,8 @@ def weighted(
         rest = add(felt.numerator, -through * felt.denominator)[:-1]
         felt = Rational(rest if len(rest) else np.zeros(1), felt.denominator)
     if felt.denominator.shape[-1] == 1:
-        return plane, through * signals, None if by_warp is None else through * by_warp
+        bent = None if by_warp is None else through * by_warp
+        return plane, through * signals, bent, None if feed is None else through * feed
     top, below, rate = scaled(felt)
     own, column, row = companion(top, below)
     # in the time of the plane; input and output share the gain of the change of time
@@ -61,12 +68,16 @@ def weighted(
         driven = (drive @ by_warp[..., None])[..., 0]
         warp = np.concatenate([plane.warp, np.broadcast_to(driven, (*shape, more))], axis=-1)
         left = through * by_warp
-    still = np.zeros(more)
+    entering = np.zeros((more, 2)) if feed is None else drive @ feed
+    front, rear = (
+        np.concatenate([own, np.broadcast_to(felt_at_once, (*own.shape[:-1], more))], axis=-1)
+        for own, felt_at_once in ((plane.front, entering[..., 0]), (plane.rear, entering[..., 1]))
+    )
     whole = replace(
         plane,
         matrix=matrix,
         warp=warp,
-        front=np.append(plane.front, still),
-        rear=np.append(plane.rear, still),
+        front=front,
+        rear=rear,
     )
-    return whole, rows, left
+    return whole, rows, left, None if feed is None or not through else through * feed

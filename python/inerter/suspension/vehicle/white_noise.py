@@ -51,17 +51,24 @@ def mean_square(
     -------
     value, gradient
         Infinite and zero where the design is not stable, or its least damped pole has a damping
-        ratio below 1e-10, which leaves the covariance no digits.
+        ratio below 1e-10, which leaves the covariance no digits; and where the signal follows the
+        road's velocity at once, through a tyre's damper.
     """
-    system, rows, by_warp = _outputs(system, index)
+    system, rows, by_warp, feed = _outputs(system, index)
     # states of like size
     a, scale = balanced(_now(system.matrix, step))
     c = _now(rows, step)
     c, front, rear = c * scale, system.front / scale, system.rear / scale
+    if front.ndim > 1:
+        front, rear = _now(front, step), _now(rear, step)
+    front, rear = np.real(front), np.real(rear)
+    none = np.zeros(0 if step is None else len(system.matrix) - 1)
+    if feed is not None and feed.any():
+        return np.inf, none
     both: Any = schur(a)
     form, vectors = both
     if _least_damping(form) < _DAMPING:
-        return np.inf, np.zeros(0 if step is None else len(system.matrix) - 1)
+        return np.inf, none
 
     # the states without the warp, and what is left of it in the signals
     z, left = np.zeros(len(a)), np.zeros(2)
@@ -99,21 +106,24 @@ def mean_square(
     slope = 2.0 * np.einsum("ij,njk,ki->n", covariance @ reach, da, np.eye(len(a)))
     slope += 2.0 * np.einsum("nki,ij,kj->n", dc, covariance, c)
     slope += delay * np.einsum("ij,nji->n", bridge, da)
+    at_front = 2.0 * (reach @ front + kept.T @ (reach @ rear) - kept.T @ memory + memory)
+    at_rear = 2.0 * (reach @ rear + reach @ remembered)
+    if system.front.ndim > 1:
+        slope += _change(system.front, step) / scale @ at_front
+        slope += _change(system.rear, step) / scale @ at_rear
     if system.warp is not None and by_warp is not None:
         slope -= 2.0 * np.einsum("i,nij,j->n", memory, da, with_warp)
         dz = np.linalg.solve(a, (_change(system.warp, step) / scale - da @ z).T).T
         dleft = _change(by_warp, step) - dc @ z - dz @ c.T
         slope += 2.0 * (dleft @ (c @ with_warp) + dc @ with_warp @ left)
         slope += 2.0 * delay * dleft @ left
-        at_front = 2.0 * (reach @ front + kept.T @ (reach @ rear) - kept.T @ memory + memory)
-        at_rear = 2.0 * (reach @ rear + reach @ remembered)
         slope += dz @ (at_rear - at_front)
     return float(value), 0.5 * slope
 
 
 def quick_mean_square(system: System, index: str, delay: float) -> Array:
     """The value of `mean_square` for arrays of real designs, to about 1e-6."""
-    system, c, c_warp = _outputs(system, index)
+    system, c, c_warp, feed = _outputs(system, index)
     a = system.matrix
     eigen: Any = np.linalg.eig(a)
     values, vectors = eigen
@@ -137,15 +147,40 @@ def quick_mean_square(system: System, index: str, delay: float) -> Array:
         total = total + 2.0 * (left * with_warp).sum(axis=-1) + delay * (left * left).sum(axis=-1)
         # an index of the other plane has no signal here
         good = (values.real.max(axis=-1) < 0.0) & ((total > 0.0) | ~c.any(axis=(-2, -1)))
+    if feed is not None:
+        good &= ~feed.any(axis=(-2, -1))
     return np.where(good, 0.5 * np.maximum(total, 0.0), np.inf)
 
 
-def _outputs(system: System, index: str) -> tuple[System, Array, Array | None]:
-    """The system, with a filter's states where the index has one, and its signals."""
+def _outputs(system: System, index: str) -> tuple[System, Array, Array | None, Array | None]:
+    """The system, with a filter's states where the index has one, its signals and their feed."""
     own = INDICES[index]
     if own.filter is None:
-        return system, *signals(system, index)
-    return weighted(system, *signals(system, own.signal), own.filter)
+        return system, *signals(system, index), feed_of(system, index)
+    feed = feed_of(system, own.signal)
+    return weighted(system, *signals(system, own.signal), own.filter, feed)
+
+
+def is_white(system: System, index: str) -> bool:
+    """Whether a signal follows the road's velocity at once: its mean square is infinite."""
+    feed = _outputs(system, index)[3]
+    return feed is not None and bool(feed.any())
+
+
+def feed_of(system: System, index: str) -> Array | None:
+    """What of the roads' velocities is in a signal at once, (..., 2, 2); None without."""
+    feed = system.acceleration_feed
+    if feed is None or index == "travel":
+        return None
+    if index == "J1":
+        return feed
+    if index == "J3":
+        assert system.tyre_feed is not None
+        return system.tyre_feed
+    if system.warp is None:
+        row = (feed[..., 1:, :] - feed[..., :1, :]) * (system.turn if index == "pitch" else 0.0)
+        return np.concatenate([row, row], axis=-2)
+    return (system.turn if index == "roll" else 0.0) * feed
 
 
 def signals(system: System, index: str) -> tuple[Array, Array | None]:
