@@ -325,6 +325,20 @@ def as_spring(model: Model) -> list[Model]:
     return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
 
 
+def slow_branches(model: Model, longest: float) -> list[Model]:
+    """A spring with any zero in the place of a branch that hardly relaxes in the longest run [s]."""
+    found = []
+    for number in (1, 2):
+        stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
+        if stiffness in model.free and model.values[time] > 0.5 * longest:
+            spring = {
+                "stiffness": model.values.get("stiffness", 0.0) + model.values[stiffness],
+                "force_offset": model.values.get("force_offset", 0.0),
+            }
+            found.append(model.without((stiffness, time)).adding(None, **spring))
+    return found
+
+
 def simpler_laws(model: Model) -> list[Model]:
     """The model under each friction law with fewer parameters."""
     level, presliding = _level_and_distance(model)

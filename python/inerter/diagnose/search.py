@@ -27,6 +27,7 @@ from inerter.diagnose.composition import (
     is_local,
     is_shaft,
     simpler_laws,
+    slow_branches,
     with_own_spring,
     within_blur,
     without_effect,
@@ -396,6 +397,11 @@ class Search:
                 return self._exchange(scored)
         if with_spring := self._spring_beside(current):
             return self._exchange(with_spring)
+        longest = max(run.spacing * run.force.size for run in self.runs)
+        for model in filter(self._may_be, slow_branches(current.model, longest)):
+            scored = self.score("exchange", None, self.problem.fit(model))
+            if loss(scored, current) < CRITERIA.gain:
+                return self._exchange(scored)
         for model in filter(self._may_be, as_one(current.model)):
             fit = self.problem.fit(model)
             if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):

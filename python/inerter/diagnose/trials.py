@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
@@ -113,46 +114,53 @@ class Trials:
 
     def _rough(self, candidate: Candidate, limits: Limits, known: Known | None = None) -> list[Fit]:
         """A few steps from the best starting points, with derivatives `known` of most of it."""
-
-        def near(problem: Problem, start: Model) -> Array | None:
-            return None if known is None else known.near(problem, start)
-
         starts = candidate.starts
-        limit, limit_of_part = limits
         if candidate.effect == "backlash":
             starts = self._nearest(starts)
         if len(starts) > 1:
-            # states take time to follow; what has none is compared wherever it may show
-            fast = all(not start.device().nstate for start in starts)
-            part, evaluations = (self.problem, 6) if fast else (self._part, 10)
+            best = self._compared(starts, limits, known)
+            if isinstance(best, Fit):
+                return [best]
+            starts = best
+        fits = []
+        for start in starts:
+            near = known.near(self.problem, start) if known else None
+            fits.append(self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, derivatives=near))
+        return fits
 
-            def hopeless(done: int, error: float) -> bool:
-                return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
+    def _compared(
+        self, starts: Sequence[Model], limits: Limits, known: Known | None
+    ) -> Sequence[Model] | Fit:
+        """Where the best starting points lead in a few steps; the fit of one that is hopeless.
 
-            trials = [
-                part.fit(
-                    start,
-                    evaluations,
-                    tolerance=1e-3,
-                    give_up=hopeless,
-                    rough=True,
-                    derivatives=near(part, start),
-                )
-                for start in starts
-            ]
-            trials.sort(key=lambda fit: fit.rmse(part.masks))
-            best = trials[0].rmse(part.masks)
-            if best > (limit if fast else AT_LEAST * limit_of_part):
-                residual = self.problem.residual(trials[0].model)
-                return [replace(trials[0], residual=residual, evaluations=1)]
-            best_two = [trial for trial in trials[:2] if trial.rmse(part.masks) < NEAR * best]
-            starts = tuple(trial.model for trial in best_two or trials[:1])
-        return [
-            self.problem.fit(
-                start, FEW, tolerance=ROUGH, rough=True, derivatives=near(self.problem, start)
+        Curves along the stroke stay as they are: to follow dozens of nodes tells no more of starts.
+        """
+        # states take time to follow; what has none is compared wherever it may show
+        fast = all(not start.device().nstate for start in starts)
+        part, evaluations = (self.problem, 6) if fast else (self._part, 10)
+        limit, limit_of_part = limits
+        curved = any(map(node_of, starts[0].free))
+
+        def hopeless(done: int, error: float) -> bool:
+            return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
+
+        trials: list[tuple[Fit, Model]] = []
+        for start in starts:
+            plain = tuple(name for name in start.free if not node_of(name))
+            begin = replace(start, free=plain) if curved else start
+            near = known.near(part, begin) if known else None
+            fit = part.fit(
+                begin, evaluations, tolerance=1e-3, give_up=hopeless, rough=True, derivatives=near
             )
-            for start in starts
-        ]  # fmt: skip
+            trials.append((fit, replace(fit.model, free=start.free)))
+        trials.sort(key=lambda pair: pair[0].rmse(part.masks))
+        best = trials[0][0].rmse(part.masks)
+        if not curved and best > (limit if fast else AT_LEAST * limit_of_part):
+            first = trials[0][0]
+            return replace(first, residual=self.problem.residual(first.model), evaluations=1)
+        return [model for fit, model in trials[:2] if fit.rmse(part.masks) < NEAR * best] or [
+            trials[0][1]
+        ]
 
     def _followed(self, rough: Sequence[Fit], limit: float, reach: float = np.inf) -> Fit:
         """The best of them; those below a limit [N] are followed to their end first.
