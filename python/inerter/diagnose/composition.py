@@ -326,7 +326,7 @@ def as_spring(model: Model) -> list[Model]:
 
 
 def slow_branches(model: Model, longest: float) -> list[Model]:
-    """A spring with any zero in the place of a branch that hardly relaxes in the longest run [s]."""
+    """A spring with any zero in the place of a branch that hardly relaxes in a run [s]."""
     found = []
     for number in (1, 2):
         stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
