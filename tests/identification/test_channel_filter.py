@@ -129,3 +129,7 @@ def test_what_a_filter_held_before_a_run_is_read_off_it(kind: str, order: int) -
     assert np.abs(left[mask]).max() < 0.02 * np.abs(apart[mask]).max()
     # and nothing else is taken
     np.testing.assert_array_equal(left[first + 1500 :], apart[first + 1500 :])
+    # where its beginning is left out, the whole beginning tells it
+    late = mask & (np.arange(TIME.size) >= first + 1000)
+    told = without_start(apart, 1 / RATE, late, each, first)
+    assert np.abs(told[mask]).max() < 0.02 * np.abs(apart[mask]).max()

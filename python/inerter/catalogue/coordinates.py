@@ -171,8 +171,9 @@ _ALL = (
     ),
     Coordinate(
         name="age_distance", unit="m", words={"age_distance": "way that renews the contacts, L"},
-        size=lambda s: 0.01 * s.displacement, lower=lambda s: 1e-5 * s.displacement,
-        upper=lambda s: 3 * s.displacement, logarithmic=True, none=None,
+        size=lambda s: 0.01 * s.displacement, upper=lambda s: 3 * s.displacement,
+        lower=lambda s: min(max(1e-5 * s.displacement, 0.5 * s.place_resolution), s.displacement),
+        logarithmic=True, none=None,
         start=(1e-4, 0.3), start_unit=lambda s: s.displacement,
     ),
     Coordinate(

@@ -37,8 +37,9 @@ class FrictionLaw:
     memory
         Whether it has a state.
     peak
-        Of a law that falls with the speed, the coordinate that says at which: the blur of smoothed
-        data may look so. Where that is small, a law without memory is near those of `limits`.
+        Of a law that falls with the speed, or from what it was at rest, the coordinate that says
+        at which speed or after which way: the blur of smoothed data may look so. Where that is
+        small, a law without memory is near those of `limits`.
     varies
         Whether its level can differ with the direction and along the stroke.
     contains, limits
@@ -152,8 +153,8 @@ _ALL = (
         meaning="rate-and-state friction, which ages at rest", effect="rate_state_friction",
         coordinates=("coulomb_force", "rate_effect", "age_effect", "age_distance"),
         constants=("rate_velocity",), spread=("age_distance", "age_effect", "rate_effect"),
-        smoothed=True, memory=True, contains=("none", "coulomb"), simpler=("coulomb",),
-        tried_on=("none", "coulomb"), grid={"age_distance": (1e-3, 0.03)},
+        smoothed=True, memory=True, peak="age_distance", contains=("none", "coulomb"),
+        simpler=("coulomb",), tried_on=("none", "coulomb"), grid={"age_distance": (1e-3, 0.03)},
         begin={"rate_effect": 0.02, "age_effect": 0.03},
     ),
 )  # fmt: skip

@@ -44,6 +44,11 @@ class Scales:
         """What the velocity changes by within the smoother's memory [m/s]; nothing less is seen."""
         return 0.5 * self.acceleration / (2 * np.pi * self.cutoff)
 
+    @property
+    def place_resolution(self) -> float:
+        """What the displacement changes by within that memory where the motion turns [m]."""
+        return self.speed_resolution / (2 * np.pi * self.cutoff)
+
 
 @dataclass(frozen=True)
 class Range:

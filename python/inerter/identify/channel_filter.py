@@ -174,12 +174,13 @@ def without_start(
 ) -> Array:
     """A residual (n,) without what a filter still holds of the time before the sample `first`.
 
-    That is a sum of the filter's free responses, read off the masked samples that follow.
+    That is a sum of the filter's free responses, read off the masked samples that follow; where
+    half of these are left out, off all of them, for nothing else tells it.
     """
     poles = np.roots(denominator(by.kind, by.order)) * 2 * math.pi * by.cutoff
     count = min(int(START / abs(float(np.max(poles.real))) / spacing) + 1, residual.size - first)
     part = slice(first, first + count)
-    known = mask[part]
+    known = mask[part] if np.mean(mask[part]) > 0.5 else np.ones(count, bool)
     if known.sum() < 2 * by.order:
         return residual
     times = spacing * np.arange(count)
