@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
@@ -131,36 +130,31 @@ class Trials:
     def _compared(
         self, starts: Sequence[Model], limits: Limits, known: Known | None
     ) -> Sequence[Model] | Fit:
-        """Where the best starting points lead in a few steps; the fit of one that is hopeless.
-
-        Curves along the stroke stay as they are: to follow dozens of nodes tells no more of starts.
-        """
+        """Where the best starting points lead in a few steps; the fit of one that is hopeless."""
         # states take time to follow; what has none is compared wherever it may show
         fast = all(not start.device().nstate for start in starts)
         part, evaluations = (self.problem, 6) if fast else (self._part, 10)
         limit, limit_of_part = limits
-        curved = any(map(node_of, starts[0].free))
 
         def hopeless(done: int, error: float) -> bool:
             return not fast and done >= FEWEST and error > FAR * AT_LEAST * limit_of_part
 
-        trials: list[tuple[Fit, Model]] = []
+        trials: list[Fit] = []
         for start in starts:
-            plain = tuple(name for name in start.free if not node_of(name))
-            begin = replace(start, free=plain) if curved else start
-            near = known.near(part, begin) if known else None
-            fit = part.fit(
-                begin, evaluations, tolerance=1e-3, give_up=hopeless, rough=True, derivatives=near
-            )
-            trials.append((fit, replace(fit.model, free=start.free)))
-        trials.sort(key=lambda pair: pair[0].rmse(part.masks))
-        best = trials[0][0].rmse(part.masks)
-        if not curved and best > (limit if fast else AT_LEAST * limit_of_part):
-            first = trials[0][0]
-            return replace(first, residual=self.problem.residual(first.model), evaluations=1)
-        return [model for fit, model in trials[:2] if fit.rmse(part.masks) < NEAR * best] or [
-            trials[0][1]
-        ]
+            near = known.near(part, start) if known else None
+            trials.append(
+                part.fit(
+                    start, evaluations, tolerance=1e-3, give_up=hopeless, rough=True,
+                    derivatives=near,
+                )
+            )  # fmt: skip
+        trials.sort(key=lambda fit: fit.rmse(part.masks))
+        best = trials[0].rmse(part.masks)
+        if best > (limit if fast else AT_LEAST * limit_of_part):
+            residual = self.problem.residual(trials[0].model)
+            return replace(trials[0], residual=residual, evaluations=1)
+        near_best = [fit.model for fit in trials[:2] if fit.rmse(part.masks) < NEAR * best]
+        return near_best or [trials[0].model]
 
     def _followed(self, rough: Sequence[Fit], limit: float, reach: float = np.inf) -> Fit:
         """The best of them; those below a limit [N] are followed to their end first.
