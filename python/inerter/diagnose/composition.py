@@ -149,6 +149,7 @@ LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
 """The effect that each friction law is named as."""
 _DAMPERS = ("asymmetric_damping", "digressive_damping", "viscous_drift")
 """Effects that change a viscous damping, which belongs to them."""
+_FORCE = next(each for each in QUANTITIES if each.name == "force")
 _LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")
 
 
@@ -325,18 +326,29 @@ def as_spring(model: Model) -> list[Model]:
     return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
 
 
-def slow_branches(model: Model, longest: float) -> list[Model]:
-    """A spring with any zero in the place of a branch that hardly relaxes in a run [s]."""
+def as_plain_spring(model: Model, longest: float) -> list[Model]:
+    """A spring with any zero in the place of what may be no more, the plainest first.
+
+    That is a branch that hardly relaxes in the longest run [s], and a curve of the force.
+    """
     found = []
     for number in (1, 2):
         stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
         if stiffness in model.free and model.values[time] > 0.5 * longest:
-            spring = {
-                "stiffness": model.values.get("stiffness", 0.0) + model.values[stiffness],
-                "force_offset": model.values.get("force_offset", 0.0),
-            }
-            found.append(model.without((stiffness, time)).adding(None, **spring))
+            bare = model.without((stiffness, time))
+            found.append(_with_spring(bare, model.values[stiffness], 0.0))
+    nodes = [name for name in _FORCE.nodes if name in model.values]
+    if not set(nodes).isdisjoint(model.free):
+        places = np.linspace(model.values["curve_lower"], model.values["curve_upper"], len(nodes))
+        slope, offset = np.polyfit(places, [model.values[name] for name in nodes], 1)
+        spring = _with_spring(model.without(nodes), float(slope), float(offset))
+        found += [spring, spring.adding(None, stiffness_cubic=0.0)]
     return found
+
+
+def _with_spring(model: Model, stiffness: float, offset: float) -> Model:
+    more = {"stiffness": stiffness, "force_offset": offset}
+    return model.adding(None, **{name: model.values.get(name, 0.0) + more[name] for name in more})
 
 
 def simpler_laws(model: Model) -> list[Model]:

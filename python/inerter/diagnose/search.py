@@ -20,6 +20,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
+    as_plain_spring,
     as_spring,
     effects_of,
     is_blur,
@@ -27,7 +28,6 @@ from inerter.diagnose.composition import (
     is_local,
     is_shaft,
     simpler_laws,
-    slow_branches,
     with_own_spring,
     within_blur,
     without_effect,
@@ -298,8 +298,7 @@ class Search:
         """Whether a play does no more than its shaft, which is no candidate along one sine."""
         if scored.effect != "backlash" or not self.problem.scales.one_tone:
             return False
-        alone = self.problem.fit(scored.model.without(("backlash",)))
-        masks = self.problem.masks
+        alone, masks = self.problem.fit(scored.model.without(("backlash",))), self.problem.masks
         return scored.fit.rmse(masks) > (1 - CRITERIA.gain) * alone.rmse(masks)
 
     def _weighed_for(self, rich: Scored, scored: Sequence[Scored]) -> list[Scored]:
@@ -383,8 +382,7 @@ class Search:
                 stiffens = candidate.effect == "parallel_stiffness" and "bw_ratio" in free
                 if same and (stiffens or not EFFECTS[candidate.effect].unlike_friction):
                     trials.append(candidate)
-        spare = current.model.complexity
-        plainer = (trial for trial in trials if trial.starts[0].complexity < spare)
+        plainer = (t for t in trials if t.starts[0].complexity < current.model.complexity)
         trials = [trial for trial in plainer if self._may_be(trial.starts[0])]
         limit = current.fit.rmse(masks) * (1 + CRITERIA.tolerated_loss)
         fits = sorted(
@@ -398,10 +396,12 @@ class Search:
         if with_spring := self._spring_beside(current):
             return self._exchange(with_spring)
         longest = max(run.spacing * run.force.size for run in self.runs)
-        for model in filter(self._may_be, slow_branches(current.model, longest)):
-            scored = self.score("exchange", None, self.problem.fit(model))
-            if loss(scored, current) < CRITERIA.gain:
-                return self._exchange(scored)
+        for model in filter(self._may_be, as_plain_spring(current.model, longest)):
+            fit = self.problem.fit(model)
+            if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
+                scored = self.score("exchange", None, fit)
+                if loss(scored, current) < CRITERIA.gain:
+                    return self._exchange(scored)
         for model in filter(self._may_be, as_one(current.model)):
             fit = self.problem.fit(model)
             if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):
