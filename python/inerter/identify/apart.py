@@ -70,7 +70,9 @@ class Apart:
     def rest(self, values: Array) -> Array:
         """What the coordinates cannot take of values in the basis' rows, (n,) or (n, k)."""
         left = self.basis.left
-        return values - left @ (left.T @ values)
+        # a prediction that runs away leaves nothing that is finite, which a search steps back from
+        with np.errstate(invalid="ignore", over="ignore"):
+            return values - left @ (left.T @ values)
 
     def columns(self, model: Model, sizes: Scales) -> Array:
         """Derivatives of what counts by the search variables, (n, q)."""
@@ -82,7 +84,7 @@ class Apart:
 
         None where one of them is beyond its bounds.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             change = -self.basis.inverse @ (self.basis.left.T @ residual) / self._factors(model)
         values = {}
         for name, more in zip(self.names, change, strict=True):
