@@ -160,6 +160,13 @@ class Device:
     def __repr__(self) -> str:
         return "Device(" + ", ".join(f"{k}={v!r}" for k, v in self._given.items()) + ")"
 
+    def __eq__(self, other: object) -> bool:
+        """Whether another device states the same."""
+        return isinstance(other, Device) and self._given == other._given
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._given.items()))
+
     def replace(self, **values: float | str | Sequence[Any]) -> Device:
         """The same device with some values stated anew."""
         return Device(**{**self._given, **values})

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-import mujoco
-
+from inerter.cars.read import CarError
+from inerter.cars.spec import is_car_file, model_spec
 from inerter.core import Device, DeviceError
 from inerter.engine_errors import COMPILE_ERRORS, cannot_be_opened, engine_text
 from inerter.model_bounds import refuse_unbounded
@@ -45,8 +45,11 @@ def _read(path: Path) -> tuple[ElementTree.Element, ElementTree.Element]:
     """The root of a model, and the element that configures its one device."""
     load_plugin()
     try:
-        refuse_unbounded(path)
-        text = mujoco.MjSpec.from_file(str(path.absolute())).to_xml()
+        if not is_car_file(path):
+            refuse_unbounded(path)
+        text = model_spec(path).to_xml()
+    except CarError as error:
+        raise DeviceError(str(error)) from None
     except OSError as error:
         raise DeviceError(cannot_be_opened(path, error)) from None
     except COMPILE_ERRORS as error:

@@ -241,7 +241,10 @@ def test_a_device_with_lists_is_copied_and_written(tmp_path: Path) -> None:
     assert device.force_periods == (0.03, 4.0, 0.5)
     for again in (pickle.loads(pickle.dumps(device)), Device(**device.given)):
         assert again.given == device.given
+        assert again == device
+        assert hash(again) == hash(device)
         assert force(again, 0.01, 0.2, 1.0) == force(device, 0.01, 0.2, 1.0)
+    assert device != device.replace(inertance=3.5)
     path = tmp_path / "device.toml"
     path.write_text(device_text(device))
     assert "force_periods = [[0.03, 4.0, 0.5]]" in path.read_text()

@@ -13,6 +13,8 @@ import pytest
 from inerter.cars.mjcf import car_mjcf
 from inerter.cars.parts import CarParts, StrutParts
 from inerter.cars.read import CarError, read_car, shipped_car
+from inerter.core import DeviceError
+from inerter.mjcf import device_of_model
 from inerter.model_parameters import FULL_CAR
 from inerter.models import model_path
 from inerter.plugin import load_plugin
@@ -286,3 +288,17 @@ def test_inner_springs_may_not_carry_more_than_all(tmp_path: Path) -> None:
     front = dataclasses.replace(car.front, strut=strut)
     with pytest.raises(ValueError, match="its inner springs carry 40000 N/m at rest"):
         car_mjcf(dataclasses.replace(car, front=front))
+
+
+def test_the_device_of_a_car_file_is_a_baseline_for_its_record(tmp_path: Path) -> None:
+    text = (
+        "[car]\nkind = 'quarter'\nbody_mass_kg = 320\n[front]\nwheel_mass_kg = 42\n"
+        "tyre_stiffness_kN_per_m = 210\n[front.strut]\nlayout = 'S6'\nstiffness_kN_per_m = 25\n"
+        "damping_N_s_per_m = 961\ninertance_kg = 144\nrelaxation_stiffness_kN_per_m = 6.9\n"
+    )
+    path = tmp_path / "car.toml"
+    path.write_text(text, encoding="utf-8")
+    assert device_of_model(path).inertance == 144.0
+    path.write_text(text.replace("kind = 'quarter'", "kind = 'boat'"), encoding="utf-8")
+    with pytest.raises(DeviceError, match="boat"):
+        device_of_model(path)

@@ -127,7 +127,8 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
         raise ValueError(
             f"{told} would change its states from {_listed(old.device.state_names)} to "
             f"{_listed(new.device.state_names)}, which are frozen once it is made; make it so at "
-            "the start (a tiny value is enough to have a state)"
+            "the start (a part that hardly acts is enough to have a state: a tiny value, of a "
+            "series stiffness a large one)"
         )
     if new.constant_mass != old.constant_mass or new.loaded != old.loaded:
         raise ValueError(
