@@ -6,6 +6,7 @@ import ctypes
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any, overload
 
 import numpy as np
@@ -51,10 +52,6 @@ __all__ = [
 
 class DeviceError(ValueError):
     """A device that cannot be: names the parameter, its value, what is allowed."""
-
-
-def _made_again(given: dict[str, float | str]) -> Device:
-    return Device(**given)
 
 
 class Device:
@@ -155,7 +152,7 @@ class Device:
         super().__setattr__(name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _made_again, (self._given,)
+        return partial(Device, **self._given), ()
 
     def __repr__(self) -> str:
         return "Device(" + ", ".join(f"{k}={v!r}" for k, v in self._given.items()) + ")"
