@@ -101,6 +101,19 @@ def test_processes_do_not_change_the_answer() -> None:
         (("--stiffness", "1e3:2e3:1"), ["count '1'"]),
         (("--layout", ","), ["layout is empty"]),
         (("--sprung-mass", "0"), ["sprung_mass is 0", "positive"]),
+        (
+            ("--tyre-stiffness", "210"),
+            [
+                "--tyre-stiffness is 210 N/m",
+                "30000 to 2e+06",
+                "did you mean 210000 N/m?",
+                'unusual = ["front.tyre_stiffness"]',
+            ],
+        ),
+        (("--sprung-mass", "320e3"), ["--sprung-mass is 320000 kg", "did you mean 320 kg?"]),
+        (("--unsprung-mass", "0.042"), ["--unsprung-mass is 0.042 kg", "did you mean 42 kg?"]),
+        (("--hold", "damping=1.7"), ["--hold: damping is 1.7 N s/m", "mean 1700 N s/m?"]),
+        (("--catalogue", "damping=0.9/1200"), ["damping is 0.9 N s/m", "mean 900 N s/m?"]),
         (("--roughness", "inf"), ["roughness is inf", "positive"]),
     ],
 )
