@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from inerter.suspension.indices import INDICES
-from inerter.suspension.results import improvement, notes
-from inerter.suspension.sweep import SweepRow
+from inerter.suspension.results import improvement, missed_notes, notes
+from inerter.suspension.sweep import Missed, SweepRow
 from inerter.suspension.vehicle.optimum import VehicleOptimum
 from inerter.suspension.vehicle.strut import VehicleStrut
 
 
-def print_rows(rows: list[SweepRow], console: Console) -> None:
+def print_rows(rows: list[SweepRow], console: Console, missed: Sequence[Missed] = ()) -> None:
     """Print a table of the optima, the peaks of J5 where they are few, and the remarks.
 
     Struts of a half- or full car stand one below the other, the front's first.
@@ -61,6 +62,8 @@ def print_rows(rows: list[SweepRow], console: Console) -> None:
             console.print(Text(_peaks(row), style="dim"), soft_wrap=True)
     for note in notes(rows):
         console.print(Text(note), soft_wrap=True)
+    for told in missed_notes(missed):
+        console.print(Text(told), soft_wrap=True)
 
 
 def _struts(row: SweepRow) -> tuple[VehicleStrut, ...]:
