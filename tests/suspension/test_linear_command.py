@@ -127,6 +127,15 @@ def test_what_cannot_be_used_is_refused_in_one_line(
     assert all(part in done.stderr for part in told), done.stderr
 
 
+def test_centring_springs_are_shown() -> None:
+    words = ["suspension", "optimize", "--layout", "SW7", "--index", "J3", "--hold", "inertance=60"]
+    (row,) = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
+    shown = CliRunner().invoke(app, words).stdout
+    names = {"k_1": "damper_stiffness", "k_2": "inerter_stiffness", "beside": "parallel_stiffness"}
+    parts = ", ".join(f"{short} {row[name] / 1e3:.5g}" for short, name in names.items())
+    assert f"SW7 J3 none at k = 120 kN/m, springs [kN/m]: {parts}" in shown
+
+
 def test_a_folder_that_is_a_file_is_refused_before_the_work(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.write_text("")
