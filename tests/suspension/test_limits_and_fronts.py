@@ -102,6 +102,29 @@ def test_limits_that_no_design_keeps_are_refused() -> None:
         optimise(problem("S3", "J1", limits=(("J3", 100.0),)))
 
 
+OWN = ["optimize", "--sprung-mass", "320", "--unsprung-mass", "42", "--tyre-stiffness", "210e3",
+       "--stiffness", "25e3", "--index", "J1w"]  # fmt: skip
+
+
+def test_a_layout_that_keeps_no_limit_leaves_the_others(tmp_path: Path) -> None:
+    words = [*OWN, "--layout", "S1,SR", "--limit", "J3=560"]
+    run = CliRunner().invoke(app, [*words, "--json", "--out", str(tmp_path)])
+    assert run.exit_code == 0, run.output
+    kept, missed = json.loads(run.stdout)
+    alone = optimise(problem("SR", "J1w", limits=(("J3", 560.0),)))
+    assert (kept["layout"], kept["value"]) == ("SR", pytest.approx(alone.value, rel=1e-9))
+    assert (missed["layout"], missed["value"]) == ("S1", None)
+    assert "no design keeps J3 560 (alone not below 572." in missed["told"]
+    assert json.loads((tmp_path / "optimum.json").read_text())["missed"] == [missed]
+    shown = CliRunner().invoke(app, words)
+    assert shown.exit_code == 0, shown.output
+    assert "layout S1: no design keeps J3 560" in shown.stdout
+    # nothing left to show is an error
+    none = CliRunner().invoke(app, [*OWN, "--layout", "S1", "--limit", "J3=560", "--json"])
+    assert (none.exit_code, none.stdout) == (2, "")
+    assert "layout S1: no design keeps J3 560" in none.stderr
+
+
 @pytest.mark.long
 def test_a_half_car_within_a_limit() -> None:
     one = VehicleProblem(

@@ -101,6 +101,19 @@ def test_processes_do_not_change_the_answer() -> None:
         (("--stiffness", "1e3:2e3:1"), ["count '1'"]),
         (("--layout", ","), ["layout is empty"]),
         (("--sprung-mass", "0"), ["sprung_mass is 0", "positive"]),
+        (
+            ("--tyre-stiffness", "210"),
+            [
+                "--tyre-stiffness is 210 N/m",
+                "30000 to 2e+06",
+                "did you mean 210000 N/m?",
+                'unusual = ["front.tyre_stiffness"]',
+            ],
+        ),
+        (("--sprung-mass", "320e3"), ["--sprung-mass is 320000 kg", "did you mean 320 kg?"]),
+        (("--unsprung-mass", "0.042"), ["--unsprung-mass is 0.042 kg", "did you mean 42 kg?"]),
+        (("--hold", "damping=1.7"), ["--hold: damping is 1.7 N s/m", "mean 1700 N s/m?"]),
+        (("--catalogue", "damping=0.9/1200"), ["damping is 0.9 N s/m", "mean 900 N s/m?"]),
         (("--roughness", "inf"), ["roughness is inf", "positive"]),
     ],
 )
@@ -112,6 +125,15 @@ def test_what_cannot_be_used_is_refused_in_one_line(
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
     assert all(part in done.stderr for part in told), done.stderr
+
+
+def test_centring_springs_are_shown() -> None:
+    words = ["suspension", "optimize", "--layout", "SW7", "--index", "J3", "--hold", "inertance=60"]
+    (row,) = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
+    shown = CliRunner().invoke(app, words).stdout
+    names = {"k_1": "damper_stiffness", "k_2": "inerter_stiffness", "beside": "parallel_stiffness"}
+    parts = ", ".join(f"{short} {row[name] / 1e3:.5g}" for short, name in names.items())
+    assert f"SW7 J3 none at k = 120 kN/m, springs [kN/m]: {parts}" in shown
 
 
 def test_a_folder_that_is_a_file_is_refused_before_the_work(tmp_path: Path) -> None:

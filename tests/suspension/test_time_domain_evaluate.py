@@ -126,6 +126,7 @@ def test_table(tmp_path: Path) -> None:
         (["--case", "rust"], "case 'rust': there are ideal, friction"),
         (["--index", "J2"], "index 'J2' is not known: choose from J1, J3, J5, J1w, travel"),
         (["--stiffness", "12O"], "--stiffness is '12O': give numbers"),
+        (["--damping", "1.7", "--inertance", "30"], "--damping is 1.7 N s/m: usual is 50 N s/m"),
         (["--stiffness", "-1"], "stiffness is -1 N/m: give a positive number"),
         (["--road", "moon"], "road 'moon': give paper or iso:A"),
         (["--seeds", "1"], "seeds is 1: give 2 or more"),

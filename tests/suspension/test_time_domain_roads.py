@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from inerter.suspension.quarter_car import Road
+from inerter.suspension.time_domain.profile import profile_named
 from inerter.suspension.time_domain.road import (
     PeriodicRoad,
     iso_road,
     paper_road,
     road_named,
 )
+from numpy.typing import NDArray
 
 
 def test_amplitudes_are_those_the_paper_prints() -> None:
@@ -110,3 +113,52 @@ def test_numbers_out_of_range() -> None:
     with pytest.raises(ValueError, match="count from 1"):
         PeriodicRoad("none", 1.0, first=5, last=4)
     assert paper_road(Road(velocity=50.0)).strength == 2 * paper_road().strength
+
+
+def road_file(folder: Path, x: NDArray[np.float64], heights: NDArray[np.float64]) -> str:
+    path = folder / "road.csv"
+    rows = [f"{a!r},{b!r}" for a, b in zip(x.tolist(), heights.tolist(), strict=True)]
+    path.write_text("\n".join(["distance,height", *rows]))
+    return str(path)
+
+
+def test_rows_that_are_missing_are_no_straight_road(tmp_path: Path) -> None:
+    x = np.arange(0, 2001) / 10
+    rough = 0.01 * np.sin(x)
+    kept = (x <= 100.0) | (x >= 130.0)
+    told = r"no rows between distance 100 and 130 m, where rows are usually 0\.1 m apart"
+    with pytest.raises(ValueError, match=told):
+        profile_named(road_file(tmp_path, x[kept], rough[kept]), 20.0)
+    whole = profile_named(road_file(tmp_path, x, rough), 20.0)
+    assert whole is not None
+    assert np.array_equal(whole.left, rough)
+    # a few rows that are missing, and what is drawn with a flat road before it
+    few = (x < 100.0) | (x > 100.75)
+    assert profile_named(road_file(tmp_path, x[few], rough[few]), 20.0)
+    drawn = np.array([0.0, 50.0, 50.1, 50.2, 50.3, 50.4, 100.0])
+    assert profile_named(road_file(tmp_path, drawn, np.array([0, 0, 1, 2, 1, 0, 0]) / 100), 20.0)
+
+
+@pytest.mark.parametrize(
+    ("cell", "told"),
+    [
+        ("nan", "height of row 2 is nan: give a number"),
+        ("", "height of row 2 is empty: give a number"),
+        ("O.1", r"height of row 2 is O\.1: give a number"),
+        ("50", "changes by .* did you mean mm"),
+    ],
+)
+def test_a_cell_that_is_no_height_is_named(cell: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "road.csv"
+    path.write_text(f"distance,height\n0,0\n5,{cell}\n10,0\n")
+    with pytest.raises(ValueError, match=told):
+        profile_named(str(path), 20.0)
+
+
+def test_hills_may_be_high_and_millimetres_not_metres(tmp_path: Path) -> None:
+    x = np.arange(0, 5001) / 10
+    rough = 0.008 * np.sin(2.0 * x) + 0.002 * np.sin(0.3 * x)
+    hill = 30.0 * np.sin(x / 100.0) ** 2
+    assert profile_named(road_file(tmp_path, x, rough + hill), 20.0)
+    with pytest.raises(ValueError, match="did you mean mm"):
+        profile_named(road_file(tmp_path, x, 1e3 * rough), 20.0)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
+from inerter.cars.keys import AXLE_KEYS, CAR_KEYS, STRUT_KEYS
 from inerter.cars.parts import AxleParts, CarParts
 from inerter.cars.read import read_car
 from inerter.model_parameters import QUARTER_CAR
@@ -25,6 +27,11 @@ from inerter.suspension.vehicle.cars import Axle, FullCar, HalfCar, Vehicle, ful
 
 _HELD = ("damping", "inertance", "relaxation_stiffness")
 CARS = ("quarter", "half", "full")
+_KEYS = {
+    "sprung_mass": ("car.body_mass", CAR_KEYS["body_mass"], "kg"),
+    "unsprung_mass": ("front.wheel_mass", AXLE_KEYS["wheel_mass"], "kg"),
+    "tyre_stiffness": ("front.tyre_stiffness", AXLE_KEYS["tyre_stiffness"], "N/m"),
+}
 
 
 def chosen_car(
@@ -62,6 +69,8 @@ def chosen_car(
         if equal:
             raise StudyError("--equal is of cars with two axles: give --car half or --car full")
         _only_full(correlation)
+        for key, value in given.items():
+            _refuse_unusual(key, value)
         return QuarterCar(**given)
     if given:
         options = ", ".join("--" + key.replace("_", "-") for key in given)
@@ -73,6 +82,34 @@ def chosen_car(
         _only_full(correlation)
         return half_car()
     return full_car() if correlation is None else full_car(correlation)
+
+
+def _refuse_unusual(name: str, value: float) -> None:
+    """Raise StudyError for a value that a car's file would ask about: its unit may be another."""
+    place, key, unit = _KEYS[name]
+    # what is not positive is another error
+    if not (math.isfinite(value) and value > 0.0) or key.low <= value <= key.high:
+        return
+    raise StudyError(
+        f"--{name.replace('_', '-')} is {value:g} {unit}, {key.meaning}: usual is {key.low:g} to "
+        f"{key.high:g} {unit}{_meant(value, key.low, key.high, unit)} If it is right, write the "
+        f'car into a file, --car car.toml, with unusual = ["{place}"] under [car]'
+    )
+
+
+def refuse_faint_damping(value: float, what: str) -> None:
+    """Raise StudyError for a damper so weak that it most likely is in another unit."""
+    key = STRUT_KEYS["damping"]
+    if 0.0 < value < key.low:
+        raise StudyError(
+            f"{what} is {value:g} N s/m: usual is {key.low:g} N s/m and more"
+            f"{_meant(value, key.low, key.high, 'N s/m').rstrip('.')}"
+        )
+
+
+def _meant(value: float, low: float, high: float, unit: str) -> str:
+    near = [f"{value * scale:g}" for scale in (1e3, 1e-3) if low <= value * scale <= high]
+    return f"; did you mean {near[0]} {unit}?" if near else "."
 
 
 def study_asked(
@@ -101,6 +138,10 @@ def study_asked(
         A value is out of its range.
     """
     which = chosen_car(car, quarter or {}, equal=equal, correlation=correlation)
+    fixed, choices = read_pairs(hold, _HELD, "hold"), read_catalogue(catalogue, _HELD)
+    refuse_faint_damping(dict(fixed).get("damping", 0.0), "--hold: damping")
+    for value in dict(choices).get("damping", ()):
+        refuse_faint_damping(value, "--catalogue: damping")
     return Study(
         layouts=read_layouts(layout),
         indices=indices,
@@ -109,8 +150,8 @@ def study_asked(
         car=which,
         road=road,
         equal=equal,
-        fixed=read_pairs(hold, _HELD, "hold"),
-        catalogue=read_catalogue(catalogue, _HELD),
+        fixed=fixed,
+        catalogue=choices,
         vary=read_catalogue(vary, (*OF_CAR, *OF_PARTS), "vary"),
         limits=read_pairs(limit, INDICES, "limit"),
     )

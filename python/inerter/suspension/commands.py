@@ -86,10 +86,11 @@ def optimize_command(
     from inerter.suspension.car_options import study_asked
     from inerter.suspension.output import rows_json, write_sweep
     from inerter.suspension.study import read_indices
-    from inerter.suspension.sweep import sweep
+    from inerter.suspension.sweep import Missed, sweep
     from inerter.suspension.table import print_rows
 
     files: list[str] = []
+    missed: list[Missed] = []
     with refusing(out_dir, "optimum.json", "optimum.png", "optimum.html"):
         quarter = {
             "sprung_mass": sprung_mass,
@@ -112,12 +113,12 @@ def optimize_command(
             correlation=correlation,
         )
         with progress_bar("optimising", as_json) as progress:
-            rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress)
+            rows = sweep(study, jobs=jobs, scheduler=scheduler, progress=progress, missed=missed)
         if out_dir is not None:
-            files = write_sweep(study, rows, out_dir)
+            files = write_sweep(study, rows, out_dir, missed)
     if as_json:
-        print(rows_json(rows), end="")
+        print(rows_json(rows, missed), end="")
         return
-    print_rows(rows, out)
+    print_rows(rows, out, missed)
     if out_dir is not None:
         out.print(f"Written to {out_dir}: {', '.join(files)}")

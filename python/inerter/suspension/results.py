@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from inerter.suspension.sweep import SweepRow
+from inerter.suspension.sweep import Missed, SweepRow
 
 Curve = tuple[list[float], list[float]]
 
@@ -64,6 +64,16 @@ def notes(rows: Iterable[SweepRow]) -> list[str]:
         f"{'; '.join(f'{name} at k = {_range(ks)} kN/m' for name, ks in groups.items())}: {note}"
         for note, groups in about.items()
     ]
+
+
+def missed_notes(missed: Iterable[Missed]) -> list[str]:
+    """What no design keeps, each sentence once, with the stiffnesses it is of."""
+    about: dict[str, list[float]] = {}
+    for each in missed:
+        stiffnesses = about.setdefault(each.told, [])
+        if each.case.stiffness not in stiffnesses:
+            stiffnesses.append(each.case.stiffness)
+    return [f"{told} (at k = {_range(ks)} kN/m)" for told, ks in about.items()]
 
 
 def _range(stiffnesses: list[float]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from inerter.parallel import Progress, run_all
+from inerter.suspension.limited import LimitError
 from inerter.suspension.optimum import Optimum, optimise
 from inerter.suspension.problem import SuspensionProblem
 from inerter.suspension.study import Case, Study
@@ -41,12 +42,35 @@ class SweepRow:
         }
 
 
+@dataclass(frozen=True)
+class Missed:
+    """What was asked for within limits that no design keeps, and the sentence on it."""
+
+    case: Case
+    told: str
+
+    def json(self) -> dict[str, Any]:
+        """The row of the command's JSON: it has no value."""
+        problem = self.case.problem
+        car = {"car": problem.car.name} if isinstance(problem, VehicleProblem) else {}
+        return {
+            **car,
+            "layout": self.case.layout,
+            "index": self.case.index,
+            "stiffness": self.case.stiffness,
+            "series": self.case.series,
+            "value": None,
+            "told": self.told,
+        }
+
+
 def sweep(
     study: Study,
     *,
     jobs: int | None = None,
     scheduler: str | None = None,
     progress: Progress = lambda share: None,
+    missed: list[Missed] | None = None,
 ) -> list[SweepRow]:
     """Every optimum of a study, in the order of its cases, the same wherever it is sought.
 
@@ -60,9 +84,13 @@ def sweep(
         Address of a Dask scheduler, see `inerter.parallel.run_all`.
     progress
         Called with the share that is done, 0 to 1.
+    missed
+        Gets the cases whose limits no design keeps, beside others whose limits one keeps.
 
     Raises
     ------
+    LimitError
+        No design of any case keeps the limits, or of one without `missed`.
     WorkError
         The scheduler cannot be reached, or its workers end.
     """
@@ -75,12 +103,29 @@ def sweep(
         jobs = 1
     optima = run_all(_optimum, problems, jobs=jobs, scheduler=scheduler, progress=progress)
     found = dict(zip(problems, optima, strict=True))
-    return [SweepRow(case, found[case.problem]) for case in cases]
+    rows, without = [], []
+    for case in cases:
+        one = found[case.problem]
+        if isinstance(one, LimitError):
+            without.append(Missed(case, str(one)))
+        else:
+            rows.append(SweepRow(case, one))
+    if without and (missed is None or not rows):
+        raise LimitError("; ".join(dict.fromkeys(each.told for each in without)))
+    if missed is not None:
+        missed += without
+    return rows
 
 
-def _optimum(problem: SuspensionProblem | VehicleProblem) -> Optimum | VehicleOptimum:
+def _optimum(
+    problem: SuspensionProblem | VehicleProblem,
+) -> Optimum | VehicleOptimum | LimitError:
     # threads would fight over matrices of seven rows, and change the last digits
     with threadpool_limits(1):
-        if isinstance(problem, VehicleProblem):
-            return optimise_vehicle(problem)
-        return optimise(problem)
+        try:
+            if isinstance(problem, VehicleProblem):
+                return optimise_vehicle(problem)
+            return optimise(problem)
+        except LimitError as error:
+            # others may keep the limits
+            return error

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from inerter.suspension.indices import INDICES
-from inerter.suspension.results import improvement, notes
-from inerter.suspension.sweep import SweepRow
+from inerter.suspension.results import improvement, missed_notes, notes
+from inerter.suspension.sweep import Missed, SweepRow
 from inerter.suspension.vehicle.optimum import VehicleOptimum
 from inerter.suspension.vehicle.strut import VehicleStrut
 
 
-def print_rows(rows: list[SweepRow], console: Console) -> None:
+def print_rows(rows: list[SweepRow], console: Console, missed: Sequence[Missed] = ()) -> None:
     """Print a table of the optima, the peaks of J5 where they are few, and the remarks.
 
     Struts of a half- or full car stand one below the other, the front's first.
@@ -59,8 +60,13 @@ def print_rows(rows: list[SweepRow], console: Console) -> None:
     for row in rows if len(rows) <= 30 else []:
         if row.optimum.peaks:
             console.print(Text(_peaks(row), style="dim"), soft_wrap=True)
+    for row in rows:
+        if told := _centring(row):
+            console.print(Text(told, style="dim"), soft_wrap=True)
     for note in notes(rows):
         console.print(Text(note), soft_wrap=True)
+    for told in missed_notes(missed):
+        console.print(Text(told), soft_wrap=True)
 
 
 def _struts(row: SweepRow) -> tuple[VehicleStrut, ...]:
@@ -79,6 +85,24 @@ def _names(row: SweepRow) -> tuple[str, ...]:
 def _lines(springs: list[float | None]) -> str:
     texts = ("" if x is None else "rigid" if math.isinf(x) else f"{x / 1e3:.5g}" for x in springs)
     return "\n".join(texts)
+
+
+def _centring(row: SweepRow) -> str:
+    """Centring springs and what is beside them, of two axles front and rear; empty without."""
+    designs = row.optimum.design()
+    axles = [designs] if "damping" in designs else [designs["front"], designs["rear"]]
+    if any("damper_stiffness" not in each for each in axles):
+        return ""
+    names = {"k_1": "damper_stiffness", "k_2": "inerter_stiffness", "beside": "parallel_stiffness"}
+    parts = [
+        f"{short} {' / '.join(f'{each[name] / 1e3:.5g}' for each in axles)}"
+        for short, name in names.items()
+    ]
+    case = row.case
+    return (
+        f"{case.layout} {case.index} {case.series} at k = {case.stiffness / 1e3:g} kN/m, springs "
+        f"[kN/m]: {', '.join(parts)}"
+    )
 
 
 def _peaks(row: SweepRow) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from inerter.cars.read import read_car
 from inerter.model_parameters import QUARTER_CAR
-from inerter.suspension.car_options import linear_car
+from inerter.suspension.car_options import linear_car, refuse_faint_damping
 from inerter.suspension.layouts import LAYOUTS
 from inerter.suspension.quarter_car import QuarterCar
 from inerter.suspension.study import stiffness_of
@@ -174,7 +174,10 @@ def _struts(text: str, option: str, car: str) -> tuple[float, ...]:
     if len(parts) > (1 if car == "quarter" else 2):
         raise ValueError(f"--{option} is {text!r}: give one number for the {car}-car's strut")
     try:
-        return tuple(float(part) for part in parts)
+        values = tuple(float(part) for part in parts)
     except ValueError:
         form = "a number" if car == "quarter" else "a number or FRONT/REAR"
         raise ValueError(f"--{option} is {text!r}: give {form}") from None
+    for value in values if option == "damping" else ():
+        refuse_faint_damping(value, "--damping")
+    return values
