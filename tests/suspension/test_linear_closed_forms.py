@@ -116,7 +116,7 @@ def test_comfort_of_an_inerter_beside_the_damper(effects_seed: int) -> None:
             a += b**2 * (kt**2 * ms - 2.0 * k * kt * m) + b**3 * kt**2
             return case.least(a / below, kt)[0]
 
-        best = minimize_scalar(of, bounds=(0.0, 3.0 * m), options={"xatol": 1e-6})
+        best: Any = minimize_scalar(of, bounds=(0.0, 3.0 * m), options={"xatol": 1e-6})
         value = min(float(best.fun), of(0.0))
         assert case.optimum("S2", "J1") == pytest.approx(value, rel=1e-8)
         assert case.optimum("S2", "J1", inertance=0.4 * m) == pytest.approx(of(0.4 * m), rel=1e-9)
