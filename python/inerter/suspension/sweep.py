@@ -29,17 +29,7 @@ class SweepRow:
 
     def json(self) -> dict[str, Any]:
         """The row of the command's JSON."""
-        problem = self.case.problem
-        car = {"car": problem.car.name} if isinstance(problem, VehicleProblem) else {}
-        return {
-            **car,
-            "layout": self.case.layout,
-            "index": self.case.index,
-            "stiffness": self.case.stiffness,
-            "series": self.case.series,
-            "value": self.optimum.value,
-            **self.optimum.design(),
-        }
+        return {**_asked(self.case), "value": self.optimum.value, **self.optimum.design()}
 
 
 @dataclass(frozen=True)
@@ -51,17 +41,20 @@ class Missed:
 
     def json(self) -> dict[str, Any]:
         """The row of the command's JSON: it has no value."""
-        problem = self.case.problem
-        car = {"car": problem.car.name} if isinstance(problem, VehicleProblem) else {}
-        return {
-            **car,
-            "layout": self.case.layout,
-            "index": self.case.index,
-            "stiffness": self.case.stiffness,
-            "series": self.case.series,
-            "value": None,
-            "told": self.told,
-        }
+        return {**_asked(self.case), "value": None, "told": self.told}
+
+
+def _asked(case: Case) -> dict[str, Any]:
+    """What a row of the JSON says of what was asked for."""
+    problem = case.problem
+    car = {"car": problem.car.name} if isinstance(problem, VehicleProblem) else {}
+    return {
+        **car,
+        "layout": case.layout,
+        "index": case.index,
+        "stiffness": case.stiffness,
+        "series": case.series,
+    }
 
 
 def sweep(
