@@ -79,7 +79,7 @@ def test_a_layout_that_contains_another_is_never_worse(index: str) -> None:
         values = {name: best(name, index, k).value for name in LAYOUTS if name[:2] != "SW"}
         values |= {name: best(name, index, k).value for name in ("SW7", "SW8")}
         for inner, outer in CONTAINED:
-            slack = NEARLY.get((inner, outer), 1e-8)
+            slack = 1e-9 if inner == "S6" and outer == "SW7" else NEARLY.get((inner, outer), 1e-9)
             assert values[outer] <= values[inner] * (1.0 + slack), (inner, outer, k)
         # and the richest gains
         assert values["SW8"] < 0.999 * values["S1"]
