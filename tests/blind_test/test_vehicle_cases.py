@@ -94,13 +94,15 @@ OF = {
     "position_dependent_damping": "strut", "viscoelasticity": "strut",
     "tyre_enveloping": "tyres", "sensor_filter": "channel:body_acceleration",
     "sensor_compliance": "channel:body_acceleration", "sensor_delay": "channel:body_acceleration",
+    "mounting_angle": "channel:wheel_acceleration",
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("effect", [*OF])
 def test_a_hidden_effect_is_what_the_same_number_does_in_mujoco(effect: str) -> None:
     random = np.random.default_rng([7, len(effect)])
-    making = Making(draw_vehicle(random, "quarter"))
+    kind = "arm" if effect == "mounting_angle" else "quarter"
+    making = Making(draw_vehicle(random, kind))
     column = ["body_acceleration"]
     strength = 2.0 if effect == "tyre_enveloping" else 1.0
     draw_vehicle_effect(making, effect, None, random, [SIZES], strength, column, SPACING)

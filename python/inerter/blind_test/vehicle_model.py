@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from inerter.reference import DrawnVehicle
 
 _HEIGHT, _WHEEL = 0.6, 0.3
@@ -21,7 +23,9 @@ def vehicle_mjcf(vehicle: DrawnVehicle, active: bool = False) -> str:
         strut, wheel = f"strut{name}", "hub" if arm else f"wheel{name}"
         length = _HEIGHT - _WHEEL
         if arm:
-            length = (vehicle.strut_reach**2 + vehicle.strut_height**2) ** 0.5
+            reach, height = vehicle.strut_reach, vehicle.strut_height
+            turned = 2.0 * reach * height * math.sin(vehicle.arm_angle)
+            length = math.sqrt(reach**2 + height**2 - turned)
         values = {
             "inertance": corner.inertance, "viscous": corner.damping,
             "stiffness": corner.stiffness, "rest_length": length,
@@ -97,13 +101,14 @@ def _on_wheels(vehicle: DrawnVehicle) -> str:
 def _on_an_arm(vehicle: DrawnVehicle) -> str:
     corner, length = vehicle.corners[0], vehicle.arm_length
     inertia = " ".join([f"{vehicle.arm_inertia!r}"] * 3)
-    # the arm points forward: turning about -y lifts its end
+    # the arm points forward: turning about -y lifts its end; it turns from where it stands
     return (
         f'<site name="ground"/><body name="sprung" pos="0 0 {_HEIGHT}">'
         '<joint name="heave" type="slide" axis="0 0 1"/>'
         f'<geom type="box" size="0.3 0.3 0.1" mass="{vehicle.body_mass!r}" {_GEOM}/>'
         f'<site name="upper" pos="0 0 {vehicle.strut_height!r}"/>'
-        '<body name="arm"><joint name="arm" type="hinge" axis="0 -1 0"/>'
+        f'<body name="arm" euler="0 {-math.degrees(vehicle.arm_angle)!r} 0">'
+        '<joint name="arm" type="hinge" axis="0 -1 0"/>'
         f'<inertial pos="{length!r} 0 0" mass="{corner.wheel_mass!r}" diaginertia="{inertia}"/>'
         f'<site name="lower" pos="{vehicle.strut_reach!r} 0 0"/>'
         f'<site name="hub" pos="{length!r} 0 0"/></body></body>'

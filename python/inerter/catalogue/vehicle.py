@@ -82,6 +82,15 @@ _ALL = (
         rivals=("sensor_filter", "sensor_delay"),
     ),
     Effect(
+        name="mounting_angle", reported=("angle_toward_x", "angle_toward_y", "angle_toward_z"),
+        plain="an accelerometer that is not mounted straight",
+        meaning="a channel shows s cos(a) of its own axis and s sin(a) of another one",
+        cause="a bracket or a panel that leans, a sensor turned in its holder",
+        taken_for="a scale of the channel, or another centre of mass",
+        experiment="turn the sensor by a known angle and record the same road once more",
+        rivals=("sensor_compliance",),
+    ),
+    Effect(
         name="joint_friction", reported=("joint_friction",),
         plain="dry friction of a joint of the vehicle",
         meaning="f sign(v) between a wheel or body and its guide",

@@ -4,12 +4,14 @@
     M q'' + C q' + K q + sum_i e_i u_i = K r + C r' + f,   q = (heave[, pitch[, roll]], wheels)
 `arm`: one wheel on a trailing arm that turns on the body, exact for any angle th:
     (m_s + m_u) z'' + m_u L (cos th th'' - sin th th'^2) = F_t + F_b
-    m_u L cos th z'' + (m_u L^2 + J) th'' = F_t L cos th - l'(th) u,   x = l(th) - l(0)
-    F_t = k_t (r - z - L sin th) + c_t (r' - z' - L cos th th') >= -W
+    m_u L cos th z'' + (m_u L^2 + J) th'' = F_t L cos th - l'(th) u,   x = l(th) - l(th_0)
+    F_t = k_t (r - z - L (sin th - sin th_0)) + c_t (r' - z' - L cos th th') >= -W
 
 Symbols: u force of a strut, tension positive; l its length between a point (0, h) over the pivot
 and one `reach` along the arm [m]; r road [m]; W static load [N]; F_b force on the body [N].
 Friction of a guide is a device between a wheel (of an arm: the body) and the ground.
+A sensor that leans forward by the angle a shows z_w'' cos(a) + x_w'' sin(a) of the wheel, x_w
+forward along the arm, which stands at th_0 when nothing moves.
 Sign: as `vehicle.py`; z and th grow upward.
 Range: the body on corners: small angles. Not modelled: gravity, steering, anti-roll bars.
 """
@@ -73,7 +75,8 @@ class DrawnVehicle:
     """A vehicle, see the module.
 
     names: of the corners, "" for a single one, else "_front_left" and so on. arm_length,
-    arm_inertia [m, kg m^2], strut_reach, strut_height [m] are those of the arm. rider: mass [kg],
+    arm_inertia [m, kg m^2], strut_reach, strut_height [m] and arm_angle [rad] are those of the
+    arm. wheel_lean [rad]: of the accelerometer on an arm's wheel. rider: mass [kg],
     spring [N/m] and damper [N s/m] of one who sits over the centre of mass, not on an arm.
     """
 
@@ -87,6 +90,8 @@ class DrawnVehicle:
     arm_inertia: float = 1.0
     strut_reach: float = 0.4
     strut_height: float = 0.4
+    arm_angle: float = 0.0
+    wheel_lean: float = 0.0
     rider: tuple[float, float, float] | None = None
     changed: Mapping[int, Changed] = field(default_factory=dict)
 
@@ -238,7 +243,7 @@ class _Arm:
         self.active, self.on_body, self.on_wheel = loads
         self.corner, self.changed = vehicle.corners[0], vehicle.change(0)
         self.device = self.changed.device or self.corner.device
-        self.rest = self._length(0.0)[0]
+        self.rest = self._length(vehicle.arm_angle)[0]
 
     def _length(self, angle: float) -> tuple[float, float, float]:
         """The strut's length and its two derivatives by the angle."""
@@ -250,8 +255,8 @@ class _Arm:
 
     def _tyre(self, t: float, state: Array) -> float:
         z, th, dz, dth = state[:4]
-        length = self.vehicle.arm_length
-        rise, rate = z + length * np.sin(th), dz + length * np.cos(th) * dth
+        length, first = self.vehicle.arm_length, self.vehicle.arm_angle
+        rise, rate = z + length * (np.sin(th) - np.sin(first)), dz + length * np.cos(th) * dth
         force = self.corner.tyre_stiffness * (self.track(t) - rise)
         force += self.changed.tyre_damping * (self.track.rate(t) - rate)
         return float(max(force, -self.changed.static_load))
@@ -304,18 +309,22 @@ class _Arm:
 
     def run(self, times: Array) -> dict[str, Array]:
         """The channels."""
+        begin = np.zeros(4 + self.device.nstate)
+        begin[1] = self.vehicle.arm_angle
         run = solve_ivp(
-            self.rates, (float(times[0]), float(times[-1])), np.zeros(4 + self.device.nstate),
-            t_eval=times, method="LSODA", rtol=1e-7, atol=1e-9, max_step=0.01,
+            self.rates, (float(times[0]), float(times[-1])), begin, t_eval=times,
+            method="LSODA", rtol=1e-7, atol=1e-9, max_step=0.01,
         )  # fmt: skip
         if not run.success:
             raise RuntimeError(f"LSODA stopped: {run.message}")
         arm, states = self.vehicle.arm_length, run.y.T
         acc = np.array([self.accelerations(t, y) for t, y in zip(times, states, strict=True)])
-        th, dth = states[:, 1], states[:, 3]
+        th, dth, lean = states[:, 1], states[:, 3], self.vehicle.wheel_lean
+        up = acc[:, 0] + arm * (np.cos(th) * acc[:, 1] - np.sin(th) * dth**2)
+        forward = -arm * (np.sin(th) * acc[:, 1] + np.cos(th) * dth**2)
         return {
             "body_acceleration": acc[:, 0],
-            "wheel_acceleration": acc[:, 0] + arm * (np.cos(th) * acc[:, 1] - np.sin(th) * dth**2),
+            "wheel_acceleration": np.cos(lean) * up + np.sin(lean) * forward,
             "suspension_travel": np.array([self._length(a)[0] for a in th]) - self.rest,
             "tyre_force": np.array([self._tyre(t, y) for t, y in zip(times, states, strict=True)]),
         }

@@ -22,6 +22,7 @@ from .drawn_vehicle import DrawnCorner, DrawnVehicle, Signal
 from .sizes import rms, rounded
 from .vehicle_draws import (
     ACTIVE_EFFECTS,
+    LEANING,
     VEHICLE_EFFECTS,
     Making,
     Sizes,
@@ -128,6 +129,8 @@ def hide_in_vehicle(
     bare = [situation.drive(Making(stated), i) for i in range(RUNS)]
     sizes = _sizes(stated, bare)
     columns = _sensors(choose, list(bare[0]))
+    if "mounting_angle" in effects and LEANING not in columns:
+        columns.append(LEANING)
     law = law or str(choose.choice(["dahl", "lugre"])) if "hysteretic_friction" in effects else None
     strength = 1.0
     for _ in range(_TRIES):
@@ -243,6 +246,9 @@ def _kind(choose: Generator, effects: tuple[str, ...], unknown: str | None) -> s
     if "backlash" in effects or unknown == "rider":
         # the arm's equations have no contacts and no one on the body
         allowed &= np.array([True, True, True, False])
+    if "mounting_angle" in effects:
+        # bodies on corners move up and down alone
+        allowed &= np.array([False, False, False, True])
     odds = odds * allowed
     return str(choose.choice(kinds, p=odds / odds.sum()))
 
@@ -272,6 +278,7 @@ def draw_vehicle(draw: Generator, kind: str) -> DrawnVehicle:
             kind=kind, body_mass=quarter, corners=(only,), arm_length=arm,
             arm_inertia=rounded(only.wheel_mass * 0.06), strut_reach=rounded(arm * 0.8),
             strut_height=near(0.45, 0.15),
+            arm_angle=rounded(float(draw.choice([-1.0, 1.0])) * draw.uniform(0.15, 0.4)),
         )  # fmt: skip
     front, rear, track = near(1.1, 0.15), near(1.5, 0.15), near(1.5, 0.05)
     ends = {"front": front, "rear": -rear}

@@ -56,6 +56,7 @@ class Making:
     late: dict[str, float] = field(default_factory=dict)
     behind: dict[str, tuple[float, float]] = field(default_factory=dict)
     patch: float = 0.0
+    lean: float = 0.0
     gain: float = 1.0
     lag: float = 0.0
     on_body: Callable[[Array, int], Array] | None = None
@@ -78,6 +79,7 @@ class Making:
             changed[i] = Changed(device=device, guide=guide, **self.others.get(i, {}))
         return replace(
             self.stated, corners=tuple(corners), changed=changed, rider=self.rider,
+            wheel_lean=self.lean,
             body_mass=self.stated.body_mass * self.body,
             pitch_inertia=self.stated.pitch_inertia * self.body,
             roll_inertia=self.stated.roll_inertia * self.body,
@@ -341,6 +343,12 @@ def _mount(d: Draw) -> None:
     _element(d, "sensor_compliance", shaken, (0.03, 0.3))
 
 
+@_draws("mounting_angle")
+def _lean(d: Draw) -> None:
+    d.making.lean = rounded(d.off(0.08, 0.2) - 1.0)
+    d.making.tell("mounting_angle", LEANING, {"angle_toward_x": d.making.lean})
+
+
 @_draws("tyre_enveloping")
 def _enveloping(d: Draw) -> None:
     d.making.patch = rounded(d.between(0.12, 0.35))
@@ -378,6 +386,8 @@ def _bush(d: Draw) -> None:
 VEHICLE_EFFECTS = (*_DRAWS, "hysteretic_friction")
 """Every effect that can be hidden in a vehicle."""
 ACTIVE_EFFECTS = ("actuator_gain_error", "actuator_lag")
+LEANING = "wheel_acceleration"
+"""The channel of a sensor that leans: the wheel's on an arm, which moves forward too."""
 _LAWS = ("coulomb_friction", "hysteretic_friction")
 _CLASHES = (
     _LAWS,
@@ -397,8 +407,10 @@ _CLASHES = (
         ("viscous_friction", "damper_asymmetry", "quadratic_damping", "digressive_damping",
          "position_dependent_damping"), 2,
     ),
-    *combinations(("sensor_delay", "sensor_filter", "sensor_compliance"), 2),
+    *combinations(("sensor_delay", "sensor_filter", "sensor_compliance", "mounting_angle"), 2),
     ("viscoelasticity", "hysteretic_friction"),
+    # the one is hidden on an arm alone, the other never
+    ("mounting_angle", "backlash"),
 )  # fmt: skip
 
 

@@ -179,6 +179,12 @@ def _channels(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidat
                 [{"mount_frequency": start, "mount_loss": 0.1} for start in starts],
                 {"mount_frequency": frequency, "mount_loss": loss}, (),
             )  # fmt: skip
+        for axis in effects.shaken.get(column, ""):
+            name = f"angle_toward_{axis}"
+            yield candidate(
+                "mounting_angle", element, [{name: 0.05}], {name: Range(0.1, -0.8, 0.8)}, (name,),
+                law=axis,
+            )  # fmt: skip
 
 
 def around(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:

@@ -199,10 +199,10 @@ class _System:
             )
         return found
 
-    def _of_channels(self) -> tuple[dict[str, float], tuple[str, ...], bool]:
-        spacing = float(np.median([drive.spacing for drive in self.drives]))
-        shaken = self.channels.shaken(self.user.model)
-        return self.channels.spaced(spacing), shaken, bool(self.channels.speed)
+    def _of_channels(self) -> tuple[dict[str, float], dict[str, str], bool]:
+        channels, spacing = self.channels, float(np.median([d.spacing for d in self.drives]))
+        shaken = self.simulator.axes_beside(channels.shaken(self.user.model), self.drives[0])
+        return channels.spaced(spacing), shaken, bool(channels.speed)
 
     def _loads(self) -> dict[str, float]:
         """Mass on each tyre [kg], the vehicle's shared equally."""

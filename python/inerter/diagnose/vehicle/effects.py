@@ -21,15 +21,15 @@ class Effects:
     """Everything that can be tried in a user's model.
 
     scales: by device; loads: sprung and unsprung mass on each tyre by its element [kg]; columns:
-    time between samples [s] by compared column; shaken: those of accelerometers; speed: whether
-    the record has that of the vehicle.
+    time between samples [s] by compared column; shaken: those of accelerometers, with the axes that
+    each would show if it leaned; speed: whether the record has that of the vehicle.
     """
 
     user: UserModel
     scales: Mapping[str, Scale]
     loads: Mapping[str, float] = field(default_factory=dict)
     columns: Mapping[str, float] = field(default_factory=dict)
-    shaken: tuple[str, ...] = ()
+    shaken: Mapping[str, str] = field(default_factory=dict)
     speed: bool = False
 
     def candidates(self, model: VehicleModel) -> Iterator[VehicleCandidate]:

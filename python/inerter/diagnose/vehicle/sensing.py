@@ -1,9 +1,10 @@
-"""What stands between a quantity and the column that shows it: delay, mount, low-pass.
+"""What stands between a quantity and the column that shows it: angle, delay, mount, low-pass.
 
     s'' + 2 D w s' + w^2 s = w^2 y     y the quantity, s what the sensor shows, w = 2 pi f
 
 Symbols: f [Hz] `mount_frequency` and D [-] `mount_loss` of a sensor that swings on its bracket, or
 `filter_frequency` of a low-pass of second order with the flat D = 1/sqrt(2) (Butterworth).
+An accelerometer that leans by the angle a toward another axis shows s_k cos(a) + s_i sin(a).
 Range: a record that begins at rest. Not modelled: filters of other orders, a sensor's own mass.
 """
 
@@ -16,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import cont2discrete, lfilter
+
+from inerter.diagnose.vehicle.inputs import AXES
 
 Array = NDArray[np.float64]
 FLAT = 0.5**0.5
@@ -46,6 +49,24 @@ def shown(time: Array, values: Array, channel: Mapping[str, float]) -> Array:
     if delay:
         values = CubicSpline(time, values)(np.clip(time - delay, time[0], time[-1]))
     return values
+
+
+def leaning(component: int, channel: Mapping[str, float]) -> Array:
+    """What a column of a sensor with three components is made of, a unit vector of shape (3,).
+
+    Parameters
+    ----------
+    component
+        The one that the column is meant to show.
+    channel : mapping
+        `angle_toward_x`, `_y`, `_z` [rad]: how far the sensor leans toward the other axes.
+    """
+    found = np.zeros(3)
+    found[component] = 1.0
+    for i, axis in enumerate(AXES):
+        if i != component:
+            found[i] = np.tan(channel.get(f"angle_toward_{axis}", 0.0))
+    return found / np.linalg.norm(found)
 
 
 def second_order(time: Array, values: Array, frequency: float, loss: float) -> Array:

@@ -18,14 +18,23 @@ from scipy.optimize import least_squares
 from inerter.diagnose.vehicle.build import UserModel
 from inerter.diagnose.vehicle.changes import rate_actuator
 from inerter.diagnose.vehicle.drive import RecordedDrive
-from inerter.diagnose.vehicle.inputs import STATE, actuator_of, place_of, set_inputs, undriven
-from inerter.diagnose.vehicle.mapping import Channels, Output
+from inerter.diagnose.vehicle.inputs import (
+    AXES,
+    STATE,
+    actuator_of,
+    place_of,
+    set_inputs,
+    undriven,
+)
+from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.model import TYRES, VehicleModel
-from inerter.diagnose.vehicle.sensing import shown
+from inerter.diagnose.vehicle.sensing import leaning, shown
 from inerter.engine_batch import batch
 
 Array = NDArray[np.float64]
 _CHUNK = 2_000_000  # numbers recorded at once
+# an angle [rad], what it has to change of a channel, and within how many seconds of a run
+_LEANING, _SHOWS, _SOON = 0.1, 5e-3, 3.0
 
 
 @dataclass(frozen=True)
@@ -78,10 +87,11 @@ class VehicleSimulator:
                 layout = (each.nq, each.na, each.nactuator, each.nsensordata)
                 groups.setdefault(layout, []).append(i)
         for members in groups.values():
-            group = [compiled[i] for i in members]
+            group = [model for i in members if (model := compiled[i]) is not None]
             own = [starts[i] for i in members] if starts is not None else None
             felt = [self._felt(drive, models[i]) for i in members]
-            found[members] = self._group([m for m in group if m is not None], drive, felt, own)
+            shares = np.array([self._shares(group[0], models[i]) for i in members])
+            found[members] = self._group(group, shares, drive, felt, own)
         for i, model in enumerate(models):
             for k, output in enumerate(self.channels.outputs):
                 if np.isfinite(found[i, :, k]).all():
@@ -134,14 +144,15 @@ class VehicleSimulator:
     def _group(
         self,
         models: list[mujoco.MjModel],
+        shares: Array,
         drive: RecordedDrive,
         felt: list[RecordedDrive],
         starts: list[Start] | None,
     ) -> Array:
+        """Outputs of models of one layout, whose sensors' `shares` are added up."""
         worlds = self._worlds(models, drive, starts)
         first, size = models[0], len(models)
         own = starts if starts is not None else [Start(q) for q in worlds.bind("qpos").copy()]
-        addresses = [self._addresses(first, output) for output in self.channels.outputs]
         alike = all(each is drive for each in felt)
         inputs = np.array([self._inputs(first, each) for each in (felt[:1] if alike else felt)])
         wrong = [self._difference(first, each) for each in (felt[:1] if alike else felt)]
@@ -157,7 +168,7 @@ class VehicleSimulator:
                 count, np.broadcast_to(part, (size, *part.shape[1:])), STATE, record=wanted
             )
             data = run["sensordata"]
-            values = np.stack([data[:, :, at].sum(axis=2) for at in addresses], axis=2)
+            values = data @ shares.transpose(0, 2, 1)
             free = np.ones((size, count), dtype=bool)
             for i in clipped:
                 force = run["actuator_force"][:, :, first.actuator_outadr[i]]
@@ -168,7 +179,7 @@ class VehicleSimulator:
                 free &= (force > limits[:, None, 0]) & (force < limits[:, None, 1])
             for k, model in enumerate(models):
                 at = 0 if alike else k
-                direct = _through(model, own[k], inputs[at, 0], addresses)
+                direct = _through(model, own[k], inputs[at, 0], shares[k])
                 off = wrong[at][begin : begin + chunk]
                 values[k] -= free[k][:, None] * (off @ direct.T)
             parts.append(values)
@@ -179,15 +190,46 @@ class VehicleSimulator:
         found[np.abs(done - drive.steps * drive.step) > 0.5 * drive.step] = np.nan
         return found
 
-    def _addresses(self, model: mujoco.MjModel, output: Output) -> list[int]:
-        """Places in `sensordata` whose sum is an output."""
-        sensor = model.sensor(output.sensor)
-        found = [int(sensor.adr[0]) + output.component]
-        for tyre in self.user.parts.tyres if output.load else ():
-            # a tyre's damper, where there is one, has a sensor of its own
-            more = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, rate_actuator(tyre))
-            if more >= 0 and int(model.sensor_objid[sensor.id]) == tyre.actuator:
-                found.append(int(model.sensor_adr[more]))
+    def _shares(self, model: mujoco.MjModel, variant: VehicleModel) -> Array:
+        """What of `sensordata` is added up to every output, (outputs, numbers)."""
+        found = np.zeros((len(self.channels.outputs), model.nsensordata))
+        for row, output in zip(found, self.channels.outputs, strict=True):
+            sensor = model.sensor(output.sensor)
+            at, size = int(sensor.adr[0]), int(sensor.dim[0])
+            row[at + output.component] = 1.0
+            if size == len(AXES):
+                channel = variant.of(f"channel:{output.column}")
+                row[at : at + size] = leaning(output.component, channel)
+            for tyre in self.user.parts.tyres if output.load else ():
+                # a tyre's damper, where there is one, has a sensor of its own
+                more = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, rate_actuator(tyre))
+                if more >= 0 and int(model.sensor_objid[sensor.id]) == tyre.actuator:
+                    row[int(model.sensor_adr[more])] = 1.0
+        return found
+
+    def axes_beside(self, columns: Sequence[str], drive: RecordedDrive) -> dict[str, str]:
+        """By column of a sensor with three components: axes that it would show if it leaned.
+
+        An axis in which the sensor hardly moves is none: at 0.1 rad its share is below 0.5 %.
+        """
+        numbers = {output.column: k for k, output in enumerate(self.channels.outputs)}
+        asked = [
+            (column, i)
+            for column in columns
+            for i in range(len(AXES))
+            if i != (output := self.channels.outputs[numbers[column]]).component
+            and int(self.user.model.sensor(output.sensor).dim[0]) == len(AXES)
+        ]
+        leans = [
+            VehicleModel({f"channel:{column}.angle_toward_{AXES[i]}": _LEANING})
+            for column, i in asked
+        ]
+        straight, *leaning_run = self.outputs([VehicleModel(), *leans], drive.part(_SOON))
+        found = dict.fromkeys(columns, "")
+        for (column, i), run in zip(asked, leaning_run, strict=True):
+            own = straight[:, numbers[column]]
+            if np.std(run[:, numbers[column]] - np.cos(_LEANING) * own) > _SHOWS * np.std(own):
+                found[column] += AXES[i]
         return found
 
     def _inputs(self, model: mujoco.MjModel, drive: RecordedDrive) -> Array:
@@ -214,16 +256,16 @@ class VehicleSimulator:
         return base
 
 
-def _through(model: mujoco.MjModel, start: Start, inputs: Array, addresses: list) -> Array:
+def _through(model: mujoco.MjModel, start: Start, inputs: Array, shares: Array) -> Array:
     """What inputs do to outputs at once, (outputs, inputs)."""
     data = mujoco.MjData(model)
     data.qpos[:] = start.qpos
-    found = np.zeros((len(addresses), inputs.size))
+    found = np.zeros((len(shares), inputs.size))
 
     def read(values: Array) -> Array:
         set_inputs(model, data, values)
         mujoco.mj_forward(model, data)
-        return np.array([data.sensordata[at].sum() for at in addresses])
+        return shares @ data.sensordata
 
     for i in range(inputs.size):
         move = np.zeros(inputs.size)

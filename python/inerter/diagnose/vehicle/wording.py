@@ -19,6 +19,7 @@ _NOTES = {
     "tyre_damping": "; in model.xml its actuator is driven by the rate of the road [m/s]",
     "tyre_enveloping": "; model.xml has no road: feed it the mean over this length",
     "sensor_compliance": "; what a sensor shows is in no model: correct the record or the bracket",
+    "mounting_angle": "; what a sensor shows is in no model: turn it, or correct the record",
     "sensor_filter": "; what a sensor shows is in no model: state the filter, or record without it",
 }
 """What follows for who uses the extended model."""
