@@ -17,7 +17,7 @@ from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
-    as_plain_spring,
+    as_plain_part,
     as_spring,
     effects_of,
     is_blur,
@@ -87,21 +87,26 @@ def test_stops_that_meet_are_a_spring() -> None:
     assert as_spring(BASELINE.adding(None, stop_upper=0.01, stop_stiffness=1e4)) == []
 
 
-def test_a_branch_that_hardly_relaxes_and_a_straight_curve_are_springs() -> None:
+def test_a_branch_without_a_time_of_its_own_and_a_straight_curve_are_plain_parts() -> None:
     slow = Model(
         "none",
         {"inertance": 60.0, "branch_stiffness_1": 2e3, "branch_time_1": 12.0},
         ("inertance", "branch_stiffness_1", "branch_time_1"),
     )
-    (spring,) = as_plain_spring(slow, 20.0)
+    (spring,) = as_plain_part(slow, 20.0, 3.0)
     assert spring.values["stiffness"] == 2e3
     assert set(spring.free) == {"inertance", "stiffness", "force_offset"}
-    assert as_plain_spring(slow, 30.0) == []
+    assert as_plain_part(slow, 30.0, 3.0) == []
+    quick = Model("none", {**slow.values, "branch_time_1": 0.004, "viscous": 3.0}, slow.free)
+    (damper,) = as_plain_part(quick, 20.0, 3.0)
+    assert damper.values["viscous"] == 3.0 + 2e3 * 0.004
+    assert set(damper.free) == {"inertance", "viscous"}
+    assert as_plain_part(quick, 20.0, 60.0) == []
 
     nodes = {f"force_node_{i}": 5.0 + 2.0 * i for i in range(1, 8)}
     ends = {"curve_lower": -0.03, "curve_upper": 0.03}
     curve = Model("none", {"inertance": 60.0, **ends, **nodes}, ("inertance", *nodes))
-    plain, hard = as_plain_spring(curve, 20.0)
+    plain, hard = as_plain_part(curve, 20.0, 3.0)
     assert plain.values["stiffness"] == pytest.approx(200.0)
     assert plain.values["force_offset"] == pytest.approx(13.0)
     assert set(hard.free) - set(plain.free) == {"stiffness_cubic"}

@@ -262,7 +262,7 @@ _ALL = (
         cause="rubber mounts, seals, plastic bushes, a gas that gives its heat away",
         taken_for="a spring with viscous friction, or friction with memory",
         experiment="hold at an end of the stroke, the force fades while nothing moves",
-        rivals=("parallel_stiffness", "hysteretic_friction"),
+        rivals=("parallel_stiffness", "hysteretic_friction", "viscous_friction"),
     ),
     Effect(
         name="load_dependent_friction", rank=9, coordinates=("load_friction",), on_table=True,

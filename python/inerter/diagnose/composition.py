@@ -326,17 +326,24 @@ def as_spring(model: Model) -> list[Model]:
     return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
 
 
-def as_plain_spring(model: Model, longest: float) -> list[Model]:
-    """A spring with any zero in the place of what may be no more, the plainest first.
+def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
+    """A damper, or a spring with any zero, in the place of what may be no more, plainest first.
 
-    That is a branch that hardly relaxes in the longest run [s], and a curve of the force.
+    That is a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
+    of this frequency [Hz], and a curve of the force.
     """
     found = []
     for number in (1, 2):
         stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
-        if stiffness in model.free and model.values[time] > 0.5 * longest:
-            bare = model.without((stiffness, time))
-            found.append(_with_spring(bare, model.values[stiffness], 0.0))
+        if stiffness not in model.free:
+            continue
+        size, lasts = model.values[stiffness], model.values[time]
+        bare = model.without((stiffness, time))
+        if lasts > 0.5 * longest:
+            found.append(_with_spring(bare, size, 0.0))
+        elif 2 * np.pi * frequency * lasts < 1.0:
+            damping = model.values.get("viscous", 0.0) + size * lasts
+            found.append(bare.adding(None, viscous=damping))
     nodes = [name for name in _FORCE.nodes if name in model.values]
     if not set(nodes).isdisjoint(model.free):
         places = np.linspace(model.values["curve_lower"], model.values["curve_upper"], len(nodes))

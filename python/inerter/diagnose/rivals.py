@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
@@ -13,6 +16,7 @@ from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
+from inerter.diagnose.trials import FAR
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 
@@ -37,16 +41,20 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
     law = dict(effects_of(final.model, baseline))[effect]
     # along one sine the shaft of a play is a damper and an inertance of another size
     blind = ("backlash",) if problem.scales.one_tone and "inertance" in final.model.free else ()
-    others = [
-        candidate
-        for candidate in candidates(without.model, problem.scales)
-        if (candidate.effect, candidate.law) != (effect, law)
-        and candidate.effect not in (*rest, *blind)
-        and (law is not None or not candidate.is_rich)
-    ]
+
+    def others(model: Model) -> list[Candidate]:
+        return [
+            candidate
+            for candidate in candidates(model, problem.scales)
+            if (candidate.effect, candidate.law) != (effect, law)
+            and candidate.effect not in (*rest, *blind)
+            and (law is not None or not candidate.is_rich)
+        ]
+
     masks = problem.masks
     error = final.fit.rmse(masks)
-    fitted = search.trials.fit_all(others, without.fit, final.fit)
+    fitted = search.trials.fit_all(others(without.model), without.fit, final.fit)
+    fitted = _from_where_it_stands(search, effect, final, others, fitted)
     known = [*fitted, (Candidate(effect, law, ()), final.fit)]
     trials = [
         (candidate, fit)
@@ -94,6 +102,26 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         if s.effect != effect or EFFECTS[effect].tells_law
     ]
     return Standing(min(float(shares[0]) + same, 1.0), rivals, better)
+
+
+def _from_where_it_stands(
+    search: Search,
+    effect: str,
+    final: Scored,
+    others: Callable[[Model], list[Candidate]],
+    fitted: list[tuple[Candidate, Fit]],
+) -> list[tuple[Candidate, Fit]]:
+    """Fits of rivals, those that an effect is taken for also from where all else stands with it.
+
+    Without it the rest may go astray, and no step from there leads to a rival that does as well.
+    """
+    masks = search.problem.masks
+    reach = CRITERIA.beaten * final.fit.rmse(masks)
+    near = {c.effect for c, fit in fitted if fit.rmse(masks) < reach}
+    kept = stripped(final.model, effect, search.baseline)
+    usual = [c for c in others(kept) if c.effect in {*EFFECTS[effect].rivals} - near]
+    fits = parallel(lambda c: search.trials.fit(c, (FAR * reach, np.inf), reach), usual)
+    return [*fitted, *zip(usual, fits, strict=True)]
 
 
 def _takes_precedence(rival: Scored, final: Scored, effect: str, baseline: Model) -> bool:

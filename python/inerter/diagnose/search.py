@@ -20,7 +20,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     as_one,
-    as_plain_spring,
+    as_plain_part,
     as_spring,
     effects_of,
     is_blur,
@@ -395,8 +395,8 @@ class Search:
                 return self._exchange(scored)
         if with_spring := self._spring_beside(current):
             return self._exchange(with_spring)
-        longest = max(run.spacing * run.force.size for run in self.runs)
-        for model in filter(self._may_be, as_plain_spring(current.model, longest)):
+        longest, scales = max(r.spacing * r.force.size for r in self.runs), self.problem.scales
+        for model in filter(self._may_be, as_plain_part(current.model, longest, scales.frequency)):
             fit = self.problem.fit(model)
             if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
                 scored = self.score("exchange", None, fit)

@@ -34,6 +34,7 @@ from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
+from inerter.diagnose.trials import FAR
 from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
@@ -243,6 +244,9 @@ def identified(search: Search, baseline: Model, final: Scored) -> Scored:
             # their values have no normal error, or are known otherwise (`_plainest_law`)
             continue
         without = search.problem.fit(stripped(final.model, effect, baseline))
+        if without.rmse(search.problem.masks) > FAR * final.fit.rmse(search.problem.masks):
+            # something is there, though these data do not tell its parameters one by one
+            continue
         return identified(search, baseline, search.score("", None, without))
     return final
 
