@@ -37,7 +37,7 @@ from typer.testing import CliRunner
 
 SPACING = 0.004
 SIZES = Sizes(x=0.01, v=0.15, a=5.0, force=300.0, largest=0.03, smallest=-0.03,
-              wheel_rate=0.2, pull=1200.0)  # fmt: skip
+              guide_rate=0.2, pull=1200.0)  # fmt: skip
 
 
 def _misses(making: Making, change: VehicleModel, seconds: float = 1.5) -> dict[str, float]:

@@ -101,9 +101,11 @@ def _on_wheels(vehicle: DrawnVehicle) -> str:
 def _on_an_arm(vehicle: DrawnVehicle) -> str:
     corner, length = vehicle.corners[0], vehicle.arm_length
     inertia = " ".join([f"{vehicle.arm_inertia!r}"] * 3)
-    # the arm points forward: turning about -y lifts its end; it turns from where it stands
+    # the arm points forward: turning about -y lifts its end; it turns from where it stands, and so
+    # does the road begin
+    hub = _HEIGHT + length * math.sin(vehicle.arm_angle)
     return (
-        f'<site name="ground"/><body name="sprung" pos="0 0 {_HEIGHT}">'
+        f'<site name="ground" pos="0 0 {hub!r}"/><body name="sprung" pos="0 0 {_HEIGHT}">'
         '<joint name="heave" type="slide" axis="0 0 1"/>'
         f'<geom type="box" size="0.3 0.3 0.1" mass="{vehicle.body_mass!r}" {_GEOM}/>'
         f'<site name="upper" pos="0 0 {vehicle.strut_height!r}"/>'

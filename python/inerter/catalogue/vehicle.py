@@ -15,7 +15,8 @@ _ALL = (
         experiment="lock the suspension and drive the wheel alone",
     ),
     Effect(
-        name="tyre_liftoff", reported=("tyre_static_load",), plain="a tyre that leaves the road",
+        name="tyre_liftoff", reported=("tyre_static_load",), local=True,
+        plain="a tyre that leaves the road",
         meaning="the tyre cannot pull: its force ends at the static load",
         cause="a wheel without contact", taken_for="a softer tyre",
         experiment="repeat at half the amplitude, where the wheel stays on the road",

@@ -278,7 +278,7 @@ def draw_vehicle(draw: Generator, kind: str) -> DrawnVehicle:
             kind=kind, body_mass=quarter, corners=(only,), arm_length=arm,
             arm_inertia=rounded(only.wheel_mass * 0.06), strut_reach=rounded(arm * 0.8),
             strut_height=near(0.45, 0.15),
-            arm_angle=rounded(float(draw.choice([-1.0, 1.0])) * draw.uniform(0.15, 0.4)),
+            arm_angle=_inclined(draw) if kind == "arm" else 0.0,
         )  # fmt: skip
     front, rear, track = near(1.1, 0.15), near(1.5, 0.15), near(1.5, 0.05)
     ends = {"front": front, "rear": -rear}
@@ -299,6 +299,11 @@ def draw_vehicle(draw: Generator, kind: str) -> DrawnVehicle:
     )  # fmt: skip
 
 
+def _inclined(draw: Generator) -> float:
+    """Where an arm stands, up or down [rad]."""
+    return rounded(float(draw.choice([-1.0, 1.0]) * draw.uniform(0.15, 0.4)))
+
+
 def _sizes(vehicle: DrawnVehicle, bare: list[dict[str, Array]]) -> list[Sizes]:
     """Of every corner, along its roads."""
     found = []
@@ -307,13 +312,14 @@ def _sizes(vehicle: DrawnVehicle, bare: list[dict[str, Array]]) -> list[Sizes]:
         runs = [np.gradient(run[f"suspension_travel{name}"], SPACING) for run in bare]
         v = np.concatenate(runs)
         a = np.concatenate([np.gradient(run, SPACING) for run in runs])
-        wheel = [run[f"wheel_acceleration{name}"] for run in bare]
-        rate = np.concatenate([np.cumsum(w - w.mean()) * SPACING for w in wheel])
+        guided = "body_acceleration" if vehicle.kind == "arm" else f"wheel_acceleration{name}"
+        own = [run[guided] for run in bare]
+        rate = np.concatenate([np.cumsum(a - a.mean()) * SPACING for a in own])
         tyre = np.concatenate([run[f"tyre_force{name}"] for run in bare])
         found.append(
             Sizes(
                 x=rms(x), v=rms(v), a=rms(a), force=rms(corner.inertance * a + corner.damping * v),
-                largest=float(x.max()), smallest=float(x.min()), wheel_rate=float(np.std(rate)),
+                largest=float(x.max()), smallest=float(x.min()), guide_rate=float(np.std(rate)),
                 pull=float(-tyre.min()),
             )
         )  # fmt: skip

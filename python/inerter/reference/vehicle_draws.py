@@ -28,8 +28,8 @@ Array = NDArray[np.float64]
 class Sizes:
     """Of a corner on its roads: rms travel, rate, acceleration and force; SI units.
 
-    largest, smallest: travel; wheel_rate: of the wheel, rms; pull: with which the tyre would have
-    to pull on the road, at most [N].
+    largest, smallest: travel; guide_rate: of what a guide holds, the wheel or over an arm the body;
+    pull: with which the tyre would have to pull on the road, at most [N].
     """
 
     x: float
@@ -38,7 +38,7 @@ class Sizes:
     force: float
     largest: float
     smallest: float
-    wheel_rate: float
+    guide_rate: float
     pull: float
 
 
@@ -289,14 +289,14 @@ def _liftoff(d: Draw) -> None:
 def _joint_friction(d: Draw) -> None:
     level = rounded(d.between(0.08, 0.3) * d.size.force)
     guide = {"friction": "coulomb", "coulomb_force": level,
-             "transition_velocity": rounded(0.005 * d.size.wheel_rate)}  # fmt: skip
+             "transition_velocity": rounded(0.005 * d.size.guide_rate)}  # fmt: skip
     d.making.guides.setdefault(d.corner, {}).update(guide)
     d.making.tell("joint_friction", d.place, {"joint_friction": level})
 
 
 @_draws("joint_damping")
 def _joint_damping(d: Draw) -> None:
-    value = rounded(d.between(0.08, 0.3) * d.size.force / d.size.wheel_rate)
+    value = rounded(d.between(0.08, 0.3) * d.size.force / d.size.guide_rate)
     d.making.guides.setdefault(d.corner, {})["viscous"] = value
     d.making.tell("joint_damping", d.place, {"joint_damping": value})
 

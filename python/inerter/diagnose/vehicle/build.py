@@ -273,7 +273,7 @@ class UserModel:
             if (mass := change.of(self.body(index)).get("mass")) is not None:
                 self._weigh(spec, index, mass)
         for joint in self.guides:
-            change_guide(spec.joints[joint], change.of(self.joint(joint)))
+            change_guide(spec.joints[joint], change.of(self.joint(joint)), spec.option.timestep)
         for index in self.forces:
             states |= change_force(spec.actuators[index], change.of(self.actuator(index)))
         if states:

@@ -10,6 +10,7 @@ import numpy as np
 from inerter.diagnose.vehicle.model import VehicleModel
 from inerter.diagnose.vehicle.parts import Tyre, VehicleLink
 
+_HARD = 0.9999, 0.9999, 1e-3  # of `solimpfriction`
 _FAR = 1e12  # a force that no one-sided actuator reaches [N]
 
 
@@ -58,8 +59,13 @@ def set_first(element: Any, name: str, value: float, place: int = 0) -> None:
     setattr(element, name, column)
 
 
-def change_guide(joint: mujoco.MjsJoint, values: dict[str, float]) -> None:
+def change_guide(joint: mujoco.MjsJoint, values: dict[str, float], step: float) -> None:
+    """Friction and damping of a joint; the model's step [s] bounds how hard friction can be."""
     if "joint_friction" in values:
+        if not joint.frictionloss:
+            # as dry as a step allows; where the user has some, it stays as soft as it is
+            joint.solimp_friction[:3] = _HARD
+            joint.solref_friction = [2.0 * step, 1.0]
         joint.frictionloss = values["joint_friction"]
     if "joint_damping" in values:
         set_first(joint, "damping", values["joint_damping"])

@@ -13,12 +13,13 @@ from threadpoolctl import threadpool_limits
 from inerter.diagnose.decision import CRITERIA, visible
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.result import Finding, RecordSummary
-from inerter.diagnose.statistics import advantage, gain_interval, win_shares
+from inerter.diagnose.statistics import gain_interval, win_shares
 from inerter.diagnose.vehicle import wording
 from inerter.diagnose.vehicle.build import UserModel, model_of_text
 from inerter.diagnose.vehicle.curves import channel_curves
 from inerter.diagnose.vehicle.drive import RecordedDrive, make_drive
 from inerter.diagnose.vehicle.effects import Effects, Scale
+from inerter.diagnose.vehicle.judging import block_squares, stacked_blocks, won
 from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.members import exchangeable, with_members
 from inerter.diagnose.vehicle.model import TYRES, VehicleModel
@@ -31,8 +32,6 @@ from inerter.diagnose.vehicle.search import (
     Step,
     VehicleScored,
     VehicleSearch,
-    block_squares,
-    stacked_blocks,
     standing_of,
 )
 from inerter.diagnose.vehicle.sensor_units import unit_of
@@ -274,12 +273,13 @@ class _System:
         residuals, squares, errors = self._on_held(chain)
         floor = self.held.noise(residuals[-1])
         for i in range(len(chain) - 1, 0, -1):
-            before, after = squares[i - 1], squares[i]
+            before, after, effect = squares[i - 1], squares[i], chain[i].model.effects[-1].effect
             step = self._step_error(chain[i - 1].model)
             numerical = errors[i - 1] ** 2 - errors[i] ** 2 < (2 * step) ** 2
             if (
                 after.sum() >= before.sum()
-                or advantage(before, after) < CRITERIA.confirming_advantage
+                or won(self.held, residuals[i - 1], residuals[i], effect, 0.0)
+                < CRITERIA.confirming_advantage
                 or not visible(errors[i - 1], errors[i], floor, 1.0)
                 or numerical
             ):

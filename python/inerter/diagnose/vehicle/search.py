@@ -26,17 +26,15 @@ from inerter.diagnose.result import Rival
 from inerter.diagnose.statistics import advantage, win_shares
 from inerter.diagnose.vehicle.candidate import VehicleCandidate
 from inerter.diagnose.vehicle.effects import Effects
+from inerter.diagnose.vehicle.judging import block_squares, left_out, stacked_blocks, won
 from inerter.diagnose.vehicle.model import Added, VehicleModel
 from inerter.diagnose.vehicle.problem import DrivenProblem, VehicleFit, fit_all
 from inerter.diagnose.vehicle.wording import EQUIVALENT
 from inerter.estimation.covariance import sandwich
 
 Array = NDArray[np.float64]
-Rows = NDArray[np.intp]
 Progress = Callable[[str], None]
 
-BLOCKS = 48
-FOLDS = 4
 # fourth moment beyond that of noise at which a residual comes in bursts
 BURSTS = 2.0
 # the part of every run on which candidates are screened [s], at most
@@ -53,11 +51,15 @@ _LARGEST_SCALE = 30.0
 
 @dataclass(frozen=True)
 class VehicleScored:
-    """A fit and its squared errors on samples left out, per block; candidate: None at the start."""
+    """A fit and its squared errors on samples left out, per block; candidate: None at the start.
+
+    rest: the residual on samples left out, as `DrivenProblem.stacked` has it.
+    """
 
     fit: VehicleFit
     squares: Array
     candidate: VehicleCandidate | None = None
+    rest: Array = field(default_factory=lambda: np.empty(0), repr=False)
 
     @property
     def model(self) -> VehicleModel:
@@ -164,7 +166,8 @@ class VehicleSearch:
         return VehicleModel(values, friction, free, rest), scored.fit.sizes
 
     def _score(self, fit: VehicleFit, candidate: VehicleCandidate | None = None) -> VehicleScored:
-        return VehicleScored(fit, block_squares(left_out(fit, self.blocks), self.blocks), candidate)
+        rest = left_out(fit, self.blocks)
+        return VehicleScored(fit, block_squares(rest, self.blocks), candidate, rest)
 
     def _best_step(self, current: VehicleScored) -> Step | None:
         number = len(self.steps) + 1
@@ -179,7 +182,7 @@ class VehicleSearch:
             for candidate, start in worthy
         ]
         scored = self._fit_trials([c for c, _ in worthy], trials)
-        good = [s for s in scored if _better(current, s) and self._is_distinct(s, current)]
+        good = [s for s in scored if self._better(current, s) and self._is_distinct(s, current)]
         if not good:
             return None
         best = min(good, key=lambda s: s.squares.sum())
@@ -330,6 +333,11 @@ class VehicleSearch:
             return model.values.get(name, self.effects.damping(candidate.added.element, model))
         return self.effects.stated(name, model)
 
+    def _better(self, simple: VehicleScored, rich: VehicleScored) -> bool:
+        assert rich.candidate is not None
+        effect = rich.candidate.added.effect
+        return better(simple, rich, won(self.problem, simple.rest, rich.rest, effect))
+
     def _prune(self, current: VehicleScored) -> VehicleScored:
         """Take away what the others have made unnecessary."""
         while len(current.model.effects) > 1:
@@ -337,8 +345,10 @@ class VehicleSearch:
             trials = [self.without(current, i) for i in range(len(current.model.effects))]
             simpler = [
                 scored
-                for scored in self.refit(trials)
-                if not_needed(scored, current, advantage(scored.squares, current.squares))
+                for scored, added in zip(self.refit(trials), current.model.effects, strict=True)
+                if not_needed(
+                    scored, current, won(self.problem, scored.rest, current.rest, added.effect, 0.0)
+                )
             ]
             if not simpler:
                 return current
@@ -370,43 +380,6 @@ def _shortlist(
     return chosen
 
 
-def stacked_blocks(problem: DrivenProblem, count: int = BLOCKS) -> list[Rows]:
-    """Rows of stretches of consecutive compared samples, about `count` of them in all."""
-    length = max(problem.count // count, 8)
-    outputs = len(problem.channels)
-    found, offset = [], 0
-    for mask in problem.masks:
-        index = np.flatnonzero(mask)
-        if index.size:
-            for part in np.array_split(index, max(1, round(index.size / length))):
-                rows = offset + outputs * part[:, None] + np.arange(outputs)
-                found.append(rows.ravel())
-        offset += outputs * mask.size
-    return found
-
-
-def block_squares(residual: Array, blocks: Sequence[Rows]) -> Array:
-    """Sum of squares over each block."""
-    return np.array([float(np.sum(residual[rows] ** 2)) for rows in blocks])
-
-
-def left_out(fit: VehicleFit, blocks: Sequence[Rows]) -> Array:
-    """Residual of every sample under a fit that has not seen its fold (one linear step)."""
-    residual, jacobian = fit.residual.copy(), fit.jacobian
-    if not jacobian.shape[1]:
-        return residual
-    normal, gradient = jacobian.T @ jacobian, jacobian.T @ fit.residual
-    for first in range(FOLDS):
-        if len(blocks) <= first:
-            continue
-        rows = np.concatenate(blocks[first::FOLDS])
-        own = jacobian[rows]
-        inverse = np.linalg.pinv(normal - own.T @ own, rcond=1e-10)
-        step = -inverse @ (gradient - own.T @ fit.residual[rows])
-        residual[rows] += own @ step
-    return residual
-
-
 def errors(fit: VehicleFit) -> dict[str, float]:
     """Standard errors of the free coordinates."""
     used = np.abs(fit.residual) > 0
@@ -415,10 +388,6 @@ def errors(fit: VehicleFit) -> dict[str, float]:
     spread = sandwich(fit.jacobian[used], fit.residual[used], np.ones(int(used.sum())))
     widths = np.sqrt(np.maximum(np.diag(spread), 0)) * fit.units()
     return dict(zip(fit.model.free, map(float, widths), strict=True))
-
-
-def _better(simple: VehicleScored, rich: VehicleScored) -> bool:
-    return better(simple, rich, advantage(simple.squares, rich.squares))
 
 
 def _as_good(simple: VehicleScored, best: VehicleScored) -> bool:

@@ -7,6 +7,7 @@ to an acceleration or a force is taken out again (`_through`).
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -275,7 +276,12 @@ def _through(model: mujoco.MjModel, start: Start, inputs: Array, shares: Array) 
 
 
 def _equilibrium(model: mujoco.MjModel, inputs: Array) -> Array:
-    """Positions at which nothing accelerates; the initial ones where there are none such."""
+    """Positions at which nothing accelerates; the initial ones where there are none such.
+
+    Of all that dry friction of joints would hold, those that need none.
+    """
+    model = copy.copy(model)
+    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
     data = mujoco.MjData(model)
     set_inputs(model, data, inputs)
     initial = data.qpos.copy()
