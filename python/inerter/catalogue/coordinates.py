@@ -386,7 +386,7 @@ ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
         *(each.name for each in _ALL if each.entangled),
         "gas_pressure", "series_stiffness", "series_damping",
     ),
-    "viscous": _BENT, "quadratic_damping": _BENT,
+    "viscous": (*_BENT, "viscous_drift"), "quadratic_damping": _BENT,
 })  # fmt: skip
 """With one of these the force is no longer the coordinate times its column."""
 JUMPS = tuple(each.name for each in _ALL if each.jumps)
