@@ -115,9 +115,29 @@ def test_the_versions_of_mujoco_are_stated_once(project: dict[str, Any]) -> None
     versions = inerter.plugin.plugin_versions()
     assert mujoco.mj_versionString() in versions
     assert set(versions) <= set(stated["ENGINES"])
-    header = (ROOT / "plugin_c" / "mujoco" / "engine_private.h").read_text(encoding="utf-8")
+    header = (ROOT / "plugin_c" / "mujoco" / "engine.h").read_text(encoding="utf-8")
     oldest = [int(number) for number in next(iter(stated["ENGINES"])).split(".")]
     assert f"mjVERSION_HEADER < {oldest[0]}{oldest[1]:03}{oldest[2]:03}" in header
+
+
+def test_one_header_includes_the_engines() -> None:
+    """What differs between its versions has one place only where every file goes through it."""
+    folder = ROOT / "plugin_c" / "mujoco"
+    texts = {path.name: path.read_text(encoding="utf-8") for path in folder.glob("*.[ch]")}
+    assert len(texts) > 40
+    direct = [name for name, text in texts.items() if re.search(r"#include\s*<mujoco/", text)]
+    assert direct == ["engine.h"], "include mujoco/engine.h, where the versions' differences stand"
+
+    def reached(name: str, seen: set[str]) -> set[str]:
+        for other in re.findall(r'#include "mujoco/([^"]+)"', texts[name]):
+            if other not in seen:
+                seen.add(other)
+                reached(other, seen)
+        return seen
+
+    for name, text in texts.items():
+        if re.search(r"\bmj[A-Z]|\bmju?_", text) and name != "engine.h":
+            assert "engine.h" in reached(name, set()), f"{name} does not include mujoco/engine.h"
 
 
 def test_one_version_of_the_package(project: dict[str, Any]) -> None:
