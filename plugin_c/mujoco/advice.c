@@ -5,7 +5,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 
-#include "mujoco/engine_private.h"
+#include "mujoco/engine.h"
 
 int advice_on_content(const mjModel* m, int instance, const Instance* self,
                       char message[INERTER_MESSAGE_SIZE]) {

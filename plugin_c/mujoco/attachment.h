@@ -3,9 +3,8 @@
 #ifndef INERTER_MUJOCO_ATTACHMENT_H_
 #define INERTER_MUJOCO_ATTACHMENT_H_
 
-#include <mujoco/mujoco.h>
-
 #include "core/device.h"
+#include "mujoco/engine.h"
 
 // Check what the device is attached to (a tendon or a slide or hinge joint that moves, trees that
 // stay awake) and the number of its states. live: the inertance may become another. Return 0, or -1

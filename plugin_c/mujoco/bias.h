@@ -11,7 +11,7 @@
 #ifndef INERTER_MUJOCO_BIAS_H_
 #define INERTER_MUJOCO_BIAS_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 // 0 for tendons over joints, whose arms are constant, and for those that wrap around geoms: their
 // devices have no inertance at the terminals (placement.h), so that nobody reads it.

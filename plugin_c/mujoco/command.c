@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "mujoco/engine_private.h"
+#include "mujoco/engine.h"
 
 mjtNum command_value(const mjModel* m, const mjData* d, int actuator) {
   if (!m->actuator_ctrlnum[actuator]) {

@@ -13,8 +13,7 @@
 #ifndef INERTER_MUJOCO_CONSTRAINED_H_
 #define INERTER_MUJOCO_CONSTRAINED_H_
 
-#include <mujoco/mujoco.h>
-
+#include "mujoco/engine.h"
 #include "mujoco/groups.h"
 #include "mujoco/metric.h"
 #include "mujoco/monotone.h"

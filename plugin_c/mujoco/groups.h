@@ -7,8 +7,7 @@
 #ifndef INERTER_MUJOCO_GROUPS_H_
 #define INERTER_MUJOCO_GROUPS_H_
 
-#include <mujoco/mujoco.h>
-
+#include "mujoco/engine.h"
 #include "mujoco/metric.h"
 
 // devices that feel each other

@@ -3,9 +3,8 @@
 #ifndef INERTER_MUJOCO_INSTANCE_H_
 #define INERTER_MUJOCO_INSTANCE_H_
 
-#include <mujoco/mujoco.h>
-
 #include "core/device.h"
+#include "mujoco/engine.h"
 
 _Static_assert(sizeof(mjtNum) == sizeof(double), "the plugin is built for double precision");
 

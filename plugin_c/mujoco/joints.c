@@ -15,7 +15,7 @@
 #include <math.h>
 
 #include "mujoco/downhill.h"
-#include "mujoco/engine_private.h"
+#include "mujoco/engine.h"
 
 enum { ROUNDS = 100 };
 

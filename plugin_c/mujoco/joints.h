@@ -9,8 +9,7 @@
 #ifndef INERTER_MUJOCO_JOINTS_H_
 #define INERTER_MUJOCO_JOINTS_H_
 
-#include <mujoco/mujoco.h>
-
+#include "mujoco/engine.h"
 #include "mujoco/groups.h"
 #include "mujoco/metric.h"
 #include "mujoco/monotone.h"

@@ -2,7 +2,7 @@
 
 #include "mujoco/metric.h"
 
-#include "mujoco/engine_private.h"
+#include "mujoco/engine.h"
 
 //------------------------------ factors -----------------------------------------------------------
 

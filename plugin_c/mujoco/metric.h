@@ -12,7 +12,7 @@
 #ifndef INERTER_MUJOCO_METRIC_H_
 #define INERTER_MUJOCO_METRIC_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 typedef enum MetricKind_ { METRIC_INERTIA, METRIC_DISCRETE, METRIC_CHOLESKY, METRIC_LU } MetricKind;
 

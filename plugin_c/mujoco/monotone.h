@@ -9,7 +9,7 @@
 #ifndef INERTER_MUJOCO_MONOTONE_H_
 #define INERTER_MUJOCO_MONOTONE_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 // Force of device i at acceleration a, and how it rises with a; near enough will do for the rise.
 typedef double (*MonotoneLaw)(const void* devices, int i, double a, double* rise);

@@ -3,9 +3,8 @@
 #ifndef INERTER_MUJOCO_PLACEMENT_H_
 #define INERTER_MUJOCO_PLACEMENT_H_
 
-#include <mujoco/mujoco.h>
-
 #include "core/device.h"
+#include "mujoco/engine.h"
 
 // Place inertance and viscous damping in the model: the first time, by the compiler's init, into
 // the actuator's armature and damping where the engine can hold them. *native: whether it does.

@@ -17,7 +17,6 @@
 // by the weights of its stages, else by the trapezoid.
 
 #include <math.h>
-#include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,6 +25,7 @@
 #include "mujoco/command.h"
 #include "mujoco/configuration.h"
 #include "mujoco/coupled.h"
+#include "mujoco/engine.h"
 #include "mujoco/instance.h"
 #include "mujoco/live.h"
 #include "mujoco/placement.h"

@@ -6,7 +6,7 @@
 #ifndef INERTER_MUJOCO_PROFILE_H_
 #define INERTER_MUJOCO_PROFILE_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 // Factor in place, the diagonal inverted; 0 if the matrix is not positive.
 int profile_factor(int n, const int* first, mjtNum* matrix);

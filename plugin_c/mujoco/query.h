@@ -4,10 +4,10 @@
 #ifndef INERTER_MUJOCO_QUERY_H_
 #define INERTER_MUJOCO_QUERY_H_
 
-#include <mujoco/mujoco.h>
 #include <stdint.h>
 
 #include "core/device.h"
+#include "mujoco/engine.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -9,7 +9,7 @@
 #ifndef INERTER_MUJOCO_ROWS_H_
 #define INERTER_MUJOCO_ROWS_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 // most rows of one contact
 enum { ROWS_OF_CONTACT = 6 };

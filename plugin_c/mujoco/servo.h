@@ -3,7 +3,7 @@
 #ifndef INERTER_MUJOCO_SERVO_H_
 #define INERTER_MUJOCO_SERVO_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 // Warn of every position servo whose `dampratio` was turned into a damping before native inertances
 // were in place, with the damping that would be right.

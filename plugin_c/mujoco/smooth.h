@@ -9,8 +9,7 @@
 #ifndef INERTER_MUJOCO_SMOOTH_H_
 #define INERTER_MUJOCO_SMOOTH_H_
 
-#include <mujoco/mujoco.h>
-
+#include "mujoco/engine.h"
 #include "mujoco/metric.h"
 
 // Smooth force f (nv), devices marked `solved` left out. shift (nv): what the metric of the

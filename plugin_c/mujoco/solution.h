@@ -3,8 +3,7 @@
 #ifndef INERTER_MUJOCO_SOLUTION_H_
 #define INERTER_MUJOCO_SOLUTION_H_
 
-#include <mujoco/mujoco.h>
-
+#include "mujoco/engine.h"
 #include "mujoco/groups.h"
 #include "mujoco/instance.h"
 #include "mujoco/metric.h"

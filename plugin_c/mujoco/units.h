@@ -3,9 +3,8 @@
 #ifndef INERTER_MUJOCO_UNITS_H_
 #define INERTER_MUJOCO_UNITS_H_
 
-#include <mujoco/mujoco.h>
-
 #include "core/device.h"
+#include "mujoco/engine.h"
 
 // A message of the core, which speaks of a line, in the units of what the actuator moves: of a
 // hinge, or of a fixed tendon over hinges alone, rad, N m, kg m^2. actuator: may be -1.

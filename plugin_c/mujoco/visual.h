@@ -3,7 +3,7 @@
 #ifndef INERTER_MUJOCO_VISUAL_H_
 #define INERTER_MUJOCO_VISUAL_H_
 
-#include <mujoco/mujoco.h>
+#include "mujoco/engine.h"
 
 // Add the device to a scene: a barrel on terminal 1, a rod on terminal 2, and the flywheel between
 // them. The barrel turns from grey to red with tension and to blue with compression, fully at the

@@ -274,7 +274,7 @@ def device_text(
     delay : float
         Time by which the force channel of the record was late [s]; not part of the device.
     title : str
-        Comment for the first line.
+        Comment for the first lines.
     motion : str
         What the device does.
     filters : mapping, optional

@@ -12,7 +12,7 @@ from inerter.blind_test.plan import Plan, Task
 from inerter.blind_test.run import run_tasks
 from inerter.core import Device
 from inerter.diagnose.result import Accuracy, Diagnosis, Finding, ParameterValue, Unexplained
-from inerter.reference import UNKNOWN, compatible
+from inerter.reference import EFFECTS, UNKNOWN, compatible
 from made_up import solve_or_die
 
 
@@ -20,7 +20,7 @@ def test_plan_counts_and_seeds() -> None:
     plan = Plan(count=2, clean=3, pairs=30, triples=20, unknown=12, seed=5)
     tasks = plan.tasks()
     assert Counter(task.group for task in tasks) == {
-        "single": 58, "clean": 3, "pairs": 30, "triples": 20, "unknown": 12,
+        "single": 2 * len(EFFECTS), "clean": 3, "pairs": 30, "triples": 20, "unknown": 12,
     }  # fmt: skip
     assert all(compatible(task.effects) for task in tasks if task.effects)
     assert all(len(task.effects) == 3 for task in tasks if task.group == "triples")

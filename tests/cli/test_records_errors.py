@@ -272,7 +272,7 @@ def test_a_damaged_parquet_file_is_read_or_refused(data: st.DataObject, tmp_path
 
 
 @pytest.mark.parametrize("suffix", [".parquet", ".mat"])
-def test_a_file_cut_off_is_refused(suffix: str, tmp_path: Path) -> None:
+def test_a_binary_file_cut_off_is_refused(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"r{suffix}"
     good = binary_record(path)
     for size in range(1, len(good), 37):

@@ -14,11 +14,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from inerter.device_file import read_delay, read_device, read_filters
 from inerter.diagnose.result import ParameterValue
 from inerter.pictures import thinning
 from inerter.pictures.plotting import to_script
 from inerter.report import text
 from inerter.report.figures import loop_figure
+from inerter.report.output import write_outputs
 from inerter.report.page import render_report
 from inerter.report.terminal import print_summary
 from made_reports import CASES, HOSTILE, TOML, XML, diagnosis, run, table_only, two_runs
@@ -305,3 +307,21 @@ def test_terminal_says_it_all_and_obeys_no_name() -> None:
     assert "outliers: 3 samples <b>stand out</b>" in re.sub(r"\s+", " ", shown)
     assert "[bold]\ufffd[31mred.csv" in shown
     assert "\x1b" not in shown
+
+
+def test_a_device_file_tells_what_only_the_record_has(tmp_path: Path) -> None:
+    """As a comment: what is read back is the device, and what the file can state of a channel."""
+    usual = two_runs()
+    write_outputs(usual, tmp_path / "usual")
+    assert "beside" not in (tmp_path / "usual" / "device.toml").read_text()
+    channels = {"delay": 2e-3, "force_filter": 40.0, "force_filter_order": 2.0,
+                "force_drift": 1.25, "viscous_drift": -0.01}  # fmt: skip
+    drifting = replace(usual, extended=replace(usual.extended, channels=channels))
+    write_outputs(drifting, tmp_path)
+    path = tmp_path / "device.toml"
+    assert path.read_text().splitlines()[1] == (
+        "# beside this device the record shows: force_drift = 1.25 N/s, viscous_drift = -0.01 1/s"
+    )
+    assert read_device(path).given == usual.extended.device
+    assert read_delay(path) == channels["delay"]
+    assert set(read_filters(path)) == {"force"}

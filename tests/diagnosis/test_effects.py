@@ -22,6 +22,7 @@ def rows() -> dict[str, list[str]]:
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_docs_say_what_the_catalogue_says(name: str) -> None:
+    assert name in rows(), f"{name}: no row in the table of docs/diagnosis.md"
     effect, row = EFFECTS[name], rows()[name]
     assert effect.cause in row
     assert f"{effect.taken_for}: {effect.experiment}" in row

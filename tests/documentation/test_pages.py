@@ -128,6 +128,41 @@ def test_a_how_to_works_as_it_stands(page: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
+def test_every_how_to_is_in_the_index() -> None:
+    index = (DOCS / "how_to" / "index.md").read_text(encoding="utf-8")
+    for page in (page for page in HOW_TO if page.name != "index.md"):
+        assert f"[{page.stem}]({page.name})" in index, f"{page.name}: not in the table"
+        assert re.search(rf"^{page.stem}$", index, re.M), f"{page.name}: not in the toctree"
+
+
+@pytest.mark.parametrize("page", [page for page in HOW_TO if "{include}" in page.read_text()])
+def test_what_a_how_to_includes_is_there(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for name, start, end in re.findall(
+        r'^```{include} (\S+)\n:start-after: "(.*)"\n:end-before: "(.*)"\n```', text, re.M
+    ):
+        whole = (page.parent / name).read_text(encoding="utf-8")
+        assert whole.count(start) == 1, f"{name}: {start}"
+        included = whole.split(start)[1].split(end)[0]
+        # links would lead elsewhere from the page
+        assert len(included) > 1000
+        assert "](" not in included, f"{page.name}: a link"
+
+
+def test_files_that_a_guide_names_are_there() -> None:
+    """Those of CONTRIBUTING.md with a folder, from the root or from where such files are."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`([\w./]+/[\w.]+\.(?:py|c|h|md|toml))`", text))
+    made_up = {name for name in named if "karnopp" in name or name.startswith("../")}
+    folders = [ROOT / each for each in ("", "python/inerter", "plugin_c", "tests")]
+    missing = [
+        name for name in sorted(named - made_up)
+        if not any((folder / name).is_file() for folder in folders)
+    ]  # fmt: skip
+    assert len(named) > 40
+    assert missing == []
+
+
 def serves(words: object) -> bool:
     assert isinstance(words, list)
     return words[0] == "view" and "--picture" not in words

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from inerter.catalogue.along_stroke import QUANTITIES, Quantity
+from inerter.catalogue.coordinates import COORDINATES
+from inerter.identify.channel import clips
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from three_sines import H, N, motion, run_of
@@ -28,6 +31,54 @@ LAWS = {
 }  # fmt: skip
 LOW_PASS = {"force_filter": 40.0, "force_filter_order": 3.0, "force_filter_bessel": 1.0}
 BRANCH = {"branch_stiffness_1": 2e3, "branch_damping_1": 200.0}
+SHAFT = {"series_frequency": 15.0, "series_loss": 0.3}
+# what may stand beside a linear term, with what it needs, at values that do something
+BESIDE = {
+    "asymmetric damping": ("none", {"damping_asymmetry": 0.4}),
+    "bent damping": ("none", {"damping_knee": 0.05, "damping_beyond": 0.3}),
+    "asymmetric friction": ("coulomb", {"friction_asymmetry": 0.3}),
+    "friction along x": ("dahl", {"friction_gradient": 10.0, "friction_curvature": 300.0}),
+    "inertance along x": ("none", {"inertance_gradient": 5.0, "inertance_curvature": 100.0}),
+    "inertance along v": ("none", {"inertance_speed_gradient": 1.0}),
+    "friction play": ("dahl", {"friction_backlash": 1e-3, "friction_place": 0.3}),
+    "rate and state": ("rate_state", {"rate_effect": 0.1, "age_effect": 0.2, "age_distance": 1e-4}),
+    "load friction": ("none", {"load_friction": 0.2, "transition_velocity": 1e-3}),
+    "Bouc-Wen": (
+        "bouc_wen",
+        {"bw_stiffness": 3e3, "bw_beta": 80.0, "bw_gamma": 40.0, "bw_exponent": 1.0,
+         "bw_ratio": 0.1},
+    ),
+    "shaft": ("none", {**SHAFT, "series_hardening": 20.0, "flywheel_viscous": 30.0}),
+    "backlash": ("none", {**SHAFT, "backlash": 1e-3}),
+    "branches": (
+        "none",
+        {"branch_stiffness_1": 2e3, "branch_time_1": 0.1, "branch_stiffness_2": 2e3,
+         "branch_time_2": 1.0},
+    ),
+    "stops": (
+        "none",
+        {"stop_lower": -0.01, "stop_upper": 0.01, "stop_stiffness": 1e4, "stop_damping": 1.0},
+    ),
+    "gas": ("none", {"gas_push": 50.0, "gas_reach": 0.1, "gas_exponent": 1.3}),
+    "periods": (
+        "coulomb",
+        {f"{q.name}_{word}_1": value for q in QUANTITIES
+         for word, value in (("period", 0.015), ("cosine", 0.1), ("sine", 0.05))},
+    ),
+    "delay": ("none", {"delay": 1.3 * H}),
+    "force filter": ("none", LOW_PASS),
+    "displacement filter": (
+        "none", {f"displacement{name.removeprefix('force')}": v for name, v in LOW_PASS.items()},
+    ),
+    "limits": ("none", {"force_maximum": 60.0, "force_minimum": -60.0}),
+    "tone": ("none", {"disturbance_amplitude": 5.0, "disturbance_frequency": 7.0}),
+    "viscous drift": ("none", {"viscous_drift": 0.3}),
+    "friction drift": ("dahl", {"friction_drift": 0.3}),
+}  # fmt: skip
+OF_CHANNEL = [
+    name for name, (_, values) in BESIDE.items()
+    if any(COORDINATES[each].belongs_to == "channel" for each in values if each in COORDINATES)
+]  # fmt: skip
 
 
 def problem() -> Problem:
@@ -54,6 +105,36 @@ def test_columns_are_differences_of_the_residual(
     assert errors.max() < 1e-4, dict(zip(LINEAR, errors, strict=True))
 
 
+def test_every_coordinate_stands_beside_the_linear_ones() -> None:
+    """Of curves along the stroke and of periods, one of a kind; nodes have tests of their own."""
+    tried = {*LINEAR, *(name for law in LAWS.values() for name in law)}
+    tried |= {name for _, values in BESIDE.values() for name in values}
+    nodes = {name for q in QUANTITIES for name in (*q.nodes, *q.back_nodes)}
+    missing = {re.sub(r"_[23]$", "_1", name) for name in COORDINATES} - tried - nodes
+    assert not missing, f"BESIDE has none of {sorted(missing)}"
+
+
+@pytest.mark.parametrize("band", [np.inf, 60.0])
+@pytest.mark.parametrize("beside", BESIDE)
+def test_columns_are_right_beside_every_coordinate(beside: str, band: float) -> None:
+    law, values = BESIDE[beside]
+    stated = LAWS[law] if "bw_stiffness" not in values else {}
+    model = Model(law, LINEAR | stated | values, tuple(LINEAR))
+    errors = rms_errors_of_columns(problem_in(band), model)
+    # samples that come to the limit or leave it tell another slope
+    assert errors.max() < (0.1 if clips(values) else 1e-4), dict(zip(LINEAR, errors, strict=True))
+
+
+@pytest.mark.parametrize("band", [np.inf, 60.0])
+@pytest.mark.parametrize("beside", OF_CHANNEL)
+def test_nodes_of_friction_are_right_beside_every_channel(beside: str, band: float) -> None:
+    data = problem_in(band)
+    nodes = {name: 0.05 * i for i, name in enumerate(QUANTITIES[2].nodes[:7])}
+    ends = dict(zip(("curve_lower", "curve_upper"), data.scales.travel, strict=True))
+    values = LINEAR | LAWS["coulomb"] | BESIDE[beside][1] | ends | nodes
+    assert rms_errors_of_columns(data, Model("coulomb", values, tuple(nodes))).max() < 1e-3
+
+
 @pytest.mark.parametrize("low_pass", [{}, LOW_PASS], ids=["", "low-pass"])
 @pytest.mark.parametrize("band", [np.inf, 60.0])
 @pytest.mark.parametrize("law", ["none", "dahl", "bouc_wen", "lugre"])
@@ -70,13 +151,7 @@ def test_nodes_of_a_curve_are_differences_of_the_residual(
     low_pass: dict[str, float],
     effects_seed: int,
 ) -> None:
-    data = problem()
-    if np.isfinite(band):
-        runs = [
-            replace(run, cutoff=band, measured=(run.displacement, run.velocity, run.acceleration))
-            for run in data.runs
-        ]
-        data = Problem(runs, data.masks)
+    data = problem_in(band)
     low, high = data.scales.travel
     draw = np.random.default_rng(effects_seed)
     size = 0.05 if quantity.name == "inertance" else 5.0
@@ -99,12 +174,34 @@ def test_what_is_left_out_changes_no_fit() -> None:
     np.testing.assert_array_equal(beside.residual[1], there)
 
 
+def problem_in(band: float) -> Problem:
+    """The same in a band [Hz], where it is finite."""
+    data = problem()
+    if np.isinf(band):
+        return data
+    runs = [
+        replace(run, cutoff=band, measured=(run.displacement, run.velocity, run.acceleration))
+        for run in data.runs
+    ]
+    return Problem(runs, data.masks)
+
+
 def errors_of_columns(data: Problem, model: Model) -> np.ndarray:
     """How far each column is from the difference of the residual, per its largest value."""
-    found = data.jacobian(model)
-    errors = []
-    for column, step in zip(found.T, 1e-3 * np.eye(len(model.free)), strict=True):
+    there = differences(data, model, 1e-3)
+    return np.abs(data.jacobian(model) - there).max(axis=0) / np.abs(there).max(axis=0)
+
+
+def rms_errors_of_columns(data: Problem, model: Model) -> np.ndarray:
+    """The same, rms: where the force jumps, single samples say nothing."""
+    there = differences(data, model, 1e-4)
+    return np.linalg.norm(data.jacobian(model) - there, axis=0) / np.linalg.norm(there, axis=0)
+
+
+def differences(data: Problem, model: Model, size: float) -> np.ndarray:
+    """Central differences of the residual by the search variables."""
+    columns = []
+    for step in size * np.eye(len(model.free)):
         ahead, behind = (data.masked(data.residual(data.moved(model, s))) for s in (step, -step))
-        there = (ahead - behind) / 2e-3
-        errors.append(np.abs(column - there).max() / np.abs(there).max())
-    return np.array(errors)
+        columns.append((ahead - behind) / (2 * size))
+    return np.column_stack(columns)

@@ -115,9 +115,51 @@ def test_the_versions_of_mujoco_are_stated_once(project: dict[str, Any]) -> None
     versions = inerter.plugin.plugin_versions()
     assert mujoco.mj_versionString() in versions
     assert set(versions) <= set(stated["ENGINES"])
-    header = (ROOT / "plugin_c" / "mujoco" / "engine_private.h").read_text(encoding="utf-8")
+    header = (ROOT / "plugin_c" / "mujoco" / "engine.h").read_text(encoding="utf-8")
     oldest = [int(number) for number in next(iter(stated["ENGINES"])).split(".")]
     assert f"mjVERSION_HEADER < {oldest[0]}{oldest[1]:03}{oldest[2]:03}" in header
+    # the pages that list them, and those that say what was run with which
+    *others, newest = engines = list(stated["ENGINES"])
+    pinned = pinned_engine(project)
+    for page, sentences in {
+        "README.md": [f"MuJoCo {', '.join(engines)}: the wheel"],
+        "plugin_c/README.md": [f"{', '.join(engines)}: a library", f"Tests run against {pinned};"],
+        "docs/limits.md": [f"MuJoCo {', '.join(others)} and {newest}."],
+        "docs/neighbours.md": [f"development stays on {pinned}."] if newest != pinned else [],
+    }.items():
+        text = (ROOT / page).read_text(encoding="utf-8")
+        for sentence in sentences:
+            assert sentence in text, f"{page}: no {sentence!r}; ENGINES of engines.py has the list"
+        majors = "|".join(sorted({version.split(".")[0] for version in engines}))
+        named = set(re.findall(rf"(?<![\d.=])(?:{majors})\.\d+\.\d+(?![\d.])", text))
+        assert named <= set(engines), f"{page} names {named - set(engines)}, not in engines.py"
+
+
+def pinned_engine(project: dict[str, Any]) -> str:
+    """The version that development uses."""
+    wanted = " ".join(project["project"]["optional-dependencies"]["dev"])
+    (version,) = re.findall(r"mujoco\[\w+\]==(\S+)", wanted)
+    return version
+
+
+def test_one_header_includes_the_engines() -> None:
+    """What differs between its versions has one place only where every file goes through it."""
+    folder = ROOT / "plugin_c" / "mujoco"
+    texts = {path.name: path.read_text(encoding="utf-8") for path in folder.glob("*.[ch]")}
+    assert len(texts) > 40
+    direct = [name for name, text in texts.items() if re.search(r"#include\s*<mujoco/", text)]
+    assert direct == ["engine.h"], "include mujoco/engine.h, where the versions' differences stand"
+
+    def reached(name: str, seen: set[str]) -> set[str]:
+        for other in re.findall(r'#include "mujoco/([^"]+)"', texts[name]):
+            if other not in seen:
+                seen.add(other)
+                reached(other, seen)
+        return seen
+
+    for name, text in texts.items():
+        if re.search(r"\bmj[A-Z]|\bmju?_", text) and name != "engine.h":
+            assert "engine.h" in reached(name, set()), f"{name} does not include mujoco/engine.h"
 
 
 def test_one_version_of_the_package(project: dict[str, Any]) -> None:

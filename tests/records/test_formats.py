@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import polars as pl
 import pytest
-from inerter.records import RecordError, read_records
+from inerter.records import RecordError, read_records, table
 from scipy.io import savemat
 
 Columns = dict[str, np.ndarray]
+ROOT = Path(__file__).parents[2]
 
 
 def _mat(columns: Columns, path: Path) -> None:
@@ -161,3 +163,19 @@ def test_a_time_that_leaps_is_refused_and_a_pause_is_not(
     days = {**true, "time": true["time"] + 259200.0 * (np.arange(400) >= 200), "run": [3] * 400}
     with pytest.raises(RecordError, match=r"(line 202|row 201), run '3': time leaps by 2.592e\+05"):
         read_records(write(days))
+
+
+def test_the_pages_name_every_format_and_ending() -> None:
+    page = (ROOT / "docs" / "records.md").read_text(encoding="utf-8")
+    section = page.split("\n## Files\n")[1].split("\n\n")[0]
+    first = " ".join(row.split("|")[1] for row in section.splitlines() if row.startswith("| "))
+    assert set(re.findall(r"`(\.\w+)`", first)) == set(table.EXTENSIONS)
+    one_by_one = re.search(r"formats but (.*?),\s+which name by name", page, re.S)
+    assert one_by_one is not None
+    left_out = set(table.EXTENSIONS) - set(table.OF_FOLDERS)
+    assert set(re.findall(r"`(\.\w+)`", one_by_one[1])) == left_out
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    told = readme.split("## Your own data\n")[1].split("\n\n")[0].split("```")[0]
+    for kind in table.READERS:
+        assert kind.lower() in told.lower(), f"README.md, Your own data: no {kind}"
+        assert kind.lower() in first.lower(), f"docs/records.md, Files: no {kind}"

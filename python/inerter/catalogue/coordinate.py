@@ -45,6 +45,8 @@ class Coordinate:
     column
         What it multiplies in the force, of (stretch, velocity, acceleration, elapsed time), where
         it enters linearly.
+    also
+        Parameters of a device that say the same in another way, and that no fit changes.
     to_parameters
         Puts parameters of a device in its place, where it is none itself.
     of_device
@@ -74,6 +76,7 @@ class Coordinate:
     begin: OfScales = lambda s: 0.0
     none: float | None = 0.0
     column: Callable[[Array, Array, Array, Array], Array] | None = None
+    also: tuple[str, ...] = ()
     to_parameters: Callable[[Values], None] | None = None
     of_device: Callable[[Any], float] | None = None
     belongs_to: str = "device"

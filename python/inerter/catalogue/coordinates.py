@@ -218,7 +218,7 @@ _ALL = (
     Coordinate(
         name="load_friction", unit="1", words={"load_friction": "mu"}, size=lambda s: 0.1,
         lower=_zero, upper=lambda s: 0.95, begin=lambda s: 0.01, start=(0.01, 0.05),
-        jumps=True, entangled=True,
+        jumps=True, entangled=True, also=("mu_forward", "mu_backward"),
     ),
     # a friction level that varies
     Coordinate(
@@ -353,6 +353,7 @@ _ALL = (
         name="disturbance_frequency", unit="Hz", words={"disturbance_frequency": "frequency"},
         belongs_to="channel", size=lambda s: 1 / s.elapsed, lower=lambda s: LOWEST_TONE,
     ),
+    # of the device, but a device of a simulator knows no clock: the record has them, as its channel
     Coordinate(
         name="viscous_drift", unit="1/s", words={"viscous_drift": "drift of the viscous damping"},
         size=lambda s: 0.5 / s.elapsed, lower=lambda s: -0.95 / s.elapsed, belongs_to="channel",
@@ -386,10 +387,10 @@ ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
         *(each.name for each in _ALL if each.entangled),
         "gas_pressure", "series_stiffness", "series_damping",
     ),
-    "viscous": _BENT, "quadratic_damping": _BENT,
+    "viscous": (*_BENT, "viscous_drift"), "quadratic_damping": _BENT,
 })  # fmt: skip
 """With one of these the force is no longer the coordinate times its column."""
-JUMPS = tuple(each.name for each in _ALL if each.jumps)
+JUMPS = tuple(name for each in _ALL if each.jumps for name in (each.name, *each.also))
 """Beside the friction laws' own, those by which a force is not smooth in the motion."""
 PARAMETER_WORDS: Mapping[str, str] = MappingProxyType(
     {name: words for each in _ALL for name, words in each.words.items()}

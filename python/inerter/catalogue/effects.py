@@ -29,8 +29,9 @@ class Effect:
     name
         As in the contract.
     kind
-        "law", a friction law; "level", one that varies; "shaft", elasticity before the flywheel;
-        "play", that with a gap; "term", whatever else.
+        "law", a friction law; "level", one that varies; "damper", a viscous damping that is not
+        constant; "shaft", elasticity before the flywheel; "play", that with a gap; "term",
+        whatever else.
     coordinates
         Those that come and go with it.
     reported
@@ -50,8 +51,6 @@ class Effect:
         Whether one step from a starting point says little: what it cuts off, or remembers.
     unlike_friction
         Whether no friction law can stand in for it.
-    of_channel
-        Whether it is of the force channel, not of the device.
     on_table
         Whether amplitudes at a list of frequencies can show it.
     tells_law
@@ -81,7 +80,6 @@ class Effect:
     local: bool = False
     far: bool = False
     unlike_friction: bool = False
-    of_channel: bool = False
     on_table: bool = False
     tells_law: bool = False
     rivals: tuple[str, ...] = ()
@@ -214,7 +212,7 @@ _ALL = (
     ),
     Effect(
         name="force_drift", rank=15, coordinates=("force_drift",), unlike_friction=True,
-        of_channel=True, plain="a force offset that grows in time",
+        plain="a force offset that grows in time",
         meaning="an offset that grows steadily",
         cause="a load cell that warms up, a charge amplifier that leaks",
         taken_for="friction drift", experiment="that one changes sign with the velocity",
@@ -222,7 +220,7 @@ _ALL = (
     ),
     Effect(
         name="sensor_saturation", rank=17, coordinates=("force_maximum", "force_minimum"),
-        telling=(), local=True, unlike_friction=True, far=True, of_channel=True,
+        telling=(), local=True, unlike_friction=True, far=True,
         plain="a force channel that clips", meaning="force beyond a limit is cut off",
         cause="an amplifier or converter at the end of its range",
         taken_for="less inertance in large motion", experiment="repeat with half the amplitude",
@@ -230,7 +228,7 @@ _ALL = (
     Effect(
         name="periodic_disturbance", rank=18,
         coordinates=("disturbance_amplitude", "disturbance_frequency"),
-        telling=("disturbance_amplitude",), unlike_friction=True, of_channel=True,
+        telling=("disturbance_amplitude",), unlike_friction=True,
         plain="a tone that the motion does not contain", meaning="a sine of constant frequency",
         cause="mains hum, a pump, a machine next door", taken_for="a resonance of the rig",
         experiment="record with the device at rest",
@@ -246,7 +244,7 @@ _ALL = (
         rivals=("sensor_delay",),
     ),
     Effect(
-        name="viscous_drift", rank=16, coordinates=("viscous_drift",),
+        name="viscous_drift", rank=16, kind="damper", coordinates=("viscous_drift",),
         reported=("viscous", "viscous_drift"), plain="viscous damping that changes with time",
         meaning="c (1 + d t) v", cause="oil and grease that warm up and thin",
         taken_for="a friction level that changes with time",
@@ -286,7 +284,7 @@ _ALL = (
         rivals=("asymmetric_friction",),
     ),
     Effect(
-        name="sensor_delay", rank=6, coordinates=("delay",), of_channel=True,
+        name="sensor_delay", rank=6, coordinates=("delay",),
         plain="a delay between the force and the displacement channel",
         meaning="the force channel is late by a constant time",
         cause="filters or clocks that differ between the channels",
@@ -295,7 +293,7 @@ _ALL = (
         rivals=("series_elasticity", "viscous_friction"),
     ),
     Effect(
-        name="sensor_filter", rank=8, telling=(), far=True, unlike_friction=True, of_channel=True,
+        name="sensor_filter", rank=8, telling=(), far=True, unlike_friction=True,
         coordinates=(
             "force_filter", "force_filter_order", "force_filter_bessel",
             "displacement_filter", "displacement_filter_order", "displacement_filter_bessel",
@@ -314,7 +312,7 @@ _ALL = (
         experiment="repeat at twice the amplitude", rivals=("viscous_friction",),
     ),
     Effect(
-        name="asymmetric_damping", rank=10, coordinates=("damping_asymmetry",),
+        name="asymmetric_damping", rank=10, kind="damper", coordinates=("damping_asymmetry",),
         reported=("viscous", "damping_asymmetry"),
         plain="damping that differs between the two directions",
         meaning="c v (1 + kappa sgn(v))",
@@ -324,8 +322,9 @@ _ALL = (
         rivals=("asymmetric_friction", "force_offset"),
     ),
     Effect(
-        name="digressive_damping", rank=12, coordinates=("damping_knee", "damping_beyond"),
-        telling=(), reported=("viscous", "damping_knee", "damping_beyond"), far=True,
+        name="digressive_damping", rank=12, kind="damper",
+        coordinates=("damping_knee", "damping_beyond"), telling=(),
+        reported=("viscous", "damping_knee", "damping_beyond"), far=True,
         plain="damping that bends with the speed",
         meaning="c v up to a speed v_k, beyond it less for every further m/s, or more",
         cause="a valve that opens, shear thinning of the oil",

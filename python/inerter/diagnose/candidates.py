@@ -163,8 +163,23 @@ def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     yield Candidate(effect.name, None, starts)
 
 
+def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A damper's shape, with the damping that has it where there is none."""
+    if all(name in model.free for name in effect.coordinates):
+        return
+    linear = model.values.get("viscous", 0.0) or 0.5 * sizes.force / sizes.velocity
+    starts = [{"viscous": linear, effect.coordinates[0]: 0.0}]
+    if effect.name == "digressive_damping":
+        starts = [
+            {"viscous": slope * linear, "damping_knee": knee * sizes.velocity,
+             "damping_beyond": beyond}
+            for slope, knee, beyond in ((3.0, 0.25, 0.2), (1.5, 1.0, 0.3), (0.7, 1.0, 3.0))
+        ]  # fmt: skip
+    yield Candidate(effect.name, None, tuple(model.adding(None, **each) for each in starts))
+
+
 _OF_KIND: dict[str, Build] = {
-    "term": _term, "law": _law, "level": _level, "shaft": _shaft, "play": _play,
+    "term": _term, "law": _law, "level": _level, "damper": _damper, "shaft": _shaft, "play": _play,
 }  # fmt: skip
 
 
@@ -230,21 +245,6 @@ def _stiffness(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidat
         yield from _term(effect, model, sizes)
 
 
-def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    """A damper's shape, with the damping that has it where there is none."""
-    if all(name in model.free for name in effect.coordinates):
-        return
-    linear = model.values.get("viscous", 0.0) or 0.5 * sizes.force / sizes.velocity
-    starts = [{"viscous": linear, effect.coordinates[0]: 0.0}]
-    if effect.name == "digressive_damping":
-        starts = [
-            {"viscous": slope * linear, "damping_knee": knee * sizes.velocity,
-             "damping_beyond": beyond}
-            for slope, knee, beyond in ((3.0, 0.25, 0.2), (1.5, 1.0, 0.3), (0.7, 1.0, 3.0))
-        ]  # fmt: skip
-    yield Candidate(effect.name, None, tuple(model.adding(None, **each) for each in starts))
-
-
 def _inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if "inertance" not in model.free:
         start = model.values.get("inertance") or sizes.force / sizes.acceleration
@@ -291,9 +291,6 @@ _SPECIAL: dict[str, Build] = {
     "position_force": _by_the_search,
     "friction_play": _play_of_friction,
     "viscoelasticity": _relaxing,
-    "viscous_drift": _damper,
-    "asymmetric_damping": _damper,
-    "digressive_damping": _damper,
     "inertance_error": _inertance,
     "parallel_stiffness": _stiffness,
     "variable_inertance": _variable_inertance,

@@ -147,7 +147,7 @@ def width(model: Model) -> dict[str, float]:
 
 LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
 """The effect that each friction law is named as."""
-_DAMPERS = ("asymmetric_damping", "digressive_damping", "viscous_drift")
+_DAMPERS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "damper")
 """Effects that change a viscous damping, which belongs to them."""
 _FORCE = next(each for each in QUANTITIES if each.name == "force")
 _LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")

@@ -24,7 +24,7 @@ from inerter.catalogue.along_stroke import QUANTITIES, curves_of_nodes
 from inerter.catalogue.friction import FRICTION
 from inerter.identify.channel import clips
 from inerter.identify.model import Model
-from inerter.identify.prediction import first_state
+from inerter.identify.prediction import first_state, with_late_motion
 from inerter.identify.runs import BenchRun, forces_along
 
 Array = NDArray[np.float64]
@@ -60,6 +60,7 @@ class Response:
         lower, upper = model.values["curve_lower"], model.values["curve_upper"]
         grid = np.linspace(lower, upper, _POINTS)
         self._curves = _curves(lower, upper, len(nodes))
+        run, _ = with_late_motion(model, run)
         fine = run.measured is not None and np.isfinite(run.cutoff)
 
         def friction(rise: Array) -> Array:

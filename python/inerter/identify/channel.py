@@ -96,3 +96,19 @@ def without_tone(
     angle = 2 * np.pi * frequency * elapsed
     turn = np.exp(-1j * angle[mask]) @ residual[mask]
     return residual - amplitude * np.cos(angle + np.angle(turn))
+
+
+def tone_follows(
+    residual: Array, elapsed: Array, mask: NDArray[np.bool_], amplitude: float, frequency: float
+) -> tuple[Array, Array]:
+    """How such a tone follows a small change of the residual: its phase is read off that.
+
+    Two arrays (n,): what the residual without the tone gains per radian of the phase, and the
+    phase's derivative by every sample.
+    """
+    angle = 2 * np.pi * frequency * elapsed
+    wave = np.where(mask, np.exp(-1j * angle), 0.0)
+    turn = wave @ residual
+    if not (size := abs(turn)) > 0:
+        return np.zeros_like(residual), np.zeros_like(residual)
+    return amplitude * np.sin(angle + np.angle(turn)), (wave * turn.conjugate()).imag / size**2

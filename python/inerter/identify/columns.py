@@ -5,7 +5,8 @@ has that function as its column, which the model does not change: it is weighted
 for a node of a curve along the stroke too, whose function is what the core gives of a device that
 has nothing else. Where the device has a state, this begins where the first force puts it; a
 coordinate acts on that through the share of the first force that it takes, so that one difference
-by the first force serves all.
+by the first force serves all. Beside a tone, whose phase is read off the residual, a column has
+what this phase does too.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from inerter.catalogue.coordinates import COORDINATES, ENTANGLED, device_values,
 from inerter.core import Device
 from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
-from inerter.identify.channel import clips, through_channel
+from inerter.identify.channel import clips, through_channel, tone_follows
 from inerter.identify.channel_filter import Filter, filter_of, without_start
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
@@ -39,6 +40,9 @@ class ResidualAt(Protocol):
 
     def __call__(self, point: Array, pressed: float = 0.0, /) -> list[Array]: ...
 
+
+# of every run how a tone follows what is left, see `tone_follows`
+Tones = Sequence[tuple[Array, Array] | None]
 
 # difference of a search variable, and of the first force per its size
 _STEP = 1e-4
@@ -102,14 +106,15 @@ class Columns:
         """
         base: list[Array] = []
         by_first_force: list[Array] = []
-        of_friction = self._of_friction(names, model)
+        tones = self._tones(model)
+        of_friction = self._of_friction(names, model, tones)
         columns = []
         for name in names:
             if name in of_friction:
                 size = search_range(name, self.problem.scales).size
                 columns.append(of_friction[name] * size)
             elif self._in_proportion(name, model):
-                column = self._weighted(name, model)
+                column = self._weighted(name, model, tones)
                 if model.device().nstate and COORDINATES[name].belongs_to == "device":
                     base = base or residual(point)
                     by_first_force = by_first_force or self._by_first_force(point, base, residual)
@@ -154,7 +159,22 @@ class Columns:
             and all(np.isinf(run.far) for run in self.problem.runs)
         )
 
-    def _of_friction(self, names: Sequence[str], model: Model) -> dict[str, Array]:
+    def _tones(self, model: Model) -> Tones:
+        """How the tone of every run follows what is left; None where there is none."""
+        amplitude = model.values.get("disturbance_amplitude", 0.0)
+        if not amplitude:
+            return [None] * len(self.problem.runs)
+        frequency = model.values["disturbance_frequency"]
+        left = self.problem.errors(model.holding(disturbance_amplitude=0.0))
+        return [
+            tone_follows(
+                each, run.elapsed, mask if mask.any() else run.inner,
+                amplitude * run.gain(frequency), frequency,
+            )
+            for run, each, mask in zip(self.problem.runs, left, self.problem.masks, strict=True)
+        ]  # fmt: skip
+
+    def _of_friction(self, names: Sequence[str], model: Model, tones: Tones) -> dict[str, Array]:
         """Derivatives by nodes of a friction curve, where there are enough of them."""
         nodes = along_friction.nodes_of(names, model)
         if len(nodes) < _WORTH_WHILE:
@@ -162,7 +182,8 @@ class Columns:
         channel = {each: model.values[each] for each in _LINEAR if each in model.values}
         low_pass = filter_of(model.values, "force")
         shown: dict[str, list[Array]] = {name: [] for name in nodes}
-        for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
+        every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
+        for run, mask, tone in every:
             if np.isfinite(run.corner) and not mask.any():
                 for name in nodes:
                     shown[name].append(np.zeros(run.force.size))
@@ -170,7 +191,7 @@ class Columns:
             response = along_friction.Response(model, run)
             for name in nodes:
                 column = _through(channel, response.of(name), run)
-                shown[name].append(-_settled(column, run, mask, low_pass))
+                shown[name].append(-_settled(column, run, mask, low_pass, tone))
         weighted = self.problem.weighted
         return {name: np.concatenate(weighted(columns)) for name, columns in shown.items()}
 
@@ -190,20 +211,23 @@ class Columns:
         moved[index] += step
         return (np.concatenate(residual(moved)) - np.concatenate(base)) / step
 
-    def _weighted(self, name: str, model: Model) -> Array:
-        """Minus a column as it counts."""
+    def _weighted(self, name: str, model: Model, tones: Tones | None = None) -> Array:
+        """Minus a column as it counts, the tones held where none are given."""
+        tones = tones or [None] * len(self.problem.runs)
         key = _key(name, model, _LINEAR)
 
         def column() -> Array:
             low_pass = filter_of(model.values, "force")
             columns = []
-            for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
+            every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
+            for run, mask, tone in every:
                 of_run = functools.partial(_shown, name, model, run)
                 shown = _OF_RUNS.found((run.identity, *key), of_run)
-                columns.append(-_settled(shown, run, mask, low_pass))
+                columns.append(-_settled(shown, run, mask, low_pass, tone))
             return np.concatenate(self.problem.weighted(columns))
 
-        return self._kept.found(key, column)
+        # what a tone does changes with the model
+        return column() if any(tones) else self._kept.found(key, column)
 
     def _by_first_force(
         self, point: Array, base: Sequence[Array], residual: ResidualAt
@@ -290,13 +314,20 @@ def _through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array
 
 
 def _settled(
-    shown: Array, run: BenchRun, mask: NDArray[np.bool_], low_pass: Filter | None
+    shown: Array,
+    run: BenchRun,
+    mask: NDArray[np.bool_],
+    low_pass: Filter | None,
+    tone: tuple[Array, Array] | None,
 ) -> Array:
-    """A column without what a low-pass that is switched on adds, as of a residual."""
-    if low_pass is None:
-        return shown
-    mask = mask & run.inner if mask.any() else run.inner
-    return without_start(shown, run.spacing, mask, low_pass, run.first)
+    """A column without what a low-pass that is switched on adds and a tone takes, as a residual."""
+    if low_pass is not None:
+        inner = mask & run.inner if mask.any() else run.inner
+        shown = without_start(shown, run.spacing, inner, low_pass, run.first)
+    if tone is not None:
+        per_radian, phase = tone
+        shown = shown + (phase @ shown) * per_radian
+    return shown
 
 
 def _column(name: str, model: Model, run: BenchRun) -> Array:

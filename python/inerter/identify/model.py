@@ -79,7 +79,7 @@ class Model:
     @cached_property
     def _smooth_device(self) -> Device:
         known = parameters()
-        rough = ("friction", *JUMPS, *lists(), "mu_forward", "mu_backward")
+        rough = ("friction", *JUMPS, *lists())
         kept = {
             name: value
             for name, value in self._device.given.items()

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.coordinates import COORDINATES
 from inerter.core import Device
 from inerter.identify.channel import clips, delayed, through_channel, without_limits, without_tone
 from inerter.identify.channel_filter import Filter, filter_of, filtered, without_start
@@ -192,7 +193,7 @@ def warming(
 
 
 def _without_load(device: Device) -> Device:
-    load = ("load_friction", "mu_forward", "mu_backward")
+    load = ("load_friction", *COORDINATES["load_friction"].also)
     given = {name: value for name, value in device.given.items() if name not in load}
     return Device(**given)
 

@@ -32,9 +32,10 @@ class RawTable:
     """Columns as they stand in one file.
 
     header: column names as written; columns: by index, a series for each that was wanted; comments:
-    the lines above the header; told: how it was read. Of a text file: separator; odd: by column,
-    what is no number in it; lines: number and text of the header and of every data line, read anew.
-    decimated: of how many rows one was kept.
+    the lines above the header; told: how it was read; decimated: of how many rows one was kept.
+
+    Of a text file alone: separator; odd: by column, what is no number in it; lines: number and text
+    of the header and of every data line, read anew. Without `lines` an error names a row.
     """
 
     path: Path

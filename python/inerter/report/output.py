@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from inerter.catalogue.coordinates import CHANNEL_UNITS
 from inerter.core import Device
 from inerter.device_file import device_text
 from inerter.diagnose.result import Diagnosis
@@ -37,7 +38,7 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         device.replace(**rest_length),
         comments,
         diagnosis.extended.delay,
-        f"identified by inerter diagnose from {names}",
+        f"identified by inerter diagnose from {names}{_only_in_the_record(diagnosis)}",
         diagnosis.motion,
         diagnosis.extended.filters,
     )
@@ -51,6 +52,16 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
             "report.html": render_report(diagnosis, toml, model),
         },
     )
+
+
+def _only_in_the_record(diagnosis: Diagnosis) -> str:
+    """A line on what was found of the record that no line of a device's file can state, if any."""
+    found = [
+        f"{name} = {value:.4g} {unit(diagnosis.motion, CHANNEL_UNITS[name])}"
+        for name, value in diagnosis.extended.channels.items()
+        if name != "delay" and "_filter" not in name
+    ]
+    return f"\nbeside this device the record shows: {', '.join(found)}" if found else ""
 
 
 def _carried_comment(diagnosis: Diagnosis) -> dict[str, str]:

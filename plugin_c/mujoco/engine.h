@@ -1,9 +1,11 @@
-// What differs between the versions of the engine, and what its library exports and its public
-// headers leave out. A library of the plugin is built for exactly one version and refuses any other
-// (see plugin.c); which versions: packaging/engines.py.
+// The engine, for every file of this folder: its public header, what differs between its versions,
+// and what its library exports and that header leaves out. A member that another version calls by
+// another name is given its name here: nobody includes <mujoco/mujoco.h> beside this. A library of
+// the plugin is built for exactly one version and refuses any other (see plugin.c); which versions:
+// packaging/engines.py.
 
-#ifndef INERTER_MUJOCO_ENGINE_PRIVATE_H_
-#define INERTER_MUJOCO_ENGINE_PRIVATE_H_
+#ifndef INERTER_MUJOCO_ENGINE_H_
+#define INERTER_MUJOCO_ENGINE_H_
 
 #include <mujoco/mujoco.h>
 
@@ -12,9 +14,8 @@
 //   before 3.16   mj_effSolve has another name, mj_readCtrl (3.13) other arguments; no `discrete`
 //                 before 3.13
 //   3.16          no mujoco.batch in Python
-//   3.16, 3.17    mj_setConst computes the statistics anew; RK4 turns free bodies in second order;
-//   no
-//                 entry points for plugins in Python (inerter/__init__.py)
+//   3.16, 3.17    mj_setConst computes statistics anew; RK4 turns free bodies in second order;
+//                 no entry points for plugins in Python (inerter/__init__.py)
 //   4.0.0         Newton with a sparse constraint Jacobian is wrong (mujoco #3767); 4.0.1 mends it
 
 #if mjVERSION_HEADER < 3016000
@@ -26,10 +27,8 @@ static inline const char* engine_fault(const mjModel* m) {
 #if mjVERSION_HEADER == 4000000
   if (m->opt.solver == mjSOL_NEWTON && mj_isSparse(m)) {
     return "MuJoCo 4.0.0 has a fault that this model meets: its Newton solver with a sparse "
-           "constraint "
-           "Jacobian converges slowly and may be wrong (mujoco #3767); take MuJoCo 4.0.1 or 3.17, "
-           "or "
-           "<option solver=\"CG\"/> or jacobian=\"dense\"";
+           "constraint Jacobian converges slowly and may be wrong (mujoco #3767); take MuJoCo "
+           "4.0.1 or 3.17, or <option solver=\"CG\"/> or jacobian=\"dense\"";
   }
 #endif
   (void)m;
@@ -63,4 +62,4 @@ void mj_effMulAdd(const mjModel* m, mjData* d, mjtNum* result, const mjtNum* vec
 mjtNum mj_actuatorDamping(const mjModel* m, mjtObj type, int id, mjtNum poly[mjNPOLY]);
 mjtNum mjd_xPolyForce(mjtNum linear, const mjtNum* poly, mjtNum x, int n, int odd);
 
-#endif  // INERTER_MUJOCO_ENGINE_PRIVATE_H_
+#endif  // INERTER_MUJOCO_ENGINE_H_
