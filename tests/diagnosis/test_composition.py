@@ -102,6 +102,10 @@ def test_a_branch_without_a_time_of_its_own_and_a_straight_curve_are_plain_parts
     assert damper.values["viscous"] == 3.0 + 2e3 * 0.004
     assert set(damper.free) == {"inertance", "viscous"}
     assert as_plain_part(quick, 20.0, 60.0) == []
+    both = quick.adding(None, branch_stiffness_2=5e3, branch_time_2=1.0)
+    (damper,) = as_plain_part(both, 20.0, 3.0)
+    assert (damper.values["branch_stiffness_1"], damper.values["branch_time_1"]) == (5e3, 1.0)
+    assert damper.device().branch_stiffness_1 == 5e3
 
     nodes = {f"force_node_{i}": 5.0 + 2.0 * i for i in range(1, 8)}
     ends = {"curve_lower": -0.03, "curve_upper": 0.03}

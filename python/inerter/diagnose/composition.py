@@ -338,7 +338,7 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         if stiffness not in model.free:
             continue
         size, lasts = model.values[stiffness], model.values[time]
-        bare = model.without((stiffness, time))
+        bare = _without_branch(model, number)
         if lasts > 0.5 * longest:
             found.append(_with_spring(bare, size, 0.0))
         elif 2 * np.pi * frequency * lasts < 1.0:
@@ -351,6 +351,15 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         spring = _with_spring(model.without(nodes), float(slope), float(offset))
         found += [spring, spring.adding(None, stiffness_cubic=0.0)]
     return found
+
+
+def _without_branch(model: Model, number: int) -> Model:
+    """A model without one of its branches; the second takes the place of the first."""
+    first, second = (tuple(f"branch_{name}_{i}" for name in ("stiffness", "time")) for i in (1, 2))
+    if number == 1 and second[0] in model.free:
+        moved = {a: model.values[b] for a, b in zip(first, second, strict=True)}
+        return model.without((*first, *second)).adding(None, **moved)
+    return model.without(first if number == 1 else second)
 
 
 def _with_spring(model: Model, stiffness: float, offset: float) -> Model:

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from inerter.diagnose.decision import CRITERIA, visible
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.result import Finding, RecordSummary
 from inerter.diagnose.statistics import gain_interval, win_shares
 from inerter.diagnose.vehicle import wording
 from inerter.diagnose.vehicle.build import UserModel, model_of_text
+from inerter.diagnose.vehicle.chain import Link, chain_of, links_of
 from inerter.diagnose.vehicle.curves import channel_curves
 from inerter.diagnose.vehicle.drive import RecordedDrive, make_drive
 from inerter.diagnose.vehicle.effects import Effects, Scale
-from inerter.diagnose.vehicle.judging import block_squares, stacked_blocks, won
+from inerter.diagnose.vehicle.judging import block_squares, stacked_blocks
 from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.members import exchangeable, with_members
 from inerter.diagnose.vehicle.model import TYRES, VehicleModel
@@ -128,14 +128,15 @@ class _System:
         search = VehicleSearch(self.fit, effects, self._step_error, self.progress)
         final = search.run()
         start = search.refit([(VehicleModel(), {})])[0]
-        chain = self._chain(search, start, final)
-        while (weak := self._unconfirmed(chain)) is not None:
-            self.progress(
-                f"{final.model.effects[weak].effect} is not confirmed on held-out road: dropped"
-            )
-            final = search.refit([search.without(final, weak)])[0]
-            chain = self._chain(search, start, final)
-        return self._diagnosis(search, start, final, chain)
+        while True:
+            chain = chain_of(search, start, final, self.progress)
+            links = links_of(self.held, self.fit, chain, self._step_error)
+            weak = [i for i, link in enumerate(links) if not link.stands]
+            if not weak:
+                return self._diagnosis(search, chain, links)
+            effect = links[weak[-1]].added.effect
+            self.progress(f"{effect} is not confirmed on held-out road: dropped")
+            final = search.refit([search.without(final, weak[-1])])[0]
 
     # --- records -----------------------------------------------------------------------------
 
@@ -245,59 +246,13 @@ class _System:
 
     # --- effects -----------------------------------------------------------------------------
 
-    def _chain(
-        self, search: VehicleSearch, start: VehicleScored, final: VehicleScored
-    ) -> list[VehicleScored]:
-        """The user's model, then one effect more at a time, up to the final model."""
-        known = {step.chosen.model.effects: step.chosen for step in search.steps}
-        known |= {final.model.effects: final, (): start}
-        chain = [final]
-        while chain[0].model.effects:
-            wanted = chain[0].model.effects[:-1]
-            before = known.get(wanted)
-            if before is None:
-                self.progress("measuring the gain of each effect")
-                before = search.refit([search.without(chain[0], len(wanted))])[0]
-            chain.insert(0, before)
-        return chain
-
-    def _on_held(self, chain: list[VehicleScored]) -> tuple[Array, list[Array], list[float]]:
-        """Residuals on held-out road along a chain, their squares over blocks, their errors."""
-        residuals = self.held.stacked([scored.model for scored in chain])
-        blocks = stacked_blocks(self.held)
-        squares = [block_squares(residual, blocks) for residual in residuals]
-        return residuals, squares, [self.held.error(residual) for residual in residuals]
-
-    def _unconfirmed(self, chain: list[VehicleScored]) -> int | None:
-        """The last effect of a chain that does not help on held-out road, or not visibly."""
-        residuals, squares, errors = self._on_held(chain)
-        floor = self.held.noise(residuals[-1])
-        for i in range(len(chain) - 1, 0, -1):
-            before, after, effect = squares[i - 1], squares[i], chain[i].model.effects[-1].effect
-            step = self._step_error(chain[i - 1].model)
-            numerical = errors[i - 1] ** 2 - errors[i] ** 2 < (2 * step) ** 2
-            if (
-                after.sum() >= before.sum()
-                or won(self.held, residuals[i - 1], residuals[i], effect, 0.0)
-                < CRITERIA.confirming_advantage
-                or not visible(errors[i - 1], errors[i], floor, 1.0)
-                or numerical
-            ):
-                return i - 1
-        return None
-
     def _findings(
         self,
         search: VehicleSearch,
-        chain: list[VehicleScored],
-        errors: list[float],
-        squares: list[Array],
+        final: VehicleScored,
+        links: Sequence[Link],
     ) -> list[tuple[Finding, str]]:
-        """Findings, the most useful first, and where each of them is.
-
-        errors, squares: held-out errors along the chain, and their squares over blocks.
-        """
-        final = chain[-1]
+        """Findings, the most useful first, and where each of them is."""
         values = parameter_values(self.user, final, self._finer(final.model))
         several = len(self.user.devices) > 1
         found = []
@@ -318,11 +273,12 @@ class _System:
                 law=added.law,
                 confidence=confidence,
                 parameters=values[i],
-                rmse_before=errors[i],
-                rmse_after=errors[i + 1],
+                rmse_before=links[i].before,
+                rmse_after=links[i].after,
                 evidence="",
                 rivals=rivals,
-                gain_interval=gain_interval(squares[i], squares[i + 1]),
+                gain_interval=gain_interval(*links[i].squares),
+                seen_in_blocks=links[i].seen_in_blocks,
             )
             kind, _, name = added.element.partition(":")
             place = (name or kind) if (several and kind != "body") or kind in NAMED else ""
@@ -338,12 +294,13 @@ class _System:
     def _diagnosis(
         self,
         search: VehicleSearch,
-        start: VehicleScored,
-        final: VehicleScored,
-        chain: list[VehicleScored],
+        chain: Sequence[VehicleScored],
+        links: Sequence[Link],
     ) -> SystemDiagnosis:
-        residuals, squares, errors = self._on_held(chain)
-        named = self._findings(search, chain, errors, squares)
+        final, blocks = chain[-1], stacked_blocks(self.held)
+        residuals = self.held.stacked([chain[0].model, final.model])
+        squares = [block_squares(row, blocks) for row in residuals]
+        named = self._findings(search, final, links)
         findings, places = [f for f, _ in named], [place for _, place in named]
         before = self._accuracy(VehicleModel(), residuals[0], residuals[0])
         after = self._accuracy(final.model, residuals[-1], residuals[0])

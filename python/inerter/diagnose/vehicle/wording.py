@@ -45,8 +45,10 @@ def evidence(finding: Finding, place: str) -> str:
         value_in_words(name.replace("_", " "), value) for name, value in finding.parameters.items()
     )
     where = f" in {place}" if place else ""
+    unseen = "data left out of the fit (what is held out does not reach it)"
     text = (
-        f"{values}{where}: the error on held-out data falls from "
+        f"{values}{where}: the error on {unseen if finding.seen_in_blocks else 'held-out data'} "
+        "falls from "
         f"{100 * finding.rmse_before:.3g} % of the channels' spread to "
         f"{100 * finding.rmse_after:.3g} %"
     )
@@ -95,6 +97,12 @@ def verdict(
             f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
             f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains.summary}"
         )
+        unseen = [finding_in_words(finding) for finding in findings if finding.seen_in_blocks]
+        if unseen:
+            text += (
+                f" What is held out does not reach {' and '.join(unseen)}, which shows in the "
+                "other runs alone: see its evidence."
+            )
         doubtful = stand_ins(findings, remains.structure)
         text += warning([in_words(finding.effect, finding.law) for finding in doubtful])
     if unknown:
