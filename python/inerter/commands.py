@@ -90,8 +90,8 @@ def diagnose_command(
     model: Annotated[
         Path | None,
         typer.Option(
-            help="A MuJoCo model: bench records take its inerter.device as baseline, vehicle "
-            "records (time, road, ...) drive it."
+            help="A MuJoCo model or a car.toml: bench records take its inerter.device as "
+            "baseline, vehicle records (time, road, ...) drive it."
         ),
     ] = None,
     inputs: Annotated[
@@ -198,8 +198,8 @@ def simulate_command(
     model: Annotated[
         Path,
         typer.Argument(
-            help="A MuJoCo model, .xml or compiled .mjb, or the name of a shipped one, see "
-            "`inerter models`."
+            help="A MuJoCo model, .xml or compiled .mjb, a car.toml, or the name of a shipped one, "
+            "see `inerter models`."
         ),
     ],
     duration: Annotated[

@@ -50,7 +50,9 @@ def at_rest(run: SimulatedRun, keyframe: str | None) -> str | None:
     names = [run.model.key(i).name or str(i) for i in range(run.model.nkey)]
     names = [name for name in names if name != keyframe]
     ways = [f"start from a keyframe (--keyframe {' or '.join(names)})"] if names else []
-    if run.model.nu:
+    if run.inputs:
+        ways.append(f"drive more than {', '.join(run.inputs.driven)}, or further (--control)")
+    elif run.model.nu:
         ways.append("drive it (--control FILE)")
     return f"No device moved: {', or '.join(ways) or 'give the model something that moves it'}."
 
