@@ -16,7 +16,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -92,6 +92,19 @@ def filter_of(values: Mapping[str, float], channel: str) -> Filter | None:
         return None
     kind = "bessel" if values.get(f"{channel}_filter_bessel") else "butterworth"
     return Filter(kind, int(values.get(f"{channel}_filter_order", USUAL_ORDER)), float(cutoff))
+
+
+def slow_start(values: Mapping[str, float]) -> Filter | None:
+    """What decides how long a force shows what came before the record: its filter, if any.
+
+    Else of a force that is late a filter of the usual order which is as late: nobody has measured
+    what it shows first either, and the two have to be judged alike.
+    """
+    delay = values.get("delay", 0.0)
+    if (low_pass := filter_of(values, "force")) is not None or not delay > 0.0:
+        return low_pass
+    unit = Filter("butterworth", USUAL_ORDER, 1.0)
+    return replace(unit, cutoff=unit.lateness / delay)
 
 
 def filters_of(values: Mapping[str, float]) -> dict[str, Filter]:

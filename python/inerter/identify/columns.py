@@ -24,7 +24,7 @@ from inerter.core import Device
 from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import clips, through_channel, tone_follows
-from inerter.identify.channel_filter import Filter, filter_of, without_start
+from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.smoothness import smoothness
@@ -180,7 +180,7 @@ class Columns:
         if len(nodes) < _WORTH_WHILE:
             return {}
         channel = {each: model.values[each] for each in _LINEAR if each in model.values}
-        low_pass = filter_of(model.values, "force")
+        low_pass = slow_start(model.values)
         shown: dict[str, list[Array]] = {name: [] for name in nodes}
         every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
         for run, mask, tone in every:
@@ -217,7 +217,7 @@ class Columns:
         key = _key(name, model, _LINEAR)
 
         def column() -> Array:
-            low_pass = filter_of(model.values, "force")
+            low_pass = slow_start(model.values)
             columns = []
             every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
             for run, mask, tone in every:

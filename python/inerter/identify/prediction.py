@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 from inerter.catalogue.coordinates import COORDINATES
 from inerter.core import Device
 from inerter.identify.channel import clips, delayed, through_channel, without_limits, without_tone
-from inerter.identify.channel_filter import Filter, filter_of, filtered, without_start
+from inerter.identify.channel_filter import (
+    Filter,
+    filter_of,
+    filtered,
+    slow_start,
+    without_start,
+)
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.transient import without_transient
@@ -201,8 +207,8 @@ def _without_load(device: Device) -> Device:
 def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_]) -> Array:
     """A residual without what only the record itself can tell, read off its masked samples.
 
-    That is how the flywheel turned as the record began, what a low-pass held then, and the phase of
-    a tone. Of a run left out
+    That is how the flywheel turned as the record began, what a low-pass or a delay held then, and
+    the phase of a tone. Of a run left out
     of a fit (nothing masked) everything is read off the run.
     """
     mask = mask if mask.any() else run.inner
@@ -211,7 +217,7 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
         return residual
     if device.series_stiffness and not device.backlash:
         residual = without_transient(device, residual, run.spacing, mask)
-    if (low_pass := filter_of(values, "force")) is not None:
+    if (low_pass := slow_start(values)) is not None:
         residual = without_start(residual, run.spacing, mask & run.inner, low_pass, run.first)
     if amplitude := values.get("disturbance_amplitude", 0.0):
         frequency = values["disturbance_frequency"]
