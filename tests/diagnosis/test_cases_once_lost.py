@@ -47,6 +47,8 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     "LuGre beside a spring": (("hysteretic_friction", "parallel_stiffness"), 1248197593),
     # the drift moved what the load adds too, and stiction and damping made up for it
     "load and drift": (("load_dependent_friction", "friction_drift"), 4151383076),
+    # what came before the record was taken off behind a filter, and not behind a delay
+    "start of a late record": (("sensor_delay",), 189397360),
     # a spring that relaxes within milliseconds was found before friction, and stayed for a damper
     "damper with a lag": (("viscous_friction", "stribeck_friction"), 3239527201),
 }
