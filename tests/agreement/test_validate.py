@@ -95,6 +95,7 @@ def test_an_unknown_input() -> None:
         signal("jolt", 1.0, 1.0)
 
 
+@pytest.mark.rarely("load_on_lugre", "load_on_maxwell_slip")
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "ideal"])
 def test_every_law_acts(law: str) -> None:
     """The quarter-car moves otherwise than with the inertance alone, by far more than errors."""

@@ -168,6 +168,7 @@ def test_the_laws_of_numba_are_the_core_s() -> None:
         assert along(law)(SPACING, x, v, a) == pytest.approx(own, rel=1e-10, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(
     sys.platform != "linux" or shutil.which("valgrind") is None, reason="valgrind is not installed"
 )

@@ -27,7 +27,7 @@ CLOSE = {
     "series_damping": 0.3, "stop_stiffness": 0.1, "gas_exponent": 0.3,
 }  # fmt: skip
 USUAL = 0.03
-OFTEN = ("viscous_friction", "lugre")
+OFTEN = ("viscous_friction", "dahl")
 
 
 def _case(effect: str, law: str | None) -> object:

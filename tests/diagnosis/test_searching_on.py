@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.stages import Confirmed, Settled, compared, confirmed, searched
 from inerter.diagnose.start import Given, prepared
@@ -63,6 +64,7 @@ def test_nothing_is_added_where_nothing_is_left(effects_seed: int) -> None:
     assert [link.effect for link in found.chain] == ["viscous_friction"]
 
 
+@pytest.mark.long
 def test_what_is_excluded_comes_back_on_no_way(effects_seed: int) -> None:
     found = searched(prepared(Given(records=[bench(100.0, 8.0, effects_seed)])))
     baseline = found.prepared.baseline

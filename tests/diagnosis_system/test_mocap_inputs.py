@@ -53,6 +53,7 @@ def test_a_table_moves_the_model_as_a_road_actuator_does(effects_seed: int) -> N
     assert np.max(np.abs(apart)) < 1e-6 * np.max(np.abs(found[0]))
 
 
+@pytest.mark.long
 def test_what_a_table_cannot_show_is_said_and_its_spring_is_tried(effects_seed: int) -> None:
     case = hide_in_vehicle(effects_seed, ("tyre_stiffness_error",), vehicle="quarter")
     user = on_table(case, "shaker")

@@ -111,6 +111,7 @@ def steps(page: Path) -> list[tuple[str, object]]:
     return found
 
 
+@pytest.mark.rarely("bench.md")
 @pytest.mark.parametrize("page", [page for page in HOW_TO if steps(page)], ids=lambda p: p.name)
 def test_a_how_to_works_as_it_stands(page: Path, tmp_path: Path) -> None:
     todo = steps(page)

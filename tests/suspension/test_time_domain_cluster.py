@@ -26,6 +26,7 @@ PLAN = Plan(
 )
 
 
+@pytest.mark.long
 def test_a_cluster_whose_workers_die_gives_the_same_rows() -> None:
     distributed = pytest.importorskip("distributed")
     here = evaluate(PLAN)

@@ -58,6 +58,7 @@ def test_indices_are_the_sums_over_the_sinusoids(layout: str, case: str) -> None
         )
 
 
+@pytest.mark.rarely("S3-elastic")
 @pytest.mark.parametrize(("layout", "case"), LINEAR)
 def test_gains_are_the_transfer_function(layout: str, case: str) -> None:
     f = np.array([0.7, 1.3, 2.9, 9.0, 17.3])
@@ -99,6 +100,7 @@ def test_static_load_is_shared_by_the_axles() -> None:
     assert slow == pytest.approx(by_hand, rel=1e-3)
 
 
+@pytest.mark.rarely("S2-friction100")
 @pytest.mark.parametrize(("layout", "case"), [("S2", "friction100"), ("S3", "dahl")])
 def test_road_indices_are_those_of_the_reference(layout: str, case: str) -> None:
     """A road that ends at 6 Hz, which an adaptive solver drives over in seconds."""

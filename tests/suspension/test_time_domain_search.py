@@ -57,6 +57,7 @@ def test_a_half_cars_struts_are_found_from_the_ideal_inerter() -> None:
     assert above[1] < 1e-4
 
 
+@pytest.mark.long
 def test_the_corner_of_a_nonlinear_case() -> None:
     """No neighbour is better, and both peaks are equal, as in the linear optimum."""
     plan = Plan(settings=QUICK)

@@ -93,6 +93,7 @@ def test_peaks_of_j5_are_equal() -> None:
     assert sum(gain > max(gains) * (1.0 - 1e-7) for gain in gains) == 4
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("layout", "index"), [("S2", "J1"), ("S3", "J3"), ("S1", "J5")])
 def test_ten_times_as_many_starts_find_nothing_better(layout: str, index: str) -> None:
     for car in (HALF, COUPLED):
