@@ -91,6 +91,11 @@ class Criteria:
     # to be taken out again
     keeping_advantage: float = _bound(2.0, ERRORS, "an effect worth less goes")
     keeping_gain: float = _bound(0.005, SHARE, "the same: half of what it needed to come")
+    needed: float = _bound(
+        2.0,
+        RATIO,
+        "error without an effect per error with it: it stays, though its parameter may be none",
+    )
 
     # rivals
     equal_advantage: float = _bound(2.0, ERRORS, "within which two models do as well")

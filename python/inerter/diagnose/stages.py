@@ -34,7 +34,6 @@ from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
-from inerter.diagnose.trials import FAR
 from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
@@ -244,7 +243,8 @@ def identified(search: Search, baseline: Model, final: Scored) -> Scored:
             # their values have no normal error, or are known otherwise (`_plainest_law`)
             continue
         without = search.problem.fit(stripped(final.model, effect, baseline))
-        if without.rmse(search.problem.masks) > FAR * final.fit.rmse(search.problem.masks):
+        masks = search.problem.masks
+        if without.rmse(masks) > CRITERIA.needed * final.fit.rmse(masks):
             # something is there, though these data do not tell its parameters one by one
             continue
         return identified(search, baseline, search.score("", None, without))
