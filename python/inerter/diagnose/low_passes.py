@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
@@ -21,10 +22,12 @@ from inerter.diagnose.trials import FEW, within_shortlist
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
 
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
 
+Array = NDArray[np.float64]
 Fitted = Sequence[tuple[Candidate, Fit]]
 
 
@@ -58,6 +61,30 @@ def filters(model: Model, delay: float = 0.0) -> Iterator[Candidate]:
         cutoff = {f"{channel}_filter": found.pop(f"{channel}_filter")}
         law = f"{channel} {kind} {order}"
         yield Candidate("sensor_filter", law, (bare.adding(None, **cutoff).holding(**found),))
+
+
+def noise_taken(
+    model: Model, runs: Sequence[BenchRun], blocks: Sequence[tuple[int, NDArray[np.intp]]]
+) -> Array:
+    """What a model's low-pass of the force takes of the noise that it foretells [N^2], by block.
+
+    Noise of the displacement is one of b a in what is foretold, and goes through the filter: a
+    model with one misses less for that alone, and would win by it over a delay. Where errors count
+    by the noise of the motion, as much of what is expected is added to them again.
+    """
+    found = np.zeros(len(blocks))
+    low_pass = filter_of(model.values, "force")
+    if low_pass is None:
+        return found
+    for i, (number, index) in enumerate(blocks):
+        run = runs[number]
+        if run.noise and np.isfinite(run.corner):
+            frequency = np.linspace(0.0, run.cutoff, 65)
+            motion = (frequency / run.corner) ** 4
+            passed = np.abs(low_pass.response(frequency)) ** 2
+            left = np.mean((1.0 + passed * motion) / (1.0 + motion))
+            found[i] = index.size * run.noise**2 * (1.0 - float(left))
+    return found
 
 
 def where_late(search: Search, current: Scored, fitted: Fitted) -> list[tuple[Candidate, Fit]]:

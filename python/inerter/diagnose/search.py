@@ -33,7 +33,7 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
-from inerter.diagnose.low_passes import other_filter, where_late
+from inerter.diagnose.low_passes import noise_taken, other_filter, where_late
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.tone import Witness, tone_candidate
@@ -207,14 +207,11 @@ class Search:
 
     def _scored(self, effect: str, law: str | None, fit: Fit, errors: list[Array]) -> Scored:
         residual = self.problem.weighted(errors)
+        squares = block_squares(residual, self.blocks)
         return Scored(
-            effect=effect,
-            law=law,
-            fit=fit,
-            errors=errors,
-            residual=residual,
-            squares=block_squares(residual, self.blocks),
-        )
+            effect=effect, law=law, fit=fit, errors=errors, residual=residual,
+            squares=squares + noise_taken(fit.model, self.runs, self.blocks),
+        )  # fmt: skip
 
     def advantage(self, simple: Scored, rich: Scored, effect: str) -> float:
         """How surely a model with an effect has smaller errors on left-out folds than without."""

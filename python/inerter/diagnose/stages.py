@@ -14,6 +14,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
@@ -37,7 +39,7 @@ from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
-from inerter.identify.runs import on_clocks, thin
+from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.identify.split import split
 from inerter.records.preparation import Preparation
 
@@ -123,7 +125,7 @@ def searched(start: Prepared) -> Searched:
 def search_in(start: Prepared, band: Preparation) -> Search:
     """A search in which errors count by the noise of the motion."""
     runs = [
-        replace(run, corner=band.corner)
+        replace(run, corner=band.corner, noise=band.noise_floor * _share_in_band(run))
         for run in on_clocks([thin(motion, force_band=band.force_band) for motion in band.motions])
     ]
     parted, progress = split(runs, start.data.held), start.given.progress
@@ -131,6 +133,11 @@ def search_in(start: Prepared, band: Preparation) -> Search:
         runs, parted, start.baseline, progress, witness=start.data.witness,
         one_tone=start.data.band.scales.one_tone,
     )  # fmt: skip
+
+
+def _share_in_band(run: BenchRun) -> float:
+    """Of white noise at the measured rate what a run's band has, rms."""
+    return float(np.sqrt(min(2.0 * run.cutoff * run.spacing / run.thinned, 1.0)))
 
 
 def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:

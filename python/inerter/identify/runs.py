@@ -69,6 +69,8 @@ class BenchRun:
     corner : float
         Frequency [Hz] above which the motion's noise outweighs the force's; residuals count less
         there.
+    noise : float
+        Of the force in the band, rms [N]; 0 where it is not known.
     shaft : tuple of float, optional
         Resonance [Hz] and damping ratio of a series element, which amplifies the motion's noise.
     far : float
@@ -94,6 +96,7 @@ class BenchRun:
     first: int = 0
     clock: float = 0.0
     corner: float = np.inf
+    noise: float = 0.0
     shaft: Shaft | None = None
     far: float = np.inf
     motion: Kind = TRANSLATION
