@@ -52,6 +52,26 @@ def test_a_helper_says_nothing_of_predictions_that_run_away(tmp_path: Path) -> N
     assert list(by_process.values()) == ["ignore"]
 
 
+class _Growing:
+    """Something that another thread adds to while it is packed, the first times."""
+
+    def __init__(self) -> None:
+        self.tries = 3
+
+    def __getstate__(self) -> dict[str, int]:
+        self.tries -= 1
+        if self.tries >= 0:
+            raise RuntimeError("dictionary changed size during iteration")
+        return {"tries": 0}
+
+
+@with_a_helper
+def test_what_grows_meanwhile_is_packed_all_the_same() -> None:
+    grows, items = _Growing(), [_Growing() for _ in range(6)]
+    assert parallel(lambda item: item.tries + grows.tries, items) is not None
+    assert grows.tries < 0
+
+
 @with_a_helper
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 20, 257])
 def test_results_keep_their_order(count: int) -> None:

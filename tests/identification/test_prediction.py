@@ -8,7 +8,7 @@ from inerter.core import Device
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.runs import BenchRun, thin
-from inerter.identify.transient import without_transient
+from inerter.identify.transient import without_relaxing, without_transient
 from inerter.records import Record
 from inerter.records.motion import smooth
 
@@ -105,3 +105,37 @@ def test_a_flywheel_that_turns_as_a_record_begins_is_settled(run: BenchRun) -> N
     decay = np.exp(-0.5 * run.elapsed) * np.sin(np.sqrt(1e3 - 0.25) * run.elapsed)
     left = settled(model, run, 20 * decay, np.ones(run.force.size, bool))
     assert np.max(np.abs(left)) < 1.0
+
+
+def test_branches_that_are_bent_as_a_record_begins_are_settled() -> None:
+    """A record cut out of a longer one: the right model leaves nothing, whatever came before."""
+    device = Device(
+        inertance=60.0, branch_stiffness_1=2e4, branch_damping_1=6e4,
+        branch_stiffness_2=5e3, branch_damping_2=1500.0,
+    )  # fmt: skip
+    x = 5e-3 * np.sin(2 * np.pi * 1.3 * TIME + 1.0) + 2e-3 * np.sin(2 * np.pi * 3.1 * TIME)
+    v, a = np.gradient(x, TIME), np.gradient(np.gradient(x, TIME), TIME)
+    force = device.along(1e-3, x, v, a)["total"]
+    # from a whole second on, both branches bent
+    later = Record(
+        name="later", time=TIME[1000:], displacement=x[1000:], force=force[1000:]
+    )  # fmt: skip
+    run = thin(smooth(later, 20.0))
+    values = {
+        "inertance": 60.0, "branch_stiffness_1": 2e4, "branch_time_1": 3.0,
+        "branch_stiffness_2": 5e3, "branch_time_2": 0.3,
+    }  # fmt: skip
+    model = Model("none", values, ())
+    left = run.force - force_along(model, run)
+    assert np.std(left[run.inner]) > 5.0
+    assert np.std(settled(model, run, left, run.inner)[run.inner]) < 0.1
+
+
+def test_what_branches_were_bent_by_is_not_made_up() -> None:
+    """Samples long after a branch has relaxed say nothing of what it was bent by."""
+    residual = np.random.default_rng(3).standard_normal(TIME.size)
+    left = without_relaxing((0.25,), residual, 1e-3, TIME > 3.0)
+    assert np.max(np.abs(left - residual)) < 1.0
+    wave = 40.0 * np.exp(-TIME / 0.25)
+    left = without_relaxing((0.25, 1.5), residual + wave, 1e-3, TIME < 8.0)
+    assert np.std(left - residual) < 0.2

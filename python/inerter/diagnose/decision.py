@@ -22,7 +22,8 @@ def _bound(value: float, unit: str, reason: str) -> Any:
     return field(default=value, metadata={"unit": unit, "reason": reason})
 
 
-ERRORS, SHARE, RATIO, COUNT = "standard errors", "share of the rms error", "ratio", "number"
+ERRORS, SHARE, RATIO = "standard errors", "share of the rms error", "ratio"
+COUNT, SAMPLES = "number", "samples"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,6 +156,17 @@ class Criteria:
     # bands
     band_gain: float = _bound(0.1, SHARE, "what another band takes away to be taken")
     more_bands: int = _bound(2, COUNT, "of wider bands in which a search goes on")
+    long_record: int = _bound(
+        100_000, SAMPLES, "of all runs, from which on causes are searched for on stretches of them"
+    )
+    searched_samples: int = _bound(60_000, SAMPLES, "in all stretches")
+    missed_stretch: float = _bound(
+        2.0,
+        RATIO,
+        "of the error of a stretch that was not searched to the largest of those that were, from "
+        "which something happens there alone, and it is searched too",
+    )
+    more_stretches: int = _bound(3, COUNT, "of searches, each with more such stretches")
     tone_of_motion: float = _bound(
         0.5,
         "share of a tone's power",

@@ -18,11 +18,13 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA, loss, visible
 from inerter.diagnose.parallel import parallel
+from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.trials import FEW, within_shortlist
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
+from inerter.identify.split import blocks
 
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
@@ -142,6 +144,20 @@ def _likeliest(search: Search, trials: list[Candidate]) -> list[Candidate]:
     return [trials[i] for i in np.argsort(errors)[: CRITERIA.filters_kept]]
 
 
+def _jumps_late(search: Search, delayed: Scored, filtered: Scored) -> bool:
+    """Whether the force as measured jumps, late, where a low-pass would have smoothed it.
+
+    Friction that jumps tells the two apart above the band in which a search compares them.
+    """
+    if search.witness is None or loss(delayed, filtered) > CRITERIA.too_much:
+        return False
+    raw = search.witness.raw
+    counted = blocks(raw.masks)
+    late, smooth = (block_squares(raw.errors(s.model), counted) for s in (delayed, filtered))
+    gain = 1.0 - float(np.sqrt(late.sum() / smooth.sum()))
+    return gain > CRITERIA.gain and advantage(smooth, late) > CRITERIA.advantage
+
+
 def other_filter(search: Search, current: Scored) -> Scored | None:
     """A delay in the place of the low-pass found, where that does as well; else a better low-pass.
 
@@ -154,6 +170,8 @@ def other_filter(search: Search, current: Scored) -> Scored | None:
     errors = rms(delayed.errors, masks), rms(current.errors, masks)
     # also where the two differ by no more than what interpolation between samples leaves
     if loss(delayed, current) < CRITERIA.gain or not visible(*errors, 0.0, force):
+        return delayed
+    if _jumps_late(search, delayed, current):
         return delayed
     for _, fit in _best(search, current.fit, current.fit.rmse(masks)):
         scored = search.score("exchange", None, fit)

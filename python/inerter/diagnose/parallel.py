@@ -14,9 +14,11 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from functools import lru_cache
+from typing import Any, Generic, TypeVar
 
 import numpy as np
+from cloudpickle import dumps, loads
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
@@ -30,6 +32,8 @@ T = TypeVar("T")
 MOST = 8
 # parts of the work of each, so that none waits long for the last
 PARTS = 8
+# times that something is packed which another thread adds to meanwhile
+TRIES = 100
 
 
 @dataclass(frozen=True)
@@ -112,9 +116,11 @@ class _Shared(Generic[S, T]):
         self.function, self.parts = function, parts
         self.waiting = deque(range(len(parts)))
         self.results: list[Future[list[T]]] = [Future() for _ in parts]
+        self.packed = b""
 
     def worked_out(self, pool: ProcessPoolExecutor, helpers: int) -> list[list[T]]:
         """Results of every part."""
+        self.packed = _packed(self.function)
         for _ in range(helpers):
             self._hand_out(pool)
         try:
@@ -149,9 +155,30 @@ class _Shared(Generic[S, T]):
                 self.results[i].set_result(future.result())
 
         try:
-            pool.submit(_each, self.function, self.parts[i]).add_done_callback(received)
+            task = pool.submit(_each_packed, self.packed, _packed(self.parts[i]))
+            task.add_done_callback(received)
         except Exception as error:
             self.results[i].set_exception(error)
+
+
+def _packed(thing: object) -> bytes:
+    """What another process is told.
+
+    Work goes on meanwhile, and remembers what it worked out in the objects that are packed.
+    """
+    for _ in range(TRIES):
+        with suppress(RuntimeError):
+            return dumps(thing)
+    return dumps(thing)
+
+
+@lru_cache(maxsize=1)
+def _unpacked(function: bytes) -> Callable[[Any], Any]:
+    return loads(function)
+
+
+def _each_packed(function: bytes, items: bytes) -> list[Any]:
+    return _each(_unpacked(function), loads(items))
 
 
 def _each(function: Callable[[S], T], items: list[S]) -> list[T]:

@@ -18,6 +18,8 @@ from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import doubted
 from inerter.diagnose.engines import simulate_engines
+from inerter.diagnose.everything import errors_of, on_everything
+from inerter.diagnose.excerpts import Excerpts, excerpts
 from inerter.diagnose.exchangeable import exchanges, with_exchange
 from inerter.diagnose.other_runs import (
     badly_missed,
@@ -43,6 +45,7 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.channel import channel_values
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of, named
+from inerter.identify.fit import rms
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.prediction import settled as without_nuisances
@@ -100,27 +103,51 @@ def diagnose_bench(
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
     with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
-        return diagnosis_of(confirmed(settled(searched(prepared(given)))))
+        stands, long = _stood(given)
+        return diagnosis_of(stands, long)
 
 
-def diagnosis_of(stands: Confirmed) -> Diagnosis:
-    """What is said of a model that stands: findings, figures, what remains."""
-    data, judge, final = stands.searched.data, stands.searched.judge, stands.fit.model
+def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
+    """What stands; of a long record, what was searched for on stretches of it."""
+    found = excerpts(given)
+    if found is None:
+        return confirmed(settled(searched(prepared(given)))), None
+    for _ in range(CRITERIA.more_stretches):
+        part = confirmed(settled(searched(prepared(found.given))))
+        stands = on_everything(part, found)
+        more = found.with_missed(errors_of(stands))
+        if more is None:
+            break
+        found = more
+    return stands, found
+
+
+def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
+    """What is said of a model that stands: findings, figures, what remains.
+
+    Of a `long` record what takes time for every sample is read off its stretches.
+    """
+    data, judge, final = stands.data, stands.judge, stands.fit.model
+    part = stands.searched.data
     motion = data.whole[0].motion
     given = stands.searched.prepared.given
     baseline, extended = _accuracy(stands, stands.before.model), _accuracy(stands, final)
     floor = judge.noise_left(final)
-    remains = unexplained(
-        data.runs, data.split, data.band.residual(final), floor, extended.rmse, data.whole,
-        data.raw.errors(final), judge.motion_noise(final),
-    )  # fmt: skip
     given.progress("measuring what repeats, and what more could be predicted")
     errors = data.raw.errors(final)
-    remains = with_ceiling(data, errors, floor, remains, judge.motion_noise(final))
+    of_part = part.raw.errors(final) if long else errors
+    remains = unexplained(
+        part.runs, part.split, part.band.residual(final), floor, extended.rmse, part.whole,
+        of_part, judge.motion_noise(final),
+    )  # fmt: skip
+    remains = with_ceiling(
+        part, of_part, floor, remains, judge.motion_noise(final), extended.rmse if long else None
+    )
     kept = None
     if given.carry != "nothing":
         passive = given.carry == "passive"
-        kept = carried(data, final, floor, judge.motion_noise(final), passive=passive)
+        noise = floor, judge.motion_noise(final)
+        kept = carried(data, final, *noise, passive=passive, learnt=part)
     remains = replace(remains, carried=kept.json() if kept else None)
     steps = steps_of(data, judge, final)
     again = repeats(data.whole, errors)
@@ -154,7 +181,7 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
         extended=extended,
         noise_floor=floor,
         unexplained=remains,
-        engines=simulate_engines(final, data.whole, data.raw.masks),
+        engines=simulate_engines(final, part.whole, part.raw.masks),
         verdict="",
         parameters=values,
         method=_method(stands)
@@ -167,6 +194,7 @@ def diagnosis_of(stands: Confirmed) -> Diagnosis:
                 missed_in_words(missed, extended.rmse, motion),
                 split_in_words(data, other),
                 steps_in_words(steps, motion),
+                long.in_words(rms(of_part, part.raw.masks)) if long else "",
             )
             if note
         ],
@@ -197,7 +225,7 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
             ],
             seen_in_blocks=link.seen_in_blocks,
             gain_interval=link.interval,
-            motion=stands.searched.data.whole[0].motion,
+            motion=stands.data.whole[0].motion,
         )
         findings.append(replace(finding, evidence=wording.evidence(finding)))
     return sorted(findings, key=lambda finding: -finding.gain)
@@ -214,13 +242,13 @@ def _filter(effect: str, model: Model) -> str | None:
 
 
 def _accuracy(stands: Confirmed, model: Model) -> Accuracy:
-    judge = stands.searched.judge
+    judge = stands.judge
     rmse, spread = judge.rmse(model), float(np.std(judge.force))
     return Accuracy(model.stated(), rmse, rmse / (spread or 1.0), channel_values(model.values))
 
 
 def _summaries(stands: Confirmed) -> list[RecordSummary]:
-    data = stands.searched.data
+    data = stands.data
     names = [record.name for record in data.records]
     return [
         RecordSummary(
@@ -241,7 +269,7 @@ def _contradiction(stands: Confirmed, name: str) -> list[dict[str, str]]:
 
 
 def _method(stands: Confirmed) -> dict:
-    data = stands.searched.data
+    data = stands.data
     band = data.preparation
     return {
         "cutoff": band.cutoff,
@@ -252,11 +280,12 @@ def _method(stands: Confirmed) -> dict:
         "one_tone": data.band.scales.one_tone,
         "split": data.split.description,
         "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
+        "searched_samples": sum(run.force.size for run in stands.searched.data.whole),
     }
 
 
 def _curves(stands: Confirmed) -> list[RunCurves]:
-    data = stands.searched.data
+    data = stands.data
 
     def predicted(model: Model, i: int) -> Array:
         run = data.whole[i]

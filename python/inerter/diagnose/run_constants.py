@@ -45,8 +45,11 @@ class _Rows:
 
 
 def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
-    """Constants of runs [N] about their mean, by name; empty where none is to be seen."""
-    if len(runs) < 2:
+    """Constants of runs [N] about their mean, by name; empty where none is to be seen.
+
+    Those of a long run are read off the whole, not off its parts.
+    """
+    if len(runs) < 2 or any(run.part for run in runs):
         return {}
     rows = [_rows(run, rich=True) for run in on_clocks(runs)]
     count = len(rows)
@@ -98,7 +101,7 @@ def constants_in_words(found: Mapping[str, float], motion: Kind = TRANSLATION) -
 
 def contradicting(runs: Sequence[BenchRun]) -> dict[str, str]:
     """Runs that contradict the others, by name with what they say; at most one."""
-    if len(runs) < 3:
+    if len(runs) < 3 or any(run.part for run in runs):
         return {}
     rows = [_rows(run, rich=False) for run in runs]
     if min(row.force.size for row in rows) < 100:

@@ -49,9 +49,10 @@ _DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play
 
 @dataclass(frozen=True, kw_only=True)
 class Searched:
-    """What a search found, and the data that it ended with."""
+    """What a search found, the band that it worked in, and the data that it ended with."""
 
     prepared: Prepared
+    band: Preparation
     data: Data
     search: Search
     final: Scored
@@ -59,9 +60,7 @@ class Searched:
     @cached_property
     def judge(self) -> Judge:
         """The held-out data."""
-        search, data = self.search, self.data
-        counted = Problem(search.runs, search.split.holdout, search.problem.scales)
-        return Judge(data.band, data.raw, counted, data.preparation, self.prepared.baseline)
+        return judge_of(self.data, self.search, self.prepared.baseline)
 
     def covered(self, fit: Fit) -> Fit:
         """A fit whose errors hold what other choices would move it by, see `identify.choices`."""
@@ -82,9 +81,14 @@ class Settled:
 
 @dataclass(frozen=True, kw_only=True)
 class Confirmed:
-    """What stands on data that no fit has seen: the extended model, its effects one by one."""
+    """What stands on data that no fit has seen: the extended model, its effects one by one.
+
+    `data` and `judge` are what its figures are of: more than was searched, where a record is long.
+    """
 
     searched: Searched
+    data: Data
+    judge: Judge
     before: Fit
     fit: Fit
     chain: tuple[Link, ...]
@@ -109,13 +113,13 @@ def searched(start: Prepared) -> Searched:
         band, search = wider, search_in(start, wider)
         final = search.run(final.model, until="backlash")
     if calmer := _calmer(start, band, final.model):
-        search, plainer = calmer
+        band, search, plainer = calmer
         final = search.run(plainer, until="backlash")
     if "backlash" in final.model.free:
         start.given.progress("free play: fitting it to the force as measured")
     elif raw := _wider(data, data.preparation, final.model):
         data = data.in_band(raw)
-    found = Searched(prepared=start, data=data, search=search, final=final)
+    found = Searched(prepared=start, band=band, data=data, search=search, final=final)
     # what a play does lies above the motion's band too, and is asked for first
     if play := _play(found):
         return _with_play(found, play)
@@ -124,15 +128,26 @@ def searched(start: Prepared) -> Searched:
 
 def search_in(start: Prepared, band: Preparation) -> Search:
     """A search in which errors count by the noise of the motion."""
-    runs = [
-        replace(run, corner=band.corner, noise=band.noise_floor * _share_in_band(run))
-        for run in on_clocks([thin(motion, force_band=band.force_band) for motion in band.motions])
-    ]
+    runs = weighed_runs(band)
     parted, progress = split(runs, start.data.held), start.given.progress
     return Search(
         runs, parted, start.baseline, progress, witness=start.data.witness,
         one_tone=start.data.band.scales.one_tone,
     )  # fmt: skip
+
+
+def weighed_runs(band: Preparation) -> list[BenchRun]:
+    """Runs in whose fits errors count by the noise of the motion."""
+    return [
+        replace(run, corner=band.corner, noise=band.noise_floor * _share_in_band(run))
+        for run in on_clocks([thin(motion, force_band=band.force_band) for motion in band.motions])
+    ]
+
+
+def judge_of(data: Data, search: Search, baseline: Model) -> Judge:
+    """The held-out data, and those of a search."""
+    counted = Problem(search.runs, search.split.holdout, search.problem.scales)
+    return Judge(data.band, data.raw, counted, data.preparation, baseline)
 
 
 def _share_in_band(run: BenchRun) -> float:
@@ -144,7 +159,9 @@ def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:
     return wider_band(data.records, band, data.full.fit, model, data.band.scales)
 
 
-def _calmer(start: Prepared, band: Preparation, model: Model) -> tuple[Search, Model] | None:
+def _calmer(
+    start: Prepared, band: Preparation, model: Model
+) -> tuple[Preparation, Search, Model] | None:
     """A plainer friction law that predicts the fit data better in the band of the plain fits.
 
     In a wider band the noise of a slow motion turns its velocity about, and a law with memory
@@ -153,12 +170,13 @@ def _calmer(start: Prepared, band: Preparation, model: Model) -> tuple[Search, M
     laws = [] if model.friction == start.baseline.friction else simpler_laws(model)
     if not laws or band.cutoff <= start.plain.cutoff:
         return None
-    search = search_in(start, replace(start.plain, corner=band.corner))
+    band = replace(start.plain, corner=band.corner)
+    search = search_in(start, band)
     masks = search.split.fit
     best = min(map(search.problem.fit, laws), key=lambda fit: fit.rmse(masks))
     if best.rmse(masks) > (1 - CRITERIA.band_gain) * search.problem.fit(model).rmse(masks):
         return None
-    return search, best.model
+    return band, search, best.model
 
 
 def _beyond_motion(found: Searched, band: Preparation) -> Searched | None:
@@ -172,14 +190,15 @@ def _beyond_motion(found: Searched, band: Preparation) -> Searched | None:
         return None
     start = found.prepared
     start.given.progress(f"most of what is missed lies above {band.cutoff:.3g} Hz: searching there")
-    search = search_in(start, replace(band, force_band=wide))
+    band = replace(band, force_band=wide)
+    search = search_in(start, band)
     final = search.run(model, until="backlash")
     learnt = data.learnt
     before, after = (rms(learnt.errors(m), learnt.masks) for m in (model, final.model))
     if "backlash" in final.model.free or after > (1 - CRITERIA.band_gain) * before:
         return None
     data = data.in_band(replace(data.preparation, force_band=wide))
-    return Searched(prepared=start, data=data, search=search, final=final)
+    return replace(found, band=band, data=data, search=search, final=final)
 
 
 def _play(found: Searched) -> Model | None:
@@ -209,7 +228,7 @@ def _with_play(found: Searched, play: Model) -> Searched:
     learnt = forgiving(data.learnt, play)
     told = start.given.progress
     search = Search(learnt.runs, data.full, start.baseline, told, witness=data.witness)
-    return Searched(prepared=start, data=data, search=search, final=search.run(play))
+    return replace(found, data=data, search=search, final=search.run(play))
 
 
 def _in_narrower_band(found: Searched) -> Searched:
@@ -318,8 +337,9 @@ def confirmed(start: Settled) -> Confirmed:
         progress("asking how far other choices of the analysis would lead")
         fit = found.covered(fit)
     return Confirmed(
-        searched=found, before=start.before, fit=fit, chain=tuple(chain), standings=standings
-    )
+        searched=found, data=found.data, judge=found.judge, before=start.before, fit=fit,
+        chain=tuple(chain), standings=standings,
+    )  # fmt: skip
 
 
 def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[Link], set[str]]:

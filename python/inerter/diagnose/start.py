@@ -84,7 +84,8 @@ def prepared(given: Given) -> Prepared:
     ValueError
         Runs that cannot be split or do not move.
     """
-    records = without_copies(given.records, given.holdout)
+    parts = any(record.part for record in given.records)
+    records = given.records if parts else without_copies(given.records, given.holdout)
     refuse_unusable(records)
     given.progress("smoothing: choosing the cut-off")
     smoothed = prepare(records)

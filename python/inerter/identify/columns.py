@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -28,6 +29,7 @@ from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.smoothness import smoothness
+from inerter.identify.transient import RELAXING, relaxing, without_relaxing
 
 if TYPE_CHECKING:
     from inerter.identify.fit import Problem
@@ -54,6 +56,8 @@ _WORTH_WHILE, _MOST_BASES = 5, 4
 _FILTER = "displacement_filter"
 # what of the channel is a linear filter of the force
 _LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
+# that, and what says how long the time before the record shows
+_CHANNEL = (*_LINEAR, *RELAXING)
 # what beside a node says what its curve adds to the force
 _PLACES = ("rest_length", "curve_lower", "curve_upper")
 
@@ -129,11 +133,11 @@ class Columns:
     def apart(self, model: Model) -> Apart | None:
         """What the residual is linear in, where that is so much that it is worth while."""
         names = [name for name in model.free if self._in_proportion(name, model)]
-        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*_PLACES, *_LINEAR)):
+        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*_PLACES, *_CHANNEL)):
             return None
         which = [model.free.index(name) for name in names]
         smooth = smoothness(model)[:, which]
-        key = (*(_key(name, model, _LINEAR) for name in names), len(smooth))
+        key = (*(_key(name, model, _CHANNEL) for name in names), len(smooth))
         basis = self._bases.get(key)
         if basis is None:
             if len(self._bases) == _MOST_BASES:
@@ -180,7 +184,7 @@ class Columns:
         if len(nodes) < _WORTH_WHILE:
             return {}
         channel = {each: model.values[each] for each in _LINEAR if each in model.values}
-        low_pass = slow_start(model.values)
+        unknown = _Unknown.of(model)
         shown: dict[str, list[Array]] = {name: [] for name in nodes}
         every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
         for run, mask, tone in every:
@@ -191,7 +195,7 @@ class Columns:
             response = along_friction.Response(model, run)
             for name in nodes:
                 column = _through(channel, response.of(name), run)
-                shown[name].append(-_settled(column, run, mask, low_pass, tone))
+                shown[name].append(-_settled(column, run, mask, unknown, tone))
         weighted = self.problem.weighted
         return {name: np.concatenate(weighted(columns)) for name, columns in shown.items()}
 
@@ -217,17 +221,18 @@ class Columns:
         key = _key(name, model, _LINEAR)
 
         def column() -> Array:
-            low_pass = slow_start(model.values)
+            unknown = _Unknown.of(model)
             columns = []
             every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
             for run, mask, tone in every:
                 of_run = functools.partial(_shown, name, model, run)
                 shown = _OF_RUNS.found((run.identity, *key), of_run)
-                columns.append(-_settled(shown, run, mask, low_pass, tone))
+                columns.append(-_settled(shown, run, mask, unknown, tone))
             return np.concatenate(self.problem.weighted(columns))
 
         # what a tone does changes with the model
-        return column() if any(tones) else self._kept.found(key, column)
+        whole = _key(name, model, _CHANNEL)
+        return column() if any(tones) else self._kept.found(whole, column)
 
     def _by_first_force(
         self, point: Array, base: Sequence[Array], residual: ResidualAt
@@ -313,17 +318,30 @@ def _through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array
     return run.in_band(through_channel(channel, force, run.fine_elapsed, spacing))
 
 
+@dataclass(frozen=True)
+class _Unknown:
+    """What holds forces of the time before the record: a low-pass, branches that relax [s]."""
+
+    low_pass: Filter | None
+    times: tuple[float, ...]
+
+    @classmethod
+    def of(cls, model: Model) -> _Unknown:
+        return cls(slow_start(model.values), relaxing(model.values))
+
+
 def _settled(
     shown: Array,
     run: BenchRun,
     mask: NDArray[np.bool_],
-    low_pass: Filter | None,
+    unknown: _Unknown,
     tone: tuple[Array, Array] | None,
 ) -> Array:
-    """A column without what a low-pass that is switched on adds and a tone takes, as a residual."""
-    if low_pass is not None:
-        inner = mask & run.inner if mask.any() else run.inner
-        shown = without_start(shown, run.spacing, inner, low_pass, run.first)
+    """A column without what is read off the record, as a residual is (`prediction.settled`)."""
+    seen = mask if mask.any() else run.inner
+    shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first)
+    if unknown.low_pass is not None:
+        shown = without_start(shown, run.spacing, seen & run.inner, unknown.low_pass, run.first)
     if tone is not None:
         per_radian, phase = tone
         shown = shown + (phase @ shown) * per_radian

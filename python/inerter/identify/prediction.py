@@ -20,7 +20,7 @@ from inerter.identify.channel_filter import (
 )
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
-from inerter.identify.transient import without_transient
+from inerter.identify.transient import relaxing, without_relaxing, without_transient
 
 Array = NDArray[np.float64]
 
@@ -207,9 +207,9 @@ def _without_load(device: Device) -> Device:
 def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_]) -> Array:
     """A residual without what only the record itself can tell, read off its masked samples.
 
-    That is how the flywheel turned as the record began, what a low-pass or a delay held then, and
-    the phase of a tone. Of a run left out
-    of a fit (nothing masked) everything is read off the run.
+    That is how the flywheel turned as the record began, what branches were bent by, a low-pass or a
+    delay held then, and the phase of a tone. Of a run left out of a fit (nothing masked) everything
+    is read off the run.
     """
     mask = mask if mask.any() else run.inner
     device, values = model.device(), model.values
@@ -217,6 +217,7 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
         return residual
     if device.series_stiffness and not device.backlash:
         residual = without_transient(device, residual, run.spacing, mask)
+    residual = without_relaxing(relaxing(values), residual, run.spacing, mask, run.first)
     if (low_pass := slow_start(values)) is not None:
         residual = without_start(residual, run.spacing, mask & run.inner, low_pass, run.first)
     if amplitude := values.get("disturbance_amplitude", 0.0):

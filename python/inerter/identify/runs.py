@@ -26,6 +26,7 @@ from inerter.records.motion import (
     response,
     weight_above,
 )
+from inerter.records.record import Part
 
 Array = NDArray[np.float64]
 
@@ -77,6 +78,8 @@ class BenchRun:
         Size [N] beyond which a residual counts little, see `weighted`.
     motion : str
         What the device does; in rotation read rad for m and N m for N.
+    part : Part, optional
+        Of which run it is a part.
     identity : tuple of int
         Tells its samples from those of all other runs, in other processes too.
     """
@@ -100,6 +103,7 @@ class BenchRun:
     shaft: Shaft | None = None
     far: float = np.inf
     motion: Kind = TRANSLATION
+    part: Part | None = None
     identity: tuple[int, int] = field(init=False, default_factory=_new_identity)
 
     def at_measured_rate(self, device: Device, state: float | Array) -> dict[str, Array]:
@@ -223,8 +227,9 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
         measured=(motion.displacement, velocity, motion.acceleration),
         thinned=step,
         first=first,
-        clock=motion.start,
+        clock=motion.clock,
         motion=motion.motion,
+        part=motion.part,
     )
 
 
@@ -275,8 +280,9 @@ def whole(motion: Motion) -> BenchRun:
         first_force=_force_at(motion, first),
         cutoff=np.inf,
         first=first,
-        clock=motion.start,
+        clock=motion.clock,
         motion=motion.motion,
+        part=motion.part,
     )
 
 
@@ -340,7 +346,12 @@ def scales(runs: Sequence[BenchRun]) -> Scales:
 
 
 def on_clocks(runs: Sequence[BenchRun]) -> list[BenchRun]:
-    """Runs that share one clock where their times do not overlap, else each with its own."""
+    """Runs that share one clock where their times do not overlap, else each with its own.
+
+    Parts of a run know its clock.
+    """
+    if any(run.part for run in runs):
+        return list(runs)
     order = sorted(runs, key=lambda run: run.start)
     apart = all(a.time[-1] <= b.start for a, b in itertools.pairwise(order))
     origin = order[0].start

@@ -43,9 +43,9 @@ def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
     runs : sequence of BenchRun
         Every run.
     holdout : sequence of str
-        Names of runs to hold out; by default the run whose motion is nearest to the others', so
-        that it is judged on what can be learnt from them, and another where that one alone tells
-        something (`information`).
+        Names of runs to hold out, or of runs whose parts are all held out; by default the run
+        whose motion is nearest to the others', so that it is judged on what can be learnt from
+        them, and another where that one alone tells something (`information`).
 
     Raises
     ------
@@ -53,7 +53,9 @@ def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
         A name that no run has, or no run left to learn from.
     """
     names = [run.name for run in runs]
-    chosen = held_runs(names, holdout)
+    named = [name for run in runs for name in holdout if run.part and run.part.run == name]
+    chosen = held_runs(names, [name for name in holdout if name not in named])
+    chosen |= {i for i, run in enumerate(runs) if run.part and run.part.run in named}
     if chosen or len(runs) > 1:
         held = chosen or {_most_typical(runs)}
         everything = [np.ones(run.force.size, bool) for run in runs]
@@ -116,12 +118,21 @@ def _folds(runs: Sequence[BenchRun], fit: list[Mask]) -> list[list[Mask]]:
     """Masks of what each fold leaves out: a run each, or spread blocks where there are few runs."""
     used = [i for i, mask in enumerate(fit) if mask.any()]
     if len(used) >= 3:
-        groups = [used[start::5] for start in range(min(5, len(used)))]
+        names = list(dict.fromkeys(_run_of(runs[i]) for i in used))
+        # parts of one run or two are folds themselves
+        places = [names.index(_run_of(runs[i])) for i in used] if len(names) >= 3 else None
+        numbered = list(zip(used, places or range(len(used)), strict=True))
+        groups = [[i for i, place in numbered if place % 5 == fold] for fold in range(5)]
+        groups = [group for group in groups if group]
         return [
             [mask if i in group else np.zeros_like(mask) for i, mask in enumerate(fit)]
             for group in groups
         ]
     return spread_folds(fit)
+
+
+def _run_of(run: BenchRun) -> str:
+    return run.part.run if run.part else run.name
 
 
 def spread_folds(fit: Sequence[Mask]) -> list[list[Mask]]:

@@ -1,8 +1,9 @@
-"""What the unknown first state of a series element leaves in a residual: a decay."""
+"""What the unknown first states of a series element and of branches leave in a residual: decays."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ Array = NDArray[np.float64]
 
 # squared rms residual per squared size that a transient is expected to have
 TIMID = 1e-2
+RELAXING = ("branch_time_1", "branch_time_2")
+"""Coordinates that say how long branches relax."""
 # exponent of a decay that leaves nothing
 _DECAYED = 60.0
 
@@ -42,10 +45,39 @@ def without_transient(
             basis = np.array([wave.real, wave.imag])
         else:
             basis = np.array([_decay(root * spacing, count).real for root in roots])
-    basis /= np.max(np.abs(basis), axis=1, keepdims=True) + 1e-300
+    return _without(basis, residual, mask)
+
+
+def relaxing(values: Mapping[str, float]) -> tuple[float, ...]:
+    """Times [s] in which the branches of some coordinates relax."""
+    return tuple(values[name] for name in RELAXING if name in values)
+
+
+def without_relaxing(
+    times: Sequence[float], residual: Array, spacing: float, mask: NDArray[np.bool_], first: int = 0
+) -> Array:
+    """A residual without what branches were bent by as a record began, shape (n,).
+
+    A branch that was bent before goes on to relax, exp(-t / time) from the sample `first` on; the
+    share of the masked samples that has this form is taken out, as above.
+    """
+    times = [time for time in times if time > spacing]
+    count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
+    if not times or np.count_nonzero(mask) < 4 or count < 1:
+        return residual
+    with np.errstate(under="ignore"):
+        basis = np.array([_decay(-spacing / time, count).real for time in times])
+    before = np.ones((len(basis), first))
+    return _without(np.concatenate([before, basis], axis=1), residual, mask)
+
+
+def _without(basis: Array, residual: Array, mask: NDArray[np.bool_]) -> Array:
+    """A residual (n,) without the share of its masked samples that a basis (m, k <= n) has."""
+    basis = basis / (np.max(np.abs(basis), axis=1, keepdims=True) + 1e-300)
     if not np.isfinite(basis).all():
         return residual
     # normal equations do: what holds the size back keeps them well conditioned
+    count = basis.shape[1]
     seen = basis * mask[:count]
     share = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen @ residual[:count])
     rest = residual.copy()

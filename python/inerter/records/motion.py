@@ -27,7 +27,7 @@ from scipy.fft import next_fast_len
 from scipy.interpolate import make_interp_spline
 
 from inerter.motion_units import TRANSLATION, Kind
-from inerter.records.record import Record
+from inerter.records.record import Part, Record
 
 Array = NDArray[np.float64]
 Shaft = tuple[float, float]
@@ -63,6 +63,8 @@ class Motion:
         Rms noise [m/s, m/s^2] that white noise on the displacement leaves.
     motion : str
         What the device does; in rotation read rad for m and N m for N.
+    part : Part, optional
+        Of which run it is a part.
     """
 
     name: str
@@ -77,6 +79,12 @@ class Motion:
     velocity_noise: float
     acceleration_noise: float
     motion: Kind = TRANSLATION
+    part: Part | None = None
+
+    @property
+    def clock(self) -> float:
+        """Time from which slow changes count [s]."""
+        return self.part.clock if self.part else self.start
 
     @property
     def time(self) -> Array:
@@ -329,6 +337,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         velocity_noise=velocity_noise,
         acceleration_noise=acceleration_noise,
         motion=record.motion,
+        part=record.part,
     )
 
 

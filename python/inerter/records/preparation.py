@@ -88,7 +88,7 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
     rate = min(record.sample_rate for record in records)
     # of a run at rest, the dominant frequency is that of its noise
     moving = [r for r in records if np.std(r.displacement) > MOVES * white_noise(r.displacement)]
-    dominant = max(_dominant_frequency(record) for record in moving or records)
+    dominant = max(dominant_frequency(record) for record in moving or records)
     highest = min(0.2 * rate, max(HIGHEST, WIDEST * dominant))
     lowest = min(2 * dominant, highest / 2)
     count = int(np.ceil(np.log(highest / lowest) / np.log(STEP))) + 1
@@ -212,7 +212,7 @@ def _usable(name: str, records: Sequence[Record]) -> bool:
     )
 
 
-def _dominant_frequency(record: Record) -> float:
+def dominant_frequency(record: Record) -> float:
     """Frequency below which half of the velocity's power lies [Hz]."""
     x = record.displacement - np.mean(record.displacement)
     power = np.abs(np.fft.rfft(x * np.hanning(x.size))) ** 2

@@ -150,14 +150,26 @@ class TimeRecord(Columns):
         return float(self.time[-1] - self.time[0])
 
 
+@dataclass(frozen=True)
+class Part:
+    """Of which run a record is a part, and the time from which slow changes count there [s]."""
+
+    run: str
+    clock: float
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Record(TimeRecord):
-    """One run on a bench: time s, displacement m, force N; velocity m/s, acceleration m/s^2."""
+    """One run on a bench: time s, displacement m, force N; velocity m/s, acceleration m/s^2.
+
+    part: where it is a part of a longer one.
+    """
 
     displacement: Array
     force: Array
     velocity: Array | None = None
     acceleration: Array | None = None
+    part: Part | None = None
 
     kind: ClassVar[str] = "bench"
     required: ClassVar[tuple[str, ...]] = ("time", "displacement", "force")

@@ -77,7 +77,13 @@ class Carried:
 
 
 def carried(
-    data: Data, model: Model, noise: float, motion: float = 0.0, *, passive: bool = False
+    data: Data,
+    model: Model,
+    noise: float,
+    motion: float = 0.0,
+    *,
+    passive: bool = False,
+    learnt: Data | None = None,
 ) -> Carried | None:
     """A map of what a model leaves; None where it does not pay on held-out data.
 
@@ -91,11 +97,16 @@ def carried(
         Of force and motion, and of the motion alone, rms [N]; see `ceiling.matters`.
     passive
         Leave out what of the map would give energy.
+    learnt
+        What the map is fitted to, where that is not what of `data` is fitted.
     """
     if KIND in model.texts:
         return None
     errors = data.raw.errors(model)
-    found = _fitted(data, model, errors)
+    if learnt is None or learnt is data:
+        found = _fitted(data, model, errors)
+    else:
+        found = _fitted(learnt, model, learnt.raw.errors(model))
     if found is None:
         return None
     found |= {"force_map_passive": 1.0} if passive else {}

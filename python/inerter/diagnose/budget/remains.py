@@ -24,7 +24,12 @@ _LOOKS_AT = {
 
 
 def with_ceiling(
-    data: Data, errors: Sequence[Array], noise: float, found: Unexplained, motion: float = 0.0
+    data: Data,
+    errors: Sequence[Array],
+    noise: float,
+    found: Unexplained,
+    motion: float = 0.0,
+    rmse: float | None = None,
 ) -> Unexplained:
     """What remains, with the error that the best predictor leaves.
 
@@ -40,9 +45,14 @@ def with_ceiling(
         What the tests say of the remainder; what they predict counts as a predictor, too.
     motion
         Part of the noise that the motion brings [N].
+    rmse
+        Error on everything that is held out, where `data` are a part of it [N].
     """
     best = ceiling(data.whole, data.full, errors, data.preparation.cutoff, noise, motion)
     own = rms(errors, data.raw.masks)
+    if rmse is not None and own > 0:
+        best = replace(best, rmse=best.rmse * rmse / own, takes=best.takes * rmse / own)
+        own = rmse
     by_tests = float(np.sqrt(max(own**2 - found.predicted**2, 0.0)))
     told = replace(found, ceiling={"rmse": min(best.rmse, by_tests)})
     if not best.takes or found.depends_on:
