@@ -4,12 +4,15 @@ Made records are four runs of 10 s at 1 kHz with 0.2 N and 1 micrometre of noise
 hidden effect, driven by sines one after another, a chirp, a sum of sines and strokes. Measured
 records are used where they are, in ../shared/data beside the checkout or in the folder that
 INERTER_RECORDS names. A diagnosis works on all cores; `computed` is what all of them computed
-together, which a busy machine stretches less than `seconds`.
+together, which a busy machine stretches less than `seconds`. A long record has a motion between 0.3
+and 12 Hz; beside it stands how much memory a fresh process took for it at most.
 """
 
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -31,7 +34,8 @@ from inerter.reference import (
     windowed_sines,
 )
 
-AIM = "<= 20"
+AIM, LONG_AIM = "<= 20", "<= 60"
+LONG, LONG_NAME = 1_000_000, "1,000,000 samples"
 SAMPLE_RATE = 1000.0
 INERTANCE, FORCE = 100.0, 300.0  # kg, and the largest inertance force of a run in N
 MEASURED = ("rack_inerter/r0_*.csv", "rack_inerter/r16_*.csv", "emps/emps.csv")
@@ -56,6 +60,7 @@ class Case:
     name: str
     records: str
     call: Callable[[], Diagnosis]
+    aim: str = AIM
 
 
 def folder() -> Path | None:
@@ -106,12 +111,51 @@ def made(name: str, seconds: float = 10.0) -> tuple[Record, ...]:
     return tuple(found)
 
 
+def long_record(samples: int = LONG) -> Record:
+    """Coulomb and viscous friction along noise between 0.3 and 12 Hz, at 1 kHz."""
+    random, times = np.random.default_rng(7), np.arange(samples) / SAMPLE_RATE
+    frequency = np.fft.rfftfreq(samples, 1 / SAMPLE_RATE)
+    band = (frequency > 0.3) & (frequency < 12.0)
+    spectrum = np.zeros(frequency.size, complex)
+    spectrum[band] = random.normal(size=(2, band.sum())).T @ (1, 1j)
+    spectrum[band] /= 1 + (frequency[band] / 2) ** 2
+    size = 8e-3 / np.fft.irfft(spectrum, samples).std()
+    x, v, a = (
+        size * np.fft.irfft((2j * np.pi * frequency) ** order * spectrum, samples)
+        for order in range(3)
+    )
+    force = 60 * a + 120 * v + 40 * np.sign(v)
+    return Record(
+        name="long", time=times,
+        displacement=x + 1e-6 * random.standard_normal(samples),
+        force=force + 2.0 * random.standard_normal(samples),
+    )  # fmt: skip
+
+
+def most_memory(samples: int = LONG) -> float:
+    """What a fresh process takes at most to diagnose a long record [MB]."""
+    text = (
+        "import resource; from benchmarks.diagnosis import long_record; "
+        "from inerter.diagnose import diagnose_bench; "
+        f"diagnose_bench([long_record({samples})]); "
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", text], check=True, capture_output=True, text=True,
+        cwd=Path(__file__).parents[1],
+    )  # fmt: skip
+    return float(told.stdout.split()[-1]) / 1e3
+
+
 def cases(quick: bool, seconds: float) -> list[Case]:
     """What is diagnosed."""
     hidden = ("viscous friction",) if quick else tuple(HIDDEN)
     found = [
         Case(name, "made", lambda name=name: diagnose_bench(made(name, seconds))) for name in hidden
     ]
+    if not quick:
+        record = long_record()
+        found.append(Case(LONG_NAME, "long", lambda: diagnose_bench([record]), LONG_AIM))
     where = folder()
     if where is not None and not quick:
         found += [
@@ -139,7 +183,7 @@ def run(
     -------
     list of dict
         `question`, `case`, `records`, `seconds`, `computed`, `samples`, `found` (the effects
-        named), `aim` (for the seconds), `met`.
+        named), `memory` (of a long record) [MB], `aim` (for the seconds), `met`.
     """
     rows = []
     for case in cases(quick, seconds) if chosen is None else chosen:
@@ -154,7 +198,8 @@ def run(
                 "seconds": spent, "computed": computed,
                 "samples": sum(record.samples for record in diagnosis.records),
                 "found": ", ".join(finding.effect for finding in diagnosis.findings) or "nothing",
-                **aimed(spent, AIM),
+                **({"memory": most_memory()} if case.name == LONG_NAME else {}),
+                **aimed(spent, case.aim),
             }
         )  # fmt: skip
     return rows

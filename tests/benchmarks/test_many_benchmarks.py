@@ -109,3 +109,4 @@ def test_diagnosis(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     check_rows(rows)
     assert rows[0]["samples"] == 8_000
     assert rows[0]["found"] == "viscous_friction"
+    assert diagnosis.long_record(2000).samples == 2000

@@ -86,6 +86,9 @@ def test_what_is_found_is_fitted_to_everything(random: np.random.Generator) -> N
     assert 0.28 < found.method["held_out_samples"] / bench.time.size < 0.31
     assert found.method["searched_samples"] < 16_000
     assert found.curves[0].time.size == bench.time.size
+    # the chain of gains ends where the extended model is
+    assert found.findings[-1].rmse_after == pytest.approx(found.extended.rmse, rel=1e-9)
+    assert found.findings[0].rmse_before == pytest.approx(found.baseline.rmse, rel=1e-9)
     assert found.records[0].samples == bench.time.size
     assert "stretches among which" in " ".join(found.notes)
 

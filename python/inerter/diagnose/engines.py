@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter import rig
 from inerter.core import Device
+from inerter.diagnose.parallel import parallel
 from inerter.exudyn.engine import installed
 from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
@@ -28,6 +29,8 @@ Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 
 # steps per sample of a device with free play
 PLAY_PARTS = 8
+# samples from which on the engines run at the same time
+_LONG = 100_000
 
 
 def simulate_engines(
@@ -38,15 +41,28 @@ def simulate_engines(
     None: Exudyn is not installed, or Exudyn or the reference cannot follow this device along this
     motion (a bristle too stiff for the samples, a friction level that reaches zero).
     """
-    with rig.quiet():
-        found: dict[str, float | None] = {"mujoco": _error(_mujoco, model, runs, masks)}
-    others = {"exudyn": _exudyn if installed() else None, "reference": _reference}
-    for name, along in others.items():
-        try:
-            found[name] = along and _error(along, model, runs, masks)
-        except (ValueError, RuntimeError):
-            found[name] = None
-    return found
+
+    def of(name: str) -> float | None:
+        return _of_engine(name, model, runs, masks)
+
+    names = ["mujoco", "exudyn", "reference"]
+    # of short runs another process would take longer to begin
+    long = sum(run.force.size for run in runs) > _LONG
+    return dict(zip(names, parallel(of, names) if long else map(of, names), strict=True))
+
+
+def _of_engine(
+    name: str, model: Model, runs: Sequence[BenchRun], masks: Sequence[NDArray[np.bool_]]
+) -> float | None:
+    if name == "mujoco":
+        with rig.quiet():
+            return _error(_mujoco, model, runs, masks)
+    if name == "exudyn" and not installed():
+        return None
+    try:
+        return _error(_exudyn if name == "exudyn" else _reference, model, runs, masks)
+    except (ValueError, RuntimeError):
+        return None
 
 
 def _error(

@@ -48,7 +48,7 @@ def on_everything(stands: Confirmed, found: Excerpts) -> Confirmed:
         judge=judge,
         before=before,
         fit=fit,
-        chain=tuple(_judged(judge, link) for link in stands.chain),
+        chain=tuple(_judged(judge, link, before, fit) for link in stands.chain),
     )
 
 
@@ -82,11 +82,15 @@ def _refitted(stands: Confirmed, fit: Fit, problem: Problem | None, data: Data) 
     return covered(problem, again, data.records, data.preparation.channels)
 
 
-def _judged(judge: Judge, link: Link) -> Link:
-    """A link with the errors that its fits have on everything that is held out."""
+def _judged(judge: Judge, link: Link, first: Fit, last: Fit) -> Link:
+    """A link with the errors that its fits have on everything that is held out.
+
+    The baseline and the extended model, `first` and `last`, are fitted to everything.
+    """
     if link.seen_in_blocks:
         return link
-    before, after = link.before.model, link.after.model
+    before = first.model if link.before.model.free == first.model.free else link.before.model
+    after = last.model if link.after.model.free == last.model.free else link.after.model
     squares = [judge.error_squares(model) for model in (before, after)]
     return replace(
         link,

@@ -21,7 +21,6 @@ from inerter.diagnose.run_constants import constants, contradicting, without_con
 from inerter.diagnose.start import Given
 from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.identify.split import split
-from inerter.motion_units import words
 from inerter.records import Record
 from inerter.records.duplicates import without_copies
 from inerter.records.motion import smooth
@@ -127,22 +126,18 @@ class Excerpts:
         worst = missed[np.argsort(-sizes[missed])][:MORE]
         return replace(self, chosen=[*self.chosen, *worst.tolist()])
 
-    def in_words(self, error: float) -> str:
-        """A sentence about what was searched, where the extended model has some error [N]."""
-        newton = words(self.records[0].motion, "N")
+    def in_words(self) -> str:
+        """A sentence about what was searched."""
         some, everything = self.samples
         means = f", each the mean of {max(self.every)}" if max(self.every) > 1 else ""
-        if not self.possible:
-            return (
-                f"The causes were searched for on {some} samples{means}, and what was found was "
-                f"fitted to all {everything}. The engines followed the former, where the extended "
-                f"model misses the force by {error:.3g} {newton} rms."
-            )
+        parts = (
+            f", in {len(self.chosen)} stretches among which every kind of motion is"
+            if self.possible
+            else ""
+        )
         return (
-            f"The causes were searched for on {some} samples{means}, in {len(self.chosen)} "
-            "stretches among which every kind of motion is, and what was found was fitted to all "
-            f"{everything}. The engines followed the stretches that are held out, where the "
-            f"extended model misses the force by {error:.3g} {newton} rms."
+            f"The causes were searched for on {some} samples{means}{parts}; what was found was "
+            f"fitted to all {everything}."
         )
 
 

@@ -45,7 +45,6 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.channel import channel_values
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of, named
-from inerter.identify.fit import rms
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.prediction import settled as without_nuisances
@@ -173,6 +172,8 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
     told = {name: v for each in findings for name, v in each.parameters.items()}
     values = values | {name: told[name] for name in values if name in told}
     given.progress("simulating the extended device in MuJoCo")
+    # behind a play an engine takes many steps for a sample
+    followed = part if "backlash" in final.free else data
     squares = [judge.error_squares(fit.model) for fit in (stands.before, stands.fit)]
     diagnosis = Diagnosis(
         records=_summaries(stands),
@@ -181,7 +182,7 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
         extended=extended,
         noise_floor=floor,
         unexplained=remains,
-        engines=simulate_engines(final, part.whole, part.raw.masks),
+        engines=simulate_engines(final, followed.whole, followed.raw.masks),
         verdict="",
         parameters=values,
         method=_method(stands)
@@ -194,7 +195,7 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
                 missed_in_words(missed, extended.rmse, motion),
                 split_in_words(data, other),
                 steps_in_words(steps, motion),
-                long.in_words(rms(of_part, part.raw.masks)) if long else "",
+                long.in_words() if long else "",
             )
             if note
         ],

@@ -339,7 +339,7 @@ def _settled(
 ) -> Array:
     """A column without what is read off the record, as a residual is (`prediction.settled`)."""
     seen = mask if mask.any() else run.inner
-    shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first)
+    shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first, run.cutoff)
     if unknown.low_pass is not None:
         shown = without_start(shown, run.spacing, seen & run.inner, unknown.low_pass, run.first)
     if tone is not None:

@@ -217,7 +217,9 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
         return residual
     if device.series_stiffness and not device.backlash:
         residual = without_transient(device, residual, run.spacing, mask)
-    residual = without_relaxing(relaxing(values), residual, run.spacing, mask, run.first)
+    residual = without_relaxing(
+        relaxing(values), residual, run.spacing, mask, run.first, run.cutoff
+    )
     if (low_pass := slow_start(values)) is not None:
         residual = without_start(residual, run.spacing, mask & run.inner, low_pass, run.first)
     if amplitude := values.get("disturbance_amplitude", 0.0):

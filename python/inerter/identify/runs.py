@@ -16,6 +16,7 @@ from inerter.checked_motion import checked_motion
 from inerter.core import Device
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.motion import (
+    EDGE_PERIODS,
     Motion,
     Shaft,
     apply_weight,
@@ -213,6 +214,11 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
     first = int(np.argmax(motion.inner[::step]))
     force = lowpass(motion.force, motion.spacing, cutoff)
     velocity = np.where(_resting(motion), 0.0, motion.velocity)
+    inner = motion.inner[::step]
+    if motion.part and first:
+        # what the force was before is not followed, and the low-pass remembers it
+        inner = inner.copy()
+        inner[: first + int(EDGE_PERIODS / cutoff / (motion.spacing * step))] = False
     return BenchRun(
         name=motion.name,
         start=motion.start,
@@ -221,7 +227,7 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
         velocity=np.ascontiguousarray(motion.velocity[::step]),
         acceleration=np.ascontiguousarray(motion.acceleration[::step]),
         force=np.ascontiguousarray(force[::step]),
-        inner=motion.inner[::step],
+        inner=inner,
         first_force=_force_at(motion, first * step),
         cutoff=cutoff,
         measured=(motion.displacement, velocity, motion.acceleration),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
+from inerter.records.motion import EDGE_PERIODS
 
 Array = NDArray[np.float64]
 
@@ -19,6 +20,8 @@ RELAXING = ("branch_time_1", "branch_time_2")
 """Coordinates that say how long branches relax."""
 # exponent of a decay that leaves nothing
 _DECAYED = 60.0
+# samples of the quickest decay that is one
+_FEWEST = 10
 
 
 def without_transient(
@@ -53,15 +56,26 @@ def relaxing(values: Mapping[str, float]) -> tuple[float, ...]:
     return tuple(values[name] for name in RELAXING if name in values)
 
 
+def shortest_relaxing(spacing: float, cutoff: float) -> float:
+    """Time [s] below which what relaxes cannot be told from how a low-pass begins."""
+    return max(EDGE_PERIODS / cutoff, _FEWEST * spacing)
+
+
 def without_relaxing(
-    times: Sequence[float], residual: Array, spacing: float, mask: NDArray[np.bool_], first: int = 0
+    times: Sequence[float],
+    residual: Array,
+    spacing: float,
+    mask: NDArray[np.bool_],
+    first: int = 0,
+    cutoff: float = np.inf,
 ) -> Array:
     """A residual without what branches were bent by as a record began, shape (n,).
 
     A branch that was bent before goes on to relax, exp(-t / time) from the sample `first` on; the
-    share of the masked samples that has this form is taken out, as above.
+    share of the masked samples that has this form is taken out, as above. Not of branches that
+    relax while a low-pass of this `cutoff` [Hz] begins.
     """
-    times = [time for time in times if time > spacing]
+    times = [time for time in times if time > shortest_relaxing(spacing, cutoff)]
     count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
