@@ -14,11 +14,9 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
-from cloudpickle import dumps, loads
 from loky import ProcessPoolExecutor, cpu_count
 from loky.backend import resource_tracker
 
@@ -32,8 +30,7 @@ T = TypeVar("T")
 MOST = 8
 # parts of the work of each, so that none waits long for the last
 PARTS = 8
-# times that something is packed which another thread adds to meanwhile
-TRIES = 100
+_NOT_SENT = "PicklingError"
 
 
 @dataclass(frozen=True)
@@ -116,11 +113,9 @@ class _Shared(Generic[S, T]):
         self.function, self.parts = function, parts
         self.waiting = deque(range(len(parts)))
         self.results: list[Future[list[T]]] = [Future() for _ in parts]
-        self.packed = b""
 
     def worked_out(self, pool: ProcessPoolExecutor, helpers: int) -> list[list[T]]:
         """Results of every part."""
-        self.packed = _packed(self.function)
         for _ in range(helpers):
             self._hand_out(pool)
         try:
@@ -133,9 +128,12 @@ class _Shared(Generic[S, T]):
     def _result(self, i: int) -> list[T]:
         try:
             return self.results[i].result()
-        except BrokenProcessPool:
-            # the system ended a process, for its memory perhaps
-            return _each(self.function, self.parts[i])
+        except Exception as error:
+            # the system ended a process, for its memory perhaps; or what was to be sent grew
+            # meanwhile, as work goes on and remembers what it worked out
+            if isinstance(error, BrokenProcessPool) or type(error).__name__ == _NOT_SENT:
+                return _each(self.function, self.parts[i])
+            raise
 
     def _taken(self, take: Callable[[], int]) -> int | None:
         with suppress(IndexError):
@@ -155,30 +153,9 @@ class _Shared(Generic[S, T]):
                 self.results[i].set_result(future.result())
 
         try:
-            task = pool.submit(_each_packed, self.packed, _packed(self.parts[i]))
-            task.add_done_callback(received)
+            pool.submit(_each, self.function, self.parts[i]).add_done_callback(received)
         except Exception as error:
             self.results[i].set_exception(error)
-
-
-def _packed(thing: object) -> bytes:
-    """What another process is told.
-
-    Work goes on meanwhile, and remembers what it worked out in the objects that are packed.
-    """
-    for _ in range(TRIES):
-        with suppress(RuntimeError):
-            return dumps(thing)
-    return dumps(thing)
-
-
-@lru_cache(maxsize=1)
-def _unpacked(function: bytes) -> Callable[[Any], Any]:
-    return loads(function)
-
-
-def _each_packed(function: bytes, items: bytes) -> list[Any]:
-    return _each(_unpacked(function), loads(items))
 
 
 def _each(function: Callable[[S], T], items: list[S]) -> list[T]:
