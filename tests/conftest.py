@@ -3,7 +3,8 @@
 Tests marked `long` (whole diagnoses, campaigns) are left out unless `--long` asks for all of them
 or `--only-long SECONDS` for as many as begin in that time; every day begins at another one. Of a
 test marked `often("case", ...)` its other cases are long; of one marked `rarely("case", ...)`,
-these cases.
+these cases. Of one marked `turns(n)` each case is run every n-th day, another share every day, and
+is long on the others. A test that is named on the command line (`file::test`) is run in any case.
 
 Tests that hide an effect and look for it draw it from one seed, so that a failure can be repeated:
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
@@ -22,6 +23,7 @@ import time
 from datetime import date
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import inerter  # noqa: F401  (with MuJoCo 3 this makes the plugin known, 4 does it by itself)
 import pytest
@@ -75,6 +77,9 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "long: takes long; runs with --long or --only-long")
     config.addinivalue_line("markers", "often(*cases): the other cases of this test are long")
     config.addinivalue_line("markers", "rarely(*cases): these cases of this test are long")
+    config.addinivalue_line(
+        "markers", "turns(n): each case is run every n-th day, another share every day, else long"
+    )
     told = getattr(config, "workerinput", {})
     config.stash[_DAY] = told.get("day", date.today().toordinal())
     given = told.get("effects_seed")
@@ -98,14 +103,20 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     """Mark the cases of a test that are not run often."""
     case = item.name.partition("[")[2].removesuffix("]")
     often, rarely = item.get_closest_marker("often"), item.get_closest_marker("rarely")
-    if (often and case not in often.args) or (rarely and case in rarely.args):
+    turns = item.get_closest_marker("turns")
+    day = item.config.stash[_DAY]
+    if (
+        (often and case not in often.args)
+        or (rarely and case in rarely.args)
+        or (turns and (crc32(item.nodeid.encode()) - day) % turns.args[0])
+    ):
         item.add_marker("long")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the long tests, or the others; begin somewhere else every day."""
     only = config.getoption("--only-long") is not None
-    if config.getoption("--long") and not only:
+    if not only and (config.getoption("--long") or any("::" in arg for arg in config.args)):
         return
     chosen = [item for item in items if bool(item.get_closest_marker("long")) == only]
     left = [item for item in items if bool(item.get_closest_marker("long")) != only]

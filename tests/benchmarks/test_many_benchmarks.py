@@ -27,6 +27,7 @@ def test_many(tmp_path: Path) -> None:
     assert (tmp_path / "many.png").stat().st_size > 10_000
 
 
+@pytest.mark.turns(4)
 @pytest.mark.skipif(sys.platform != "linux", reason="resident memory is read from /proc")
 def test_memory() -> None:
     from benchmarks import memory
@@ -97,6 +98,7 @@ def test_identification() -> None:
     assert bool(identification.notes()) != identification.has_sysid()
 
 
+@pytest.mark.turns(4)
 def test_diagnosis(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     from benchmarks import diagnosis
 

@@ -58,6 +58,7 @@ def test_noise_levels() -> None:
     assert levels.displacement == pytest.approx(5e-6)
 
 
+@pytest.mark.turns(4)
 def test_a_process_that_dies_is_a_failure_of_its_case_alone() -> None:
     tasks = [Task(group="clean", seed=seed, noise=0.01) for seed in (1, 2, 3)]
     shares: list[float] = []
@@ -143,6 +144,7 @@ def _diagnosis(effect: str, law: str | None, values: dict[str, tuple[float, floa
     )
 
 
+@pytest.mark.turns(3)
 def test_parameters_are_compared_by_name() -> None:
     task = Task(group="single", seed=4, noise=0.0, effects=("hysteretic_friction",), law="dahl")
     case = hide(task)

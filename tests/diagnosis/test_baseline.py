@@ -104,6 +104,7 @@ def of_wrong_inertance(records) -> Diagnosis:
     return diagnose_bench(records, Device(**{**TRUE, "inertance": 70.0}))
 
 
+@pytest.mark.turns(4)
 def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
     diagnosis = of_wrong_inertance
     assert [finding.effect for finding in diagnosis.findings] == ["inertance_error"]
@@ -142,6 +143,7 @@ def test_a_contradiction_is_more_than_the_error_of_the_fit(
     assert told is None or told in words
 
 
+@pytest.mark.turns(4)
 def test_missing_friction_is_named_beside_stated_values(records) -> None:
     stated = Device(inertance=80.0, viscous=40.0)
     diagnosis = diagnose_bench(records, stated)

@@ -45,9 +45,9 @@ def fitted(law: Law) -> tuple[Data, Model]:
     return data, Problem(data.runs, data.split.fit, data.band.scales).fit(start).model
 
 
-def of(law: Law, **how: bool) -> Carried | None:
+def of(law: Law, *, passive: bool = False) -> Carried | None:
     data, model = fitted(law)
-    return carried(data, model, NOISE, **how)
+    return carried(data, model, NOISE, passive=passive)
 
 
 def test_a_surface_is_carried_down_to_the_noise_and_is_the_one_that_is_there() -> None:

@@ -41,6 +41,7 @@ def solved(request: pytest.FixtureRequest, effects_seed: int):
     return solve(effects_seed + CASES.index(request.param), effect, law)
 
 
+@pytest.mark.turns(4)
 def test_effect_is_named_alone(solved) -> None:
     case, diagnosis = solved
     assert [finding.effect for finding in diagnosis.findings] == [case.effect], (
@@ -139,6 +140,7 @@ def _agree_mostly(diagnosis: Diagnosis) -> None:
         assert np.quantile(apart, 0.75) < 0.01 * float(np.std(force)), simulate.__module__
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("offset", [100, 101, 102])
 def test_clean_data_bring_no_finding(offset: int, effects_seed: int) -> None:
     case, diagnosis = solve(effects_seed + offset, "none")

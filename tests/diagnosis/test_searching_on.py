@@ -48,6 +48,7 @@ def names(found: Confirmed) -> set[str]:
     return {name for name, _ in effects_of(found.fit.model, found.searched.prepared.baseline)}
 
 
+@pytest.mark.turns(4)
 def test_search_goes_on_without_what_was_dropped(effects_seed: int) -> None:
     found, told = confirmed_from(bench(100.0, 8.0, effects_seed), viscous=0.0, force_drift=0.0)
     assert "force_drift is not confirmed on held-out data: dropped" in told
@@ -57,6 +58,7 @@ def test_search_goes_on_without_what_was_dropped(effects_seed: int) -> None:
     assert set(found.standings) == names(found)
 
 
+@pytest.mark.turns(4)
 def test_nothing_is_added_where_nothing_is_left(effects_seed: int) -> None:
     found, told = confirmed_from(bench(100.0, 0.0, effects_seed), viscous=0.0, force_drift=0.0)
     assert "searching on without force_drift" in told

@@ -59,6 +59,7 @@ def test_the_right_law_has_the_smallest_error_on_data_not_seen() -> None:
     assert result.json()["records"][held]["role"] == "holdout"
 
 
+@pytest.mark.turns(4)
 def test_every_start_of_a_hysteretic_law_leads_to_one_minimum_or_says_so() -> None:
     case = drawn("bouc_wen", 6)
     result = found(case, "bouc_wen")
@@ -205,6 +206,7 @@ def test_outliers_count_less_with_a_robust_loss() -> None:
     assert errors["cauchy"] < 0.005
 
 
+@pytest.mark.turns(3)
 def test_what_is_known_is_held() -> None:
     case = drawn("dahl", 3)
     fixed = {"inertance": case.parameters["inertance"], "bristle_stiffness": 1e5}

@@ -84,6 +84,7 @@ def leaves(value: Any, path: str = "") -> dict[str, Any]:
     return {path: value}
 
 
+@pytest.mark.turns(4)
 def test_nothing_but_units_differs(both: dict[str, tuple[Diagnosis, Path]]) -> None:
     along, about = (leaves(both[m][0].json()) for m in HEADERS)
     assert along.keys() == about.keys()

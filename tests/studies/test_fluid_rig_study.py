@@ -76,6 +76,7 @@ def made() -> Study:
     )  # fmt: skip
 
 
+@pytest.mark.turns(3)
 def test_statements_of_the_paper(made: Study) -> None:
     """All but one: with the printed parameters the level matters no less than dry."""
     assert [each.text[:40] for each in made.statements if not each.holds] == [
@@ -107,6 +108,7 @@ def test_pairs_that_make_up_for_each_other_are_named(made: Study) -> None:
     assert made.shown.dry.undetermined == ()
 
 
+@pytest.mark.turns(3)
 def test_files(made: Study, tmp_path: Path) -> None:
     names = write_study(made, tmp_path)
     assert set(names) == {

@@ -25,6 +25,7 @@ def small() -> Study:
     return found
 
 
+@pytest.mark.turns(4)
 def test_files(small: Study, tmp_path: Path) -> None:
     names = write_study(small, tmp_path / "out")
     assert {p.name for p in (tmp_path / "out").iterdir()} == set(names)

@@ -39,6 +39,7 @@ def by_hand(c: float, b: float) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
+@pytest.mark.turns(3)
 def test_the_value_is_the_root_mean_square_and_no_design_beats_it() -> None:
     words = f"optimize --layout S3 --index J1w --stiffness 40e3 {VARY}"
     (row,) = run(words)

@@ -21,6 +21,7 @@ def command(*words: str) -> Any:
     return CliRunner().invoke(app, ["suspension", "optimize", *words])
 
 
+@pytest.mark.turns(4)
 def test_rows_of_json() -> None:
     done = command("--car", "half", "--layout", "S1,S4", "--index", "J1", "--json", "--jobs", "1")
     assert (done.exit_code, done.stderr) == (0, "")
@@ -65,6 +66,7 @@ def test_a_range_writes_figures(tmp_path: Path) -> None:
     assert len(full["rows"]) == 2 * 2 * 2
 
 
+@pytest.mark.turns(4)
 def test_processes_do_not_change_the_answer() -> None:
     study = Study(
         layouts=("S1", "S3"),
