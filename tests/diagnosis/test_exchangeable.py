@@ -299,3 +299,30 @@ def test_along_one_slow_sine_a_delay_is_no_shaft(effects_seed: int) -> None:
     (told,) = found.findings
     assert set(told.members) == {"viscous_friction", "sensor_delay"}
     assert told.parameters["delay"].value == pytest.approx(late, rel=0.2)
+
+
+@pytest.mark.parametrize("uneven", [True, False])
+def test_without_rests_uneven_friction_and_a_constant_force_are_one_finding(uneven: bool) -> None:
+    random = np.random.default_rng(7)
+    speed = 2 * np.pi * np.array([0.7, 1.9, 3.1, 4.3])
+    size, phase = 0.02 * (speed[0] / speed) ** 1.5, random.uniform(0, 6, 4)
+    angle = np.outer(TIME, speed) + phase
+    v, a = np.cos(angle) @ (size * speed), -np.sin(angle) @ (size * speed**2)
+    way = np.sign(v)
+    friction = 30.0 * way * (1 + 0.15 * way) if uneven else 30.0 * way + 4.5
+    made = Record(
+        name="run", time=TIME,
+        displacement=np.sin(angle) @ size + random.normal(0, 1e-6, TIME.size),
+        force=60 * a + friction + random.normal(0, 0.5, TIME.size),
+    )  # fmt: skip
+    (found,) = diagnose_bench([made]).findings
+    assert found.members == ("asymmetric_friction", "force_offset")
+    assert found.confidence <= 0.5
+    values = found.parameters
+    assert values["force_offset"].value == pytest.approx(4.5, abs=0.1)
+    assert values["friction_asymmetry"].value == pytest.approx(0.15, abs=0.005)
+    # each may be none
+    assert 3.01 * values["friction_asymmetry"].stderr > 0.15
+    assert "friction that is 15 % larger one way" in found.evidence
+    assert "a constant force of 4.5 N" in found.evidence
+    assert "the device turned round would" in found.evidence

@@ -3,7 +3,8 @@
 A delay of the force adds b tau times the jerk, which along one sine is a damper, and nearly so in a
 narrow band. Along one sine of amplitude A a stiffness k3 x^3 is an inertance b (1 + c x^2) with
 c = -k3 / (2 b w^2), and another b: what c adds to the force is b c w^2 (A^2 x - 2 x^3). Beside a
-stated inertance a stiffness k along one sine is an inertance that is wrong by -k / w^2.
+stated inertance a stiffness k along one sine is an inertance that is wrong by -k / w^2. Friction
+that differs between the directions is a level and a constant force, but at rest.
 
 Each finding with such a counterpart is fitted once more with the counterpart beside it. Where its
 own parameter may then be none, the two are one finding with two members; where the parameter only
@@ -32,10 +33,11 @@ _PAIRS = (
     ("viscous_friction", "sensor_delay"),
     ("hardening_stiffness", "variable_inertance"),
     ("parallel_stiffness", "inertance_error"),
+    ("asymmetric_friction", "force_offset"),
 )
 COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 # those that do along one sine alone: where the inertance is free, and where it is stated
-_OF_ONE_SINE, _OF_STATED = _PAIRS[1:]
+_OF_ONE_SINE, _OF_STATED, _OF_FRICTION = _PAIRS[1:]
 _COORDINATE = {
     "viscous_friction": "viscous",
     "sensor_delay": "delay",
@@ -43,6 +45,8 @@ _COORDINATE = {
     "variable_inertance": "inertance_curvature",
     "parallel_stiffness": "stiffness",
     "inertance_error": "inertance",
+    "asymmetric_friction": "friction_asymmetry",
+    "force_offset": "force_offset",
 }
 
 
@@ -104,6 +108,9 @@ def exchanges(
             return one_tone and stated and _COORDINATE[other] not in free
         if _COORDINATE[other] in fit.model.values:
             return False
+        if effect in _OF_FRICTION:
+            # a constant force beside a level has been compared with this already
+            return effect == _OF_FRICTION[0]
         return effect not in _OF_ONE_SINE or (one_tone and "inertance" in free)
 
     asked = [effect for effect in effects if may_be_exchanged(effect)]
@@ -123,11 +130,18 @@ def exchanges(
             amount = known[_COORDINATE[other]][0]
             exchange = Exchange(other, value, error, amount, same, (0.0, 0.0), *zeros)
             if not exchange.is_told_apart:
-                bare = _beside(stripped(fit.model, effect, baseline), other, spacing)
+                bare = _beside(_bare(fit.model, effect, baseline), other, spacing)
                 alone = parameter_errors(covered(search.problem.fit(bare)))
                 exchange = replace(exchange, instead=alone[_COORDINATE[other]])
             found[effect] = exchange
     return found
+
+
+def _bare(model: Model, effect: str, baseline: Model) -> Model:
+    """A model without what its counterpart stands for."""
+    if effect in _OF_FRICTION:
+        return model.without((_COORDINATE[effect],))
+    return stripped(model, effect, baseline)
 
 
 def _beside(model: Model, effect: str, spacing: float) -> Model:

@@ -110,6 +110,10 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
         return f"an inertance of {value:.4g} {words(motion, 'kg')}"
     if effect == "parallel_stiffness":
         return f"a parallel stiffness of {value:.3g} {words(motion, 'N/m')}"
+    if effect == "asymmetric_friction":
+        return f"friction that is {100 * abs(value):.3g} % larger one way, and smaller the other"
+    if effect == "force_offset":
+        return f"a constant force of {value:.3g} {words(motion, 'N')}"
     return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
 
 
@@ -139,12 +143,22 @@ def curves_in_words(
 
 def either_in_words(finding: Finding) -> str:
     """Such as "viscous friction of 120 N s/m or a delay of 3.8 ms": what members would be."""
-    one = {"variable_inertance": "inertance_curvature"}
+    one = {
+        "variable_inertance": "inertance_curvature",
+        "asymmetric_friction": "friction_asymmetry",
+    }
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     return " or ".join(
         amount_in_words(member, finding.parameters[name].value, finding.motion)
         for member, name in coordinates.items()
     )
+
+
+def _teller(finding: Finding) -> str:
+    """What would tell the members of a finding apart."""
+    if "force_offset" in finding.members:
+        return "the device turned round"
+    return "a second frequency"
 
 
 def evidence(finding: Finding) -> str:
@@ -157,7 +171,7 @@ def evidence(finding: Finding) -> str:
         ]
     )
     if finding.members:
-        values = f"{either_in_words(finding)}; this motion cannot tell, a second frequency would"
+        values = f"{either_in_words(finding)}; this motion cannot tell, {_teller(finding)} would"
     elif is_missing(finding):
         values = f"{EFFECTS[finding.effect].plain} as stated is not in these data"
     where = (
@@ -322,7 +336,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
     for finding in diagnosis.findings:
         if finding.members:
             text += (
-                f" It is {either_in_words(finding)}: this motion cannot tell; a second frequency "
+                f" It is {either_in_words(finding)}: this motion cannot tell; {_teller(finding)} "
                 f"would ({EFFECTS[finding.members[0]].experiment})."
             )
     if doubts:
