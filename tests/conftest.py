@@ -108,7 +108,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     if (
         (often and case not in often.args)
         or (rarely and case in rarely.args)
-        or (turns and (crc32(item.nodeid.encode()) - day) % turns.args[0])
+        or (turns and (crc32(_of_case(item.nodeid).encode()) - day) % turns.args[0])
     ):
         item.add_marker("long")
 
@@ -160,9 +160,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 def _together(nodeid: str) -> str:
     """What one worker runs: a test file; of the diagnoses, the tests of a case."""
+    file = nodeid.partition("::")[0]
+    return _of_case(nodeid) if file.startswith("tests/diagnosis/") else file
+
+
+def _of_case(nodeid: str) -> str:
+    """The tests of a file that have one case, which may share what is expensive; or one test."""
     file, _, test = nodeid.partition("::")
-    if not file.startswith("tests/diagnosis/"):
-        return file
     name, bracket, case = test.partition("[")
     return f"{file}::[{case}" if bracket else f"{file}::{name}"
 

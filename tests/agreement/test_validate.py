@@ -346,6 +346,7 @@ def test_json_alone_on_stdout_and_two_files(finished: tuple[Any, Path]) -> None:
     assert (out / "validation.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.turns(4)
 def test_every_row_is_within_its_bound(finished: tuple[Any, Path]) -> None:
     found = json.loads(finished[0].stdout)
     rows = found["rows"]

@@ -39,6 +39,7 @@ def records() -> list[Record]:
     return measured(ReferenceDevice(**TRUE), motions, np.arange(0, 9, 2e-3))  # type: ignore[arg-type]
 
 
+@pytest.mark.turns(3)
 def test_right_device_brings_no_finding(records) -> None:
     diagnosis = diagnose_bench(records, Device(**TRUE))
     assert diagnosis.findings == []
@@ -124,6 +125,7 @@ def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
     assert told["gain"]["interval"] == pytest.approx([low, high], rel=1e-6)
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("stated", "told"),
     [

@@ -51,6 +51,7 @@ def test_effect_is_named_alone(solved) -> None:
         assert diagnosis.findings[0].law == case.law, f"seed {case.seed}"
 
 
+@pytest.mark.turns(4)
 def test_parameters_are_near(solved) -> None:
     case, diagnosis = solved
     if case.law == "bouc_wen":

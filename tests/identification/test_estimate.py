@@ -48,6 +48,7 @@ def test_a_device_of_each_law_is_recovered(law: str) -> None:
     assert all(each.stderr < 0.1 * each.value for each in known)
 
 
+@pytest.mark.turns(3)
 def test_the_right_law_has_the_smallest_error_on_data_not_seen() -> None:
     case = drawn("dahl", 5)
     result = identify(case.records, ["ideal", "viscous", "dahl"], intervals="normal")

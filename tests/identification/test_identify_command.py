@@ -86,6 +86,7 @@ def test_files_and_json_say_the_same(case: Drawn, folder: Path, tmp_path: Path) 
     assert (out / "identification.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.turns(3)
 def test_the_terminal_shows_laws_and_parameters(folder: Path, tmp_path: Path) -> None:
     status, stdout, _ = run(
         folder, "--law", "viscous", "--intervals", "normal", "--fix", "viscous=3",

@@ -92,6 +92,7 @@ def test_statements_of_the_paper(made: Study) -> None:
     assert len(shift.figures["hertz"]) == 2
 
 
+@pytest.mark.turns(3)
 def test_recovery_counts_errors_and_intervals(made: Study) -> None:
     found = recovery(made)["spectra"]
     assert set(found) == {*published("dry", DRY), *published("complete", COMPLETE)}

@@ -64,6 +64,7 @@ def test_one_variable_ends_on_the_limit() -> None:
     assert values_of(problem("S1", "J1w"), found.point)["travel"] == pytest.approx(0.0065, rel=2e-6)
 
 
+@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("index", "k", "limits"),
     [

@@ -61,6 +61,7 @@ def test_the_design_has_the_value(
         assert h_infinity_norm(function) == pytest.approx(found.value, rel=1e-7 if held else 2e-9)
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(("layout", "index", "k", "pair"), EVERY)
 def test_no_other_design_is_better(
     layout: str, index: str, k: float, pair: SeriesPair | None

@@ -59,6 +59,7 @@ def test_indices_are_the_sums_over_the_sinusoids(layout: str, case: str) -> None
         )
 
 
+@pytest.mark.turns(3)
 @pytest.mark.rarely("S3-elastic")
 @pytest.mark.parametrize(("layout", "case"), LINEAR)
 def test_gains_are_the_transfer_function(layout: str, case: str) -> None:

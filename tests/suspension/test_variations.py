@@ -98,6 +98,7 @@ def test_bad_words_are_told(words: list[str], told: str) -> None:
     assert told in answer.output.replace("\n", " ")
 
 
+@pytest.mark.turns(3)
 @pytest.mark.parametrize("first", ["limited", "optimum", "vehicle.problem", "problem"])
 def test_a_worker_may_import_any_module_first(first: str) -> None:
     """A process that is handed a problem imports what it is made of, in no order of ours."""
