@@ -100,3 +100,18 @@ def test_what_rings_in_the_motion_is_no_tone(seen: bool, hum: float, effects_see
         return
     assert found is not None
     assert found.model.values["disturbance_frequency"] == pytest.approx(50.0, abs=0.02)
+
+
+@pytest.mark.parametrize("share", [1.8, 0.05])
+def test_a_line_that_a_coarse_displacement_tells_badly_is_of_the_motion(share: float) -> None:
+    """A displacement that shows too much of a line, as steps do, still shows that it moves."""
+    wave = 0.6 * np.sin(2 * np.pi * 47.3 * TIME)
+    shaken = [replace(run, force=run.force + wave) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    moved = -share * wave / (40.0 * (2 * np.pi * 47.3) ** 2)
+    random = np.random.default_rng(4)
+    seen = [run.displacement + moved + random.normal(0, 1e-7, TIME.size) for run in RUNS]
+    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    # of a twentieth the force is none
+    assert (found is None) == (share > 1.0)
