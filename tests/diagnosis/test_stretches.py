@@ -10,6 +10,7 @@ import pytest
 from inerter.diagnose import diagnose_bench, excerpts, rig
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.excerpts import Excerpts
+from inerter.diagnose.other_runs import badly_missed_stretches
 from inerter.diagnose.start import Given
 from inerter.records import Record
 
@@ -187,3 +188,25 @@ def test_parts_keep_the_clock_of_their_run(random: np.random.Generator) -> None:
     assert found is not None
     assert {r.part.clock for r in found.given.records if r.part} == {0.0}
     assert max(record.time[0] for record in found.given.records) > 100.0
+
+
+def test_a_stretch_in_which_something_happened_is_told(random: np.random.Generator) -> None:
+    bench = Bench(random, 60_000)
+    found = stretches([bench.record(50 * bench.a)])
+    assert found is not None
+    errors = random.normal(0, 1.0, bench.time.size)
+    size = float(np.std(found.records[0].force))
+    fitted = [s for s in found.possible if not s.held]
+    bad = fitted[int(random.integers(len(fitted)))]
+    for share, told in ((0.02, False), (0.2, True)):
+        errors[bad.begin : bad.end] = share * size
+        missed = badly_missed_stretches(found, [errors], 1.0, 1.0)
+        assert bool(missed) == told
+    ((name, error),) = missed.items()
+    assert error == pytest.approx(0.2 * size)
+    assert f"run from {bench.time[bad.begin]:.4g} to" in name
+    # of what is held out its own errors tell
+    errors[:] = 1.0
+    held = next(s for s in found.possible if s.held)
+    errors[held.begin : held.end] = size
+    assert badly_missed_stretches(found, [errors], 1.0, 1.0) == {}

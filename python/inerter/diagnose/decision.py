@@ -166,7 +166,7 @@ class Criteria:
         "of the error of a stretch that was not searched to the largest of those that were, from "
         "which something happens there alone, and it is searched too",
     )
-    more_stretches: int = _bound(3, COUNT, "of searches, each with more such stretches")
+    more_stretches: int = _bound(2, COUNT, "of searches more, each with more such stretches")
     tone_of_motion: float = _bound(
         0.5,
         "share of a tone's power",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.data import Data
+from inerter.diagnose.excerpts import Excerpts
 from inerter.diagnose.search import Search
 from inerter.identify.fit import rms
 from inerter.identify.information import TOO_MUCH, leverage
@@ -23,6 +24,8 @@ Array = NDArray[np.float64]
 # from this share of its own force on
 TIMES = 2.0
 SHARE = 0.1
+# the share of a stretch of a long record, and how many are told
+SHARE_OF_STRETCH, WORST = 0.05, 3
 
 
 def badly_missed(data: Data, errors: Sequence[Array], noise: float) -> dict[str, float]:
@@ -40,6 +43,28 @@ def badly_missed(data: Data, errors: Sequence[Array], noise: float) -> dict[str,
         if missed > TIMES * max(held, noise) and missed > SHARE * spread:
             found[run.name] = missed
     return found
+
+
+def badly_missed_stretches(
+    long: Excerpts, errors: Sequence[Array], held: float, noise: float
+) -> dict[str, float]:
+    """The same of fitted stretches of long records, the worst ones: something happened there.
+
+    held: error of what is held out [N].
+    """
+    found = {}
+    for stretch in long.possible:
+        inside = slice(stretch.begin, stretch.end)
+        record = long.records[stretch.run]
+        missed = float(np.sqrt(np.mean(errors[stretch.run][inside] ** 2)))
+        if (
+            not stretch.held
+            and missed > TIMES * max(held, noise)
+            and missed > SHARE_OF_STRETCH * float(np.std(record.force[inside]))
+        ):
+            first, last = record.time[stretch.begin], record.time[stretch.end - 1]
+            found[f"{record.name} from {first:.4g} to {last:.4g} s"] = missed
+    return dict(sorted(found.items(), key=lambda each: -each[1])[:WORST])
 
 
 def missed_in_words(found: dict[str, float], held: float, motion: Kind = TRANSLATION) -> str:

@@ -23,6 +23,7 @@ from inerter.diagnose.excerpts import Excerpts, excerpts
 from inerter.diagnose.exchangeable import exchanges, with_exchange
 from inerter.diagnose.other_runs import (
     badly_missed,
+    badly_missed_stretches,
     missed_in_words,
     other_split,
     split_in_words,
@@ -111,14 +112,18 @@ def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
     found = excerpts(given)
     if found is None:
         return confirmed(settled(searched(prepared(given)))), None
+    stands = _on_stretches(found)
     for _ in range(CRITERIA.more_stretches):
-        part = confirmed(settled(searched(prepared(found.given))))
-        stands = on_everything(part, found)
         more = found.with_missed(errors_of(stands))
         if more is None:
             break
-        found = more
+        found, stands = more, _on_stretches(more)
     return stands, found
+
+
+def _on_stretches(found: Excerpts) -> Confirmed:
+    given = found.given
+    return on_everything(confirmed(settled(searched(prepared(given)))), found)
 
 
 def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
@@ -151,6 +156,8 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
     steps = steps_of(data, judge, final)
     again = repeats(data.whole, errors)
     missed = badly_missed(data, errors, floor)
+    if long and not missed:
+        missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
     other = other_split(stands.searched.search, data, final, bool(missed))
     values = parameter_values(
         stands.fit,
