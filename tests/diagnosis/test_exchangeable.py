@@ -68,7 +68,7 @@ def test_one_sine_tells_no_delay_from_damping() -> None:
     found = exchanges(search, fit, ["viscous_friction"])["viscous_friction"]
     assert not found.is_told_apart
     told = with_exchange(finding(fit.model.values["viscous"], 0.1), found)
-    assert told.members == ("viscous_friction", "sensor_delay")
+    assert told.members == ("viscous_friction", "sensor_delay", "sensor_filter")
     assert told.json()["members"] == ["viscous_friction", "sensor_delay"]
     assert told.confidence == pytest.approx(0.49)
     assert told.rivals[0].effect == "sensor_delay"

@@ -25,6 +25,7 @@ from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
 from inerter.diagnose.values import parameter_units
+from inerter.identify.channel_filter import USUAL_ORDER, Filter
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 
@@ -187,7 +188,23 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
         | {other: ParameterValue(value, spread, unit)},
         rivals=[Rival(exchange.counterpart, share), *rivals],
     )
+    told = _with_low_pass(told) if exchange.same else told
     return replace(told, evidence=wording.evidence(told))
+
+
+def _with_low_pass(finding: Finding) -> Finding:
+    """A delay along one sine may be a low-pass that is as late, too."""
+    late = finding.parameters.get("delay")
+    if late is None or not late.value:
+        return finding
+    channel = "force" if late.value > 0 else "displacement"
+    cutoff = Filter("butterworth", USUAL_ORDER, 1.0).lateness / abs(late.value)
+    known = ParameterValue(cutoff, cutoff * late.stderr / abs(late.value), "Hz")
+    return replace(
+        finding,
+        members=(*finding.members, "sensor_filter"),
+        parameters={**finding.parameters, f"{channel}_filter": known},
+    )
 
 
 def _with_error(

@@ -20,6 +20,7 @@ from inerter.diagnose.result import (
     StatedValue,
 )
 from inerter.diagnose.tone import of_mains
+from inerter.identify.channel_filter import USUAL_ORDER
 from inerter.measured_text import measured
 from inerter.motion_units import Kind, force_word, words
 from inerter.printable import in_digits
@@ -110,6 +111,8 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
         return f"an inertance of {value:.4g} {words(motion, 'kg')}"
     if effect == "parallel_stiffness":
         return f"a parallel stiffness of {value:.3g} {words(motion, 'N/m')}"
+    if effect == "sensor_filter":
+        return f"a low-pass of one channel, such as one of order {USUAL_ORDER} at {value:.3g} Hz"
     if effect == "asymmetric_friction":
         return f"friction that is {100 * abs(value):.3g} % larger one way, and smaller the other"
     if effect == "force_offset":
@@ -148,6 +151,8 @@ def either_in_words(finding: Finding) -> str:
         "asymmetric_friction": "friction_asymmetry",
     }
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
+    if "displacement_filter" in finding.parameters:
+        coordinates["sensor_filter"] = "displacement_filter"
     return " or ".join(
         amount_in_words(member, finding.parameters[name].value, finding.motion)
         for member, name in coordinates.items()
