@@ -69,7 +69,7 @@ def test_one_sine_tells_no_delay_from_damping() -> None:
     assert not found.is_told_apart
     told = with_exchange(finding(fit.model.values["viscous"], 0.1), found)
     assert told.members == ("viscous_friction", "sensor_delay", "sensor_filter")
-    assert told.json()["members"] == ["viscous_friction", "sensor_delay"]
+    assert told.json()["members"] == ["viscous_friction", "sensor_delay", "sensor_filter"]
     assert told.confidence == pytest.approx(0.49)
     assert told.rivals[0].effect == "sensor_delay"
     # the true 100 is within the error
@@ -80,6 +80,10 @@ def test_one_sine_tells_no_delay_from_damping() -> None:
     late = told.parameters["delay"]
     assert late.value == pytest.approx(value.value / (60 * (4 * np.pi) ** 2), rel=0.03)
     assert late.stderr >= late.value / 3 * (1 - 1e-9)
+    # a Butterworth low-pass of order four is late by 2.613 / (2 pi cut-off)
+    cutoff = told.parameters["force_filter"]
+    assert 2 * np.pi * cutoff.value * late.value == pytest.approx(2.613, rel=1e-3)
+    assert cutoff.unit == "Hz"
     assert told.evidence.startswith(f"viscous friction of {value.value:.3g} N s/m or a delay of ")
     assert "this motion cannot tell, a second frequency would" in told.evidence
     # no error beside it that says otherwise, and no rival that is a member
