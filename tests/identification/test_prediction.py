@@ -27,6 +27,7 @@ def run() -> BenchRun:
 
 PLAIN = {"inertance": 60.0, "viscous": 30.0}
 DULL = {"coulomb_force": 4.0, "transition_velocity": 1e-3}
+DULL_WIDTH = {"transition_velocity": 1e-4}
 
 
 @pytest.mark.parametrize("friction", ["none", "coulomb"])
@@ -139,3 +140,30 @@ def test_what_branches_were_bent_by_is_not_made_up() -> None:
     wave = 40.0 * np.exp(-TIME / 0.25)
     left = without_relaxing((0.25, 1.5), residual + wave, 1e-3, TIME < 8.0)
     assert np.std(left - residual) < 0.2
+
+
+def test_what_came_before_a_record_does_not_count() -> None:
+    """Friction before the first sample is not known, and the low-pass of the force remembers it."""
+    model = Model("coulomb", {"inertance": 60.0, "coulomb_force": 30.0} | DULL_WIDTH, ())
+    begins, rest = [], []
+    for phase in np.linspace(0.0, 3.0, 11):
+        x = 5e-3 * np.sin(2 * np.pi * 1.3 * TIME + phase) + 2e-3 * np.sin(2 * np.pi * 3.1 * TIME)
+        v, a = np.gradient(x, TIME), np.gradient(np.gradient(x, TIME), TIME)
+        inside = slice(5, -5)
+        run = thin(
+            smooth(
+                Record(
+                    name="run", time=TIME[inside], displacement=x[inside],
+                    force=(60 * a + 30 * np.sign(v))[inside],
+                ),
+                20.0,
+            )
+        )  # fmt: skip
+        left = np.abs(run.force - force_along(model, run))
+        early = run.inner & (np.arange(left.size) < int(np.argmax(run.inner)) + 10)
+        begins.append(left[early].max())
+        rest.append(left[run.inner & ~early].max())
+        # hardly anything of the run is given away
+        assert np.mean(run.inner) > 0.9
+    # no more than where the motion turns
+    assert max(begins) < np.median(rest)
