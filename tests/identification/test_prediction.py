@@ -11,6 +11,7 @@ from inerter.identify.runs import BenchRun, thin
 from inerter.identify.transient import without_relaxing, without_transient
 from inerter.records import Record
 from inerter.records.motion import smooth
+from inerter.records.record import Part
 
 TIME = np.arange(0, 8, 1e-3)
 
@@ -142,7 +143,7 @@ def test_what_branches_were_bent_by_is_not_made_up() -> None:
     assert np.std(left - residual) < 0.2
 
 
-def test_what_came_before_a_record_does_not_count() -> None:
+def test_what_came_before_a_part_of_a_record_does_not_count() -> None:
     """Friction before the first sample is not known, and the low-pass of the force remembers it."""
     model = Model("coulomb", {"inertance": 60.0, "coulomb_force": 30.0} | DULL_WIDTH, ())
     begins, rest = [], []
@@ -154,7 +155,7 @@ def test_what_came_before_a_record_does_not_count() -> None:
             smooth(
                 Record(
                     name="run", time=TIME[inside], displacement=x[inside],
-                    force=(60 * a + 30 * np.sign(v))[inside],
+                    force=(60 * a + 30 * np.sign(v))[inside], part=Part("whole", 0.0),
                 ),
                 20.0,
             )

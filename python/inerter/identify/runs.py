@@ -35,8 +35,6 @@ Array = NDArray[np.float64]
 SAMPLES_PER_PERIOD = 8
 # a velocity within this many standard deviations of its noise may be none
 REST = 4
-# share of a run at most that is left out as its low-pass remembers what came before
-REMEMBERED = 0.05
 # squared correlation of displacement and acceleration from which they count as proportional
 ONE_TONE = 0.98
 
@@ -217,11 +215,10 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
     force = lowpass(motion.force, motion.spacing, cutoff)
     velocity = np.where(_resting(motion), 0.0, motion.velocity)
     inner = motion.inner[::step]
-    if first:
+    if motion.part and first:
         # what the force was before is not followed, and the low-pass remembers it
-        remembered = int(EDGE_PERIODS / cutoff / (motion.spacing * step))
         inner = inner.copy()
-        inner[: first + min(remembered, int(REMEMBERED * np.count_nonzero(inner)))] = False
+        inner[: first + int(EDGE_PERIODS / cutoff / (motion.spacing * step))] = False
     return BenchRun(
         name=motion.name,
         start=motion.start,
