@@ -301,7 +301,7 @@ def test_along_one_slow_sine_a_delay_is_no_shaft(effects_seed: int) -> None:
     found = diagnose_bench([made], carry="nothing")
     assert found.parameters["inertance"].value == pytest.approx(62, rel=0.01)
     (told,) = found.findings
-    assert set(told.members) == {"viscous_friction", "sensor_delay"}
+    assert set(told.members) == {"viscous_friction", "sensor_delay", "sensor_filter"}
     assert told.parameters["delay"].value == pytest.approx(late, rel=0.2)
 
 
