@@ -210,3 +210,20 @@ def test_a_stretch_in_which_something_happened_is_told(random: np.random.Generat
     held = next(s for s in found.possible if s.held)
     errors[held.begin : held.end] = size
     assert badly_missed_stretches(found, [errors], 1.0, 1.0) == {}
+
+
+def test_a_gap_moves_no_stretch(random: np.random.Generator) -> None:
+    bench = Bench(random, 60_000)
+    made = bench.record(50 * bench.a)
+    # 20 s were not stored
+    kept = (bench.time < 30.0) | (bench.time > 50.0)
+    columns = {name: values[kept] for name, values in made.channels().items()}
+    found = stretches([replace(made, time=made.time[kept], **columns)])
+    assert found is not None
+    for stretch in found.possible:
+        times = found.records[0].time[found.rows(stretch)]
+        # one may reach into the gap, and has nothing there
+        assert times[0] > (stretch.begin - 0.6) / RATE
+        assert times[-1] < (stretch.end - 0.4) / RATE
+        assert times.size > 0.5 * (stretch.end - stretch.begin)
+    assert max(s.end for s in found.possible) > 55_000

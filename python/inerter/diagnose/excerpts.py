@@ -70,6 +70,8 @@ class Excerpts:
         As in `start.Prepared`.
     clocks
         Of each run [s].
+    spacings
+        Between samples of each run on a uniform clock [s], on which stretches are counted.
     every
         Samples of each run that one of a stretch is the mean of.
     possible, chosen
@@ -82,6 +84,7 @@ class Excerpts:
     constants: Mapping[str, float]
     contradicting: Mapping[str, str]
     clocks: Sequence[float]
+    spacings: Sequence[float]
     every: Sequence[int]
     possible: Sequence[Stretch] = ()
     chosen: Sequence[int] = ()
@@ -100,8 +103,16 @@ class Excerpts:
     def _part(self, stretch: Stretch) -> Record:
         record = self.records[stretch.run]
         part = Part(record.name, self.clocks[stretch.run])
-        found = _cut(record, stretch.begin, stretch.end, part)
+        rows = self.rows(stretch)
+        found = _cut(record, rows.start, rows.stop, part)
         return _coarse(found, self.every[stretch.run])
+
+    def rows(self, stretch: Stretch) -> slice:
+        """The rows of its record that a stretch has, which may have gaps."""
+        time, spacing = self.records[stretch.run].time, self.spacings[stretch.run]
+        ends = time[0] + spacing * (np.array([stretch.begin, stretch.end]) - 0.5)
+        begin, end = np.searchsorted(time, ends)
+        return slice(int(begin), int(end))
 
     @property
     def samples(self) -> tuple[int, int]:
@@ -156,8 +167,8 @@ def excerpts(given: Given) -> Excerpts | None:
     refuse_unusable(records)
     given.progress(f"{total} samples: choosing stretches to search on")
     rough = prepare(_evenly(records))
-    rates = [max(PER_PERIOD * rough.cutoff, LEAST_RATE) for _ in records]
-    every = [max(1, int(r.sample_rate / rate)) for r, rate in zip(records, rates, strict=True)]
+    rate = max(PER_PERIOD * rough.cutoff, LEAST_RATE)
+    every = [max(1, int(record.sample_rate / rate)) for record in records]
     sizes = [_size(record, n) for record, n in zip(records, every, strict=True)]
     left = sum(record.samples // n for record, n in zip(records, every, strict=True))
     needed = FEWEST * max(size // n for size, n in zip(sizes, every, strict=True))
@@ -171,10 +182,11 @@ def excerpts(given: Given) -> Excerpts | None:
     found = Excerpts(
         whole=given, records=without_constants(records, apart), holdout=held, constants=apart,
         contradicting=contradicting(runs), clocks=[run.clock for run in runs], every=every,
+        spacings=[run.spacing / run.thinned for run in runs],
     )  # fmt: skip
     if left <= CRITERIA.long_record or needed > WORTH * left:
         return found
-    possible = _possible(runs, records, sizes, parted.holdout)
+    possible = _possible(runs, sizes, parted.holdout)
     count = max(FEWEST, round(FEWEST * CRITERIA.searched_samples / needed))
     chosen: list[int] = []
     for is_held, share in ((False, 1 - HELD), (True, HELD)):
@@ -225,7 +237,6 @@ def _coarse(record: Record, every: int) -> Record:
 
 def _possible(
     runs: Sequence[BenchRun],
-    records: Sequence[Record],
     sizes: Sequence[int],
     held: Sequence[NDArray[np.bool_]],
 ) -> list[Stretch]:
@@ -235,7 +246,7 @@ def _possible(
     for i, (run, size, out) in enumerate(zip(runs, sizes, held, strict=True)):
         step = run.thinned
         changes = np.flatnonzero(np.diff(out)) + 1
-        last = min(out.size, records[i].samples // step)
+        last = out.size
         for first, after in zip([0, *changes], [*changes, last], strict=True):
             count = (after - first) * step // size
             if not count and not (first == 0 and after == last):

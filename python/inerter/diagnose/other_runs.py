@@ -54,15 +54,14 @@ def badly_missed_stretches(
     """
     found = {}
     for stretch in long.possible:
-        inside = slice(stretch.begin, stretch.end)
-        record = long.records[stretch.run]
-        missed = float(np.sqrt(np.mean(errors[stretch.run][inside] ** 2)))
+        rows, record = long.rows(stretch), long.records[stretch.run]
+        missed = float(np.sqrt(np.mean(errors[stretch.run][stretch.begin : stretch.end] ** 2)))
         if (
             not stretch.held
             and missed > TIMES * max(held, noise)
-            and missed > SHARE_OF_STRETCH * float(np.std(record.force[inside]))
+            and missed > SHARE_OF_STRETCH * float(np.std(record.force[rows]))
         ):
-            first, last = record.time[stretch.begin], record.time[stretch.end - 1]
+            first, last = record.time[rows][[0, -1]]
             found[f"{record.name} from {first:.4g} to {last:.4g} s"] = missed
     return dict(sorted(found.items(), key=lambda each: -each[1])[:WORST])
 

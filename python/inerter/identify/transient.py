@@ -56,11 +56,6 @@ def relaxing(values: Mapping[str, float]) -> tuple[float, ...]:
     return tuple(values[name] for name in RELAXING if name in values)
 
 
-def shortest_relaxing(spacing: float, cutoff: float) -> float:
-    """Time [s] below which what relaxes cannot be told from how a low-pass begins."""
-    return max(EDGE_PERIODS / cutoff, _FEWEST * spacing)
-
-
 def without_relaxing(
     times: Sequence[float],
     residual: Array,
@@ -75,7 +70,8 @@ def without_relaxing(
     share of the masked samples that has this form is taken out, as above. Not of branches that
     relax while a low-pass of this `cutoff` [Hz] begins.
     """
-    times = [time for time in times if time > shortest_relaxing(spacing, cutoff)]
+    shortest = max(EDGE_PERIODS / cutoff, _FEWEST * spacing)
+    times = [time for time in times if time > shortest]
     count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
