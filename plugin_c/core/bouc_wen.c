@@ -14,11 +14,16 @@
 // at that share of where it did, with the same stiffness and the same stored energy. Free play
 // before the yielding share: friction_play.c. Not modelled: pinching, degradation.
 
-#include "friction.h"
+#include "friction_block.h"
 
 double bouc_wen_level(const InerterDevice* p) {
   double bound = pow(p->bw_alpha / (p->bw_beta + p->bw_gamma), 1 / p->bw_exponent);
   return fabs(1 - p->bw_ratio) * p->bw_stiffness * bound;
+}
+
+// how beta and gamma slow z down that grows, or that comes back, for a level of 1
+static INLINED double slowing(const InerterDevice* p, int loading) {
+  return loading ? p->bw_gamma + p->bw_beta : p->bw_gamma - p->bw_beta;
 }
 
 // z' along the path: rate per unit |v| in direction s = sgn(v), and its slope over z. `loading`: z
@@ -27,7 +32,7 @@ double bouc_wen_level(const InerterDevice* p) {
 static double slope(const InerterDevice* p, double narrow, double s, double z, int loading,
                     double* derivative) {
   double n = p->bw_exponent;
-  double c = (loading ? p->bw_gamma + p->bw_beta : p->bw_gamma - p->bw_beta) * narrow;
+  double c = slowing(p, loading) * narrow;
   double power = n == 1 ? 1 : pow(fabs(z), n - 1);
   *derivative = (loading ? -c : c) * n * power;
   return s * (p->bw_alpha - c * power * fabs(z));
@@ -48,8 +53,10 @@ static double rate(const InerterDevice* p, double x, double v, double z, double 
 }
 
 // (e^x - 1) / x
-static double growth(double x) {
-  return fabs(x) < 1e-8 ? 1 + 0.5 * x : expm1(x) / x;
+static INLINED double growth(double x) {
+  int small = fabs(x) < 1e-8;
+  double some = small ? 1 : x, ratio = elementary_expm1(some) / some;
+  return small ? 1 + 0.5 * x : ratio;
 }
 
 // Exponential step along a path in direction s: exact where the slope is linear in z, that is for
@@ -135,8 +142,43 @@ static double stiffness(const InerterDevice* p) {
   return fmax(0, 1 - p->bw_ratio) * p->bw_stiffness * p->bw_alpha;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, step, force);
+// for n = 1 and a level of 1: how far a slope takes z on the way to each sample depends on the way
+// alone
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  if (p->bw_exponent != 1 || !friction_level_is_one(p)) {
+    friction_along(p, path, z, forces, step, force);
+    return;
+  }
+  FrictionSamples samples;
+  double side[FRICTION_BLOCK], forth[FRICTION_BLOCK], back[FRICTION_BLOCK];
+  samples_between(p, path, &samples);
+  double slow_forth = slowing(p, 1), slow_back = slowing(p, 0);
+  for (int i = 0; i < samples.size; i++) {
+    double way = fabs(samples.v[i]) * path->h;
+    side[i] = sign(samples.v[i]);
+    forth[i] = way * growth(-slow_forth * way);
+    back[i] = way * growth(slow_back * way);
+  }
+  double now = *z, state[FRICTION_BLOCK];
+  for (int i = 0; i < samples.size; i++) {
+    double push = side[i] * p->bw_alpha;
+    if (now * side[i] >= 0) {
+      now += forth[i] * (push - slow_forth * now);
+    } else {
+      double next = now + back[i] * (push + slow_back * now);
+      now = next * side[i] < 0 ? next : advance(p, 1, side[i], now, fabs(samples.v[i]) * path->h);
+    }
+    state[i] = now;
+  }
+  *z = now;
+  if (path->states) {
+    memcpy(path->states + path->first, state, sizeof(double) * (size_t)samples.size);
+  }
+  samples_at(p, path, &samples);
+  for (int i = 0; i < samples.size; i++) {
+    forces[i] = force(p, samples.x[i], samples.v[i], state[i], 0);
+  }
 }
 
 const FrictionLaw inerter_bouc_wen = {

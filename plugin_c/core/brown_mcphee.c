@@ -7,24 +7,37 @@
 // Source: Brown & McPhee 2016; fluid inerter experiment.
 // Not modelled: stiction and memory; below v_s the law is a damper.
 
-#include "friction.h"
+#include "friction_block.h"
+
+// force without its level
+static INLINED double shaped(const InerterDevice* p, double v) {
+  double ratio = v / p->stribeck_velocity;
+  double shape = 0.25 * ratio * ratio + 0.75;
+  double sliding = p->coulomb_force * elementary_tanh(4 * ratio);
+  double peak = (p->static_force - p->coulomb_force) * ratio / (shape * shape);
+  return sliding + peak;
+}
 
 static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
   (void)load;
-  double ratio = v / p->stribeck_velocity;
-  double shape = 0.25 * ratio * ratio + 0.75;
-  double sliding = p->coulomb_force * tanh(4 * ratio);
-  double peak = (p->static_force - p->coulomb_force) * ratio / (shape * shape);
-  return friction_level(p, x, v) * (sliding + peak);
+  return friction_level(p, x, v) * shaped(p, v);
 }
 
 static double width(const InerterDevice* p) {
   return 0.25 * p->stribeck_velocity;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, NULL, force);
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  FrictionSamples at;
+  double level[FRICTION_BLOCK];
+  (void)z;
+  samples_at(p, path, &at);
+  levels_at(p, &at, level);
+  for (int i = 0; i < at.size; i++) {
+    forces[i] = level[i] * shaped(p, at.v[i]);
+  }
 }
 
 const FrictionLaw inerter_brown_mcphee = {

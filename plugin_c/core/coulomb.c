@@ -9,7 +9,7 @@
 // Not modelled: stiction, memory before sliding (see dahl.c, lugre.c). A loaded device creeps at a
 // fraction of v_t instead of sticking.
 
-#include "friction.h"
+#include "friction_block.h"
 
 static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
@@ -26,8 +26,16 @@ static double width(const InerterDevice* p) {
   return p->transition_velocity;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, NULL, force);
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  FrictionSamples at;
+  double level[FRICTION_BLOCK];
+  (void)z;
+  samples_at(p, path, &at);
+  levels_at(p, &at, level);
+  for (int i = 0; i < at.size; i++) {
+    forces[i] = level[i] * p->coulomb_force * friction_direction(p, at.v[i]);
+  }
 }
 
 const FrictionLaw inerter_coulomb = {

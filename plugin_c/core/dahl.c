@@ -11,7 +11,7 @@
 // Free play before it: friction_play.c.
 // Not modelled: breakaway above f_c, Stribeck effect (see lugre.c).
 
-#include "friction.h"
+#include "friction_block.h"
 
 // ratio of the bristle force to what it can bear, along the direction of motion: u above
 static double slack(const InerterDevice* p, double level, double v, double z) {
@@ -28,6 +28,15 @@ static double rate(const InerterDevice* p, double x, double v, double z, double 
   return p->dahl_exponent == 1 ? v * u : v * sign(u) * pow(fabs(u), p->dahl_exponent);
 }
 
+// for m = 1: share of the way to the steady state that a path is, over how much bends the bristle
+// in full; the steady state
+static INLINED double gone_along(double path) {
+  return -elementary_expm1(-path);
+}
+static INLINED double bent_in_the_end(const InerterDevice* p, double v, double level) {
+  return sign(v) * level / p->bristle_stiffness;
+}
+
 // At constant v, u' = -(sigma0 |v| / f_c) sgn(u) |u|^m has a closed form for every m.
 static double step(const InerterDevice* p, double x, double v, double z, double h, double load) {
   double level = yield_level(p, x, v, load);
@@ -37,8 +46,7 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   double path = p->bristle_stiffness * fabs(v) * h / level;
   double m = p->dahl_exponent;
   if (m == 1) {
-    double end = sign(v) * level / p->bristle_stiffness;
-    return z - expm1(-path) * (end - z);
+    return z + gone_along(path) * (bent_in_the_end(p, v, level) - z);
   }
   double u = slack(p, level, v, z);
   double change;  // u(h) / u - 1, kept exact for short paths and for m near 1
@@ -77,8 +85,26 @@ static double stiffness(const InerterDevice* p) {
   return p->bristle_stiffness;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, step, force);
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  if (p->dahl_exponent != 1) {
+    friction_along(p, path, z, forces, step, force);
+    return;
+  }
+  FrictionSamples to;
+  double level[FRICTION_BLOCK], share[FRICTION_BLOCK], end[FRICTION_BLOCK];
+  samples_between(p, path, &to);
+  levels_at(p, &to, level);
+  for (int i = 0; i < to.size; i++) {
+    double yield = level[i] * p->coulomb_force;
+    share[i] = gone_along(p->bristle_stiffness * fabs(to.v[i]) * path->h / yield);
+    end[i] = bent_in_the_end(p, to.v[i], yield);
+  }
+  double state[FRICTION_BLOCK];
+  bristle_along(path, share, end, z, state);
+  for (int i = 0; i < to.size; i++) {
+    forces[i] = p->bristle_stiffness * state[i];
+  }
 }
 
 const FrictionLaw inerter_dahl = {

@@ -8,9 +8,13 @@
 #include <stddef.h>
 
 #include "device.h"
+#include "elementary.h"
 
-// Samples [first, last) of a motion, h seconds apart. states, if not NULL, takes the law's state at
-// each of them.
+// samples that a law takes at once at most, few enough to stay in the cache
+enum { FRICTION_BLOCK = 256 };
+
+// Samples [first, last) of a motion, FRICTION_BLOCK at most, h seconds apart. states, if not NULL,
+// takes the law's state at each of them.
 typedef struct FrictionPath_ {
   int first, last;
   double h;
@@ -32,7 +36,7 @@ double friction_curve_level(const InerterDevice* p, double x, double rise, doubl
 // straight: time until a state that v straightens is 0; asked for where z v < 0 only.
 // stiffness: the largest slope of force over displacement while it sticks, for choosing a step.
 // force_of_rate: the force where the rate of the state is known already; NULL where it is no help.
-// along: force and state at samples of a motion, see `friction_along`.
+// along: force and state at samples of a motion, see `friction_along` and friction_block.h.
 // over_step: step and force in one, z + share (step - z) in the force, and how the force rises with
 // v; NULL where a small difference of the two says that.
 // level: the force of a law with a sharp sign is level(p, x, v) tanh(v / width(p)); the level is
@@ -105,8 +109,8 @@ double play_force_over_step(const InerterDevice* p, double x, double v, double s
                             double share, double h);
 
 // direction of sliding, smooth over the transition velocity
-static inline double friction_direction(const InerterDevice* p, double v) {
-  return tanh(v / p->transition_velocity);
+static INLINED double friction_direction(const InerterDevice* p, double v) {
+  return elementary_tanh(v / p->transition_velocity);
 }
 
 // Factor on both friction levels: it differs between the directions and along the stroke.
@@ -121,6 +125,10 @@ static inline double friction_levels(const InerterDevice* p, double x, double* l
   }
   return p->friction_gradient == 0 && p->friction_curvature == 0 ? 1 : fmax(1e-3, 1 + rise);
 }
+static inline int friction_level_is_one(const InerterDevice* p) {
+  return !(p->parts & PART_FRICTION_CURVE) && p->friction_gradient == 0 &&
+         p->friction_curvature == 0 && p->friction_asymmetry == 0;
+}
 static inline double friction_along_stroke(const InerterDevice* p, double x) {
   double lean;
   return friction_levels(p, x, &lean);
@@ -134,23 +142,23 @@ static inline double friction_level(const InerterDevice* p, double x, double v) 
 }
 
 // Stribeck curve without direction: f_c + (f_s - f_c) exp(-(|v| / v_s)^exponent)
-static inline double friction_stribeck_curve(const InerterDevice* p, double v) {
+static INLINED double friction_stribeck_curve(const InerterDevice* p, double v) {
   double excess = p->static_force - p->coulomb_force;
   if (excess == 0) {
     return p->coulomb_force;
   }
   double ratio = fabs(v) / p->stribeck_velocity;
   double power = p->stribeck_exponent == 2 ? ratio * ratio : pow(ratio, p->stribeck_exponent);
-  return p->coulomb_force + excess * exp(-power);
+  return p->coulomb_force + excess * elementary_exp(-power);
 }
 
-static inline double sign(double v) {
-  return (v > 0) - (v < 0);
+static INLINED double sign(double v) {
+  return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0;
 }
 
 // Forces at the samples of a path, the state z stepped from each to the next at the mean velocity
-// and the middle between them, which keeps the path of the law. Every law has this loop compiled
-// with its own step and force in it, without load; without a state step is NULL.
+// and the middle between them, which keeps the path of the law: for a law whose step needs the
+// state of the one before it. Its step and force are compiled into the loop, without load.
 static inline void friction_along(const InerterDevice* restrict p, const FrictionPath* path,
                                   double* restrict z, double* restrict forces,
                                   double (*step)(const InerterDevice* p, double x, double v,
@@ -158,19 +166,17 @@ static inline void friction_along(const InerterDevice* restrict p, const Frictio
                                   double (*force)(const InerterDevice* p, double x, double v,
                                                   double z, double load)) {
   const double *x = path->x, *v = path->v;
-  double h = path->h, rest = p->rest_length, now = step ? *z : 0;
+  double h = path->h, rest = p->rest_length, now = *z;
   for (int i = path->first; i < path->last; i++) {
-    if (step && i) {
+    if (i) {
       now = step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, now, h, 0);
     }
     forces[i - path->first] = force(p, x[i] - rest, v[i], now, 0);
-    if (step && path->states) {
+    if (path->states) {
       path->states[i] = now;
     }
   }
-  if (step) {
-    *z = now;
-  }
+  *z = now;
 }
 
 #endif  // INERTER_CORE_FRICTION_H_

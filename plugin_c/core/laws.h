@@ -159,9 +159,19 @@ double map_energy(const InerterDevice* p, double x);
 double map_heat(const InerterDevice* p, double x, double v);
 int map_check(InerterDevice* device, char* message);
 
+// k x + k3 x^3
+static INLINED double cubic_spring(const InerterDevice* device, double stretch) {
+  return (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
+}
+
+// c v + c2 |v| v
+static INLINED double quadratic_damper(const InerterDevice* device, double viscous, double v) {
+  return (viscous + device->quadratic_damping * fabs(v)) * v;
+}
+
 // k x + k3 x^3 + f(x), at displacement `stretch`
 static inline double spring_force(const InerterDevice* device, double stretch) {
-  double spring = (device->stiffness + device->stiffness_cubic * stretch * stretch) * stretch;
+  double spring = cubic_spring(device, stretch);
   return has(device, PART_FORCE_CURVE)
              ? spring + curve_value(&device->curve[INERTER_STROKE_force], stretch)
              : spring;
@@ -182,7 +192,7 @@ double damper_steepest(const InerterDevice* p);
 static inline double damper_force(const InerterDevice* device, double stretch, double v) {
   double viscous = damping_at(device, stretch);
   return has(device, PART_DAMPER) ? damper_shaped(device, viscous, v)
-                                  : (viscous + device->quadratic_damping * fabs(v)) * v;
+                                  : quadratic_damper(device, viscous, v);
 }
 
 // T without friction, at displacement `stretch`

@@ -44,7 +44,7 @@ double inerter_load_factor(const InerterDevice* p, double v, const double* z, do
   }
   double mu = share_of(p, v, carried);
   if (p->friction != INERTER_FRICTION_none && law_of(p)->width) {
-    return mu * tanh(v / law_of(p)->width(p));
+    return mu * elementary_tanh(v / law_of(p)->width(p));
   }
   if (p->friction == INERTER_FRICTION_rate_state) {
     mu *= rate_state_factor(p, v, z ? z[0] : 0);

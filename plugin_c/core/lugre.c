@@ -12,15 +12,26 @@
 // bound, mu sigma1 |v| < level (load_friction.c). Free play before it:
 // friction_play.c. Not modelled: a sigma1 that falls with speed, hysteresis with non-local memory.
 
-#include "friction.h"
+#include "friction_block.h"
 
 static double yield_level(const InerterDevice* p, double x, double v, double load) {
   return friction_level(p, x, v) * friction_stribeck_curve(p, v) + load;
 }
 
-static double rate(const InerterDevice* p, double x, double v, double z, double load) {
-  double g = yield_level(p, x, v, load);
+static INLINED double rate_at(const InerterDevice* p, double v, double z, double g) {
   return v - p->bristle_stiffness * fabs(v) * z / g;
+}
+
+static double rate(const InerterDevice* p, double x, double v, double z, double load) {
+  return rate_at(p, v, z, yield_level(p, x, v, load));
+}
+
+// share of the way to the steady state that is gone within h; the steady state
+static INLINED double gone_within(const InerterDevice* p, double v, double h, double g) {
+  return -elementary_expm1(-p->bristle_stiffness * fabs(v) * h / g);
+}
+static INLINED double bent_in_the_end(const InerterDevice* p, double v, double g) {
+  return sign(v) * g / p->bristle_stiffness;
 }
 
 // exact at constant v: exponential decay towards sgn(v) g / sigma0
@@ -29,8 +40,7 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   if (v == 0) {
     return z;
   }
-  double end = sign(v) * g / p->bristle_stiffness;
-  return z - expm1(-p->bristle_stiffness * fabs(v) * h / g) * (end - z);
+  return z + gone_within(p, v, h, g) * (bent_in_the_end(p, v, g) - z);
 }
 
 // the same decay, from z against v until 0
@@ -52,7 +62,7 @@ static double over_step(const InerterDevice* p, double x, double v, double z, do
                         double share, double* slope) {
   double factor = friction_level(p, x, v), curve = friction_stribeck_curve(p, v);
   double g = factor * curve, stiff = p->bristle_stiffness, speed = fabs(v);
-  double end = sign(v) * g / stiff, gone = v == 0 ? 0 : -expm1(-stiff * speed * h / g);
+  double end = bent_in_the_end(p, v, g), gone = gone_within(p, v, h, g);
   double change = gone * (end - z);
 
   // g' over g: the fall of the curve
@@ -79,8 +89,28 @@ static double stiffness(const InerterDevice* p) {
   return p->bristle_stiffness;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, step, force);
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  FrictionSamples samples;
+  double level[FRICTION_BLOCK], curve[FRICTION_BLOCK];
+  double share[FRICTION_BLOCK], end[FRICTION_BLOCK], state[FRICTION_BLOCK];
+  samples_between(p, path, &samples);
+  levels_at(p, &samples, level);
+  stribeck_curves_at(p, &samples, curve);
+  for (int i = 0; i < samples.size; i++) {
+    double g = level[i] * curve[i];
+    share[i] = gone_within(p, samples.v[i], path->h, g);
+    end[i] = bent_in_the_end(p, samples.v[i], g);
+  }
+  bristle_along(path, share, end, z, state);
+
+  samples_at(p, path, &samples);
+  levels_at(p, &samples, level);
+  stribeck_curves_at(p, &samples, curve);
+  for (int i = 0; i < samples.size; i++) {
+    double slip = rate_at(p, samples.v[i], state[i], level[i] * curve[i]);
+    forces[i] = force_of_rate(p, state[i], slip);
+  }
 }
 
 const FrictionLaw inerter_lugre = {

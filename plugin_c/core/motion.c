@@ -51,19 +51,19 @@ static void step_between(const InerterDevice* device, const double* x, const dou
 // Most devices are b a + T, with the friction law's state at most: their samples are taken law by
 // law, in blocks that stay in the cache. The same numbers as sample by sample, in a fraction of the
 // time.
-enum { BLOCK = 256 };
-
 static int is_plain(const InerterDevice* device) {
   return !device->ncontrol && !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) &&
          !inerter_has_load_friction(device) && device->friction_backlash == 0;
 }
 
 // b a + T with the friction forces given, for n samples
-static void add_forces(const InerterDevice* restrict device, int n, const double* x,
-                       const double* v, const double* a, const double* friction,
-                       double* restrict total) {
+static SEVERAL_AT_ONCE void add_forces(const InerterDevice* restrict device, int n, const double* x,
+                                       const double* v, const double* a, const double* friction,
+                                       double* restrict total) {
   for (int i = 0; i < n; i++) {
-    double parallel = parallel_force(device, stretch_of(device, x[i]), v[i]);
+    double spring = cubic_spring(device, stretch_of(device, x[i]));
+    double parallel =
+        spring + quadratic_damper(device, device->viscous, v[i]) + device->force_offset;
     total[i] = device->inertance * a[i] + parallel + friction[i];
   }
 }
@@ -71,9 +71,9 @@ static void add_forces(const InerterDevice* restrict device, int n, const double
 static void plain_along(const InerterDevice* device, int n, double h, const double* x,
                         const double* v, const double* a, double* z, double* total,
                         double* friction, double* states) {
-  double block[BLOCK] = {0};
-  for (int first = 0; first < n; first += BLOCK) {
-    int last = n - first < BLOCK ? n : first + BLOCK;
+  double block[FRICTION_BLOCK] = {0};
+  for (int first = 0; first < n; first += FRICTION_BLOCK) {
+    int last = n - first < FRICTION_BLOCK ? n : first + FRICTION_BLOCK;
     double* forces = friction ? friction + first : block;
     if (device->friction != INERTER_FRICTION_none) {
       FrictionPath path = {first, last, h, x, v, states};

@@ -38,7 +38,7 @@ static Tangent sharp_friction(const InerterStep* step, double v1) {
     double beside = law_of(p)->force(p, step->stretch, v1 + near, 0, 0);
     return (Tangent){force, fmax(0, (beside - force) / near)};
   }
-  double direction = tanh(v1 / step->width);
+  double direction = elementary_tanh(v1 / step->width);
   Tangent friction = {step->level * direction,
                       step->level * (1 - direction * direction) / step->width};
   if (step->lean != 0) {

@@ -7,7 +7,7 @@
 // Source: the static characteristic of Canudas de Wit et al. 1995.
 // Not modelled: memory before sliding and frictional lag (see lugre.c).
 
-#include "friction.h"
+#include "friction_block.h"
 
 static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
@@ -23,8 +23,17 @@ static double width(const InerterDevice* p) {
   return p->transition_velocity;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, NULL, force);
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  FrictionSamples at;
+  double level[FRICTION_BLOCK], curve[FRICTION_BLOCK];
+  (void)z;
+  samples_at(p, path, &at);
+  levels_at(p, &at, level);
+  stribeck_curves_at(p, &at, curve);
+  for (int i = 0; i < at.size; i++) {
+    forces[i] = level[i] * curve[i] * friction_direction(p, at.v[i]);
+  }
 }
 
 const FrictionLaw inerter_stribeck = {

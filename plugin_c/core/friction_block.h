@@ -1,0 +1,92 @@
+// Friction laws at several samples of a motion at once: what a law computes for each sample alone,
+// in loops that the compiler turns into instructions on several numbers. Only a bristle goes from
+// sample to sample, with what it is pulled by computed before. The same numbers as sample by
+// sample.
+
+#ifndef INERTER_CORE_FRICTION_BLOCK_H_
+#define INERTER_CORE_FRICTION_BLOCK_H_
+
+#include "elementary.h"
+#include "friction.h"
+
+// displacement, from the rest length on, and velocity at samples: of them, or on the way to each
+// from the one before it, at the mean velocity and in the middle; there is no way to sample 0
+typedef struct FrictionSamples_ {
+  int size;
+  double x[FRICTION_BLOCK];
+  double v[FRICTION_BLOCK];
+} FrictionSamples;
+
+static INLINED void samples_at(const InerterDevice* p, const FrictionPath* path,
+                               FrictionSamples* at) {
+  at->size = path->last - path->first;
+  for (int i = 0; i < at->size; i++) {
+    at->x[i] = path->x[path->first + i] - p->rest_length;
+    at->v[i] = path->v[path->first + i];
+  }
+}
+
+static INLINED void samples_between(const InerterDevice* p, const FrictionPath* path,
+                                    FrictionSamples* to) {
+  int begin = path->first == 0;
+  to->size = path->last - path->first;
+  if (begin) {
+    to->x[0] = path->x[0] - p->rest_length;
+    to->v[0] = 0;
+  }
+  for (int i = begin; i < to->size; i++) {
+    double here = path->x[path->first + i], before = path->x[path->first + i - 1];
+    to->x[i] = 0.5 * (here + before) - p->rest_length;
+    to->v[i] = (here - before) / path->h;
+  }
+}
+
+// friction_level at samples
+static INLINED void levels_at(const InerterDevice* p, const FrictionSamples* at, double* level) {
+  if (friction_level_is_one(p)) {
+    for (int i = 0; i < at->size; i++) {
+      level[i] = 1;
+    }
+  } else {
+    for (int i = 0; i < at->size; i++) {
+      level[i] = friction_level(p, at->x[i], at->v[i]);
+    }
+  }
+}
+
+// friction_stribeck_curve at samples
+static INLINED void stribeck_curves_at(const InerterDevice* p, const FrictionSamples* at,
+                                       double* curve) {
+  double low = p->coulomb_force, excess = p->static_force - low, slow = p->stribeck_velocity;
+  if (excess == 0) {
+    for (int i = 0; i < at->size; i++) {
+      curve[i] = low;
+    }
+  } else if (p->stribeck_exponent == 2) {
+    for (int i = 0; i < at->size; i++) {
+      double ratio = fabs(at->v[i]) / slow;
+      curve[i] = low + excess * elementary_exp(-(ratio * ratio));
+    }
+  } else {
+    for (int i = 0; i < at->size; i++) {
+      curve[i] = friction_stribeck_curve(p, at->v[i]);
+    }
+  }
+}
+
+// A bristle from sample to sample, pulled by a share towards the end of its way: its state at each.
+static INLINED void bristle_along(const FrictionPath* path, const double* share, const double* end,
+                                  double* z, double* states) {
+  int size = path->last - path->first;
+  double now = *z;
+  for (int i = 0; i < size; i++) {
+    now += share[i] * (end[i] - now);
+    states[i] = now;
+  }
+  *z = now;
+  if (path->states) {
+    memcpy(path->states + path->first, states, sizeof(double) * (size_t)size);
+  }
+}
+
+#endif  // INERTER_CORE_FRICTION_BLOCK_H_
