@@ -72,7 +72,7 @@ def solvers() -> list[Solver]:
     if has_exudyn():
         found += [
             _exudyn("RK44", "element"), _exudyn("GeneralizedAlpha", "element"),
-            _exudyn("DOPRI5", "element"), _exudyn("RK44", "by hand"),
+            _exudyn("DOPRI5", "element"), _exudyn("RK67", "element"), _exudyn("RK44", "by hand"),
         ]  # fmt: skip
     if _opensees() is not None:
         found.append(Solver("OpenSees Newmark", False, STEPS, _newmark, ("ideal",)))
@@ -199,7 +199,9 @@ def _exudyn(method: str, made: str) -> Solver:
         return Attempt(Work(run, prepare=prepare), lambda: kept[1]())
 
     text = "symbolic element" if made == "element" else "Python user function"
-    settings = TOLERANCES if method == "DOPRI5" else STEPS
+    # of order 6: coarse steps do
+    steps = [8 * STEPS[0], 4 * STEPS[0], 2 * STEPS[0], *STEPS] if method == "RK67" else STEPS
+    settings = TOLERANCES if method == "DOPRI5" else steps
     return Solver(f"Exudyn {text}, {method}", made == "element", settings, attempt)
 
 
@@ -218,6 +220,8 @@ def _exudyn_settings(method: str, setting: float) -> Any:
         # its relative tolerance fails for negative values
         integration.absoluteTolerance = setting
         integration.relativeTolerance = 0.0
+    # nobody reads accelerations
+    integration.explicit.computeEndOfStepAccelerations = False
     integration.generalizedAlpha.spectralRadius = 1.0
     integration.newton.useModifiedNewton = True
     return settings
