@@ -172,9 +172,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     state[i] = now;
   }
   *z = now;
-  if (path->states) {
-    memcpy(path->states + path->first, state, sizeof(double) * (size_t)samples.size);
-  }
+  keep_states(path, state);
   samples_at(p, path, &samples);
   for (int i = 0; i < samples.size; i++) {
     forces[i] = force(p, samples.x[i], samples.v[i], state[i], 0);

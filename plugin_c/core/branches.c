@@ -31,7 +31,7 @@ void branches_step(const InerterDevice* p, double v, double* e, double h) {
   for (int i = 0; i < p->nbranch; i++) {
     const double* branch = branch_element(p, i);
     double time = branch[1] / branch[0];
-    e[i] -= expm1(-h / time) * (v * time - e[i]);
+    e[i] += branch_share(time, h) * (v * time - e[i]);
   }
 }
 

@@ -20,6 +20,7 @@
 
 #include <stdio.h>
 
+#include "elementary.h"
 #include "laws.h"
 
 static const double kTurn = 6.28318530717958647692;
@@ -28,40 +29,55 @@ static const double kLeastLevel = 1e-3, kLeastInertance = 0.01;
 //------------------------------ the curve ---------------------------------------------------------
 
 // place of x among the values: the first of the four coefficients, and how far on
-static int place(const InerterCurve* c, double x, double* u) {
-  double t = (x - c->lower) * c->rate;
-  if (!(t > 0)) {
-    *u = 0;
-    return 0;
-  }
+static INLINED int place(const InerterCurve* c, double x, double* u) {
   int last = c->nvalue > 2 ? c->nvalue - 2 : 0;
-  if (t >= last + 1) {
-    *u = 1;
-    return last;
-  }
+  double t = (x - c->lower) * c->rate;
+  t = t > 0 ? t : 0;
+  t = t < last + 1 ? t : last + 1;
   int i = (int)t;
+  i = i < last ? i : last;
   *u = t - i;
   return i;
 }
 
-static double spline(const InerterCurve* c, double x) {
-  double u;
-  const double* f = c->fit + place(c, x, &u);
+// the spline through four coefficients, with its slope
+static INLINED double spline_of(double rate, double u, double f0, double f1, double f2, double f3,
+                                double* slope) {
   double w = 1 - u, square = u * u, cube = square * u;
-  return (f[0] * w * w * w + f[1] * (3 * cube - 6 * square + 4) +
-          f[2] * (3 * (square - cube + u) + 1) + f[3] * cube) /
+  *slope = 0.5 * rate * ((f1 - f0) * w * w + (f2 - f1) * (1 + 2 * u * w) + (f3 - f2) * square);
+  return (f0 * w * w * w + f1 * (3 * cube - 6 * square + 4) + f2 * (3 * (square - cube + u) + 1) +
+          f3 * cube) /
          6;
 }
 
-static double spline_slope(const InerterCurve* c, double x) {
+// it is level beyond both ends
+static INLINED int is_end(double u, int first) {
+  return u == 1 || (u == 0 && first == 0);
+}
+
+static double spline(const InerterCurve* c, double x, double* slope) {
   double u;
-  const double* f = c->fit + place(c, x, &u);
-  if (u == 1 || (u == 0 && f == c->fit)) {
-    return 0;
+  int i = place(c, x, &u);
+  const double* f = c->fit + i;
+  double value = spline_of(c->rate, u, f[0], f[1], f[2], f[3], slope);
+  *slope = is_end(u, i) ? 0 : *slope;
+  return value;
+}
+
+static INLINED void splines(const InerterCurve* c, int n, const double* restrict x,
+                            double* restrict value, double* restrict slope) {
+  double place_of[FRICTION_BLOCK], fit[4][FRICTION_BLOCK], rate[FRICTION_BLOCK];
+  for (int i = 0; i < n; i++) {
+    int first = place(c, x[i], place_of + i);
+    rate[i] = is_end(place_of[i], first) ? 0 : c->rate;
+    for (int k = 0; k < 4; k++) {
+      fit[k][i] = c->fit[first + k];
+    }
   }
-  double w = 1 - u;
-  return 0.5 * c->rate *
-         ((f[1] - f[0]) * w * w + (f[2] - f[1]) * (1 + 2 * u * w) + (f[3] - f[2]) * u * u);
+  for (int i = 0; i < n; i++) {
+    value[i] =
+        spline_of(rate[i], place_of[i], fit[0][i], fit[1][i], fit[2][i], fit[3][i], slope + i);
+  }
 }
 
 // integral from the first value on
@@ -82,27 +98,45 @@ static double spline_integral(const InerterCurve* c, double x) {
   return (sum + beyond) / c->rate;
 }
 
-double curve_value(const InerterCurve* c, double x) {
-  double value = c->nvalue ? spline(c, x) : 0;
-  for (int k = 0; k < c->nperiod; k++) {
-    const double* period = c->period + 3 * k;
-    value += period[1] * sin(kTurn * x / period[0] + period[2]);
-  }
-  return value;
+// one of a sum of periods, with its slope
+static INLINED double period_at(const double* period, double x, double* slope) {
+  double cosine, sine = elementary_sin_cos(kTurn * x / period[0] + period[2], &cosine);
+  *slope = period[1] * kTurn / period[0] * cosine;
+  return period[1] * sine;
 }
 
 Tangent curve_at(const InerterCurve* c, double x) {
   Tangent curve = {0, 0};
   if (c->nvalue) {
-    curve = (Tangent){spline(c, x), spline_slope(c, x)};
+    curve.value = spline(c, x, &curve.slope);
   }
   for (int k = 0; k < c->nperiod; k++) {
-    const double* period = c->period + 3 * k;
-    double angle = kTurn * x / period[0] + period[2];
-    curve.value += period[1] * sin(angle);
-    curve.slope += period[1] * kTurn / period[0] * cos(angle);
+    double slope;
+    curve.value += period_at(c->period + 3 * k, x, &slope);
+    curve.slope += slope;
   }
   return curve;
+}
+
+double curve_value(const InerterCurve* c, double x) {
+  return curve_at(c, x).value;
+}
+
+SEVERAL_AT_ONCE void curve_at_samples(const InerterCurve* c, int n, const double* restrict x,
+                                      double* restrict value, double* restrict slope) {
+  if (c->nvalue) {
+    splines(c, n, x, value, slope);
+  } else {
+    memset(value, 0, sizeof(double) * (size_t)n);
+    memset(slope, 0, sizeof(double) * (size_t)n);
+  }
+  for (int k = 0; k < c->nperiod; k++) {
+    for (int i = 0; i < n; i++) {
+      double rise;
+      value[i] += period_at(c->period + 3 * k, x[i], &rise);
+      slope[i] += rise;
+    }
+  }
 }
 
 double curve_integral(const InerterCurve* c, double x) {
@@ -128,16 +162,39 @@ double inerter_curve_steepest(const InerterDevice* device, InerterStroke stroke)
   return steepest;
 }
 
-double friction_curve_level(const InerterDevice* p, double x, double rise, double* lean) {
-  double forth = curve_value(&p->curve[INERTER_STROKE_friction], x);
-  forth = fmax(kLeastLevel, 1 + rise + forth);
-  if (!has(p, PART_FRICTION_BACK)) {
-    return forth;
-  }
-  double back = curve_value(&p->curve[INERTER_STROKE_friction_back], x);
-  back = fmax(kLeastLevel, 1 + rise + back);
+// of both directions, as friction_curve_level
+static INLINED double level_of_both(double rise, double forth, double back, double* lean) {
+  forth = larger(kLeastLevel, 1 + rise + forth);
+  back = larger(kLeastLevel, 1 + rise + back);
   *lean = (forth - back) / (forth + back);
   return 0.5 * (forth + back);
+}
+
+double friction_curve_level(const InerterDevice* p, double x, double rise, double* lean) {
+  double forth = curve_value(&p->curve[INERTER_STROKE_friction], x);
+  if (!has(p, PART_FRICTION_BACK)) {
+    return larger(kLeastLevel, 1 + rise + forth);
+  }
+  double back = curve_value(&p->curve[INERTER_STROKE_friction_back], x);
+  return level_of_both(rise, forth, back, lean);
+}
+
+SEVERAL_AT_ONCE void friction_curve_levels(const InerterDevice* p, int n, const double* x,
+                                           double* restrict level, double* restrict lean) {
+  double forth[FRICTION_BLOCK], back[FRICTION_BLOCK], slope[FRICTION_BLOCK];
+  double linear = p->friction_gradient, square = p->friction_curvature;
+  curve_at_samples(&p->curve[INERTER_STROKE_friction], n, x, forth, slope);
+  if (has(p, PART_FRICTION_BACK)) {
+    curve_at_samples(&p->curve[INERTER_STROKE_friction_back], n, x, back, slope);
+    for (int i = 0; i < n; i++) {
+      level[i] = level_of_both((linear + square * x[i]) * x[i], forth[i], back[i], lean + i);
+    }
+  } else {
+    for (int i = 0; i < n; i++) {
+      level[i] = larger(kLeastLevel, 1 + (linear + square * x[i]) * x[i] + forth[i]);
+      lean[i] = p->friction_asymmetry;
+    }
+  }
 }
 
 //------------------------------ configuration -----------------------------------------------------

@@ -14,9 +14,9 @@
 enum { FRICTION_BLOCK = 256 };
 
 // Samples [first, last) of a motion, FRICTION_BLOCK at most, h seconds apart. states, if not NULL,
-// takes the law's state at each of them.
+// takes the law's state at each of them, `apart` numbers from one to the next.
 typedef struct FrictionPath_ {
-  int first, last;
+  int first, last, apart;
   double h;
   const double* x;
   const double* v;
@@ -28,7 +28,10 @@ enum { PART_FRICTION_CURVE = 1 << 16 };
 
 // curve.c: factor on the level in the mean of both directions, at a displacement where the
 // polynomial rises it by `rise`; lean: so that it is that times 1 + lean sign(v)
+// friction_curve_levels: the same at n samples, FRICTION_BLOCK at most.
 double friction_curve_level(const InerterDevice* p, double x, double rise, double* lean);
+void friction_curve_levels(const InerterDevice* p, int n, const double* x, double* level,
+                           double* lean);
 
 // A friction law as functions of the device's parameters p, displacement x, velocity v, state z.
 // load [N]: by how much the force through the gear raises the level of a law with a bristle
@@ -123,7 +126,7 @@ static inline double friction_levels(const InerterDevice* p, double x, double* l
   if (p->parts & PART_FRICTION_CURVE) {
     return friction_curve_level(p, x, rise, lean);
   }
-  return p->friction_gradient == 0 && p->friction_curvature == 0 ? 1 : fmax(1e-3, 1 + rise);
+  return p->friction_gradient == 0 && p->friction_curvature == 0 ? 1 : larger(1e-3, 1 + rise);
 }
 static inline int friction_level_is_one(const InerterDevice* p) {
   return !(p->parts & PART_FRICTION_CURVE) && p->friction_gradient == 0 &&
@@ -173,7 +176,7 @@ static inline void friction_along(const InerterDevice* restrict p, const Frictio
     }
     forces[i - path->first] = force(p, x[i] - rest, v[i], now, 0);
     if (path->states) {
-      path->states[i] = now;
+      path->states[(size_t)i * (size_t)path->apart] = now;
     }
   }
   *z = now;

@@ -47,9 +47,17 @@ static INLINED void levels_at(const InerterDevice* p, const FrictionSamples* at,
     for (int i = 0; i < at->size; i++) {
       level[i] = 1;
     }
+  } else if (p->parts & PART_FRICTION_CURVE) {
+    double lean[FRICTION_BLOCK];
+    friction_curve_levels(p, at->size, at->x, level, lean);
+    for (int i = 0; i < at->size; i++) {
+      level[i] *= 1 + lean[i] * friction_direction(p, at->v[i]);
+    }
   } else {
     for (int i = 0; i < at->size; i++) {
-      level[i] = friction_level(p, at->x[i], at->v[i]);
+      double x = at->x[i], rise = (p->friction_gradient + p->friction_curvature * x) * x;
+      level[i] =
+          larger(1e-3, 1 + rise) * (1 + p->friction_asymmetry * friction_direction(p, at->v[i]));
     }
   }
 }
@@ -74,19 +82,24 @@ static INLINED void stribeck_curves_at(const InerterDevice* p, const FrictionSam
   }
 }
 
+// the states of a law at the samples of a path, where they are asked for
+static INLINED void keep_states(const FrictionPath* path, const double* state) {
+  for (int i = path->first; path->states && i < path->last; i++) {
+    path->states[(size_t)i * (size_t)path->apart] = state[i - path->first];
+  }
+}
+
 // A bristle from sample to sample, pulled by a share towards the end of its way: its state at each.
 static INLINED void bristle_along(const FrictionPath* path, const double* share, const double* end,
-                                  double* z, double* states) {
+                                  double* z, double* state) {
   int size = path->last - path->first;
   double now = *z;
   for (int i = 0; i < size; i++) {
     now += share[i] * (end[i] - now);
-    states[i] = now;
+    state[i] = now;
   }
   *z = now;
-  if (path->states) {
-    memcpy(path->states + path->first, states, sizeof(double) * (size_t)size);
-  }
+  keep_states(path, state);
 }
 
 #endif  // INERTER_CORE_FRICTION_BLOCK_H_

@@ -16,6 +16,7 @@
 
 #include <stdio.h>
 
+#include "elementary.h"
 #include "laws.h"
 
 static const double kFloor = 0.01;
@@ -50,12 +51,38 @@ static double kinetic(const InerterDevice* p, double w) {
   return (0.5 + g * edge / 3) * edge * edge + 0.5 * kFloor * (square - edge * edge);
 }
 
+static double resisting(const InerterDevice* p, double slope, double w) {
+  return slope != 0 ? p->inertance * slope * kinetic(p, w) : 0;
+}
+
 double inertance_felt(const InerterDevice* p, double y, double w, double* rest) {
   Tangent stroke = along_stroke(p, y, w);
   if (rest) {
-    *rest = stroke.slope != 0 ? p->inertance * stroke.slope * kinetic(p, w) : 0;
+    *rest = resisting(p, stroke.slope, w);
   }
   return p->inertance * stroke.value * fmax(kFloor, 1 + p->inertance_speed_gradient * fabs(w));
+}
+
+SEVERAL_AT_ONCE void forces_of_inertance(const InerterDevice* p, int n, const double* y,
+                                         const double* w, const double* acceleration,
+                                         double* restrict force) {
+  if (p->inertance_speed_gradient != 0 || has(p, PART_INERTANCE_BACK)) {
+    for (int i = 0; i < n; i++) {
+      double rest, inertance = inertance_felt(p, y[i], w[i], &rest);
+      force[i] = inertance * acceleration[i] + rest;
+    }
+    return;
+  }
+  double value[FRICTION_BLOCK], rise[FRICTION_BLOCK], linear = p->inertance_gradient;
+  curve_at_samples(&p->curve[INERTER_STROKE_inertance], n, y, value, rise);
+  for (int i = 0; i < n; i++) {
+    double factor = 1 + (linear + p->inertance_curvature * y[i]) * y[i] + value[i];
+    double slope = linear + 2 * p->inertance_curvature * y[i] + rise[i];
+    slope = factor < kFloor ? 0 : slope;
+    factor = factor < kFloor ? kFloor : factor;
+    double rest = p->inertance * slope * (0.5 * (w[i] * w[i]));
+    force[i] = p->inertance * factor * acceleration[i] + rest;
+  }
 }
 
 double inertance_energy(const InerterDevice* p, double y, double w) {

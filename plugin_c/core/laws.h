@@ -123,7 +123,10 @@ static inline double clamp(double value, double lower, double upper) {
 
 // inertance.c, at displacement y and velocity w of the flywheel: B; R (if not NULL); stored energy
 double inertance_felt(const InerterDevice* p, double y, double w, double* rest);
+// forces_of_inertance: B w' + R at n samples, FRICTION_BLOCK at most
 double inertance_energy(const InerterDevice* p, double y, double w);
+void forces_of_inertance(const InerterDevice* p, int n, const double* y, const double* w,
+                         const double* acceleration, double* force);
 int inertance_valid(const InerterDevice* p, double y, char* message);
 
 // gas_spring.c, at displacement y
@@ -142,10 +145,13 @@ double stop_force(const InerterDevice* p, double x, double v);
 double stop_energy(const InerterDevice* p, double x);
 double stop_heat(const InerterDevice* p, double x, double v);
 
-// curve.c: curve and periods at x, with the slope; their value alone; their integral from 0 to x.
+// curve.c: curve and periods at x, with the slope; at n samples,
+// FRICTION_BLOCK at most; their value alone; their integral
+// from 0 to x.
 // curve_check: see that those of a device fit, and make the curves; -1 with a message if not.
 // curve_coefficients: n + 2 of the spline through n values, level at both ends.
 Tangent curve_at(const InerterCurve* c, double x);
+void curve_at_samples(const InerterCurve* c, int n, const double* x, double* value, double* slope);
 double curve_value(const InerterCurve* c, double x);
 double curve_integral(const InerterCurve* c, double x);
 int curve_check(InerterDevice* device, char* message);
@@ -256,8 +262,18 @@ double series_heat(const InerterDevice* p, double v, const double* z);
 int series_valid(const InerterDevice* p, const double* z, char* message);
 void series_of_force(const InerterDevice* p, double v, double force, double* z);
 
+// blocks.c: devices whose samples can be taken in blocks, and those along a motion, see
+// inerter_along; z: states at the start, then at the end
+int fits_blocks(const InerterDevice* p);
+void blocks_along(const InerterDevice* p, int n, double h, const double* x, const double* v,
+                  const double* a, double* z, double* total, double* friction, double* states);
+
 // branches.c, e: deflections of their springs, the last states; over a step of h seconds to
 // velocity v1 with the springs' implicit share
+// branch_share: how much of the way to its end a branch goes in h seconds
+static inline double branch_share(double time, double h) {
+  return -elementary_expm1(-h / time);
+}
 int branch_count(const InerterDevice* p);
 void branches_rate(const InerterDevice* p, double v, const double* e, double* rate);
 void branches_step(const InerterDevice* p, double v, double* e, double h);

@@ -160,7 +160,7 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
     }
     forces[i - path->first] = force(p, z);
     for (int k = 0; k < n && path->states; k++) {
-      path->states[(size_t)i * (size_t)n + (size_t)k] = z[k];
+      path->states[(size_t)i * (size_t)path->apart + (size_t)k] = z[k];
     }
   }
 }

@@ -48,52 +48,13 @@ static void step_between(const InerterDevice* device, const double* x, const dou
   }
 }
 
-// Most devices are b a + T, with the friction law's state at most: their samples are taken law by
-// law, in blocks that stay in the cache. The same numbers as sample by sample, in a fraction of the
-// time.
-static int is_plain(const InerterDevice* device) {
-  return !device->ncontrol && !(device->parts & ~(uint32_t)PART_FRICTION_CURVE) &&
-         !inerter_has_load_friction(device) && device->friction_backlash == 0;
-}
-
-// b a + T with the friction forces given, for n samples
-static SEVERAL_AT_ONCE void add_forces(const InerterDevice* restrict device, int n, const double* x,
-                                       const double* v, const double* a, const double* friction,
-                                       double* restrict total) {
-  for (int i = 0; i < n; i++) {
-    double spring = cubic_spring(device, stretch_of(device, x[i]));
-    double parallel =
-        spring + quadratic_damper(device, device->viscous, v[i]) + device->force_offset;
-    total[i] = device->inertance * a[i] + parallel + friction[i];
-  }
-}
-
-static void plain_along(const InerterDevice* device, int n, double h, const double* x,
-                        const double* v, const double* a, double* z, double* total,
-                        double* friction, double* states) {
-  double block[FRICTION_BLOCK] = {0};
-  for (int first = 0; first < n; first += FRICTION_BLOCK) {
-    int last = n - first < FRICTION_BLOCK ? n : first + FRICTION_BLOCK;
-    double* forces = friction ? friction + first : block;
-    if (device->friction != INERTER_FRICTION_none) {
-      FrictionPath path = {first, last, h, x, v, states};
-      law_of(device)->along(device, &path, z, forces);
-    } else if (friction) {
-      memset(forces, 0, sizeof(double) * (size_t)(last - first));
-    }
-    if (total) {
-      add_forces(device, last - first, x + first, v + first, a + first, forces, total + first);
-    }
-  }
-}
-
 void inerter_along(const InerterDevice* device, int n, double h, const double* x, const double* v,
                    const double* a, double* z, double* total, double* friction, double* states) {
   double now[INERTER_MAXSTATE] = {0};
   size_t nstate = (size_t)inerter_nstate(device), size = nstate * sizeof(double);
   if (z) memcpy(now, z, size);
-  if (is_plain(device)) {
-    plain_along(device, n, h, x, v, a, now, total, friction, states);
+  if (fits_blocks(device)) {
+    blocks_along(device, n, h, x, v, a, now, total, friction, states);
   } else {
     for (int i = 0; i < n; i++) {
       if (nstate && i) step_between(device, x + i - 1, v + i - 1, a + i - 1, now, h);

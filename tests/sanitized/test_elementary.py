@@ -1,4 +1,4 @@
-"""exp, exp - 1 and tanh of the core against fifty digits, and alike on every processor."""
+"""exp, exp - 1, tanh, sin and cos of the core against fifty digits, and alike on every processor."""
 
 import ctypes
 import platform
@@ -12,7 +12,8 @@ from building import HERE, build
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-FUNCTIONS = ("exp", "expm1", "tanh")
+FUNCTIONS = ("exp", "expm1", "tanh", "sin", "cos")
+GROWING = FUNCTIONS[:3]
 PORTABLE = ("-O3", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 
 
@@ -62,7 +63,7 @@ def exactly(function: str, x: float) -> Decimal:
     return size if x >= 0 else -size
 
 
-@pytest.mark.parametrize("function", FUNCTIONS)
+@pytest.mark.parametrize("function", GROWING)
 def test_errors_are_below_three_units_in_the_last_place(
     function: str, compiled: Callable[[str, Array], Array], effects_seed: int
 ) -> None:
@@ -77,7 +78,21 @@ def test_errors_are_below_three_units_in_the_last_place(
     assert np.max(error / np.spacing(np.abs(np.array([float(e) for e in exact])))) < 3.0
 
 
-@pytest.mark.parametrize("function", FUNCTIONS)
+def test_sines_are_those_of_the_library_up_to_a_million(
+    compiled: Callable[[str, Array], Array], effects_seed: int
+) -> None:
+    # those of the C library are right to the last place
+    x = np.concatenate(
+        [arguments(np.random.default_rng(effects_seed), 20_000), np.pi / 4 * np.arange(-3000, 3000)]
+    )
+    x = np.concatenate([x, 1e6 * np.random.default_rng(effects_seed).uniform(-1, 1, 20_000)])
+    for function, library in (("sin", np.sin), ("cos", np.cos)):
+        np.testing.assert_allclose(compiled(function, x), library(x), rtol=0, atol=3e-16)
+    np.testing.assert_array_equal(compiled("sin", np.array([0.0, 1e-300])), [0.0, 1e-300])
+    assert np.isnan(compiled("sin", np.array([np.nan, np.inf]))).all()
+
+
+@pytest.mark.parametrize("function", GROWING)
 def test_far_out_they_end_and_no_number_stays_none(
     function: str, compiled: Callable[[str, Array], Array]
 ) -> None:
