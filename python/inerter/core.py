@@ -6,7 +6,7 @@ import ctypes
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, overload
 
 import numpy as np
@@ -86,17 +86,26 @@ class Device:
                 raise DeviceError(with_suggestion(name, _text(message), names()))
         if core.inerter_finish(at, message):
             raise DeviceError(_text(message))
-        self._given: dict[str, float | str] = {
-            name: (value_text(getattr(self, name)) or "")
-            if name in lists()
-            else getattr(self, name)
-            for name in values
-        }
+        self._stated = tuple(values)
 
     @property
     def given(self) -> dict[str, float | str]:
         """What was stated, by name; a list of numbers as a text, separated by blanks."""
         return dict(self._given)
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """Names of what was stated."""
+        return self._stated
+
+    @cached_property
+    def _given(self) -> dict[str, float | str]:
+        return {
+            name: (value_text(getattr(self, name)) or "")
+            if name in lists()
+            else getattr(self, name)
+            for name in self._stated
+        }
 
     @property
     def friction(self) -> str:

@@ -2,9 +2,20 @@
 
 import numpy as np
 import pytest
-from core_draws import LAWS, MEMORY, Parameters, draw_branches, draw_friction
+from core_draws import (
+    LAWS,
+    MEMORY,
+    Parameters,
+    draw_branches,
+    draw_flywheel,
+    draw_friction,
+    draw_levels,
+    draw_stops,
+)
+from curve_draws import draw_curves
 from inerter.core import Device, along_many
 from inerter.reference import Motion, ReferenceDevice, response, sine_motion, sum_of_sines
+from map_draws import draw_map
 
 MOTION = sum_of_sines([1e-3, 4e-4], [1.0, 2.7], [0.3, 1.1])
 
@@ -167,6 +178,61 @@ def test_along_is_its_samples_one_by_one(law: str) -> None:
         assert found["total"][i] == pytest.approx(alone["total"][0], rel=1e-13)
         assert found["friction"][i] == pytest.approx(alone["friction"][0], rel=1e-13, abs=1e-15)
         assert not device.nstate or found["state"][i] == z
+
+
+def draw_beside_friction(rng: np.random.Generator, part: str) -> Parameters:
+    """What is taken in blocks of samples beside a friction law."""
+    if part == "curves":
+        return draw_curves(rng) | draw_levels(rng)
+    if part == "curves without flanks":
+        return draw_curves(rng, ("inertance", "force", "friction"))
+    if part == "branches and map":
+        relaxing = {
+            f"branch_{word}_{i}": 10.0 ** float(rng.uniform(low, low + 2.0))
+            for i in range(1, int(rng.integers(1, 4)) + 1)
+            for word, low in (("stiffness", 3.0), ("damping", 1.0))
+        }
+        return draw_branches(rng) | draw_map(rng) | relaxing
+    if part == "flywheel and stops":
+        return draw_flywheel(rng, bool(rng.integers(2)), True) | draw_stops(rng)
+    return {"viscous": 30.0, "damping_knee": 2e-3, "damping_beyond": 0.3, "damping_asymmetry": 0.2}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    "part",
+    ["curves", "curves without flanks", "branches and map", "flywheel and stops", "damper"],
+)
+def test_parts_in_blocks_are_their_samples_one_by_one(law: str, part: str) -> None:
+    rng = np.random.default_rng([5, len(part), LAWS.index(law)])
+    h, (_, x, v, a) = 1e-3, sampled(MOTION, 1e-3, 0.7)
+    x, v, a = 20.0 * x, 20.0 * v, 20.0 * a
+    for _ in range(3):
+        drawn = {"rest_length": 1e-3, **draw_friction(rng, law), **draw_beside_friction(rng, part)}
+        # what a load does is taken sample by sample
+        drawn.pop("load_friction", None)
+        if "piston_area" not in drawn:
+            drawn["inertance"] = 2.0
+        if law == "none":
+            drawn = {name: value for name, value in drawn.items() if "friction" not in name}
+        if law == "bouc_wen":
+            drawn = {k: v for k, v in drawn.items() if k not in draw_levels(rng)}
+        if not any(name.endswith("_curve") for name in drawn):
+            drawn = {k: v for k, v in drawn.items() if k not in ("curve_lower", "curve_upper")}
+        if "friction_back_curve" in drawn or "friction_back_periods" in drawn:
+            drawn.pop("friction_asymmetry", None)
+        device = Device(**drawn)
+        found = device.along(h, x, v, a)
+        z = np.zeros(device.nstate)
+        for i in range(x.size):
+            if i and device.nstate:
+                middle, mean = 0.5 * (x[i] + x[i - 1]), (x[i] - x[i - 1]) / h
+                z = np.atleast_1d(device.step(middle, mean, z, h))
+            alone = device.evaluate(x[i], v[i], a[i], z)
+            size = abs(a[i]) * device.inertance + np.max(np.abs(found["total"]))
+            for name in ("total", "friction"):
+                assert found[name][i] == pytest.approx(alone[name][0], rel=1e-13, abs=1e-13 * size)
+            np.testing.assert_allclose(found["states"][i], z, rtol=1e-12, atol=1e-300)
 
 
 @pytest.mark.parametrize("channel", [0, 1, 2])

@@ -50,8 +50,24 @@ class Variables:
 
     def decode(self, variables: Sequence[float] | Array) -> dict[str, float]:
         """Search variables (p,) to coordinates."""
-        rows = zip(self.names, self.ranges, variables, strict=True)
-        return {name: each.decode(float(variable)) for name, each, variable in rows}
+        point, (sizes, lower, upper) = np.asarray(variables, dtype=float), self._linear
+        values = np.clip(point * sizes, lower, upper)
+        if (among := self._logarithmic).size:
+            low, high = self.bounds
+            values[among] = np.exp(np.clip(point[among], low[among], high[among]))
+        return dict(zip(self.names, values.tolist(), strict=True))
+
+    @cached_property
+    def _linear(self) -> tuple[Array, Array, Array]:
+        """Typical sizes, lower and upper bounds of the coordinates, (p,) each."""
+        rows = [(each.size, each.lower, each.upper) for each in self.ranges]
+        sizes, lower, upper = np.array(rows).reshape(-1, 3).T
+        return sizes, lower, upper
+
+    @cached_property
+    def _logarithmic(self) -> NDArray[np.intp]:
+        """Which of them are searched over their logarithm."""
+        return np.flatnonzero([each.logarithmic for each in self.ranges])
 
     def units(self, values: Mapping[str, float]) -> Array:
         """Coordinate per search variable at some values, (p,)."""

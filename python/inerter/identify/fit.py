@@ -85,6 +85,7 @@ class Problem:
         self.masks = [mask & run.inner for mask, run in zip(masks, runs, strict=True)]
         self.scales = sizes or scales(runs)
         self._derivatives = Columns(self)
+        self._variables: dict[tuple[str, ...], Variables] = {}
 
     def with_masks(self, masks: Masks) -> Problem:
         """The same runs with other samples counting."""
@@ -133,7 +134,10 @@ class Problem:
 
     def variables(self, model: Model) -> Variables:
         """The search variables of the model's free coordinates."""
-        return Variables.of(model.free, self.scales)
+        known = self._variables.get(model.free)
+        if known is None:
+            known = self._variables[model.free] = Variables.of(model.free, self.scales)
+        return known
 
     def jacobian(self, model: Model, names: Sequence[str] | None = None) -> Array:
         """Derivatives of the residual [N] by the search variables, shape (n, p).

@@ -78,11 +78,11 @@ class Model:
 
     @cached_property
     def _smooth_device(self) -> Device:
-        known = parameters()
-        rough = ("friction", *JUMPS, *lists())
+        known, device = parameters(), self._device
+        rough = {"friction", *JUMPS, *lists()}
         kept = {
-            name: value
-            for name, value in self._device.given.items()
+            name: getattr(device, name)
+            for name in device.stated
             if name not in rough and not (name in known and known[name].laws)
         }
         return Device(**_with_ends(kept))
@@ -91,7 +91,7 @@ class Model:
     def has_jumps(self) -> bool:
         """Whether something beside friction makes the force jump or bend sharply."""
         device = self._device
-        along = any(n in lists() and not n.startswith("friction") for n in device.given)
+        along = any(n in lists() and not n.startswith("friction") for n in device.stated)
         return clips(self.values) or along or bool(device.backlash or device.stop_stiffness)
 
     @property

@@ -140,7 +140,7 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     """
     values = dict(model.values)
     if (low_pass := filter_of(values, "displacement")) is not None:
-        run = unfiltered(run, low_pass)
+        run = _before_filter(run, low_pass)
     if not (values.get("delay") and "backlash" in values and np.isinf(run.cutoff)):
         return run, values
     delay, h = values.pop("delay"), run.spacing
@@ -160,6 +160,28 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     return replace(
         run, displacement=late(x, v, a), velocity=late(v, a), acceleration=late(a)
     ), values
+
+
+# runs by identity and filter, the last ones asked for: a fit asks for many forces along each
+_BEFORE_FILTER: dict[tuple[tuple[int, int], Filter], BenchRun] = {}
+_MOST_BEFORE = 2**26
+
+
+def _before_filter(run: BenchRun, low_pass: Filter) -> BenchRun:
+    """`unfiltered`, kept as long as it does not take too much memory."""
+    kept, key = _BEFORE_FILTER, (run.identity, low_pass)
+    found = kept.pop(key, None) or unfiltered(run, low_pass)
+    # the last one last
+    kept[key] = found
+    while len(kept) > 1 and sum(_bytes_of(each) for each in kept.values()) > _MOST_BEFORE:
+        kept.pop(next(iter(kept)))
+    return found
+
+
+def _bytes_of(run: BenchRun) -> int:
+    """What the arrays of a run take, and what is worked out of them again."""
+    samples = 8 * run.force.size + 4 * (run.measured[0].size if run.measured else 0)
+    return 8 * samples
 
 
 def unfiltered(run: BenchRun, low_pass: Filter) -> BenchRun:
