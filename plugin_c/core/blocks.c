@@ -20,8 +20,17 @@ enum {
 };
 
 int fits_blocks(const InerterDevice* p) {
-  return !p->ncontrol && !(p->parts & ~(uint32_t)BLOCK_PARTS) && !inerter_has_load_friction(p) &&
-         p->friction_backlash == 0;
+  return !p->ncontrol && !(p->parts & ~(uint32_t)BLOCK_PARTS) && !inerter_has_load_friction(p);
+}
+
+// the friction law along a path, behind its free play where it has one
+static void friction_forces(const InerterDevice* p, const FrictionPath* path, double* z,
+                            double* forces) {
+  if (p->friction_backlash == 0) {
+    law_of(p)->along(p, path, z, forces);
+  } else {
+    friction_along(p, path, z, forces, play_step, play_force);
+  }
 }
 
 // force of the branches at the samples of a path, whose states are as those of friction
@@ -102,7 +111,7 @@ void blocks_along(const InerterDevice* p, int n, double h, const double* x, cons
     double* forces = friction ? friction + first : block;
     FrictionPath path = {first, last, p->nstate, h, x, v, states};
     if (p->friction != INERTER_FRICTION_none) {
-      law_of(p)->along(p, &path, z, forces);
+      friction_forces(p, &path, z, forces);
     } else if (friction) {
       memset(forces, 0, sizeof(double) * (size_t)size);
     }

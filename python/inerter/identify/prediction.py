@@ -139,8 +139,7 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     be read off those. The motion is smooth.
     """
     values = dict(model.values)
-    if (low_pass := filter_of(values, "displacement")) is not None:
-        run = _before_filter(run, low_pass)
+    run = before_filter(run, values)
     if not (values.get("delay") and "backlash" in values and np.isinf(run.cutoff)):
         return run, values
     delay, h = values.pop("delay"), run.spacing
@@ -164,24 +163,25 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
 
 # runs by identity and filter, the last ones asked for: a fit asks for many forces along each
 _BEFORE_FILTER: dict[tuple[tuple[int, int], Filter], BenchRun] = {}
-_MOST_BEFORE = 2**26
+_MOST_RUNS, _MOST_SAMPLES = 32, 2**20
 
 
-def _before_filter(run: BenchRun, low_pass: Filter) -> BenchRun:
-    """`unfiltered`, kept as long as it does not take too much memory."""
+def before_filter(run: BenchRun, values: Mapping[str, float]) -> BenchRun:
+    """A run with the motion before the filter of its displacement, where coordinates have one."""
+    low_pass = filter_of(values, "displacement")
+    if low_pass is None:
+        return run
     kept, key = _BEFORE_FILTER, (run.identity, low_pass)
-    found = kept.pop(key, None) or unfiltered(run, low_pass)
-    # the last one last
-    kept[key] = found
-    while len(kept) > 1 and sum(_bytes_of(each) for each in kept.values()) > _MOST_BEFORE:
-        kept.pop(next(iter(kept)))
+    found = kept.get(key)
+    if found is None:
+        found = unfiltered(run, low_pass)
+        samples = sum(each.displacement.size * each.thinned for each in kept.values())
+        if samples > _MOST_SAMPLES:
+            kept.clear()
+        elif len(kept) == _MOST_RUNS:
+            kept.pop(next(iter(kept)))
+        kept[key] = found
     return found
-
-
-def _bytes_of(run: BenchRun) -> int:
-    """What the arrays of a run take, and what is worked out of them again."""
-    samples = 8 * run.force.size + 4 * (run.measured[0].size if run.measured else 0)
-    return 8 * samples
 
 
 def unfiltered(run: BenchRun, low_pass: Filter) -> BenchRun:
