@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from inerter.blind_test import case as blind_case
-from inerter.blind_test.case import Named, Outcome, ParameterError, compare, hide, solve
+from inerter.blind_test.case import (
+    Named,
+    Outcome,
+    ParameterError,
+    compare,
+    hide,
+    shown_parameters,
+    solve,
+)
 from inerter.blind_test.plan import Plan, Task
 from inerter.blind_test.run import run_tasks
 from inerter.core import Device
 from inerter.diagnose.result import Accuracy, Diagnosis, Finding, ParameterValue, Unexplained
-from inerter.reference import EFFECTS, UNKNOWN, compatible
+from inerter.reference import EFFECTS, UNKNOWN, HiddenCase, compatible, hide_effect
+from inerter.reference.bench_realistic import Chain
 from made_up import solve_or_die
 
 
@@ -174,3 +185,39 @@ def test_gas_is_compared_by_what_the_data_see() -> None:
     errors = compare(task, case, _diagnosis("gas_spring", None, same)).parameters
     assert {error.name for error in errors} == {"gas_force", "gas_reach", "gas_exponent"}
     assert all(error.relative < 1e-12 for error in errors)
+
+
+def realistic(effect: str, **chain: float) -> HiddenCase:
+    """A case on a bench that does what is said to its records, and nothing else."""
+    case = hide_effect(5, effect, realistic=True)
+    return replace(case, chain=Chain(**chain))  # pyright: ignore[reportArgumentType]
+
+
+def test_a_bench_without_filters_shows_its_mass_and_drift_with_those_hidden() -> None:
+    drifting = realistic("force_drift", drift=0.5)
+    hidden, run = drifting.parameters["force_drift"], drifting.runs[0]
+    shown = shown_parameters(drifting)["force_drift"]
+    assert drifting.chain is not None
+    added = drifting.chain.force(run.truth) - run.truth.force
+    slope = np.polyfit(run.truth.time - run.truth.time[0], added, 1)[0]
+    assert shown - hidden == pytest.approx(slope)
+
+    loaded = realistic("load_dependent_friction", grip_mass=3.0)
+    assert loaded.chain is not None
+    b, mu = loaded.device.inertance, shown_parameters(loaded)["load_friction"]
+    a = loaded.runs[0].truth.acceleration
+    # mu |b a| of the device is mu' |(b + m) a| of what is measured
+    np.testing.assert_allclose(
+        mu * np.abs((b + 3.0) * a), loaded.parameters["load_friction"] * np.abs(b * a)
+    )
+    assert shown_parameters(realistic("inertance_error", grip_mass=3.0))["inertance"] == (
+        pytest.approx(realistic("inertance_error").parameters["inertance"] + 3.0)
+    )
+
+
+def test_what_has_no_value_of_its_own_on_a_bench_is_not_counted() -> None:
+    assert "force_offset" not in shown_parameters(realistic("force_offset", drift=0.5))
+    late = {"force_filter": 50.0, "order": 2.0}
+    assert "delay" not in shown_parameters(realistic("sensor_delay", **late))
+    both = {**late, "displacement_filter": 50.0}
+    assert "delay" in shown_parameters(realistic("sensor_delay", **both))

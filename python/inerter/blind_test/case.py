@@ -239,6 +239,7 @@ def parameter_errors(case: HiddenCase, diagnosis: Diagnosis) -> list[ParameterEr
     `gas_reach` V0 / A [m]. Bouc-Wen's parameters are left out.
     """
     found: list[ParameterError] = []
+    shown = shown_parameters(case)
     for effect in case.effects:
         finding = next((f for f in diagnosis.findings if f.effect == effect), None)
         if finding is None:
@@ -249,7 +250,7 @@ def parameter_errors(case: HiddenCase, diagnosis: Diagnosis) -> list[ParameterEr
             continue
         reported = {name: (v.value, v.stderr) for name, v in diagnosis.parameters.items()}
         reported |= {name: (v.value, v.stderr) for name, v in finding.parameters.items()}
-        hidden = {n: case.parameters[n] for n in case.names[effect] if n in case.parameters}
+        hidden = {n: shown[n] for n in case.names[effect] if n in shown}
         if effect == "gas_spring":
             hidden = _gas(hidden)
             stated = {n: v for n, v in diagnosis.extended.device.items() if isinstance(v, float)}
@@ -258,6 +259,28 @@ def parameter_errors(case: HiddenCase, diagnosis: Diagnosis) -> list[ParameterEr
             value, stderr = reported.get(name, (None, None))
             found.append(ParameterError(effect, name, true, value, stderr))
     return found
+
+
+def shown_parameters(case: HiddenCase) -> dict[str, float]:
+    """The hidden parameters as the records of a bench show them, whoever reads them.
+
+    A mass m between load cell and device is inertance, the drift of the cell adds to one that is
+    hidden, and friction mu |b a| is mu b / (b + m) of the inertance force that is measured. What
+    the bench does to the same channel as a hidden delay or filter, and a drift to a constant
+    force, has no value of its own in such a sum, and is left out.
+    """
+    shown, chain = dict(case.parameters), case.chain
+    if chain is None:
+        return shown
+    inertance = case.device.inertance
+    more = {"inertance": chain.grip_mass, "force_drift": chain.drift}
+    shown |= {name: shown[name] + value for name, value in more.items() if name in shown}
+    if "load_friction" in shown:
+        shown["load_friction"] *= inertance / (inertance + chain.grip_mass)
+    mixed = {"force_offset"} if chain.drift else set()
+    if chain.force_filter != chain.displacement_filter:
+        mixed |= {"delay", "force_filter"}
+    return {name: value for name, value in shown.items() if name not in mixed}
 
 
 def _gas(values: dict[str, float]) -> dict[str, float]:

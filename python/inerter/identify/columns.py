@@ -27,7 +27,6 @@ from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import clips, through_channel, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.model import Model
-from inerter.identify.prediction import before_filter
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.smoothness import smoothness
 from inerter.identify.transient import RELAXING, relaxing, without_relaxing
@@ -53,8 +52,8 @@ _STEP = 1e-4
 _MOST, _MOST_OF_RUNS = 2**25, 2**26
 # coordinates that are solved for apart, at least; bases of such that are kept of a problem
 _WORTH_WHILE, _MOST_BASES = 5, 4
-# what of the channel makes the motion another one
-_MOTION = ("displacement_filter", "displacement_filter_order", "displacement_filter_bessel")
+# with one of these a column is no longer that of the motion as it is
+_FILTER = "displacement_filter"
 # what of the channel is a linear filter of the force
 _LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
 # that, and what says how long the time before the record shows
@@ -134,8 +133,7 @@ class Columns:
     def apart(self, model: Model) -> Apart | None:
         """What the residual is linear in, where that is so much that it is worth while."""
         names = [name for name in model.free if self._in_proportion(name, model)]
-        moving = (*_PLACES, *_CHANNEL, *_MOTION)
-        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint(moving):
+        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*_PLACES, *_CHANNEL)):
             return None
         which = [model.free.index(name) for name in names]
         smooth = smoothness(model)[:, which]
@@ -161,7 +159,7 @@ class Columns:
             # a flywheel on its spring is set going by whatever acts
             and not (device.nstate and (device.series_stiffness or device.series_damping))
             and not clips(model.values)
-            and not any(each in model.values for each in _entangled(name))
+            and not any(each in model.values for each in (_FILTER, *_entangled(name)))
             and all(np.isinf(run.far) for run in self.problem.runs)
         )
 
@@ -250,8 +248,7 @@ class Columns:
         for run, column in zip(self.problem.runs, by_first_force, strict=True):
 
             def share(run: BenchRun = run) -> Array:
-                moved = before_filter(run, model.values)
-                return _column(name, model, moved)[run.first : run.first + 1].copy()
+                return _column(name, model, run)[run.first : run.first + 1].copy()
 
             taken.append(_OF_RUNS.found((run.identity, *key), share) * column)
         return np.concatenate(taken)
@@ -260,7 +257,7 @@ class Columns:
 def _key(name: str, model: Model, channel: Sequence[str] = ()) -> tuple[Hashable, ...]:
     """What of a model a coordinate's column depends on; `channel`: what the channel does to it."""
     places = _PLACES if _curve(name) else ("rest_length",)
-    values = (model.values.get(each, 0.0) for each in (*places, *_MOTION, *channel))
+    values = (model.values.get(each, 0.0) for each in (*places, *channel))
     return name, _nodes(name, model), *values
 
 
@@ -303,7 +300,6 @@ def _nodes(name: str, model: Model) -> tuple[int, ...]:
 def _shown(name: str, model: Model, run: BenchRun) -> Array:
     """What one of a coordinate adds to a run's force channel, shape (n,)."""
     channel = {each: model.values[each] for each in _LINEAR if each in model.values}
-    run = before_filter(run, model.values)
     if _curve(name) and np.isfinite(run.cutoff):
         # a curve bends more sharply than the motion: it passes the low-pass of the measured force
         device, less = _alone(name, model)
