@@ -1,9 +1,10 @@
 // Devices along a motion in blocks of samples that stay in the cache, part by part: the same
 // numbers as sample by sample, in a fraction of the time.
 //
-// Most devices are b(x) a + R + T, with states that follow the motion and know nothing of each
-// other: those of friction and of viscoelastic branches. What hangs together at every instant, a
-// series element, friction that a load raises, a control, is taken sample by sample (motion.c).
+// Most devices are b(x) a + R + T, or a series element beside T, with states that follow the motion
+// and know nothing of each other: those of friction, of a series element with its flywheel and of
+// viscoelastic branches. What hangs together at every instant, friction at the flywheel or raised
+// by a load, a control, is taken sample by sample (motion.c).
 
 #include <string.h>
 
@@ -14,7 +15,8 @@ enum {
   // all that such a device may have
   BLOCK_PARTS = PART_VARYING | PART_FLYWHEEL | PART_PIPE | PART_GAS | PART_STOPS | PART_BRANCHES |
       PART_DAMPER | PART_FRICTION_CURVE | PART_FRICTION_BACK | PART_INERTANCE_CURVE |
-      PART_INERTANCE_BACK | PART_FORCE_CURVE | PART_VISCOUS_CURVE | PART_FORCE_MAP,
+      PART_INERTANCE_BACK | PART_FORCE_CURVE | PART_VISCOUS_CURVE | PART_FORCE_MAP | PART_SERIES |
+      PART_BACKLASH,
   // what makes the force between the terminals more than a cubic spring and a quadratic damper
   BENT_PARTS = PART_STOPS | PART_DAMPER | PART_VISCOUS_CURVE | PART_FORCE_MAP
 };
@@ -51,6 +53,29 @@ static void branches_along(const InerterDevice* p, const FrictionPath* path, dou
       }
     }
     e[k] = now;
+  }
+}
+
+// Force of the series element at the samples of a path; z: its states. It sees the cubic through
+// both samples: a stiff one carries b a.
+static void series_along(const InerterDevice* p, const FrictionPath* path, SeriesExact* steps,
+                         double* z, double* forces) {
+  const double *x = path->x, *v = path->v;
+  double h = path->h;
+  size_t count = has(p, PART_BACKLASH) ? 3 : 2;
+  for (int i = path->first; i < path->last; i++) {
+    if (i) {
+      double before = v[i - 1], mean = (x[i] - x[i - 1]) / h;
+      double begin = (6 * mean - 4 * before - 2 * v[i]) / h;
+      double jerk = 6 * (before + v[i] - 2 * mean) / (h * h);
+      if (!series_exact(p, steps, before, begin, jerk, z)) {
+        series_step(p, stretch_of(p, x[i - 1]), before, begin, jerk, NULL, z, h);
+      }
+    }
+    forces[i - path->first] = series_force(p, v[i], z);
+    if (path->states) {
+      memcpy(path->states + (size_t)i * (size_t)path->apart, z, sizeof(double) * count);
+    }
   }
 }
 
@@ -104,8 +129,11 @@ static SEVERAL_AT_ONCE void stretches(const InerterDevice* p, int n, const doubl
 
 void blocks_along(const InerterDevice* p, int n, double h, const double* x, const double* v,
                   const double* a, double* z, double* total, double* friction, double* states) {
-  double block[FRICTION_BLOCK] = {0}, stretch[FRICTION_BLOCK], relaxing[FRICTION_BLOCK];
-  int branch = branch_index(p);
+  double block[FRICTION_BLOCK] = {0}, stretch[FRICTION_BLOCK], relaxing[FRICTION_BLOCK],
+         carried[FRICTION_BLOCK];
+  int branch = branch_index(p), series = series_index(p);
+  SeriesExact steps;
+  series_exact_steps(p, h, &steps);
   for (int first = 0; first < n; first += FRICTION_BLOCK) {
     int last = n - first < FRICTION_BLOCK ? n : first + FRICTION_BLOCK, size = last - first;
     double* forces = friction ? friction + first : block;
@@ -119,12 +147,20 @@ void blocks_along(const InerterDevice* p, int n, double h, const double* x, cons
       path.states = states ? states + branch : NULL;
       branches_along(p, &path, z + branch, relaxing);
     }
+    if (has(p, PART_SERIES)) {
+      path.states = states ? states + series : NULL;
+      series_along(p, &path, &steps, z + series, carried);
+    }
     if (!total) {
       continue;
     }
     double* sum = total + first;
     stretches(p, size, x + first, stretch);
-    add_flywheel(p, size, stretch, v + first, a + first, sum);
+    if (has(p, PART_SERIES)) {
+      memcpy(sum, carried, sizeof(double) * (size_t)size);
+    } else {
+      add_flywheel(p, size, stretch, v + first, a + first, sum);
+    }
     add_parallel(p, size, stretch, v + first, sum);
     if (has(p, PART_BRANCHES)) {
       add(size, relaxing, sum);

@@ -309,19 +309,47 @@ typedef struct Oscillator_ {
   double push, drift;  // force that deflects the spring, and its rate
 } Oscillator;
 
+// what its free oscillation does in a time: cos and sin / frequency, or their hyperbolic sisters
+typedef struct Swing_ {
+  double time, decay, scale, even, odd;
+} Swing;
+
+Swing oscillator_swing(const Oscillator* o, double t);
+void oscillator_swung(const Oscillator* o, const Swing* swing, double v, double a, double jerk,
+                      double* z);
 void oscillator_step(const Oscillator* o, double v, double a, double jerk, double t, double* z);
 
-// series_exact.c: states after a time h, 1; 0 and nothing done where no closed form holds
-int series_exact(const InerterDevice* p, double v, double a, double jerk, double* z, double h);
+// what a loose flywheel does in a time: its way per velocity [s], what is left of a deflection
+typedef struct Slide_ {
+  double time, run, fade;
+} Slide;
+
+// series_exact.c: steps of h seconds of one device in closed form. What all of them have in common
+// is worked out when it is first asked for. series_exact: states after a step, 1; 0 and nothing
+// done where no closed form holds.
+typedef struct SeriesExact_ {
+  int holds;  // whether there may be such steps
+  double h;
+  int has_swings, has_slides;
+  Oscillator oscillator;
+  Swing half_swing, swing;
+  Slide half_slide, slide;
+} SeriesExact;
+
+void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps);
+int series_exact(const InerterDevice* p, SeriesExact* steps, double v, double a, double jerk,
+                 double* z);
 
 // series_frozen.c: the same of varying coefficients, where less than `most` parts are enough
 int series_frozen(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
                   double h, int most);
 
-// series_step.c: states after a time h from x, v, acceleration a and its rate; force over a step
-// and states at its end, where the velocity is v, for a mobility of the terminals. bristle: state
-// of a friction law at the flywheel; drag: what friction at the flywheel takes of the force;
-// carried: what is left for the inertance
+// series_step.c: into how many parts a step of h seconds is divided; states after a time h from x,
+// v, acceleration a and its rate; force over a step and states at its end, where the velocity is v,
+// for a mobility of the terminals. bristle: state of a friction law at the flywheel; drag: what
+// friction at the flywheel takes of the force; carried: what is left for the inertance
+double series_parts(const InerterDevice* p, double stiffness, double inertance, double h);
+enum { SERIES_MOST_PARTS = 256 };  // from there on a step is not resolved
 void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
                  double* z, double h);
 double series_over_step(const InerterDevice* p, double x, double v, double* bristle, double* z,

@@ -13,11 +13,9 @@
 
 enum { S, W };  // places in z
 
-// free oscillation from value u and rate r over a time t: value and rate at its end
-static void oscillate(double stiffness, double damping, double mass, double t, double* u,
-                      double* r) {
-  double decay = 0.5 * damping / mass, square = stiffness / mass - decay * decay;
-  double scale = exp(-decay * t), even, odd;  // cos, sin / frequency, or their hyperbolic sisters
+Swing oscillator_swing(const Oscillator* o, double t) {
+  double decay = 0.5 * o->damping / o->mass, square = o->stiffness / o->mass - decay * decay;
+  double scale = exp(-decay * t), even, odd;
   if (fabs(square) * t * t < 1e-8) {
     even = 1 - 0.5 * square * t * t;
     odd = t * (1 - square * t * t / 6);
@@ -32,12 +30,21 @@ static void oscillate(double stiffness, double damping, double mass, double t, d
     odd = 0.5 * (slow - fast) / rate;
     scale = 1;
   }
-  double value = *u, speed = *r, lead = speed + decay * value;
-  *u = scale * (value * even + lead * odd);
-  *r = scale * (speed * even - (stiffness / mass * value + decay * speed) * odd);
+  return (Swing){t, decay, scale, even, odd};
 }
 
-void oscillator_step(const Oscillator* o, double v, double a, double jerk, double t, double* z) {
+// free oscillation from value u and rate r: value and rate at its end
+static void oscillate(const Oscillator* o, const Swing* swing, double* u, double* r) {
+  double value = *u, speed = *r, lead = speed + swing->decay * value;
+  double pull = o->stiffness / o->mass * value + swing->decay * speed;
+  *u = swing->scale * (value * swing->even + lead * swing->odd);
+  *r = swing->scale * (speed * swing->even - pull * swing->odd);
+}
+
+void oscillator_swung(const Oscillator* o, const Swing* swing, double v, double a, double jerk,
+                      double* z) {
+  double t = swing->time;
+
   // the polynomial that the motion drives
   double two = 0.5 * o->lost * jerk / o->stiffness;
   double one = (o->mass * jerk + o->lost * a + o->drift - 2 * o->damping * two) / o->stiffness;
@@ -45,7 +52,12 @@ void oscillator_step(const Oscillator* o, double v, double a, double jerk, doubl
       (o->mass * a + o->lost * v + o->push - o->damping * one - 2 * o->mass * two) / o->stiffness;
 
   double u = z[S] - zero, r = v - z[W] - one;
-  oscillate(o->stiffness, o->damping, o->mass, t, &u, &r);
+  oscillate(o, swing, &u, &r);
   z[S] = zero + (one + two * t) * t + u;
   z[W] = v + (a + 0.5 * jerk * t) * t - (one + 2 * two * t + r);
+}
+
+void oscillator_step(const Oscillator* o, double v, double a, double jerk, double t, double* z) {
+  Swing swing = oscillator_swing(o, t);
+  oscillator_swung(o, &swing, v, a, jerk, z);
 }

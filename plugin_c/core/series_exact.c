@@ -14,18 +14,6 @@
 
 enum { S, W, GAP };  // places in z
 
-// s and w a time t into contact at a play's position
-static void contact(const InerterDevice* p, double v, double a, double jerk, double gap, double t,
-                    double* z) {
-  Oscillator o = {.mass = p->inertance,
-                  .damping = p->series_damping + p->flywheel_viscous,
-                  .stiffness = p->series_stiffness,
-                  .lost = p->flywheel_viscous};
-  z[S] -= gap;
-  oscillator_step(&o, v, a, jerk, t, z);
-  z[S] += gap;
-}
-
 static double contact_force(const InerterDevice* p, double v, const double* z) {
   return p->series_stiffness * (z[S] - z[GAP]) + p->series_damping * (v - z[W]);
 }
@@ -36,39 +24,83 @@ static int is_linear(const InerterDevice* p) {
          !has(p, PART_PIPE) && !has(p, PART_GAS);
 }
 
-// s, w and gap a time t into the play
-static void loose(const InerterDevice* p, double v, double a, double jerk, double t, double* z) {
-  double rate = p->flywheel_viscous / p->inertance, w = z[W];
-  double run = rate * t > 1e-8 ? -expm1(-rate * t) / rate : t;
-  double d = p->series_damping > 0
-                 ? (z[S] - z[GAP]) * exp(-p->series_stiffness * t / p->series_damping)
-                 : 0;
-  z[S] += (v + (0.5 * a + jerk * t / 6) * t) * t - w * run;
-  z[W] = w - rate * w * run;
+void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps) {
+  steps->holds = is_linear(p) && h >= 0 && !has(p, PART_WHEEL_FRICTION) &&
+                 series_parts(p, p->series_stiffness, p->inertance, h) < SERIES_MOST_PARTS;
+  if (steps->holds) {
+    steps->h = h;
+    steps->has_swings = steps->has_slides = 0;
+    steps->oscillator = (Oscillator){.mass = p->inertance,
+                                     .damping = p->series_damping + p->flywheel_viscous,
+                                     .stiffness = p->series_stiffness,
+                                     .lost = p->flywheel_viscous};
+  }
+}
+
+// s and w after a swing in contact at a play's position
+static void contact(const SeriesExact* steps, const Swing* swing, double v, double a, double jerk,
+                    double gap, double* z) {
+  z[S] -= gap;
+  oscillator_swung(&steps->oscillator, swing, v, a, jerk, z);
+  z[S] += gap;
+}
+
+// s, w and gap after a slide in the play
+static Slide slide_over(const InerterDevice* p, double t) {
+  double rate = p->flywheel_viscous / p->inertance;
+  return (Slide){t, rate * t > 1e-8 ? -expm1(-rate * t) / rate : t,
+                 p->series_damping > 0 ? exp(-p->series_stiffness * t / p->series_damping) : 0};
+}
+static void loose(const InerterDevice* p, const Slide* slide, double v, double a, double jerk,
+                  double* z) {
+  double rate = p->flywheel_viscous / p->inertance, t = slide->time, w = z[W];
+  double d = p->series_damping > 0 ? (z[S] - z[GAP]) * slide->fade : 0;
+  z[S] += (v + (0.5 * a + jerk * t / 6) * t) * t - w * slide->run;
+  z[W] = w - rate * w * slide->run;
   z[GAP] = z[S] - d;
 }
 
-int series_exact(const InerterDevice* p, double v, double a, double jerk, double* z, double h) {
-  if (!is_linear(p) || h < 0) {
+static void find_swings(SeriesExact* steps, int backlash) {
+  if (!steps->has_swings) {
+    steps->has_swings = 1;
+    steps->swing = oscillator_swing(&steps->oscillator, steps->h);
+    steps->half_swing =
+        backlash ? oscillator_swing(&steps->oscillator, 0.5 * steps->h) : steps->swing;
+  }
+}
+static void find_slides(const InerterDevice* p, SeriesExact* steps) {
+  if (!steps->has_slides) {
+    steps->has_slides = 1;
+    steps->slide = slide_over(p, steps->h);
+    steps->half_slide = slide_over(p, 0.5 * steps->h);
+  }
+}
+
+int series_exact(const InerterDevice* p, SeriesExact* steps, double v, double a, double jerk,
+                 double* z) {
+  if (!steps->holds) {
     return 0;
   }
   if (!has(p, PART_BACKLASH)) {
-    contact(p, v, a, jerk, 0, h, z);
+    find_swings(steps, 0);
+    contact(steps, &steps->swing, v, a, jerk, 0, z);
     return 1;
   }
   double gap = series_gap(p, z), end[3] = {z[S], z[W], gap}, middle[3] = {z[S], z[W], gap};
   int side = (gap >= p->backlash) - (gap <= -p->backlash);
-  double half = 0.5 * h, midway = v + (a + 0.5 * jerk * half) * half;
+  double h = steps->h, half = 0.5 * h, midway = v + (a + 0.5 * jerk * half) * half;
   double last = v + (a + 0.5 * jerk * h) * h;
   if (side == 0) {
-    loose(p, v, a, jerk, half, middle);
-    loose(p, v, a, jerk, h, end);
+    find_slides(p, steps);
+    loose(p, &steps->half_slide, v, a, jerk, middle);
+    loose(p, &steps->slide, v, a, jerk, end);
     if (fabs(middle[GAP]) >= p->backlash || fabs(end[GAP]) >= p->backlash) {
       return 0;
     }
   } else {
-    contact(p, v, a, jerk, gap, half, middle);
-    contact(p, v, a, jerk, gap, h, end);
+    find_swings(steps, 1);
+    contact(steps, &steps->half_swing, v, a, jerk, gap, middle);
+    contact(steps, &steps->swing, v, a, jerk, gap, end);
     if (!(side * contact_force(p, v, (double[]){z[S], z[W], gap}) > 0 &&
           side * contact_force(p, midway, middle) > 0 && side * contact_force(p, last, end) > 0)) {
       return 0;

@@ -266,7 +266,11 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
 }
 
 // parts of a sixteenth of a radian as long as they are not too many, else a few that settle
-enum { PER_RADIAN = 16, MOST_PARTS = 256, FEW_PARTS = 4 };
+enum { PER_RADIAN = 16, FEW_PARTS = 4 };
+
+double series_parts(const InerterDevice* p, double stiffness, double inertance, double h) {
+  return PER_RADIAN * fabs(h) * (sqrt(stiffness / inertance) + p->series_damping / inertance);
+}
 
 void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
                  double* z, double h) {
@@ -279,12 +283,13 @@ void series_step(const InerterDevice* p, double x, double v, double a, double je
   if (rubs && has_bristle(p)) {
     stiffness += law_of(p)->stiffness(p);
   }
-  double rate = sqrt(stiffness / inertance) + p->series_damping / inertance;
-  double parts = PER_RADIAN * fabs(h) * rate;
+  double parts = series_parts(p, stiffness, inertance, h);
   int count = FEW_PARTS;
-  if (parts < MOST_PARTS) {
+  if (parts < SERIES_MOST_PARTS) {
     count = 1 + (int)parts;
-    if (!rubs && (series_exact(p, v, a, jerk, z, h) ||
+    SeriesExact steps;
+    series_exact_steps(p, h, &steps);
+    if (!rubs && (series_exact(p, &steps, v, a, jerk, z) ||
                   series_frozen(p, x, v, a, jerk, z, h, 1 + count / 2))) {
       return;
     }

@@ -10,6 +10,7 @@ from core_draws import (
     draw_flywheel,
     draw_friction,
     draw_levels,
+    draw_series,
     draw_stops,
 )
 from curve_draws import draw_curves
@@ -243,6 +244,27 @@ def test_parts_in_blocks_are_their_samples_one_by_one(law: str, part: str) -> No
             for name in ("total", "friction"):
                 assert found[name][i] == pytest.approx(alone[name][0], rel=1e-13, abs=1e-13 * size)
             np.testing.assert_allclose(found["states"][i], z, rtol=1e-12, atol=1e-300)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("backlash", [False, True])
+def test_a_series_element_in_blocks_is_what_it_is_under_a_control(law: str, backlash: bool) -> None:
+    # a commanded device is taken sample by sample; its value is the one it has anyway
+    rng = np.random.default_rng([6, backlash, LAWS.index(law)])
+    h, (_, x, v, a) = 1e-3, sampled(MOTION, 1e-3, 0.7)
+    for i in range(6):
+        drawn = {"inertance": 2.0, **draw_friction(rng, law), **draw_series(rng, backlash)}
+        drawn |= {"viscous": 30.0} | (draw_stops(rng) if i % 2 else {})
+        drawn |= {"series_hardening": 20.0} if i == 4 and drawn.get("series_stiffness") else {}
+        device = Device(**drawn)
+        commanded = device.replace(control="viscous", control_lower=0.0, control_upper=99.0).along(
+            h, x, v, a, command=30.0
+        )
+        found = device.along(h, x, v, a)
+        size = float(np.max(np.abs(found["total"])))
+        for name in ("total", "friction"):
+            np.testing.assert_allclose(found[name], commanded[name], rtol=1e-13, atol=1e-13 * size)
+        np.testing.assert_array_equal(found["states"], commanded["states"][:, : device.nstate])
 
 
 @pytest.mark.parametrize("channel", [0, 1, 2])
