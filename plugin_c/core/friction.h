@@ -160,8 +160,9 @@ static INLINED double sign(double v) {
 }
 
 // Forces at the samples of a path, the state z stepped from each to the next at the mean velocity
-// and the middle between them, which keeps the path of the law: for a law whose step needs the
-// state of the one before it. Its step and force are compiled into the loop, without load.
+// and the middle between them, which keeps the path of the law. Its step and force are compiled
+// into the loop, without load; without a state step is NULL. A law whose samples can be taken
+// several at once does so by friction_block.h.
 static inline void friction_along(const InerterDevice* restrict p, const FrictionPath* path,
                                   double* restrict z, double* restrict forces,
                                   double (*step)(const InerterDevice* p, double x, double v,
@@ -169,17 +170,19 @@ static inline void friction_along(const InerterDevice* restrict p, const Frictio
                                   double (*force)(const InerterDevice* p, double x, double v,
                                                   double z, double load)) {
   const double *x = path->x, *v = path->v;
-  double h = path->h, rest = p->rest_length, now = *z;
+  double h = path->h, rest = p->rest_length, now = step ? *z : 0;
   for (int i = path->first; i < path->last; i++) {
-    if (i) {
+    if (step && i) {
       now = step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, now, h, 0);
     }
     forces[i - path->first] = force(p, x[i] - rest, v[i], now, 0);
-    if (path->states) {
+    if (step && path->states) {
       path->states[(size_t)i * (size_t)path->apart] = now;
     }
   }
-  *z = now;
+  if (step) {
+    *z = now;
+  }
 }
 
 #endif  // INERTER_CORE_FRICTION_H_

@@ -82,10 +82,9 @@ def test_sines_are_those_of_the_library_up_to_a_million(
     compiled: Callable[[str, Array], Array], effects_seed: int
 ) -> None:
     # those of the C library are right to the last place
-    x = np.concatenate(
-        [arguments(np.random.default_rng(effects_seed), 20_000), np.pi / 4 * np.arange(-3000, 3000)]
-    )
-    x = np.concatenate([x, 1e6 * np.random.default_rng(effects_seed).uniform(-1, 1, 20_000)])
+    rng = np.random.default_rng(effects_seed)
+    turns, far = np.pi / 4 * np.arange(-3000, 3000), 1e6 * rng.uniform(-1, 1, 20_000)
+    x = np.asarray(np.concatenate([arguments(rng, 20_000), turns, far]), dtype=np.float64)
     for function, library in (("sin", np.sin), ("cos", np.cos)):
         np.testing.assert_allclose(compiled(function, x), library(x), rtol=0, atol=3e-16)
     np.testing.assert_array_equal(compiled("sin", np.array([0.0, 1e-300])), [0.0, 1e-300])

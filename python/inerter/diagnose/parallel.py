@@ -43,8 +43,12 @@ class _Helpers:
 _helpers: ContextVar[_Helpers | None] = ContextVar("helpers", default=None)
 
 
-def parallel(function: Callable[[S], T], items: Iterable[S]) -> list[T]:
+def parallel(
+    function: Callable[[S], T], items: Iterable[S], cost: Callable[[S], float] | None = None
+) -> list[T]:
     """Results in order; within `helped` worked out on all processors.
+
+    What is of the largest `cost`, where one is given, is begun with, so that none waits for it.
 
     Much of the work is in Python, where threads would wait for each other. So other processes take
     items from the beginning and this one from the end: it need not wait for them to start. The
@@ -54,6 +58,11 @@ def parallel(function: Callable[[S], T], items: Iterable[S]) -> list[T]:
     helpers = _helpers.get()
     if helpers is None or helpers.pool is None or len(several) < 2:
         return _each(function, several)
+    if cost:
+        costs = [cost(item) for item in several]
+        order = sorted(range(len(several)), key=lambda i: -costs[i])
+        results = parallel(function, [several[i] for i in order])
+        return [result for _, result in sorted(zip(order, results, strict=True), key=_place)]
     size = max(1, len(several) // (PARTS * (helpers.count + 1)))
     parts = [several[i : i + size] for i in range(0, len(several), size)]
     with serial():
@@ -156,6 +165,10 @@ class _Shared(Generic[S, T]):
             pool.submit(_each, self.function, self.parts[i]).add_done_callback(received)
         except Exception as error:
             self.results[i].set_exception(error)
+
+
+def _place(numbered: tuple[int, object]) -> int:
+    return numbered[0]
 
 
 def _each(function: Callable[[S], T], items: list[S]) -> list[T]:

@@ -71,10 +71,8 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
         return fit.rmse(masks) ** 2 * (handicap if more else 1.0)
 
     trials.sort(key=lambda pair: counted(pair[1]))
-    scored = parallel(
-        lambda pair: search.score(pair[0].effect, pair[0].law, pair[1]),
-        trials[: CRITERIA.rivals_checked],
-    )
+    checked = trials[: CRITERIA.rivals_checked]
+    scored = search.scores([(each.effect, each.law, fit) for each, fit in checked])
     richer = [s.complexity > final.complexity for s in scored]
     fair = [s.squares * (handicap if more else 1.0) for s, more in zip(scored, richer, strict=True)]
     shares = win_shares(

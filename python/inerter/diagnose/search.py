@@ -33,18 +33,18 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
+from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, other_filter, where_late
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.tone import Witness, tone_candidate
-from inerter.diagnose.trials import FAR, ROUGH, Trials
+from inerter.diagnose.trials import FAR, Trials
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
 from inerter.identify.split import Mask, Split, blocks, spread_folds
 
 Progress = Callable[[str], None]
-Folds = list[tuple[Problem, list[Mask]]]
 Fitted = tuple[Candidate, Fit]
 
 
@@ -188,22 +188,15 @@ class Search:
 
     def score(self, effect: str, law: str | None, fit: Fit, folds: Folds | None = None) -> Scored:
         """Squared errors of a fitted model on folds left out of its refits."""
-        if not fit.model.free:
-            return self._scored(effect, law, fit, self.problem.errors(fit.model))
-        left_out = [np.zeros(run.force.size) for run in self.runs]
-        derivatives = self.problem.derivatives(fit.model)
-        if fit.rough:
-            fit = self.problem.told(fit, derivatives)
+        return self.scores([(effect, law, fit)], folds)[0]
 
-        def errors(problem: Problem) -> list[Array]:
-            refit = problem.fit(fit.model, 12, tolerance=ROUGH, rough=True, derivatives=derivatives)
-            return problem.errors(refit.model)
-
-        problems, masks = zip(*(folds or self._folds), strict=True)
-        for fold, found in zip(masks, parallel(errors, problems), strict=True):
-            for target, values, mask in zip(left_out, found, fold, strict=True):
-                target[mask] = values[mask]
-        return self._scored(effect, law, fit, left_out)
+    def scores(
+        self, fits: Sequence[tuple[str, str | None, Fit]], folds: Folds | None = None
+    ) -> list[Scored]:
+        """`score` of several, shared out fold by fold: effect, law and fit of each."""
+        found = left_out_errors(self.problem, folds or self._folds, [fit for *_, fit in fits])
+        pairs = zip(fits, found, strict=True)
+        return [self._scored(effect, law, *each) for (effect, law, _), each in pairs]
 
     def _scored(self, effect: str, law: str | None, fit: Fit, errors: list[Array]) -> Scored:
         residual = self.problem.weighted(errors)
@@ -282,7 +275,7 @@ class Search:
         self, pairs: Sequence[Fitted], folds: Folds, current: Scored, fitted: Sequence[Fitted]
     ) -> list[Scored]:
         """Fitted candidates on data left out, without those whose own values may be none."""
-        scored = parallel(lambda p: self.score(p[0].effect, p[0].law, p[1], folds), pairs)
+        scored = self.scores([(each.effect, each.law, fit) for each, fit in pairs], folds)
         return [
             s
             for s in scored
@@ -387,7 +380,7 @@ class Search:
             key=lambda fit: fit.rmse(masks),
         )
         near = [fit for fit in fits if fit.rmse(masks) < limit][:2]
-        for scored in parallel(lambda fit: self.score("exchange", None, fit), near):
+        for scored in self.scores([("exchange", None, fit) for fit in near]):
             if loss(scored, current) < CRITERIA.exchange_loss:
                 return self._exchange(scored)
         if with_spring := self._spring_beside(current):
@@ -434,9 +427,9 @@ class Search:
                 if self._may_be(model)
             ]
             simpler = []
-            for scored in parallel(
-                lambda pair: self.score(pair[0], None, self.problem.fit(pair[1])), models
-            ):
+            fits = parallel(lambda pair: self.problem.fit(pair[1]), models)
+            pairs = zip(models, fits, strict=True)
+            for scored in self.scores([(effect, None, fit) for (effect, _), fit in pairs]):
                 lost = self.advantage(scored, current, scored.effect)
                 # a refit may go astray on one fold: nothing is sure of the errors there
                 astray = scored.fit.rmse(masks) > (1 + CRITERIA.too_much) * current.fit.rmse(masks)

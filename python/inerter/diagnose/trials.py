@@ -88,6 +88,13 @@ def _asked_for(candidate: Candidate, model: Model) -> bool:
     return candidate.effect == "sensor_delay" or candidate.starts[0].friction != model.friction
 
 
+def _cost(candidate: Candidate) -> float:
+    """Of what order the time is that starting points take: a flywheel on a spring is slow."""
+    first = candidate.starts[0]
+    slow = 4 if "backlash" in first.values or first.shaft else 1
+    return slow * len(candidate.starts) * (1 + len(first.free))
+
+
 class Trials:
     """The candidates of a search fitted to its data; what was fitted before is remembered."""
 
@@ -216,7 +223,7 @@ class Trials:
                     t for t in part
                     if part is not later or _at_best(foretold[t.key], error) < reach
                 ]  # fmt: skip
-                rough = parallel(lambda t: self._rough(t, limits, at_current), likely_enough)
+                rough = parallel(lambda t: self._rough(t, limits, at_current), likely_enough, _cost)
                 so_far += [min(fit.rmse(masks) for fit in each) for each in rough]
                 limit = min([limits[0], *(FAR * error for error in so_far)])
                 if not aim:
