@@ -15,6 +15,7 @@ from inerter.blind_test.case import (
     ParameterError,
     compare,
     hide,
+    plainer_forms,
     shown_parameters,
     solve,
 )
@@ -221,3 +222,23 @@ def test_what_has_no_value_of_its_own_on_a_bench_is_not_counted() -> None:
     assert "delay" not in shown_parameters(realistic("sensor_delay", **late))
     both = {**late, "displacement_filter": 50.0}
     assert "delay" in shown_parameters(realistic("sensor_delay", **both))
+
+
+def with_device(case: HiddenCase, **changes: float | str) -> HiddenCase:
+    return replace(case, device=replace(case.device, **changes))  # pyright: ignore[reportArgumentType]
+
+
+def test_a_peak_that_noise_hides_may_be_called_coulomb_friction() -> None:
+    case = realistic("coulomb_friction")
+    level = case.parameters["coulomb_force"]
+    assert plainer_forms(case) == ("coulomb_friction",)
+    for speed, height, hidden in ((1e-5, 1.3, True), (0.1, 1.3, False), (0.1, 1.0001, True)):
+        peak = {"static_force": height * level, "stribeck_velocity": speed}
+        stribeck = with_device(case, friction="stribeck", **peak)
+        assert (plainer_forms(stribeck) == ("coulomb_friction",)) is hidden
+    # what rests shows a constant force alone
+    uneven = with_device(case, friction_asymmetry=0.4)
+    moving = tuple(run for run in case.runs if run.kind != "strokes")
+    assert plainer_forms(replace(uneven, runs=moving)) == ("coulomb_friction",)
+    assert plainer_forms(with_device(case, load_friction=0.5)) == ()
+    assert plainer_forms(realistic("parallel_stiffness")) == ()

@@ -84,7 +84,8 @@ class Outcome:
     law: of hysteretic friction, also where it was drawn; gain: share of the rms error against the
     noise-free force that is taken away on held-out data; seconds: of the diagnosis alone, on the
     wall and of the processor, which says more where others use the machine; brings: effects that
-    the bench adds by itself, which are right where they are named and need not be.
+    the bench adds by itself, or that are a plainer form of what was hidden (`plainer_forms`), which
+    are right where they are named and need not be.
     """
 
     task: Task
@@ -214,7 +215,7 @@ def compare(task: Task, case: HiddenCase | HiddenVehicle, diagnosis: Diagnosis) 
         names = tuple(finding.effect for finding in diagnosis.findings)
         errors = parameter_errors(case, diagnosis)
         gain = gain_on_truth(case, diagnosis)
-        brings = case.chain.brings if case.chain else ()
+        brings = (*case.chain.brings, *plainer_forms(case)) if case.chain else ()
     return Outcome(
         task=task,
         law=case.law,
@@ -281,6 +282,25 @@ def shown_parameters(case: HiddenCase) -> dict[str, float]:
     if chain.force_filter != chain.displacement_filter:
         mixed |= {"delay", "force_filter"}
     return {name: value for name, value in shown.items() if name not in mixed}
+
+
+def plainer_forms(case: HiddenCase) -> tuple[str, ...]:
+    """Coulomb friction, where hidden friction is no more along the motion but for the noise.
+
+    A Stribeck peak within speeds that the motion hardly has, or an ageing of a few per cent of the
+    level: to find Coulomb friction there is right, though not all that was hidden. Friction that
+    differs between the directions is that and a constant force.
+    """
+    pieces = []
+    for truth in (run.truth for run in case.runs):
+        x, v, a = truth.displacement, truth.velocity, truth.acceleration
+        friction = np.asarray(case.device.total_friction(x, v, a, truth.states), dtype=float)
+        pieces.append(np.column_stack([friction, np.sign(v), np.ones_like(v)]))
+    rows = np.concatenate(pieces)
+    columns = rows[:, 1:] if case.device.friction_asymmetry else rows[:, 1:2]
+    level = np.linalg.lstsq(columns, rows[:, 0], rcond=None)[0]
+    left = float(np.std(rows[:, 0] - columns @ level))
+    return ("coulomb_friction",) if rows[:, 0].any() and left < case.noise["force"] else ()
 
 
 def _gas(values: dict[str, float]) -> dict[str, float]:

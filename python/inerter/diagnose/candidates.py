@@ -262,6 +262,9 @@ def _play_of_friction(effect: Effect, model: Model, sizes: Scales) -> Iterator[C
 
 def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A branch, or a second one beside it, that relaxes within a period or over many."""
+    # along one sine it is a stiffness and a damper
+    if sizes.one_tone:
+        return
     number = 2 if "branch_time_1" in model.values else 1
     if f"branch_stiffness_{number}" in model.values:
         return

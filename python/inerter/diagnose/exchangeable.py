@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA
@@ -28,6 +29,7 @@ from inerter.diagnose.values import parameter_units
 from inerter.identify.channel_filter import USUAL_ORDER, Filter
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
 
 # the effects that make up for each other, each by one coordinate
 _PAIRS = (
@@ -39,6 +41,8 @@ _PAIRS = (
 COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 # those that do along one sine alone: where the inertance is free, and where it is stated
 _OF_ONE_SINE, _OF_STATED, _OF_FRICTION = _PAIRS[1:]
+# share of rests that tell nothing
+_RARE = 0.02
 _COORDINATE = {
     "viscous_friction": "viscous",
     "sensor_delay": "delay",
@@ -100,6 +104,8 @@ def exchanges(
     baseline, one_tone = search.baseline, search.problem.scales.one_tone
     free, stated = fit.model.free, "inertance" not in baseline.free
     none = {"inertance": baseline.values.get("inertance", 0.0)}
+    # friction without memory that never rests is a level and a constant force, whatever its sides
+    is_even = not FRICTION[fit.model.friction].memory and rests(search.runs) < _RARE
 
     def may_be_exchanged(effect: str) -> bool:
         other = COUNTERPARTS.get(effect)
@@ -110,8 +116,8 @@ def exchanges(
         if _COORDINATE[other] in fit.model.values:
             return False
         if effect in _OF_FRICTION:
-            # a constant force beside a level has been compared with this already
-            return effect == _OF_FRICTION[0]
+            # a constant force beside a level with memory has been compared with this already
+            return effect == _OF_FRICTION[0] or (is_even and "coulomb_force" in free)
         return effect not in _OF_ONE_SINE or (one_tone and "inertance" in free)
 
     asked = [effect for effect in effects if may_be_exchanged(effect)]
@@ -127,6 +133,7 @@ def exchanges(
         if _COORDINATE[effect] in known and _COORDINATE[other] in known:
             value, error = known[_COORDINATE[effect]]
             same = quiet or effect in (*_OF_ONE_SINE, *_OF_STATED)
+            same = is_even if effect in _OF_FRICTION else same
             zeros = (none.get(_COORDINATE[each], 0.0) for each in (effect, other))
             amount = known[_COORDINATE[other]][0]
             exchange = Exchange(other, value, error, amount, same, (0.0, 0.0), *zeros)
@@ -136,6 +143,12 @@ def exchanges(
                 exchange = replace(exchange, instead=alone[_COORDINATE[other]])
             found[effect] = exchange
     return found
+
+
+def rests(runs: Sequence[BenchRun]) -> float:
+    """Share of the samples at which nothing moves."""
+    speeds = [run.velocity if run.measured is None else run.measured[1] for run in runs]
+    return float(np.mean(np.concatenate(speeds) == 0.0))
 
 
 def _bare(model: Model, effect: str, baseline: Model) -> Model:

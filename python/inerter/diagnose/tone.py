@@ -31,6 +31,9 @@ _REQUIRED = 15.0
 # one wherever it stands out from what is beside it
 _OWN_LINE = {"velocity": 0.1, "acceleration": 0.1, "friction": 1e-4}
 _STANDS_OUT = 15.0
+# power of the displacement's line per what its noise has, from which on the line may be there:
+# chance exceeds it once in e^6
+_MAY_BE_THERE = 6.0
 _NEIGHBOURS = 2
 # samples of a run below which it tells nothing of lines
 _FEWEST = 64
@@ -172,8 +175,8 @@ class Witness:
             return False
         longest = max(run.spacing * run.force.size for run in self.raw.runs)
         # a line that the displacement has may be told badly: in coarse steps, for one
-        has_one = own > max(CRITERIA.tone_hidden * shown, _STANDS_OUT * hidden)
-        told = hidden < CRITERIA.tone_hidden * shown and not has_one
+        may_have_one = own > max(CRITERIA.tone_hidden * shown, _MAY_BE_THERE * hidden)
+        told = hidden < CRITERIA.tone_hidden * shown and not may_have_one
         return bool(told) or of_mains(frequency, 1 / longest) is not None
 
 
