@@ -29,13 +29,16 @@ from inerter.diagnose.composition import (
     submodel,
 )
 from inerter.diagnose.data import Data
-from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.decision import CRITERIA, better, loss
 from inerter.diagnose.judge import Judge
+from inerter.diagnose.low_passes import filters, has_filter
+from inerter.diagnose.parallel import parallel
 from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
+from inerter.identify.channel_filter import filters_of
 from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
@@ -43,6 +46,8 @@ from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.identify.split import split
 from inerter.records.preparation import Preparation
 
+# share of a period that a low-pass along one sine begins with
+_LATE = 0.03
 # effects that take away the rigid drive of the flywheel
 _DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
 
@@ -115,6 +120,7 @@ def searched(start: Prepared) -> Searched:
     if calmer := _calmer(start, band, final.model):
         band, search, plainer = calmer
         final = search.run(plainer, until="backlash")
+    search, final = _behind_low_pass(start, band, search, final)
     if "backlash" in final.model.free:
         start.given.progress("free play: fitting it to the force as measured")
     elif raw := _wider(data, data.preparation, final.model):
@@ -177,6 +183,32 @@ def _calmer(
     if best.rmse(masks) > (1 - CRITERIA.band_gain) * search.problem.fit(model).rmse(masks):
         return None
     return band, search, best.model
+
+
+def _behind_low_pass(
+    start: Prepared, band: Preparation, search: Search, final: Scored
+) -> tuple[Search, Scored]:
+    """Along one sine the search once more, from a low-pass of the force on, if that tells more.
+
+    There a low-pass is no more than late at first, and what is found without it may be what it
+    makes of something else: Dahl friction of a jump.
+    """
+    scales, model = start.data.band.scales, final.model
+    named = effects_of(model, start.baseline)
+    if not scales.one_tone or not named or "backlash" in model.free or filters_of(model.values):
+        return search, final
+    start.given.progress("one sine: searching once more, from a low-pass of the force on")
+    again = search_in(start, band)
+    late = _LATE / scales.frequency
+    fits = parallel(again.trials.fit, list(filters(start.baseline, late)))
+    begin = min(fits, key=lambda fit: fit.rmse(again.problem.masks))
+    other = again.run(begin.model, until="backlash")
+    if "backlash" in other.model.free or not has_filter(other.model):
+        return search, final
+    plainer = other.complexity <= final.complexity and loss(other, final) < CRITERIA.exchange_loss
+    if plainer or better(final, other, again.advantage(final, other, "sensor_filter")):
+        return again, other
+    return search, final
 
 
 def _beyond_motion(found: Searched, band: Preparation) -> Searched | None:

@@ -182,24 +182,32 @@ def filtered(values: Array, spacing: float, by: Filter, inverse: bool = False) -
     return line - slope * lateness / spacing + irfft(rfft(wave) * response, wave.size)[:n]
 
 
+# share of a free response that has to be seen to tell its size
+_SEEN = 0.5
+
+
 def without_start(
     residual: Array, spacing: float, mask: NDArray[np.bool_], by: Filter, first: int
 ) -> Array:
     """A residual (n,) without what a filter still holds of the time before the sample `first`.
 
     That is a sum of the filter's free responses, read off the masked samples that follow; where
-    half of these are left out, off all of them, for nothing else tells it.
+    these have less than half of one of them (a fold without the beginning), off all samples, for
+    nothing else tells it: what is left of a response later on tells next to nothing of its size.
     """
     poles = np.roots(denominator(by.kind, by.order)) * 2 * math.pi * by.cutoff
     count = min(int(START / abs(float(np.max(poles.real))) / spacing) + 1, residual.size - first)
     part = slice(first, first + count)
-    known = mask[part] if np.mean(mask[part]) > 0.5 else np.ones(count, bool)
-    if known.sum() < 2 * by.order:
+    if count < 2 * by.order:
         return residual
     times = spacing * np.arange(count)
     waves = [np.exp(pole * times) for pole in poles if pole.imag > -1e-9 * abs(pole)]
     # of a pair of poles the real and the imaginary part, of a real one the real part alone
     columns = np.array([each for wave in waves for each in (wave.real, wave.imag) if each.any()]).T
+    known = mask[part]
+    seen = np.sum(columns[known] ** 2, axis=0) / np.sum(columns**2, axis=0)
+    if np.min(seen) < _SEEN or np.sum(known) < 2 * by.order:
+        known = np.ones(count, bool)
     found = np.linalg.lstsq(columns[known], residual[part][known], rcond=1e-6)[0]
     left = residual.copy()
     left[part] -= columns @ found
