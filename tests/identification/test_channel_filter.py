@@ -133,3 +133,18 @@ def test_what_a_filter_held_before_a_run_is_read_off_it(kind: str, order: int) -
     late = mask & (np.arange(TIME.size) >= first + 1000)
     told = without_start(apart, 1 / RATE, late, each, first)
     assert np.abs(told[mask]).max() < 0.02 * np.abs(apart[mask]).max()
+
+
+@pytest.mark.parametrize(("kind", "order"), SHAPES)
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.9])
+def test_a_fold_without_the_beginning_is_not_carried_away(
+    kind: str, order: int, share: float
+) -> None:
+    """What noise leaves of the end of a free response says nothing of how it began."""
+    each, first, random = Filter(kind, order, 12.0), 700, np.random.default_rng(4)
+    noise = random.normal(size=TIME.size)
+    memory = round(8.0 * each.lateness * RATE)
+    mask = np.arange(TIME.size) >= first + round(share * memory)
+    left = without_start(noise, 1 / RATE, mask, each, first)
+    assert np.std(left[first:]) < 1.05 * np.std(noise[first:])
+    assert np.abs(left[first:]).max() < 1.5 * np.abs(noise[first:]).max()

@@ -1,4 +1,4 @@
-"""exp, exp - 1, tanh, sin and cos of the core against fifty digits, and alike on every processor."""
+"""exp, exp - 1, tanh, sin and cos of the core to fifty digits, alike on every processor."""
 
 import ctypes
 import platform
