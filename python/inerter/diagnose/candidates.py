@@ -113,12 +113,13 @@ def law_starts(law: FrictionLaw, model: Model, sizes: Scales) -> tuple[Model, ..
 
 
 def _bouc_wen(starts: Sequence[Model], bare: Model, sizes: Scales) -> tuple[Model, ...]:
-    """With an elastic share, unless there is a spring; and without a largest force.
+    """With an elastic share, unless there is a spring, or it is an inertance; and one that hardens.
 
     Beta and gamma may have any sign: with beta < -gamma it hardens along a path away from rest,
     which the coordinates of a level cannot say; with an exponent above 1 it would run away.
     """
-    share = {} if "stiffness" in bare.values else {"bw_ratio": 0.0}
+    told = "stiffness" not in bare.values and not (sizes.one_tone and "inertance" in bare.free)
+    share = {"bw_ratio": 0.0} if told else {}
     per_distance = 0.5 / sizes.displacement
     hardening = bare.adding(
         "bouc_wen", bw_stiffness=0.5 * sizes.force / sizes.displacement, bw_beta=per_distance,

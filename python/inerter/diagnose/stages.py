@@ -18,6 +18,7 @@ import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
+from inerter.diagnose.candidates import candidates
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
 from inerter.diagnose.composition import (
     bristle_is_known,
@@ -29,7 +30,7 @@ from inerter.diagnose.composition import (
     submodel,
 )
 from inerter.diagnose.data import Data
-from inerter.diagnose.decision import CRITERIA, better, loss
+from inerter.diagnose.decision import CRITERIA, as_good, better, loss
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.low_passes import filters, has_filter
 from inerter.diagnose.parallel import parallel
@@ -46,8 +47,8 @@ from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.identify.split import split
 from inerter.records.preparation import Preparation
 
-# share of a period that a low-pass along one sine begins with
-_LATE = 0.03
+# share of a period that a low-pass along one sine begins with, and what it may smooth
+_LATE, _JUMPS = 0.03, "coulomb_friction"
 # effects that take away the rigid drive of the flywheel
 _DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
 
@@ -194,18 +195,22 @@ def _behind_low_pass(
     makes of something else: Dahl friction of a jump.
     """
     scales, model = start.data.band.scales, final.model
-    named = effects_of(model, start.baseline)
-    if not scales.one_tone or not named or "backlash" in model.free or filters_of(model.values):
+    named, stated = effects_of(model, start.baseline), filters_of(start.baseline.values)
+    if not scales.one_tone or not named or "backlash" in model.free or stated:
         return search, final
     start.given.progress("one sine: searching once more, from a low-pass of the force on")
     again = search_in(start, band)
-    late = _LATE / scales.frequency
-    fits = parallel(again.trials.fit, list(filters(start.baseline, late)))
+    late, models = _LATE / scales.frequency, [start.baseline]
+    models += [
+        m for c in candidates(start.baseline, scales) if c.effect == _JUMPS for m in c.starts
+    ]
+    fits = parallel(again.trials.fit, [each for m in models for each in filters(m, late)])
     begin = min(fits, key=lambda fit: fit.rmse(again.problem.masks))
     other = again.run(begin.model, until="backlash")
     if "backlash" in other.model.free or not has_filter(other.model):
         return search, final
     plainer = other.complexity <= final.complexity and loss(other, final) < CRITERIA.exchange_loss
+    plainer = plainer or as_good(other, final, again.advantage(other, final, "sensor_filter"))
     if plainer or better(final, other, again.advantage(final, other, "sensor_filter")):
         return again, other
     return search, final

@@ -1,0 +1,65 @@
+"""Along one sine much looks alike: what is simple is named, what only stands in for it is not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.core import Device
+from inerter.diagnose import diagnose_bench
+from inerter.records import Record
+from inerter.reference.bench_channel import Channel, low_passed
+
+RATE, FINE = 500.0, 4
+
+
+def one_sine(
+    draw: np.random.Generator, low_pass: Channel | None = None, **device: float | str
+) -> Record:
+    """Some 8 s of a device along 30 mm at about 1 Hz, its force behind a low-pass or not."""
+    omega, ahead = 2 * np.pi * draw.uniform(0.8, 1.5), round(2 * RATE * FINE)
+    time = np.arange(-ahead, round(8 * RATE * FINE)) / (RATE * FINE)
+    x, v = 0.03 * np.sin(omega * time), 0.03 * omega * np.cos(omega * time)
+    force = Device(**device).along(1 / (RATE * FINE), x, v, -(omega**2) * x)["total"]
+    if low_pass is not None:
+        force = low_passed(low_pass, time, force)
+    rows = slice(ahead, None, FINE)
+    count = time[rows].size
+    return Record(
+        name="one sine",
+        time=time[rows],
+        displacement=x[rows] + 1e-6 * draw.standard_normal(count),
+        force=force[rows] + 0.5 * draw.standard_normal(count),
+    )
+
+
+@pytest.mark.turns(4)
+def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> None:
+    draw = np.random.default_rng(effects_seed)
+    low_pass = Channel(force_filter=5.0, force_filter_order=2.0)
+    level = float(draw.uniform(20, 40))
+    made = one_sine(draw, low_pass, inertance=54.0, friction="coulomb", coulomb_force=level)
+    found = diagnose_bench([made], carry="nothing")
+    assert {each.effect for each in found.findings} == {"coulomb_friction", "sensor_filter"}
+    assert found.parameters["force_filter"].value == pytest.approx(5.0, rel=0.02)
+    assert found.parameters["coulomb_force"].value == pytest.approx(level, rel=0.02)
+    assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.01)
+
+
+DAHL = {"friction": "dahl", "coulomb_force": 30.0, "bristle_stiffness": 15e3}
+
+
+@pytest.mark.parametrize(
+    "viscous", [0.0, pytest.param(80.0, marks=pytest.mark.long)], ids=["alone", "with a damper"]
+)
+def test_friction_with_memory_has_no_spring_that_is_an_inertance(
+    viscous: float, effects_seed: int
+) -> None:
+    draw = np.random.default_rng(effects_seed)
+    made = one_sine(draw, inertance=54.0, viscous=viscous, **DAHL)
+    found = diagnose_bench([made], carry="nothing")
+    named = {(each.effect, each.law) for each in found.findings}
+    dampers = {("viscous_friction", None)} if viscous else set()
+    assert named == {("hysteretic_friction", "dahl"), *dampers}
+    assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.01)
+    stiffness = found.parameters["bristle_stiffness"]
+    assert stiffness.value == pytest.approx(15e3, rel=0.02)
