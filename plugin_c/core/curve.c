@@ -98,11 +98,24 @@ static double spline_integral(const InerterCurve* c, double x) {
   return (sum + beyond) / c->rate;
 }
 
-// one of a sum of periods, with its slope
-static INLINED double period_at(const double* period, double x, double* slope) {
-  double cosine, sine = elementary_sin_cos(kTurn * x / period[0] + period[2], &cosine);
+static INLINED double angle_at(const double* period, double x) {
+  return kTurn * x / period[0] + period[2];
+}
+
+// one of a sum of periods, with its slope; in a loop where all angles are within ELEMENTARY_ANGLE
+static INLINED double near_period(const double* period, double x, double* slope) {
+  double cosine, sine = elementary_sin_cos(angle_at(period, x), &cosine);
   *slope = period[1] * kTurn / period[0] * cosine;
   return period[1] * sine;
+}
+
+static double period_at(const double* period, double x, double* slope) {
+  double angle = angle_at(period, x);
+  if (fabs(angle) <= ELEMENTARY_ANGLE) {
+    return near_period(period, x, slope);
+  }
+  *slope = period[1] * kTurn / period[0] * cos(angle);
+  return period[1] * sin(angle);
 }
 
 Tangent curve_at(const InerterCurve* c, double x) {
@@ -131,9 +144,19 @@ SEVERAL_AT_ONCE void curve_at_samples(const InerterCurve* c, int n, const double
     memset(slope, 0, sizeof(double) * (size_t)n);
   }
   for (int k = 0; k < c->nperiod; k++) {
+    const double* period = c->period + 3 * k;
+    int near = 1;
     for (int i = 0; i < n; i++) {
+      near &= fabs(angle_at(period, x[i])) <= ELEMENTARY_ANGLE;
+    }
+    for (int i = 0; near && i < n; i++) {
       double rise;
-      value[i] += period_at(c->period + 3 * k, x[i], &rise);
+      value[i] += near_period(period, x[i], &rise);
+      slope[i] += rise;
+    }
+    for (int i = 0; !near && i < n; i++) {
+      double rise;
+      value[i] += period_at(period, x[i], &rise);
       slope[i] += rise;
     }
   }

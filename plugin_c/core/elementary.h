@@ -71,7 +71,8 @@ static INLINED double elementary_tanh(double x) {
   return x < 0 ? -size : size;
 }
 
-// sin(x); cosine: cos(x)
+// sin(x); cosine: cos(x). Of an angle up to ELEMENTARY_ANGLE [rad], where k times pi / 2 is exact.
+#define ELEMENTARY_ANGLE 1e6
 static INLINED double elementary_sin_cos(double x, double* cosine) {
   const double round = 0x1.8p52;
   double turns = x * 0x1.45f306dc9c883p-1 + round, k = turns - round;

@@ -100,12 +100,8 @@ class Device:
 
     @cached_property
     def _given(self) -> dict[str, float | str]:
-        return {
-            name: (value_text(getattr(self, name)) or "")
-            if name in lists()
-            else getattr(self, name)
-            for name in self._stated
-        }
+        values = {name: getattr(self, name) for name in self._stated}
+        return {n: value_text(v) or "" if n in lists() else v for n, v in values.items()}
 
     @property
     def friction(self) -> str:
@@ -440,11 +436,8 @@ def along_many(
 
     workers = min(threads or os.cpu_count() or 1, len(devices)) or 1
     bounds = np.linspace(0, len(devices), workers + 1).astype(int)
-    if workers == 1:
-        run(0, len(devices))
-    else:
-        with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(run, bounds[:-1].tolist(), np.diff(bounds).tolist()))
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(run, bounds[:-1].tolist(), np.diff(bounds).tolist()))
     return total
 
 

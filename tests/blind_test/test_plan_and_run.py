@@ -242,3 +242,8 @@ def test_a_peak_that_noise_hides_may_be_called_coulomb_friction() -> None:
     assert plainer_forms(replace(uneven, runs=moving)) == ("coulomb_friction",)
     assert plainer_forms(with_device(case, load_friction=0.5)) == ()
     assert plainer_forms(realistic("parallel_stiffness")) == ()
+    # soft bristles, ageing of several per cent
+    assert plainer_forms(realistic("hysteretic_friction")) == ()
+    assert plainer_forms(realistic("series_elasticity")) == ()
+    drawn = [hide_effect(seed, "rate_state_friction", realistic=True) for seed in range(4)]
+    assert {plainer_forms(each) for each in drawn} <= {(), ("coulomb_friction",)}

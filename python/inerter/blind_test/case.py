@@ -294,7 +294,8 @@ def plainer_forms(case: HiddenCase) -> tuple[str, ...]:
     pieces = []
     for truth in (run.truth for run in case.runs):
         x, v, a = truth.displacement, truth.velocity, truth.acceleration
-        friction = np.asarray(case.device.total_friction(x, v, a, truth.states), dtype=float)
+        states = case.device.state_argument(truth.states)
+        friction = np.asarray(case.device.total_friction(x, v, a, states), dtype=float)
         pieces.append(np.column_stack([friction, np.sign(v), np.ones_like(v)]))
     rows = np.concatenate(pieces)
     columns = rows[:, 1:] if case.device.friction_asymmetry else rows[:, 1:2]
