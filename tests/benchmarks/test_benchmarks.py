@@ -177,9 +177,11 @@ def test_instructions_are_counted() -> None:
 
     found = counts(("coulomb", "lugre", "maxwell_slip"))
     for total, library, least in found.values():
-        assert 0 < library < least < total
-    # four springs that slip cost no more than twice one bristle
-    assert found["maxwell_slip"][0] < 2 * found["lugre"][0]
+        # several samples at once, where the processor can
+        assert 0 <= library < least
+        assert 0.2 * least < total < 4 * least
+    # exp and tanh are the core's own
+    assert found["coulomb"][1] == 0
 
 
 def test_callgrind_s_output_is_read() -> None:
