@@ -130,7 +130,7 @@ static SEVERAL_AT_ONCE void stretches(const InerterDevice* p, int n, const doubl
 void blocks_along(const InerterDevice* p, int n, double h, const double* x, const double* v,
                   const double* a, double* z, double* total, double* friction, double* states) {
   double block[FRICTION_BLOCK] = {0}, stretch[FRICTION_BLOCK], relaxing[FRICTION_BLOCK],
-         carried[FRICTION_BLOCK];
+         carried[FRICTION_BLOCK] = {0};
   int branch = branch_index(p), series = series_index(p);
   SeriesExact steps;
   series_exact_steps(p, h, &steps);
@@ -147,18 +147,16 @@ void blocks_along(const InerterDevice* p, int n, double h, const double* x, cons
       path.states = states ? states + branch : NULL;
       branches_along(p, &path, z + branch, relaxing);
     }
+    double* sum = total ? total + first : carried;
     if (has(p, PART_SERIES)) {
       path.states = states ? states + series : NULL;
-      series_along(p, &path, &steps, z + series, carried);
+      series_along(p, &path, &steps, z + series, sum);
     }
     if (!total) {
       continue;
     }
-    double* sum = total + first;
     stretches(p, size, x + first, stretch);
-    if (has(p, PART_SERIES)) {
-      memcpy(sum, carried, sizeof(double) * (size_t)size);
-    } else {
+    if (!has(p, PART_SERIES)) {
       add_flywheel(p, size, stretch, v + first, a + first, sum);
     }
     add_parallel(p, size, stretch, v + first, sum);

@@ -160,7 +160,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     forth[i] = way * growth(-slow_forth * way);
     back[i] = way * growth(slow_back * way);
   }
-  double now = *z, state[FRICTION_BLOCK];
+  double now = *z, state[FRICTION_BLOCK] = {0};
   for (int i = 0; i < samples.size; i++) {
     double push = side[i] * p->bw_alpha;
     if (now * side[i] >= 0) {

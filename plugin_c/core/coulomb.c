@@ -29,12 +29,12 @@ static double width(const InerterDevice* p) {
 static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
                                   double* forces) {
   FrictionSamples at;
-  double level[FRICTION_BLOCK];
+  double levels[FRICTION_BLOCK];
   (void)z;
   samples_at(p, path, &at);
-  levels_at(p, &at, level);
+  levels_at(p, &at, levels);
   for (int i = 0; i < at.size; i++) {
-    forces[i] = level[i] * p->coulomb_force * friction_direction(p, at.v[i]);
+    forces[i] = levels[i] * p->coulomb_force * friction_direction(p, at.v[i]);
   }
 }
 

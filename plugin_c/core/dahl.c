@@ -92,7 +92,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     return;
   }
   FrictionSamples to;
-  double level[FRICTION_BLOCK], share[FRICTION_BLOCK], end[FRICTION_BLOCK];
+  double level[FRICTION_BLOCK], share[FRICTION_BLOCK] = {0}, end[FRICTION_BLOCK] = {0};
   samples_between(p, path, &to);
   levels_at(p, &to, level);
   for (int i = 0; i < to.size; i++) {
@@ -100,7 +100,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     share[i] = gone_along(p->bristle_stiffness * fabs(to.v[i]) * path->h / yield);
     end[i] = bent_in_the_end(p, to.v[i], yield);
   }
-  double state[FRICTION_BLOCK];
+  double state[FRICTION_BLOCK] = {0};
   bristle_along(path, share, end, z, state);
   for (int i = 0; i < to.size; i++) {
     forces[i] = p->bristle_stiffness * state[i];

@@ -93,7 +93,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
                                   double* forces) {
   FrictionSamples samples;
   double level[FRICTION_BLOCK], curve[FRICTION_BLOCK];
-  double share[FRICTION_BLOCK], end[FRICTION_BLOCK], state[FRICTION_BLOCK];
+  double share[FRICTION_BLOCK] = {0}, end[FRICTION_BLOCK] = {0}, state[FRICTION_BLOCK] = {0};
   samples_between(p, path, &samples);
   levels_at(p, &samples, level);
   stribeck_curves_at(p, &samples, curve);

@@ -49,8 +49,8 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
 
   // ln(exp(old) + fresh)
   double old = z - way, young = log(fresh);
-  double larger = fmax(old, young);
-  return larger + log1p(exp(fmin(old, young) - larger));
+  double most = fmax(old, young);
+  return most + log1p(exp(fmin(old, young) - most));
 }
 
 static double force(const InerterDevice* p, double x, double v, double z, double load) {

@@ -26,13 +26,13 @@ static double width(const InerterDevice* p) {
 static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
                                   double* forces) {
   FrictionSamples at;
-  double level[FRICTION_BLOCK], curve[FRICTION_BLOCK];
+  double levels[FRICTION_BLOCK], curve[FRICTION_BLOCK];
   (void)z;
   samples_at(p, path, &at);
-  levels_at(p, &at, level);
+  levels_at(p, &at, levels);
   stribeck_curves_at(p, &at, curve);
   for (int i = 0; i < at.size; i++) {
-    forces[i] = level[i] * curve[i] * friction_direction(p, at.v[i]);
+    forces[i] = levels[i] * curve[i] * friction_direction(p, at.v[i]);
   }
 }
 
