@@ -54,14 +54,11 @@ def draw(profiles: Mapping[str, Mapping[str, Mapping[str, float]]], path: Path) 
     """Stacked bars, one for each case and each of some times of measurement."""
     made_figure = figure(9.0, 0.5 + 0.42 * len(profiles) * len(CASES))
     axes = made_figure.subplots()
-    labels: list[str] = []
+    kinds = (*KINDS, REST)
     colours = ("#2f6f9f", "#d4641c", "#c9b458", "#8d97a3", "#d9dde2")
     rows = [(case, when) for case in CASES for when in profiles]
-    for kind, colour in zip((*KINDS, REST), colours, strict=True):
-        lefts = [
-            sum(profiles[when][case][k] for k in (*KINDS, REST)[: (*KINDS, REST).index(kind)])
-            for case, when in rows
-        ]
+    for i, (kind, colour) in enumerate(zip(kinds, colours, strict=True)):
+        lefts = [sum(profiles[when][case][k] for k in kinds[:i]) for case, when in rows]
         widths = [profiles[when][case][kind] for case, when in rows]
         axes.barh(range(len(rows)), widths, 0.75, lefts, color=colour, label=kind)
     labels = [f"{case}, {when}" if len(profiles) > 1 else case for case, when in rows]

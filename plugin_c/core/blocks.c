@@ -65,11 +65,9 @@ static void series_along(const InerterDevice* p, const FrictionPath* path, Serie
   size_t count = has(p, PART_BACKLASH) ? 3 : 2;
   for (int i = path->first; i < path->last; i++) {
     if (i) {
-      double before = v[i - 1], mean = (x[i] - x[i - 1]) / h;
-      double begin = (6 * mean - 4 * before - 2 * v[i]) / h;
-      double jerk = 6 * (before + v[i] - 2 * mean) / (h * h);
-      if (!series_exact(p, steps, before, begin, jerk, z)) {
-        series_step(p, stretch_of(p, x[i - 1]), before, begin, jerk, NULL, z, h);
+      Cubic way = cubic_between(x + i - 1, v + i - 1, h);
+      if (!series_exact(p, steps, v[i - 1], way.begin, way.jerk, z)) {
+        series_step(p, stretch_of(p, x[i - 1]), v[i - 1], way.begin, way.jerk, NULL, z, h);
       }
     }
     forces[i - path->first] = series_force(p, v[i], z);

@@ -30,14 +30,8 @@ static double width(const InerterDevice* p) {
 
 static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
                                   double* forces) {
-  FrictionSamples at;
-  double level[FRICTION_BLOCK];
   (void)z;
-  samples_at(p, path, &at);
-  levels_at(p, &at, level);
-  for (int i = 0; i < at.size; i++) {
-    forces[i] = level[i] * shaped(p, at.v[i]);
-  }
+  memoryless_along(p, path, forces, shaped);
 }
 
 const FrictionLaw inerter_brown_mcphee = {

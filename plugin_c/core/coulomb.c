@@ -11,10 +11,15 @@
 
 #include "friction_block.h"
 
+// force without its level
+static INLINED double shaped(const InerterDevice* p, double v) {
+  return p->coulomb_force * friction_direction(p, v);
+}
+
 static double force(const InerterDevice* p, double x, double v, double z, double load) {
   (void)z;
   (void)load;
-  return friction_level(p, x, v) * p->coulomb_force * friction_direction(p, v);
+  return friction_level(p, x, v) * shaped(p, v);
 }
 
 static double level(const InerterDevice* p, double x, double v) {
@@ -28,14 +33,8 @@ static double width(const InerterDevice* p) {
 
 static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
                                   double* forces) {
-  FrictionSamples at;
-  double levels[FRICTION_BLOCK];
   (void)z;
-  samples_at(p, path, &at);
-  levels_at(p, &at, levels);
-  for (int i = 0; i < at.size; i++) {
-    forces[i] = levels[i] * p->coulomb_force * friction_direction(p, at.v[i]);
-  }
+  memoryless_along(p, path, forces, shaped);
 }
 
 const FrictionLaw inerter_coulomb = {

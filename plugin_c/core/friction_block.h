@@ -82,6 +82,19 @@ static INLINED void stribeck_curves_at(const InerterDevice* p, const FrictionSam
   }
 }
 
+// Forces of a law without states, whose level times `shaped` they are.
+static INLINED void memoryless_along(const InerterDevice* p, const FrictionPath* path,
+                                     double* forces,
+                                     double (*shaped)(const InerterDevice* p, double v)) {
+  FrictionSamples at;
+  double level[FRICTION_BLOCK];
+  samples_at(p, path, &at);
+  levels_at(p, &at, level);
+  for (int i = 0; i < at.size; i++) {
+    forces[i] = level[i] * shaped(p, at.v[i]);
+  }
+}
+
 // the states of a law at the samples of a path, where they are asked for
 static INLINED void keep_states(const FrictionPath* path, const double* state) {
   for (int i = path->first; path->states && i < path->last; i++) {

@@ -117,6 +117,17 @@ typedef struct Tangent_ {
   double slope;
 } Tangent;
 
+// the cubic through displacement and velocity at two samples h seconds apart: its acceleration at
+// the first, and the rate of that
+typedef struct Cubic_ {
+  double begin, jerk;
+} Cubic;
+
+static inline Cubic cubic_between(const double* x, const double* v, double h) {
+  double mean = (x[1] - x[0]) / h;
+  return (Cubic){(6 * mean - 4 * v[0] - 2 * v[1]) / h, 6 * (v[0] + v[1] - 2 * mean) / (h * h)};
+}
+
 static inline double clamp(double value, double lower, double upper) {
   return value < lower ? lower : value > upper ? upper : value;
 }

@@ -32,9 +32,8 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     branches_step(device, mean, z + branch_index(device), h);
   }
   if (has(device, PART_SERIES)) {
-    double begin = (6 * mean - 4 * v[0] - 2 * v[1]) / h;
-    double jerk = 6 * (v[0] + v[1] - 2 * mean) / (h * h);
-    series_step(device, start, v[0], begin, jerk, z, z + series_index(device), h);
+    Cubic way = cubic_between(x, v, h);
+    series_step(device, start, v[0], way.begin, way.jerk, z, z + series_index(device), h);
   }
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
     double middle = stretch_of(device, 0.5 * (x[1] + x[0]));

@@ -93,11 +93,6 @@ class Device:
         """What was stated, by name; a list of numbers as a text, separated by blanks."""
         return dict(self._given)
 
-    @property
-    def stated(self) -> tuple[str, ...]:
-        """Names of what was stated."""
-        return self._stated
-
     @cached_property
     def _given(self) -> dict[str, float | str]:
         values = {name: getattr(self, name) for name in self._stated}
@@ -436,8 +431,11 @@ def along_many(
 
     workers = min(threads or os.cpu_count() or 1, len(devices)) or 1
     bounds = np.linspace(0, len(devices), workers + 1).astype(int)
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(run, bounds[:-1].tolist(), np.diff(bounds).tolist()))
+    if workers == 1:
+        run(0, len(devices))
+    else:
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(run, bounds[:-1].tolist(), np.diff(bounds).tolist()))
     return total
 
 

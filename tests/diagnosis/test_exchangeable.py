@@ -330,3 +330,26 @@ def test_without_rests_uneven_friction_and_a_constant_force_are_one_finding(unev
     assert "friction that is 15 % larger one way" in found.evidence
     assert f"a constant force of {values['force_offset'].value:.3g} N" in found.evidence
     assert "the device turned round would" in found.evidence
+
+
+@pytest.mark.parametrize("rests", [False, True])
+@pytest.mark.parametrize("law", ["coulomb", "dahl"])
+def test_a_constant_force_beside_friction_is_told_from_uneven_one_by_rests_alone(
+    law: str, rests: bool
+) -> None:
+    random, way = np.random.default_rng(3), 2 * np.pi * TIME
+    x = 0.02 * np.sin(way * 0.7) + 0.008 * np.sin(way * 1.9)
+    if rests:
+        # half of the time it stands still
+        x = np.where(TIME < 4.0, x, x[TIME.searchsorted(4.0)])
+    v = np.gradient(x, TIME)
+    force = 60 * np.gradient(v, TIME) + 30.0 * np.tanh(v / 1e-4) + 4.5
+    seen = x + random.normal(0, 1e-6, TIME.size)
+    force = force + random.normal(0, 0.5, TIME.size)
+    made = Record(name="run", time=TIME, displacement=seen, force=force)
+    memory = {"presliding": 1e-4} if law == "dahl" else {"transition_velocity": 1e-3}
+    model = IDEAL.adding(law, coulomb_force=30.0, **memory).adding(force_offset=4.0)
+    search, fit = searched(made, model)
+    found = exchanges(search, fit, ["force_offset"])
+    assert bool(found) is (law == "coulomb" and not rests)
+    assert all(not each.is_told_apart for each in found.values())

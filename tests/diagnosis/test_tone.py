@@ -115,3 +115,18 @@ def test_a_line_that_a_coarse_displacement_tells_badly_is_of_the_motion(share: f
     found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
     # of a twentieth the force is none
     assert (found is None) == (share > 1.0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("rings", [True, False])
+def test_a_line_that_a_noisy_displacement_may_have_is_of_the_motion(rings: bool, seed: int) -> None:
+    """Its line is eight or so times its noise, and out of step with the force."""
+    angle = 2 * np.pi * 47.3 * TIME
+    shaken = [replace(run, force=run.force + 0.6 * np.sin(angle)) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    moved = -0.6 * np.sin(angle - 1.2) / (40.0 * (2 * np.pi * 47.3) ** 2) if rings else 0.0
+    random = np.random.default_rng(seed)
+    seen = [run.displacement + moved + random.normal(0, 1.4e-6, TIME.size) for run in RUNS]
+    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    assert (found is None) is rings

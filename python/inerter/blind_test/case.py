@@ -300,7 +300,7 @@ def plainer_forms(case: HiddenCase) -> tuple[str, ...]:
     rows = np.concatenate(pieces)
     columns = rows[:, 1:] if case.device.friction_asymmetry else rows[:, 1:2]
     level = np.linalg.lstsq(columns, rows[:, 0], rcond=None)[0]
-    left = float(np.std(rows[:, 0] - columns @ level))
+    left = float(np.sqrt(np.mean((rows[:, 0] - columns @ level) ** 2)))
     return ("coulomb_friction",) if rows[:, 0].any() and left < case.noise["force"] else ()
 
 

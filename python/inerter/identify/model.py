@@ -73,16 +73,19 @@ class Model:
     # worked out once, for all runs
     @cached_property
     def _device(self) -> Device:
-        values = {**self.texts, **device_values(self.values)}
-        return Device(friction=self.friction, **_with_ends(values))
+        return Device(friction=self.friction, **self._stated)
+
+    @cached_property
+    def _stated(self) -> dict[str, float | str]:
+        """What the device is made of beside its friction law."""
+        return _with_ends({**self.texts, **device_values(self.values)})
 
     @cached_property
     def _smooth_device(self) -> Device:
-        known, device = parameters(), self._device
-        rough = {"friction", *JUMPS, *lists()}
+        known, rough = parameters(), {*JUMPS, *lists()}
         kept = {
-            name: getattr(device, name)
-            for name in device.stated
+            name: value
+            for name, value in self._stated.items()
             if name not in rough and not (name in known and known[name].laws)
         }
         return Device(**_with_ends(kept))
@@ -91,7 +94,7 @@ class Model:
     def has_jumps(self) -> bool:
         """Whether something beside friction makes the force jump or bend sharply."""
         device = self._device
-        along = any(n in lists() and not n.startswith("friction") for n in device.stated)
+        along = any(n in lists() and not n.startswith("friction") for n in self._stated)
         return clips(self.values) or along or bool(device.backlash or device.stop_stiffness)
 
     @property

@@ -139,7 +139,7 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     be read off those. The motion is smooth.
     """
     values = dict(model.values)
-    run = before_filter(run, values)
+    run = _before_filter(run, values)
     if not (values.get("delay") and "backlash" in values and np.isinf(run.cutoff)):
         return run, values
     delay, h = values.pop("delay"), run.spacing
@@ -161,12 +161,12 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     ), values
 
 
-# runs by identity and filter, the last ones asked for: a fit asks for many forces along each
+# runs by identity and filter, as many as fit: a fit asks for many forces along each
 _BEFORE_FILTER: dict[tuple[tuple[int, int], Filter], BenchRun] = {}
 _MOST_RUNS, _MOST_SAMPLES = 32, 2**20
 
 
-def before_filter(run: BenchRun, values: Mapping[str, float]) -> BenchRun:
+def _before_filter(run: BenchRun, values: Mapping[str, float]) -> BenchRun:
     """A run with the motion before the filter of its displacement, where coordinates have one."""
     low_pass = filter_of(values, "displacement")
     if low_pass is None:
