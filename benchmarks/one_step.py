@@ -38,8 +38,8 @@ def picture(rows: list[Row], path: Path) -> None:
         line[0].set_ylim(bottom=0.7)
         line[0].set_ylabel("cost of a step / armature's", fontsize=9)
     handles, labels = panels[0][0].get_legend_handles_labels()
-    made.legend(handles, labels, loc="outside lower center", ncols=(len(shown) + 1) // 2, frameon=False,
-                fontsize=8.5)  # fmt: skip
+    made.legend(handles, labels, loc="outside lower center", ncols=(len(shown) + 1) // 2,
+                frameon=False, fontsize=8.5)  # fmt: skip
     save(made, path)
 
 

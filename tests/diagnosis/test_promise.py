@@ -103,3 +103,17 @@ def test_only_what_comes_near_the_best_is_followed_to_its_end() -> None:
     better = replace(aim, residual=[0.1 * each for each in aim.residual])
     rivals = Trials(given).fit_all(trials, fit, better)
     assert all(each.evaluations <= FEW for _, each in rivals)
+
+
+def test_a_start_without_a_finite_force_promises_nothing() -> None:
+    """A hysteresis that hardens without end, tried beside one that does not."""
+    given = problem("viscous")
+    fit, (candidate, *_) = fitted(given)
+    promise = Promise(given, Known(given, fit.model))
+    values = {"inertance": 60.0, "bw_alpha": 1.0, "bw_beta": -1e9, "bw_gamma": 0.0, "bw_stiffness": 1e3}
+    endless = Model("bouc_wen", {**fit.model.values, **values}, ("inertance", "bw_beta"))
+    assert not np.isfinite(given.residual(endless)[0]).all()
+    one, both = (replace(candidate, effect="viscous_friction", starts=s)
+                 for s in ([endless], [endless, candidate.starts[0]]))  # fmt: skip
+    assert promise.foretold(one) == np.inf
+    assert promise.foretold(both) == promise.foretold(replace(one, starts=[candidate.starts[0]]))

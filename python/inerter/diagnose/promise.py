@@ -60,7 +60,10 @@ class Promise:
         self.problem, self.known = problem, known
 
     def foretold(self, candidate: Candidate) -> float:
-        """The least error [N] after a step from a starting point; 0 of what no step tells."""
+        """The least error [N] after a step from a starting point; 0 of what no step tells.
+
+        Infinite where no starting point has a force that is finite.
+        """
         if EFFECTS[candidate.effect].far:
             return 0.0
         return min(map(self._error_after_a_step, candidate.starts))
@@ -68,8 +71,12 @@ class Promise:
     def _error_after_a_step(self, start: Model) -> float:
         added = [name for name in start.free if name not in self.known.model.free]
         flat = self.problem.masked(self.problem.residual(start))
+        if not np.isfinite(flat).all():
+            return np.inf
         known = self.known.columns[np.concatenate(self.problem.masks)]
         columns = np.concatenate([known, self.problem.jacobian(start, added)], axis=1)
+        if not np.isfinite(columns).all():
+            return np.inf
         columns = columns / (np.linalg.norm(columns, axis=0) + 1e-300)
         step = np.linalg.lstsq(columns, flat, rcond=1e-10)[0]
         return float(np.sqrt(np.mean((flat - columns @ step) ** 2)))

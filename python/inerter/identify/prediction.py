@@ -26,6 +26,9 @@ Array = NDArray[np.float64]
 
 # share of what the bristle holds from which on the first force tells the side of its free play
 _TELLING = 0.1
+# a twist at the start is at most this many strokes of the run: more of it would be an oscillation
+# that nothing in the run excites, by which a shaft without stiffness carries any slow force
+_MOST_TWIST = 10.0
 # friction beyond this [N] is that of a state that has run away
 RUNAWAY = 1e30
 
@@ -44,12 +47,22 @@ def first_state(
     i = run.first
     force = run.first_force + pressed
     state = device.state_of_force(run.displacement[i], run.velocity[i], run.acceleration[i], force)
+    if device.series_stiffness:
+        state = _twisted(device, run, np.atleast_1d(state))
     if not device.friction_backlash:
         return state
     bent, side = _bent(device, float(np.atleast_1d(state)[0]))
     told = min(1.0, abs(bent) / (_TELLING * _held(device)))
     found = bent + device.friction_backlash * (told * side + (1.0 - told) * place)
     return np.array([found, *np.atleast_1d(state)[1:]]) if device.nstate > 1 else found
+
+
+def _twisted(device: Device, run: BenchRun, states: Array) -> Array:
+    """States whose series deflection may be one of the run."""
+    most = _MOST_TWIST * np.ptp(run.displacement) + device.backlash
+    at = device.state_names.index("series_deflection")
+    states[at] = np.clip(states[at], -most, most)
+    return states
 
 
 def _bent(device: Device, state: float) -> tuple[float, float]:
