@@ -24,6 +24,7 @@ from inerter.diagnose.composition import (
     is_distinct,
     simpler_laws,
     stripped,
+    swings_on,
     with_own_spring,
     without_effect,
 )
@@ -115,6 +116,29 @@ def test_a_branch_without_a_time_of_its_own_and_a_straight_curve_are_plain_parts
     assert plain.values["force_offset"] == pytest.approx(13.0)
     assert set(hard.free) - set(plain.free) == {"stiffness_cubic"}
     assert plain.values.keys().isdisjoint(nodes)
+
+
+def test_a_shaft_is_rigid_or_a_spring_where_it_does_not_follow() -> None:
+    values = {"inertance": 2.0, "series_frequency": 0.5, "series_loss": 0.1, "viscous": 3.0}
+    soft = Model("none", values, tuple(values))
+    rigid, spring = as_plain_part(soft, 20.0, 3.0)
+    assert set(rigid.free) == {"inertance", "viscous"}
+    assert spring.values["stiffness"] == pytest.approx(2.0 * np.pi**2)
+    assert set(spring.free) == {"inertance", "viscous", "stiffness", "force_offset"}
+    assert spring.values["inertance"] == 0.0
+    assert len(as_plain_part(soft.holding(series_frequency=5.0), 20.0, 3.0)) == 1
+    assert as_plain_part(soft.adding(None, backlash=1e-3), 20.0, 3.0) == []
+
+
+def test_a_slow_shaft_that_never_settles_is_any_slow_sine() -> None:
+    values = {"inertance": 2.0, "series_frequency": 2.0, "series_loss": 1e-3}
+    shaft = Model("none", values, tuple(values))
+    assert swings_on(shaft, 20.0, 3.0)
+    assert not swings_on(shaft, 200.0, 3.0)
+    assert not swings_on(shaft, 20.0, 0.5)
+    assert not swings_on(shaft.holding(series_loss=0.1), 20.0, 3.0)
+    assert not swings_on(shaft.adding(None, backlash=1e-3), 20.0, 3.0)
+    assert not swings_on(shaft.without(("series_frequency", "series_loss")), 20.0, 3.0)
 
 
 def test_the_spring_of_a_bouc_wen_law_stands_beside_another_law() -> None:

@@ -110,7 +110,13 @@ def test_a_start_without_a_finite_force_promises_nothing() -> None:
     given = problem("viscous")
     fit, (candidate, *_) = fitted(given)
     promise = Promise(given, Known(given, fit.model))
-    values = {"inertance": 60.0, "bw_alpha": 1.0, "bw_beta": -1e9, "bw_gamma": 0.0, "bw_stiffness": 1e3}
+    values = {
+        "inertance": 60.0,
+        "bw_alpha": 1.0,
+        "bw_beta": -1e9,
+        "bw_gamma": 0.0,
+        "bw_stiffness": 1e3,
+    }
     endless = Model("bouc_wen", {**fit.model.values, **values}, ("inertance", "bw_beta"))
     assert not np.isfinite(given.residual(endless)[0]).all()
     one, both = (replace(candidate, effect="viscous_friction", starts=s)

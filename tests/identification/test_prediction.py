@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from inerter.core import Device
 from inerter.identify.model import Model
-from inerter.identify.prediction import force_along, settled
+from inerter.identify.prediction import first_state, force_along, settled
 from inerter.identify.runs import BenchRun, thin
-from inerter.identify.transient import without_relaxing, without_transient
+from inerter.identify.transient import MOST_SPEEDS, without_relaxing, without_transient
 from inerter.records import Record
 from inerter.records.motion import smooth
 from inerter.records.record import Part
@@ -99,6 +99,33 @@ def test_a_decay_of_any_damping_is_taken_out(damping: float) -> None:
     for wave in waves:
         left = without_transient(device, 30.0 * wave, 1e-3, mask)
         assert np.max(np.abs(left[mask])) < 0.02 * 30.0
+
+
+def test_hardly_any_inertance_has_no_oscillation_of_its_own() -> None:
+    """Ten newtons are carried by a flywheel of 100 kg, not by a millionth of it as quick."""
+    wave = 10.0 * np.cos(TIME)
+    mask = np.ones(TIME.size, bool)
+    heavy, light = (Device(inertance=b, series_stiffness=b) for b in (100.0, 1e-4))
+    left = without_transient(heavy, wave, 1e-3, mask, 0.2)
+    assert np.max(np.abs(left)) < 0.01
+    left = without_transient(light, wave, 1e-3, mask, 0.2)
+    assert np.max(np.abs(left - wave)) == pytest.approx(MOST_SPEEDS * 0.2 * 1e-4, rel=0.01)
+
+
+def test_a_twist_is_one_of_the_run(run: BenchRun) -> None:
+    """What a shaft of hardly any stiffness would need to carry the first force is no twist."""
+    stroke = float(np.ptp(run.displacement))
+    shaft = {"inertance": 1e-9, "series_stiffness": 1e-9, "series_damping": 1e-12}
+    states = np.atleast_1d(first_state(Device(**shaft), run))
+    assert abs(states[0]) == pytest.approx(10 * stroke)
+    assert np.max(np.abs(force_along(Model("none", shaft, ()), run))) < 1e-6
+    # a shaft that carries it keeps its twist
+    shaft = {"inertance": 60.0, "series_stiffness": 6e4, "series_damping": 60.0}
+    states = np.atleast_1d(first_state(Device(**shaft), run))
+    assert abs(states[0]) < stroke
+    assert Device(**shaft).evaluate(
+        run.displacement[run.first], run.velocity[run.first], run.acceleration[run.first], states
+    )["total"] == pytest.approx(run.first_force)
 
 
 def test_a_flywheel_that_turns_as_a_record_begins_is_settled(run: BenchRun) -> None:

@@ -28,11 +28,26 @@ from inerter.identify.model import Model
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
 
+# the coordinates of a shaft without play
+_SHAFT = ("series_frequency", "series_loss")
+
 
 def has_series(model: Model) -> bool:
     """Whether a model has a series element."""
     names = ("series_frequency", "series_stiffness", "series_damping")
     return any(name in model.values for name in names)
+
+
+def swings_on(model: Model, longest: float, frequency: float) -> bool:
+    """Whether a shaft swings by itself through the longest run [s], about as slowly as the motion.
+
+    How it began is free: it stands for any slow sine, and only one that dies away is told from it.
+    """
+    if not set(_SHAFT) <= set(model.free) or "backlash" in model.values:
+        return False
+    swings = model.values["series_frequency"]
+    lasting = 2 * np.pi * swings * model.values["series_loss"] * longest < 1.0
+    return bool(lasting and swings < 2.0 * frequency)
 
 
 def is_local(effect: str) -> bool:
@@ -330,9 +345,16 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     """A damper, or a spring with any zero, in the place of what may be no more, plainest first.
 
     That is a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
-    of this frequency [Hz], and a curve of the force.
+    of this frequency [Hz], a curve of the force, and a shaft on which little turns or so softly
+    that it does not follow the motion.
     """
     found = []
+    if {"inertance", *_SHAFT} <= set(model.free) and "backlash" not in model.values:
+        rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
+        found.append(rigid)
+        if swings < frequency:
+            stiffness = model.values["inertance"] * (2 * np.pi * swings) ** 2
+            found.append(_with_spring(rigid.holding(inertance=0.0), stiffness, 0.0))
     for number in (1, 2):
         stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
         if stiffness not in model.free:

@@ -28,6 +28,7 @@ from inerter.diagnose.composition import (
     is_local,
     is_shaft,
     simpler_laws,
+    swings_on,
     with_own_spring,
     within_blur,
     without_effect,
@@ -282,7 +283,13 @@ class Search:
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
             and not self._is_shaft_alone(s)
+            and not swings_on(s.model, self._longest, self.problem.scales.frequency)
         ]
+
+    @property
+    def _longest(self) -> float:
+        """Duration of the longest run [s]."""
+        return max(run.spacing * run.force.size for run in self.runs)
 
     def _is_shaft_alone(self, scored: Scored) -> bool:
         """Whether a play does no more than its shaft, which is no candidate along one sine."""
@@ -385,8 +392,8 @@ class Search:
                 return self._exchange(scored)
         if with_spring := self._spring_beside(current):
             return self._exchange(with_spring)
-        longest, scales = max(r.spacing * r.force.size for r in self.runs), self.problem.scales
-        for model in filter(self._may_be, as_plain_part(current.model, longest, scales.frequency)):
+        frequency = self.problem.scales.frequency
+        for model in filter(self._may_be, as_plain_part(current.model, self._longest, frequency)):
             fit = self.problem.fit(model)
             if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
                 scored = self.score("exchange", None, fit)

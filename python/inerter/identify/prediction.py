@@ -251,7 +251,8 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
     if not np.isfinite(residual).all():
         return residual
     if device.series_stiffness and not device.backlash:
-        residual = without_transient(device, residual, run.spacing, mask)
+        speed = float(np.max(np.abs(run.velocity)))
+        residual = without_transient(device, residual, run.spacing, mask, speed)
     residual = without_relaxing(
         relaxing(values), residual, run.spacing, mask, run.first, run.cutoff
     )

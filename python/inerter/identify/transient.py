@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 TIMID = 1e-2
 RELAXING = ("branch_time_1", "branch_time_2")
 """Coordinates that say how long branches relax."""
+# how fast a flywheel may have turned as a record began, in largest speeds of the record
+MOST_SPEEDS = 5.0
 # exponent of a decay that leaves nothing
 _DECAYED = 60.0
 # samples of the quickest decay that is one
@@ -25,18 +27,21 @@ _FEWEST = 10
 
 
 def without_transient(
-    device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_]
+    device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_], speed: float = np.inf
 ) -> Array:
     """A residual without the decay of the series element's unknown first state, shape (n,).
 
     Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
     oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0; the share of the
     masked samples that has this form is taken out. Its size at the beginning is held near what the
-    residual is large, for where the beginning is masked, its faint rest tells nothing of it.
+    residual is large, for where the beginning is masked, its faint rest tells nothing of it. Nor is
+    it more than a flywheel carries that turned some times faster than the record's largest `speed`
+    [m/s]: hardly any inertance has no such oscillation.
     """
     b = device.inertance
     damping = device.series_damping + device.flywheel_viscous
-    roots = _roots(b, damping, device.series_stiffness)
+    stiffness = device.series_stiffness
+    roots = _roots(b, damping, stiffness)
     if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
         return residual
     # what is below rounding by then has no share
@@ -48,7 +53,9 @@ def without_transient(
             basis = np.array([wave.real, wave.imag])
         else:
             basis = np.array([_decay(root * spacing, count).real for root in roots])
-    return _without(basis, residual, mask)
+    return _without(
+        basis, residual, mask, MOST_SPEEDS * speed * (math.sqrt(b * stiffness) + damping)
+    )
 
 
 def relaxing(values: Mapping[str, float]) -> tuple[float, ...]:
@@ -81,8 +88,11 @@ def without_relaxing(
     return _without(np.concatenate([before, basis], axis=1), residual, mask)
 
 
-def _without(basis: Array, residual: Array, mask: NDArray[np.bool_]) -> Array:
-    """A residual (n,) without the share of its masked samples that a basis (m, k <= n) has."""
+def _without(basis: Array, residual: Array, mask: NDArray[np.bool_], most: float = np.inf) -> Array:
+    """A residual (n,) without the share of its masked samples that a basis (m, k <= n) has.
+
+    Of that `most` [N] at most, where the basis is largest.
+    """
     basis = basis / (np.max(np.abs(basis), axis=1, keepdims=True) + 1e-300)
     if not np.isfinite(basis).all():
         return residual
@@ -90,8 +100,9 @@ def _without(basis: Array, residual: Array, mask: NDArray[np.bool_]) -> Array:
     count = basis.shape[1]
     seen = basis * mask[:count]
     share = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen @ residual[:count])
-    rest = residual.copy()
-    rest[:count] -= share @ basis
+    rest, form = residual.copy(), share @ basis
+    largest = float(np.max(np.abs(form)))
+    rest[:count] -= form if largest <= most else most / largest * form
     return rest
 
 
