@@ -28,8 +28,7 @@ from inerter.identify.model import Model
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
 
-# the coordinates of a shaft without play
-_SHAFT = ("series_frequency", "series_loss")
+_SHAFT = EFFECTS["series_elasticity"].coordinates
 
 
 def has_series(model: Model) -> bool:
@@ -38,12 +37,17 @@ def has_series(model: Model) -> bool:
     return any(name in model.values for name in names)
 
 
+def _has_plain_shaft(model: Model) -> bool:
+    """Whether a shaft without play is searched for."""
+    return set(_SHAFT) <= set(model.free) and "backlash" not in model.values
+
+
 def swings_on(model: Model, longest: float, frequency: float) -> bool:
     """Whether a shaft swings by itself through the longest run [s], about as slowly as the motion.
 
     How it began is free: it stands for any slow sine, and only one that dies away is told from it.
     """
-    if not set(_SHAFT) <= set(model.free) or "backlash" in model.values:
+    if not _has_plain_shaft(model):
         return False
     swings = model.values["series_frequency"]
     lasting = 2 * np.pi * swings * model.values["series_loss"] * longest < 1.0
@@ -349,7 +353,7 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     that it does not follow the motion.
     """
     found = []
-    if {"inertance", *_SHAFT} <= set(model.free) and "backlash" not in model.values:
+    if "inertance" in model.free and _has_plain_shaft(model):
         rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
         found.append(rigid)
         if swings < frequency:
