@@ -102,7 +102,7 @@ def test_a_decay_of_any_damping_is_taken_out(damping: float) -> None:
 
 
 def test_hardly_any_inertance_has_no_oscillation_of_its_own() -> None:
-    """Ten newtons are carried by a flywheel of 100 kg, not by a millionth of that at the same speed."""
+    """Ten newtons are carried by a flywheel of 100 kg, not by one of 0.1 g as quick."""
     wave = 10.0 * np.cos(TIME)
     mask = np.ones(TIME.size, bool)
     heavy, light = (Device(inertance=b, series_stiffness=b) for b in (100.0, 1e-4))
