@@ -16,16 +16,11 @@ from inerter.catalogue.scales import Scales
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
-    as_one,
-    as_plain_part,
-    as_spring,
     effects_of,
     is_blur,
     is_distinct,
     simpler_laws,
     stripped,
-    swings_on,
-    with_own_spring,
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA
@@ -75,87 +70,6 @@ def test_a_narrow_peak_that_explains_little_is_the_blur_of_a_reversal(
     assert not is_blur(BASELINE.adding("coulomb", coulomb_force=20.0), SCALES, plain, 1.0)
 
 
-def test_stops_that_meet_are_a_spring() -> None:
-    stops = {"stop_lower": 0.0099, "stop_upper": 0.0101}
-    stops |= {"stop_stiffness": 1e4, "stop_damping": 0.0, "force_offset": 5.0}
-    model = BASELINE.adding(None, **stops)
-    (spring,) = as_spring(model)
-    assert spring.free == ("inertance", "force_offset", "stiffness")
-    x = np.linspace(-0.05, 0.05, 101)
-    one, two = (each.device().along(1e-3, x, 0 * x, 0 * x)["total"] for each in (model, spring))
-    # they differ by half the gap times the stiffness at most
-    np.testing.assert_allclose(one, two, atol=1.001)
-    assert as_spring(BASELINE.adding(None, stop_upper=0.01, stop_stiffness=1e4)) == []
-
-
-def test_a_branch_without_a_time_of_its_own_and_a_straight_curve_are_plain_parts() -> None:
-    slow = Model(
-        "none",
-        {"inertance": 60.0, "branch_stiffness_1": 2e3, "branch_time_1": 12.0},
-        ("inertance", "branch_stiffness_1", "branch_time_1"),
-    )
-    (spring,) = as_plain_part(slow, 20.0, 3.0)
-    assert spring.values["stiffness"] == 2e3
-    assert set(spring.free) == {"inertance", "stiffness", "force_offset"}
-    assert as_plain_part(slow, 30.0, 3.0) == []
-    quick = Model("none", {**slow.values, "branch_time_1": 0.004, "viscous": 3.0}, slow.free)
-    (damper,) = as_plain_part(quick, 20.0, 3.0)
-    assert damper.values["viscous"] == 3.0 + 2e3 * 0.004
-    assert set(damper.free) == {"inertance", "viscous"}
-    assert as_plain_part(quick, 20.0, 60.0) == []
-    both = quick.adding(None, branch_stiffness_2=5e3, branch_time_2=1.0)
-    (damper,) = as_plain_part(both, 20.0, 3.0)
-    assert (damper.values["branch_stiffness_1"], damper.values["branch_time_1"]) == (5e3, 1.0)
-    assert damper.device().branch_stiffness_1 == 5e3
-
-    nodes = {f"force_node_{i}": 5.0 + 2.0 * i for i in range(1, 8)}
-    ends = {"curve_lower": -0.03, "curve_upper": 0.03}
-    curve = Model("none", {"inertance": 60.0, **ends, **nodes}, ("inertance", *nodes))
-    plain, hard = as_plain_part(curve, 20.0, 3.0)
-    assert plain.values["stiffness"] == pytest.approx(200.0)
-    assert plain.values["force_offset"] == pytest.approx(13.0)
-    assert set(hard.free) - set(plain.free) == {"stiffness_cubic"}
-    assert plain.values.keys().isdisjoint(nodes)
-
-
-def test_a_shaft_is_rigid_or_a_spring_where_it_does_not_follow() -> None:
-    values = {"inertance": 2.0, "series_frequency": 0.5, "series_loss": 0.1, "viscous": 3.0}
-    soft = Model("none", values, tuple(values))
-    rigid, spring = as_plain_part(soft, 20.0, 3.0)
-    assert set(rigid.free) == {"inertance", "viscous"}
-    assert spring.values["stiffness"] == pytest.approx(2.0 * np.pi**2)
-    assert set(spring.free) == {"inertance", "viscous", "stiffness", "force_offset"}
-    assert spring.values["inertance"] == 0.0
-    assert len(as_plain_part(soft.holding(series_frequency=5.0), 20.0, 3.0)) == 1
-    assert as_plain_part(soft.adding(None, backlash=1e-3), 20.0, 3.0) == []
-
-
-def test_a_slow_shaft_that_never_settles_is_any_slow_sine() -> None:
-    values = {"inertance": 2.0, "series_frequency": 2.0, "series_loss": 1e-3}
-    shaft = Model("none", values, tuple(values))
-    assert swings_on(shaft, 20.0, 3.0)
-    assert not swings_on(shaft, 200.0, 3.0)
-    assert not swings_on(shaft, 20.0, 0.5)
-    assert not swings_on(shaft.holding(series_loss=0.1), 20.0, 3.0)
-    assert not swings_on(shaft.adding(None, backlash=1e-3), 20.0, 3.0)
-    assert not swings_on(shaft.without(("series_frequency", "series_loss")), 20.0, 3.0)
-
-
-def test_the_spring_of_a_bouc_wen_law_stands_beside_another_law() -> None:
-    own = BASELINE.adding(
-        "bouc_wen", bw_level=20.0, presliding=1e-3, bw_shape=0.6, bw_exponent=1.0, bw_ratio=0.05
-    )
-    (beside,) = with_own_spring(own)
-    assert (beside.friction, beside.complexity) == ("dahl", own.complexity - 2)
-    # over long strokes both forces are a spring and a level; alike they begin
-    device, other = own.device(), beside.device()
-    far = np.linspace(0.05, 0.1, 101)
-    one, two = (each.along(1e-3, far, 0 * far + 0.5, 0 * far) for each in (device, other))
-    slopes = [np.ptp(each["total"][50:]) / np.ptp(far[50:]) for each in (one, two)]
-    assert slopes[1] == pytest.approx(slopes[0], rel=1e-3)
-    assert with_own_spring(BASELINE.adding("dahl", coulomb_force=20.0, presliding=1e-3)) == []
-
-
 @pytest.mark.parametrize(("error", "told"), [(0.01, True), (0.3, True), (0.4, False), (2.0, False)])
 def test_a_peak_of_less_than_three_standard_errors_is_none(error: float, told: bool) -> None:
     model = BASELINE.adding(
@@ -187,23 +101,6 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
 def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
     model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)
     assert is_distinct("hysteretic_friction", fitted(model), BASELINE) is told
-
-
-def test_a_level_and_a_constant_force_may_be_friction_that_differs_between_directions() -> None:
-    both = BASELINE.adding("coulomb", coulomb_force=20.0, force_offset=-4.0, stiffness=1e3)
-    (one,) = as_one(both)
-    assert one.values["friction_asymmetry"] == -0.2
-    assert one.values["coulomb_force"] == 20.0
-    assert one.values["stiffness"] == 1e3
-    assert "force_offset" not in one.values
-    assert one.complexity == both.complexity
-    assert [name for name, _ in effects_of(one, BASELINE)] == [
-        "asymmetric_friction",
-        "parallel_stiffness",
-    ]
-    # there has to be a level, and a constant force that is not stated
-    assert as_one(BASELINE.adding(force_offset=-4.0)) == []
-    assert as_one(one) == []
 
 
 def test_every_friction_law_may_drift_and_those_with_a_level_vary() -> None:

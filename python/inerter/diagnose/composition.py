@@ -28,30 +28,11 @@ from inerter.identify.model import Model
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
 
-_SHAFT = EFFECTS["series_elasticity"].coordinates
-
 
 def has_series(model: Model) -> bool:
     """Whether a model has a series element."""
     names = ("series_frequency", "series_stiffness", "series_damping")
     return any(name in model.values for name in names)
-
-
-def _has_plain_shaft(model: Model) -> bool:
-    """Whether a shaft without play is searched for."""
-    return set(_SHAFT) <= set(model.free) and "backlash" not in model.values
-
-
-def swings_on(model: Model, longest: float, frequency: float) -> bool:
-    """Whether a shaft swings by itself through the longest run [s], about as slowly as the motion.
-
-    How it began is free: it stands for any slow sine, and only one that dies away is told from it.
-    """
-    if not _has_plain_shaft(model):
-        return False
-    swings = model.values["series_frequency"]
-    lasting = 2 * np.pi * swings * model.values["series_loss"] * longest < 1.0
-    return bool(lasting and swings < 2.0 * frequency)
 
 
 def is_local(effect: str) -> bool:
@@ -168,7 +149,6 @@ LAW_EFFECT = {law.name: law.effect for law in FRICTION.values() if law.effect}
 """The effect that each friction law is named as."""
 _DAMPERS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "damper")
 """Effects that change a viscous damping, which belongs to them."""
-_FORCE = next(each for each in QUANTITIES if each.name == "force")
 _LEVELS = tuple(name for name, effect in EFFECTS.items() if effect.kind == "level")
 
 
@@ -273,7 +253,7 @@ def submodel(model: Model, effects: Sequence[str], baseline: Model) -> Model:
     # a level came with the variation that it is known by, where the baseline has none to vary
     alone = not laws and not kept_levels and not FRICTION[baseline.friction].varies
     if (laws and laws[0] in dropped) or alone:
-        level, _ = _level_and_distance(model)
+        level, _ = level_and_distance(model)
         names.update(LAW_COORDINATES)
         if not all(carries(baseline.friction, name) for name in kept_levels):
             # without its law, a level that varies needs Coulomb friction to act on
@@ -308,7 +288,7 @@ def _restored(bare: Model, names: Iterable[str], baseline: Model) -> Model:
     return Model(bare.friction, {**bare.values, **stated}, bare.free + free, bare.texts)
 
 
-def _level_and_distance(model: Model) -> tuple[float, float | None]:
+def level_and_distance(model: Model) -> tuple[float, float | None]:
     """Friction level [N] and pre-sliding distance [m], or what comes nearest to them in the law."""
     values = model.values
     device = model.device()
@@ -319,83 +299,9 @@ def _level_and_distance(model: Model) -> tuple[float, float | None]:
     return values.get("coulomb_force", values.get("bw_level", 0.0)), values.get("presliding")
 
 
-def as_one(model: Model) -> list[Model]:
-    """The model with one cause in the place of two that do the same.
-
-    Friction that differs between the directions is a level and a constant force, but at rest.
-    """
-    level = model.values.get("coulomb_force", 0.0)
-    uneven = "friction_asymmetry" in model.values
-    if model.friction != "coulomb" or "force_offset" not in model.free or uneven or level <= 0:
-        return []
-    share = float(np.clip(model.values["force_offset"] / level, -0.9, 0.9))
-    return [model.without(("force_offset",)).adding(friction_asymmetry=share)]
-
-
-def as_spring(model: Model) -> list[Model]:
-    """A spring in the place of two stops: where these meet nothing moves freely between them."""
-    if not {"stop_lower", "stop_upper"} <= set(model.free):
-        return []
-    stiffness = model.values["stop_stiffness"]
-    middle = 0.5 * (model.values["stop_lower"] + model.values["stop_upper"])
-    spring = {
-        "stiffness": model.values.get("stiffness", 0.0) + stiffness,
-        "force_offset": model.values.get("force_offset", 0.0) - stiffness * middle,
-    }
-    return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
-
-
-def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
-    """A damper, or a spring with any zero, in the place of what may be no more, plainest first.
-
-    That is a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
-    of this frequency [Hz], a curve of the force, and a shaft on which little turns or so softly
-    that it does not follow the motion.
-    """
-    found = []
-    if "inertance" in model.free and _has_plain_shaft(model):
-        rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
-        found.append(rigid)
-        if swings < frequency:
-            stiffness = model.values["inertance"] * (2 * np.pi * swings) ** 2
-            found.append(_with_spring(rigid.holding(inertance=0.0), stiffness, 0.0))
-    for number in (1, 2):
-        stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
-        if stiffness not in model.free:
-            continue
-        size, lasts = model.values[stiffness], model.values[time]
-        bare = _without_branch(model, number)
-        if lasts > 0.5 * longest:
-            found.append(_with_spring(bare, size, 0.0))
-        elif 2 * np.pi * frequency * lasts < 1.0:
-            damping = model.values.get("viscous", 0.0) + size * lasts
-            found.append(bare.adding(None, viscous=damping))
-    nodes = [name for name in _FORCE.nodes if name in model.values]
-    if not set(nodes).isdisjoint(model.free):
-        places = np.linspace(model.values["curve_lower"], model.values["curve_upper"], len(nodes))
-        slope, offset = np.polyfit(places, [model.values[name] for name in nodes], 1)
-        spring = _with_spring(model.without(nodes), float(slope), float(offset))
-        found += [spring, spring.adding(None, stiffness_cubic=0.0)]
-    return found
-
-
-def _without_branch(model: Model, number: int) -> Model:
-    """A model without one of its branches; the second takes the place of the first."""
-    first, second = (tuple(f"branch_{name}_{i}" for name in ("stiffness", "time")) for i in (1, 2))
-    if number == 1 and second[0] in model.free:
-        moved = {a: model.values[b] for a, b in zip(first, second, strict=True)}
-        return model.without((*first, *second)).adding(None, **moved)
-    return model.without(first if number == 1 else second)
-
-
-def _with_spring(model: Model, stiffness: float, offset: float) -> Model:
-    more = {"stiffness": stiffness, "force_offset": offset}
-    return model.adding(None, **{name: model.values.get(name, 0.0) + more[name] for name in more})
-
-
 def simpler_laws(model: Model) -> list[Model]:
     """The model under each friction law with fewer parameters."""
-    level, presliding = _level_and_distance(model)
+    level, presliding = level_and_distance(model)
     known = dict(model.values) | {"coulomb_force": level} | width(model)
     if presliding:
         known["presliding"] = presliding
@@ -408,13 +314,3 @@ def simpler_laws(model: Model) -> list[Model]:
             kept = bare if name in BRISTLES else bare.without(PLAY_COORDINATES)
             simpler.append(kept.adding(name, **{each: known[each] for each in names}))
     return simpler
-
-
-def with_own_spring(model: Model) -> list[Model]:
-    """Dahl friction beside a spring in the place of Bouc-Wen friction, whose law has a spring."""
-    level, presliding = _level_and_distance(model)
-    if "bw_ratio" not in model.free or not presliding:
-        return []
-    spring = model.device().bw_ratio * model.device().bw_stiffness
-    bare = model.without(LAW_COORDINATES, "none")
-    return [bare.adding("dahl", coulomb_force=level, presliding=presliding, stiffness=spring)]

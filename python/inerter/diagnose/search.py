@@ -19,17 +19,12 @@ from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
-    as_one,
-    as_plain_part,
-    as_spring,
     effects_of,
     is_blur,
     is_distinct,
     is_local,
     is_shaft,
     simpler_laws,
-    swings_on,
-    with_own_spring,
     within_blur,
     without_effect,
 )
@@ -37,6 +32,7 @@ from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_neede
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, other_filter, where_late
 from inerter.diagnose.parallel import parallel
+from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.tone import Witness, tone_candidate
 from inerter.diagnose.trials import FAR, Trials

@@ -1,0 +1,147 @@
+"""Models that may say the same with less: a spring for a curve, one cause for two, and the like.
+
+The search comes upon the rich part first where the plain one is of no use alone: a gas spring, say,
+beside a constant force that hides where its gas is at rest.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from inerter.catalogue.along_stroke import QUANTITIES
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.friction import LAW_COORDINATES
+from inerter.diagnose.composition import level_and_distance
+from inerter.diagnose.statistics import Array
+from inerter.identify.model import Model
+
+_SHAFT = EFFECTS["series_elasticity"].coordinates
+_FORCE = next(each for each in QUANTITIES if each.name == "force")
+# between slow (1) and quick (1.4)
+_EXPONENT = 1.3
+
+
+def _has_plain_shaft(model: Model) -> bool:
+    """Whether a shaft without play is searched for."""
+    return set(_SHAFT) <= set(model.free) and "backlash" not in model.values
+
+
+def swings_on(model: Model, longest: float, frequency: float) -> bool:
+    """Whether a shaft swings by itself through the longest run [s], about as slowly as the motion.
+
+    How it began is free: it stands for any slow sine, and only one that dies away is told from it.
+    """
+    if not _has_plain_shaft(model):
+        return False
+    swings = model.values["series_frequency"]
+    lasting = 2 * np.pi * swings * model.values["series_loss"] * longest < 1.0
+    return bool(lasting and swings < 2.0 * frequency)
+
+
+def as_one(model: Model) -> list[Model]:
+    """The model with one cause in the place of two that do the same.
+
+    Friction that differs between the directions is a level and a constant force, but at rest.
+    """
+    level = model.values.get("coulomb_force", 0.0)
+    uneven = "friction_asymmetry" in model.values
+    if model.friction != "coulomb" or "force_offset" not in model.free or uneven or level <= 0:
+        return []
+    share = float(np.clip(model.values["force_offset"] / level, -0.9, 0.9))
+    return [model.without(("force_offset",)).adding(friction_asymmetry=share)]
+
+
+def as_spring(model: Model) -> list[Model]:
+    """A spring in the place of two stops: where these meet nothing moves freely between them."""
+    if not {"stop_lower", "stop_upper"} <= set(model.free):
+        return []
+    stiffness = model.values["stop_stiffness"]
+    middle = 0.5 * (model.values["stop_lower"] + model.values["stop_upper"])
+    spring = {
+        "stiffness": model.values.get("stiffness", 0.0) + stiffness,
+        "force_offset": model.values.get("force_offset", 0.0) - stiffness * middle,
+    }
+    return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
+
+
+def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
+    """A damper, or a spring with any zero, in the place of what may be no more, plainest first.
+
+    That is a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
+    of this frequency [Hz], a curve of the force, and a shaft on which little turns or so softly
+    that it does not follow the motion.
+    """
+    found = []
+    if "inertance" in model.free and _has_plain_shaft(model):
+        rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
+        found.append(rigid)
+        if swings < frequency:
+            stiffness = model.values["inertance"] * (2 * np.pi * swings) ** 2
+            found.append(_with_spring(rigid.holding(inertance=0.0), stiffness, 0.0))
+    for number in (1, 2):
+        stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
+        if stiffness not in model.free:
+            continue
+        size, lasts = model.values[stiffness], model.values[time]
+        bare = _without_branch(model, number)
+        if lasts > 0.5 * longest:
+            found.append(_with_spring(bare, size, 0.0))
+        elif 2 * np.pi * frequency * lasts < 1.0:
+            damping = model.values.get("viscous", 0.0) + size * lasts
+            found.append(bare.adding(None, viscous=damping))
+    return found + _as_law_of_the_place(model)
+
+
+def _as_law_of_the_place(model: Model) -> list[Model]:
+    """A spring, one that hardens, and a gas, each beside a constant force, for a curve of force."""
+    nodes = [name for name in _FORCE.nodes if name in model.values]
+    if set(nodes).isdisjoint(model.free):
+        return []
+    places = np.linspace(model.values["curve_lower"], model.values["curve_upper"], len(nodes))
+    forces = np.array([model.values[name] for name in nodes])
+    bare = model.without(nodes)
+    spring = _with_spring(bare, *np.polyfit(places, forces, 1))
+    found = [spring, spring.adding(None, stiffness_cubic=0.0)]
+    if places[0] < 0.0 and not {"gas_push", "gas_pressure"} & model.values.keys():
+        found += _as_gas(bare, places, forces)
+    return found
+
+
+def _as_gas(bare: Model, places: Array, forces: Array) -> list[Model]:
+    """The gas, among some heights of it, that comes nearest to forces at places below its rest."""
+    nearest, gas = np.inf, []
+    for ratio in (1.2, 1.6, 2.5, 5.0):
+        reach = -ratio * places[0]
+        columns = np.column_stack([1.0 - (1.0 + places / reach) ** -_EXPONENT, 0.0 * places + 1.0])
+        (push, offset), *_ = np.linalg.lstsq(columns, forces)
+        missed = float(np.sum((columns @ (push, offset) - forces) ** 2))
+        if push > 0.0 and missed < nearest:
+            nearest = missed
+            law = {"gas_push": float(push), "gas_reach": reach, "gas_exponent": _EXPONENT}
+            offset += bare.values.get("force_offset", 0.0)
+            gas = [bare.adding(None, **law, force_offset=float(offset))]
+    return gas
+
+
+def _without_branch(model: Model, number: int) -> Model:
+    """A model without one of its branches; the second takes the place of the first."""
+    first, second = (tuple(f"branch_{name}_{i}" for name in ("stiffness", "time")) for i in (1, 2))
+    if number == 1 and second[0] in model.free:
+        moved = {a: model.values[b] for a, b in zip(first, second, strict=True)}
+        return model.without((*first, *second)).adding(None, **moved)
+    return model.without(first if number == 1 else second)
+
+
+def _with_spring(model: Model, stiffness: float, offset: float) -> Model:
+    more = {"stiffness": stiffness, "force_offset": offset}
+    return model.adding(None, **{name: model.values.get(name, 0.0) + more[name] for name in more})
+
+
+def with_own_spring(model: Model) -> list[Model]:
+    """Dahl friction beside a spring in the place of Bouc-Wen friction, whose law has a spring."""
+    level, presliding = level_and_distance(model)
+    if "bw_ratio" not in model.free or not presliding:
+        return []
+    spring = model.device().bw_ratio * model.device().bw_stiffness
+    bare = model.without(LAW_COORDINATES, "none")
+    return [bare.adding("dahl", coulomb_force=level, presliding=presliding, stiffness=spring)]
