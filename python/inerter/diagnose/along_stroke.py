@@ -56,6 +56,13 @@ def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
             yield from _curved(quantity, fit.model, shown)
 
 
+def repeats(model: Model, sizes: Scales) -> bool:
+    """Whether every period that is fitted lies within the travel; a longer one is a curve."""
+    travel = sizes.travel[1] - sizes.travel[0]
+    lengths = {each.period(i)[0] for each in QUANTITIES for i in range(1, PERIODS + 1)}
+    return all(model.values[name] <= travel for name in lengths.intersection(model.free))
+
+
 def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -> Effect | None:
     """What a relative change of a quantity adds to the force; None where it cannot be asked for."""
     if any(f"{quantity.name}_{kind}" in model.texts for kind in ("curve", "periods")):
@@ -172,7 +179,7 @@ def _samples(problem: Problem, fit: Fit) -> tuple[Array, Array, Array, Array]:
 def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
     """Lengths [m] and amplitudes (2,) of the sines of the place that take most, the best first."""
     stroke = shown.ends[1] - shown.ends[0]
-    lines = np.arange(0.75 / stroke, 1 / (_FINEST * stroke), 1 / (_LINES * stroke))
+    lines = np.arange(1 / stroke, 1 / (_FINEST * stroke), 1 / (_LINES * stroke))
     gains, amplitudes = np.zeros(lines.size), np.zeros((lines.size, 2))
     for i, line in enumerate(lines):
         angle, rate = 2 * np.pi * line * shown.x, 2 * np.pi * line

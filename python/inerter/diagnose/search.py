@@ -272,7 +272,7 @@ class Search:
         self, pairs: Sequence[Fitted], folds: Folds, current: Scored, fitted: Sequence[Fitted]
     ) -> list[Scored]:
         """Fitted candidates on data left out, without those whose own values may be none."""
-        frequency = self.problem.scales.frequency
+        sizes = self.problem.scales
         scored = self.scores([(each.effect, each.law, fit) for each, fit in pairs], folds)
         return [
             s
@@ -280,7 +280,8 @@ class Search:
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
             and not self._is_shaft_alone(s)
-            and not (is_shaft(s.effect) and swings_on(s.model, self._longest, frequency))
+            and not (is_shaft(s.effect) and swings_on(s.model, self._longest, sizes.frequency))
+            and along_stroke.repeats(s.model, sizes)
         ]
 
     @property
