@@ -36,16 +36,20 @@ static void friction_forces(const InerterDevice* p, const FrictionPath* path, do
 }
 
 // force of the branches at the samples of a path, whose states are as those of friction
-static void branches_along(const InerterDevice* p, const FrictionPath* path, double* e,
-                           double* restrict forces) {
+static void branches_along(const InerterDevice* p, const FrictionPath* path, const double* a,
+                           double* e, double* restrict forces) {
   int size = path->last - path->first;
   memset(forces, 0, sizeof(double) * (size_t)size);
   for (int k = 0; k < p->nbranch; k++) {
     const double* branch = branch_element(p, k);
-    double time = branch[1] / branch[0], share = branch_share(time, path->h), now = e[k];
+    double driven[RESPONSES], rate = branch[0] / branch[1], now = e[k];
+    double left = elementary_exp(-rate * path->h);
+    decay_driven(rate, path->h, driven);
     for (int i = path->first; i < path->last; i++) {
       if (i) {
-        now += share * ((path->x[i] - path->x[i - 1]) / path->h * time - now);
+        Way way = way_between(path->x + i - 1, path->v + i - 1, a + i - 1, path->h);
+        now = left * now + driven[0] * way.v + driven[1] * way.a + driven[2] * way.jerk +
+              driven[3] * way.snap + driven[4] * way.crackle;
       }
       forces[i - path->first] += branch[0] * now;
       if (path->states) {
@@ -56,18 +60,17 @@ static void branches_along(const InerterDevice* p, const FrictionPath* path, dou
   }
 }
 
-// Force of the series element at the samples of a path; z: its states. It sees the cubic through
-// both samples: a stiff one carries b a.
-static void series_along(const InerterDevice* p, const FrictionPath* path, SeriesExact* steps,
-                         double* z, double* forces) {
+// Force of the series element at the samples of a path; z: its states.
+static void series_along(const InerterDevice* p, const FrictionPath* path, const double* a,
+                         SeriesExact* steps, double* z, double* forces) {
   const double *x = path->x, *v = path->v;
   double h = path->h;
   size_t count = has(p, PART_BACKLASH) ? 3 : 2;
   for (int i = path->first; i < path->last; i++) {
     if (i) {
-      Cubic way = cubic_between(x + i - 1, v + i - 1, h);
-      if (!series_exact(p, steps, v[i - 1], way.begin, way.jerk, z)) {
-        series_step(p, stretch_of(p, x[i - 1]), v[i - 1], way.begin, way.jerk, NULL, z, h);
+      Way way = way_between(x + i - 1, v + i - 1, a + i - 1, h);
+      if (!series_exact(p, steps, &way, z)) {
+        series_step(p, stretch_of(p, x[i - 1]), &way, NULL, z, h);
       }
     }
     forces[i - path->first] = series_force(p, v[i], z);
@@ -143,12 +146,12 @@ void blocks_along(const InerterDevice* p, int n, double h, const double* x, cons
     }
     if (has(p, PART_BRANCHES)) {
       path.states = states ? states + branch : NULL;
-      branches_along(p, &path, z + branch, relaxing);
+      branches_along(p, &path, a, z + branch, relaxing);
     }
     double* sum = total ? total + first : carried;
     if (has(p, PART_SERIES)) {
       path.states = states ? states + series : NULL;
-      series_along(p, &path, &steps, z + series, sum);
+      series_along(p, &path, a, &steps, z + series, sum);
     }
     if (!total) {
       continue;

@@ -10,6 +10,7 @@
 // mounts and seals. Not modelled: dependence on amplitude (Payne effect: see maxwell_slip.c) and on
 // temperature.
 
+#include "elementary.h"
 #include "laws.h"
 
 int branch_count(const InerterDevice* p) {
@@ -32,6 +33,20 @@ void branches_step(const InerterDevice* p, double v, double* e, double h) {
     const double* branch = branch_element(p, i);
     double time = branch[1] / branch[0];
     e[i] += branch_share(time, h) * (v * time - e[i]);
+  }
+}
+
+// along a motion
+void branches_follow(const InerterDevice* p, const Way* way, double* e, double h) {
+  const double rates[RESPONSES] = {way->v, way->a, way->jerk, way->snap, way->crackle};
+  for (int i = 0; i < p->nbranch; i++) {
+    const double* branch = branch_element(p, i);
+    double driven[RESPONSES], rate = branch[0] / branch[1];
+    decay_driven(rate, h, driven);
+    e[i] *= elementary_exp(-rate * h);
+    for (int k = 0; k < RESPONSES; k++) {
+      e[i] += driven[k] * rates[k];
+    }
   }
 }
 

@@ -124,7 +124,7 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double 
     carried = branch_force(device, x, v, a, z);
   }
   if (has(device, PART_SERIES)) {
-    series_step(device, stretch, v, 0, 0, z, z + series_index(device), h);
+    series_step(device, stretch, &(Way){.v = v}, z, z + series_index(device), h);
     carried = bends ? 0.5 * (carried + branch_force(device, x, v, a, z)) : 0;
   }
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {

@@ -117,15 +117,32 @@ typedef struct Tangent_ {
   double slope;
 } Tangent;
 
-// the cubic through displacement and velocity at two samples h seconds apart: its acceleration at
-// the first, and the rate of that
-typedef struct Cubic_ {
-  double begin, jerk;
-} Cubic;
+// a motion from a time on: its velocity then, and the rates of that
+typedef struct Way_ {
+  double v, a, jerk, snap, crackle;
+} Way;
 
-static inline Cubic cubic_between(const double* x, const double* v, double h) {
-  double mean = (x[1] - x[0]) / h;
-  return (Cubic){(6 * mean - 4 * v[0] - 2 * v[1]) / h, 6 * (v[0] + v[1] - 2 * mean) / (h * h)};
+// the quintic through displacement, velocity and acceleration at two samples h seconds apart
+static inline Way way_between(const double* x, const double* v, const double* a, double h) {
+  double rest = (x[1] - x[0]) / h - v[0] - 0.5 * h * a[0], turn = v[1] - v[0] - h * a[0];
+  double bend = 0.5 * h * (a[1] - a[0]), square = h * h;
+  return (Way){v[0], a[0], 6 * (10 * rest - 4 * turn + bend) / square,
+               24 * (7 * turn - 15 * rest - 2 * bend) / (square * h),
+               120 * (6 * rest - 3 * turn + bend) / (square * square)};
+}
+static inline double way_travel(const Way* w, double t) {
+  return t *
+         (w->v + t * (w->a / 2 + t * (w->jerk / 6 + t * (w->snap / 24 + t * w->crackle / 120))));
+}
+static inline double way_speed(const Way* w, double t) {
+  return w->v + t * (w->a + t * (w->jerk / 2 + t * (w->snap / 6 + t * w->crackle / 24)));
+}
+static inline double way_acceleration(const Way* w, double t) {
+  return w->a + t * (w->jerk + t * (w->snap / 2 + t * w->crackle / 6));
+}
+static inline Way way_after(const Way* w, double t) {
+  return (Way){way_speed(w, t), way_acceleration(w, t),
+               w->jerk + t * (w->snap + t * w->crackle / 2), w->snap + t * w->crackle, w->crackle};
 }
 
 static inline double clamp(double value, double lower, double upper) {
@@ -288,6 +305,7 @@ static inline double branch_share(double time, double h) {
 int branch_count(const InerterDevice* p);
 void branches_rate(const InerterDevice* p, double v, const double* e, double* rate);
 void branches_step(const InerterDevice* p, double v, double* e, double h);
+void branches_follow(const InerterDevice* p, const Way* way, double* e, double h);
 double branches_force(const InerterDevice* p, const double* e);
 double branches_over_step(const InerterDevice* p, double v1, double* e, double h, double mobility);
 double branches_energy(const InerterDevice* p, const double* e);
@@ -320,15 +338,19 @@ typedef struct Oscillator_ {
   double push, drift;  // force that deflects the spring, and its rate
 } Oscillator;
 
-// what its free oscillation does in a time: cos and sin / frequency, or their hyperbolic sisters
+// what it does in a time: by itself, cos and sin / frequency or their hyperbolic sisters, and where
+// t^k / k! drives it from rest
+enum { RESPONSES = 5 };
 typedef struct Swing_ {
   double time, decay, scale, even, odd;
+  double driven[RESPONSES];
 } Swing;
 
 Swing oscillator_swing(const Oscillator* o, double t);
-void oscillator_swung(const Oscillator* o, const Swing* swing, double v, double a, double jerk,
-                      double* z);
-void oscillator_step(const Oscillator* o, double v, double a, double jerk, double t, double* z);
+void oscillator_swung(const Oscillator* o, const Swing* swing, const Way* way, double* z);
+void oscillator_step(const Oscillator* o, const Way* way, double t, double* z);
+// what decays with a rate after a time, where t^k / k! drives it from 0
+void decay_driven(double rate, double t, double* driven);
 
 // what a loose flywheel does in a time: its way per velocity [s], what is left of a deflection
 typedef struct Slide_ {
@@ -348,21 +370,23 @@ typedef struct SeriesExact_ {
 } SeriesExact;
 
 void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps);
-int series_exact(const InerterDevice* p, SeriesExact* steps, double v, double a, double jerk,
-                 double* z);
+int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z);
 
 // series_frozen.c: the same of varying coefficients, where less than `most` parts are enough
-int series_frozen(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
-                  double h, int most);
+int series_frozen(const InerterDevice* p, double x, const Way* way, double* z, double h, int most);
 
-// series_step.c: into how many parts a step of h seconds is divided; states after a time h from x,
-// v, acceleration a and its rate; force over a step and states at its end, where the velocity is v,
+// series_step.c: into how many parts a step of h seconds is divided; states after a time h from x
+// on a way; force over a step and states at its end, where the velocity is v,
 // for a mobility of the terminals. bristle: state of a friction law at the flywheel; drag: what
 // friction at the flywheel takes of the force; carried: what is left for the inertance
 double series_parts(const InerterDevice* p, double stiffness, double inertance, double h);
-enum { SERIES_MOST_PARTS = 256 };  // from there on a step is not resolved
-void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
-                 double* z, double h);
+// from there on a step is not resolved: one behind a play, whose contacts have to be seen
+enum { SERIES_MOST_PARTS = 256 };
+static inline double series_most_parts(const InerterDevice* p) {
+  return has(p, PART_BACKLASH) ? SERIES_MOST_PARTS : 1e8;
+}
+void series_step(const InerterDevice* p, double x, const Way* way, double* bristle, double* z,
+                 double h);
 double series_over_step(const InerterDevice* p, double x, double v, double* bristle, double* z,
                         double h, double mobility, double* drag);
 

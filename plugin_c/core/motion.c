@@ -22,18 +22,18 @@ static double middle_load(const InerterDevice* device, const double* x, const do
 }
 
 // States from one sample to the next, h later. A bristle sees the mean velocity at the middle,
-// which keeps its path; a series element sees the cubic through both samples: a stiff one carries
-// b a.
+// which keeps its path; a series element and branches see the quintic through both samples: a
+// stiff shaft carries b a.
 static void step_between(const InerterDevice* device, const double* x, const double* v,
                          const double* a, double* z, double h) {
   double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
   double before = middle_load(device, x, v, a, z);
+  Way way = way_between(x, v, a, h);
   if (has(device, PART_BRANCHES)) {
-    branches_step(device, mean, z + branch_index(device), h);
+    branches_follow(device, &way, z + branch_index(device), h);
   }
   if (has(device, PART_SERIES)) {
-    Cubic way = cubic_between(x, v, h);
-    series_step(device, start, v[0], way.begin, way.jerk, z, z + series_index(device), h);
+    series_step(device, start, &way, z, z + series_index(device), h);
   }
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
     double middle = stretch_of(device, 0.5 * (x[1] + x[0]));

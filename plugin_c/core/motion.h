@@ -11,9 +11,9 @@ extern "C" {
 
 // Force of one device at each sample of a motion x, v, a (n samples each), sample spacing h [s].
 // The states start at z (in: initial, out: final; NULL: 0) and are stepped from sample to sample,
-// to second order: at the mean velocity (x[i+1] - x[i]) / h, which keeps the path of
-// rate-independent laws, and for a series element with the change of v. total, friction (n each),
-// states (n x nstate) may be NULL.
+// a bristle to second order, at the mean velocity (x[i+1] - x[i]) / h, which keeps the path of
+// rate-independent laws; a series element and branches along the quintic through x, v and a of both
+// samples. total, friction (n each), states (n x nstate) may be NULL.
 INERTER_API void inerter_along(const InerterDevice* device, int n, double h, const double* x,
                                const double* v, const double* a, double* z, double* total,
                                double* friction, double* states);

@@ -1,17 +1,96 @@
-// A flywheel on a linear spring along a cubic motion of the terminals, exact.
+// A flywheel on a linear spring along a motion of the terminals, exact for a quintic.
 //
 //   m s'' + c s' + k s = m a(t) + c_w v(t) + e + e' t,   w = v - s'
 //
-// The right side is a polynomial of second order in time: s is a polynomial and a free oscillation.
+// The right side over m is a sum of f_k t^k / k!, and s what it would be without and f_k G_k(t),
+// where G_k answers t^k / k! from rest: G_k' = G_k-1, with G_-1 the answer to a blow.
+//
+//   k / m G_k + c / m G_k-1 + G_k-2 = t^k / k!
+//
+// Upwards this loses digits where little turns in a step, there G_4 and G_3 are sums of powers and
+// it is gone down; where the spring is slow beside its damper each of both decays is taken alone.
+// A step that does not resolve the oscillation settles: s is the polynomial that the motion drives.
 //
 // m [kg] mass, k > 0 [N/m] stiffness, c [N s/m] damping of the spring and of the flywheel, c_w of
 // the flywheel alone; e [N], e' [N/s] a force that deflects the spring; s [m] deflection, w [m/s]
 // velocity of the flywheel.
-// Source: linear oscillator.
+// Source: linear oscillator; phi functions of exponential integrators (Hochbruck, Ostermann 2010).
 
 #include "laws.h"
 
 enum { S, W };  // places in z
+
+static const double kFactorial[] = {1, 1, 2, 6, 24, 120, 720};
+
+// turns [rad] of a step from which on it is not resolved
+static const double kUnresolved = 16.0;
+// turns of a step below which powers are summed, and how many at most
+static const double kShort = 2.0;
+enum { MOST_POWERS = 40 };
+
+void decay_driven(double rate, double t, double* driven) {
+  double power[RESPONSES];  // t^k / k!
+  power[0] = 1;
+  for (int k = 1; k < RESPONSES; k++) {
+    power[k] = power[k - 1] * t / k;
+  }
+  if (rate * t > kShort) {
+    double below = exp(-rate * t);
+    for (int k = 0; k < RESPONSES; k++) {
+      below = driven[k] = (power[k] - below) / rate;
+    }
+    return;
+  }
+  double term = power[RESPONSES - 1] * t / RESPONSES, sum = term;
+  for (int n = 1; n < MOST_POWERS && fabs(term) > 1e-17 * fabs(sum); n++) {
+    term *= -rate * t / (n + RESPONSES);
+    sum += term;
+  }
+  driven[RESPONSES - 1] = sum;
+  for (int k = RESPONSES - 1; k > 0; k--) {
+    driven[k - 1] = power[k] - rate * driven[k];
+  }
+}
+
+static void find_driven(const Oscillator* o, Swing* swing) {
+  double t = swing->time, damping = o->damping / o->mass, stiffness = o->stiffness / o->mass;
+  double* driven = swing->driven;
+  double turns = damping * t + sqrt(stiffness) * t, decay = swing->decay;
+  if (turns < kShort) {
+    // powers of an answer to a blow: 0, 1, and what the equation makes of them
+    double before = 0, now = 1, bound = 1, power = t * t * t * t * t / 120;
+    driven[3] = driven[4] = 0;
+    for (int n = 1; n < MOST_POWERS && bound > 1e-17; n++) {
+      driven[3] += now * power;
+      driven[4] += now * power * t / (n + 5);
+      double next = -damping * now - stiffness * before;
+      before = now;
+      now = next;
+      power *= t / (n + 5);
+      bound *= turns / (n + 5);
+    }
+    for (int k = 4; k > 1; k--) {
+      double force = pow(t, k) / kFactorial[k];
+      driven[k - 2] = force - damping * driven[k - 1] - stiffness * driven[k];
+    }
+  } else if (decay * decay > 1.5 * stiffness) {
+    double rate = sqrt(decay * decay - stiffness), quick[RESPONSES], slow[RESPONSES];
+    decay_driven(decay + rate, t, quick);
+    decay_driven(stiffness / (decay + rate), t, slow);
+    for (int k = 0; k < RESPONSES; k++) {
+      driven[k] = 0.5 * (slow[k] - quick[k]) / rate;
+    }
+  } else {
+    double power = 1, blow = swing->scale * swing->odd;
+    double two = swing->scale * (swing->even - decay * swing->odd), one = blow;
+    for (int k = 0; k < RESPONSES; k++) {
+      power *= k ? t / k : 1;
+      driven[k] = (power - damping * one - two) / stiffness;
+      two = one;
+      one = driven[k];
+    }
+  }
+}
 
 Swing oscillator_swing(const Oscillator* o, double t) {
   double decay = 0.5 * o->damping / o->mass, square = o->stiffness / o->mass - decay * decay;
@@ -30,7 +109,12 @@ Swing oscillator_swing(const Oscillator* o, double t) {
     odd = 0.5 * (slow - fast) / rate;
     scale = 1;
   }
-  return (Swing){t, decay, scale, even, odd};
+  if (square > 0 && o->stiffness / o->mass * t * t > kUnresolved * kUnresolved) {
+    scale = 0;  // a ring that no sample shows has died away
+  }
+  Swing swing = {t, decay, scale, even, odd, {0}};
+  find_driven(o, &swing);
+  return swing;
 }
 
 // free oscillation from value u and rate r: value and rate at its end
@@ -41,23 +125,23 @@ static void oscillate(const Oscillator* o, const Swing* swing, double* u, double
   *r = swing->scale * (speed * swing->even - pull * swing->odd);
 }
 
-void oscillator_swung(const Oscillator* o, const Swing* swing, double v, double a, double jerk,
-                      double* z) {
-  double t = swing->time;
-
-  // the polynomial that the motion drives
-  double two = 0.5 * o->lost * jerk / o->stiffness;
-  double one = (o->mass * jerk + o->lost * a + o->drift - 2 * o->damping * two) / o->stiffness;
-  double zero =
-      (o->mass * a + o->lost * v + o->push - o->damping * one - 2 * o->mass * two) / o->stiffness;
-
-  double u = z[S] - zero, r = v - z[W] - one;
+void oscillator_swung(const Oscillator* o, const Swing* swing, const Way* way, double* z) {
+  double lost = o->lost / o->mass, u = z[S], r = way->v - z[W];
+  double force[RESPONSES] = {
+      way->a + lost * way->v + o->push / o->mass, way->jerk + lost * way->a + o->drift / o->mass,
+      way->snap + lost * way->jerk, way->crackle + lost * way->snap, lost * way->crackle};
   oscillate(o, swing, &u, &r);
-  z[S] = zero + (one + two * t) * t + u;
-  z[W] = v + (a + 0.5 * jerk * t) * t - (one + 2 * two * t + r);
+  double below = swing->scale * swing->odd;
+  for (int k = 0; k < RESPONSES; k++) {
+    r += below * force[k];
+    below = swing->driven[k];
+    u += below * force[k];
+  }
+  z[S] = u;
+  z[W] = way_speed(way, swing->time) - r;
 }
 
-void oscillator_step(const Oscillator* o, double v, double a, double jerk, double t, double* z) {
+void oscillator_step(const Oscillator* o, const Way* way, double t, double* z) {
   Swing swing = oscillator_swing(o, t);
-  oscillator_swung(o, &swing, v, a, jerk, z);
+  oscillator_swung(o, &swing, way, z);
 }

@@ -1,4 +1,5 @@
-// Steps of a linear series element (series.c) along a cubic motion, exact while contact stays.
+// Steps of a linear series element (series.c) along a motion (a quintic), exact while contact
+// stays.
 //
 //   in contact:  b s'' + (c_s + c_w) s' + k_s (s - gap) = b a(t) + c_w v(t),  w = v - s'
 //   loose:       w' = -c_w w / b,  d' = -k_s d / c_s,  s' = v - w
@@ -26,7 +27,7 @@ static int is_linear(const InerterDevice* p) {
 
 void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps) {
   steps->holds = is_linear(p) && h >= 0 && !has(p, PART_WHEEL_FRICTION) &&
-                 series_parts(p, p->series_stiffness, p->inertance, h) < SERIES_MOST_PARTS;
+                 series_parts(p, p->series_stiffness, p->inertance, h) < series_most_parts(p);
   if (steps->holds) {
     steps->h = h;
     steps->has_swings = steps->has_slides = 0;
@@ -38,10 +39,10 @@ void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps) {
 }
 
 // s and w after a swing in contact at a play's position
-static void contact(const SeriesExact* steps, const Swing* swing, double v, double a, double jerk,
-                    double gap, double* z) {
+static void contact(const SeriesExact* steps, const Swing* swing, const Way* way, double gap,
+                    double* z) {
   z[S] -= gap;
-  oscillator_swung(&steps->oscillator, swing, v, a, jerk, z);
+  oscillator_swung(&steps->oscillator, swing, way, z);
   z[S] += gap;
 }
 
@@ -51,11 +52,10 @@ static Slide slide_over(const InerterDevice* p, double t) {
   return (Slide){t, rate * t > 1e-8 ? -expm1(-rate * t) / rate : t,
                  p->series_damping > 0 ? exp(-p->series_stiffness * t / p->series_damping) : 0};
 }
-static void loose(const InerterDevice* p, const Slide* slide, double v, double a, double jerk,
-                  double* z) {
-  double rate = p->flywheel_viscous / p->inertance, t = slide->time, w = z[W];
+static void loose(const InerterDevice* p, const Slide* slide, const Way* way, double* z) {
+  double rate = p->flywheel_viscous / p->inertance, w = z[W];
   double d = p->series_damping > 0 ? (z[S] - z[GAP]) * slide->fade : 0;
-  z[S] += (v + (0.5 * a + jerk * t / 6) * t) * t - w * slide->run;
+  z[S] += way_travel(way, slide->time) - w * slide->run;
   z[W] = w - rate * w * slide->run;
   z[GAP] = z[S] - d;
 }
@@ -76,31 +76,29 @@ static void find_slides(const InerterDevice* p, SeriesExact* steps) {
   }
 }
 
-int series_exact(const InerterDevice* p, SeriesExact* steps, double v, double a, double jerk,
-                 double* z) {
+int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z) {
   if (!steps->holds) {
     return 0;
   }
   if (!has(p, PART_BACKLASH)) {
     find_swings(steps, 0);
-    contact(steps, &steps->swing, v, a, jerk, 0, z);
+    contact(steps, &steps->swing, way, 0, z);
     return 1;
   }
   double gap = series_gap(p, z), end[3] = {z[S], z[W], gap}, middle[3] = {z[S], z[W], gap};
   int side = (gap >= p->backlash) - (gap <= -p->backlash);
-  double h = steps->h, half = 0.5 * h, midway = v + (a + 0.5 * jerk * half) * half;
-  double last = v + (a + 0.5 * jerk * h) * h;
+  double v = way->v, midway = way_speed(way, 0.5 * steps->h), last = way_speed(way, steps->h);
   if (side == 0) {
     find_slides(p, steps);
-    loose(p, &steps->half_slide, v, a, jerk, middle);
-    loose(p, &steps->slide, v, a, jerk, end);
+    loose(p, &steps->half_slide, way, middle);
+    loose(p, &steps->slide, way, end);
     if (fabs(middle[GAP]) >= p->backlash || fabs(end[GAP]) >= p->backlash) {
       return 0;
     }
   } else {
     find_swings(steps, 1);
-    contact(steps, &steps->half_swing, v, a, jerk, gap, middle);
-    contact(steps, &steps->swing, v, a, jerk, gap, end);
+    contact(steps, &steps->half_swing, way, gap, middle);
+    contact(steps, &steps->swing, way, gap, end);
     if (!(side * contact_force(p, v, (double[]){z[S], z[W], gap}) > 0 &&
           side * contact_force(p, midway, middle) > 0 && side * contact_force(p, last, end) > 0)) {
       return 0;

@@ -64,20 +64,19 @@ static double change(const InerterDevice* p, const Coefficients* start, const Co
 
 // one step in contact at a play's side (0: there is no play); how much the coefficients changed,
 // infinite where there is no oscillation or contact is lost
-static double frozen(const InerterDevice* p, double x, double v, double a, double jerk, double h,
-                     int side, double* z) {
+static double frozen(const InerterDevice* p, double x, const Way* way, double h, int side,
+                     double* z) {
   double half = 0.5 * h, gap = side * p->backlash, middle[2] = {z[S] - gap, z[W]};
-  Coefficients start = coefficients(p, x, v, gap, z);
+  Coefficients start = coefficients(p, x, way->v, gap, z);
   if (!(start.spring_slope > 0)) {
     return INFINITY;
   }
   Oscillator o = oscillator(p, &start);
-  oscillator_step(&o, v, a, jerk, half, middle);
+  oscillator_step(&o, way, half, middle);
   middle[S] += gap;
 
-  double midway = x + (v + (0.5 * a + jerk * half / 6) * half) * half;
-  double v_middle = v + (a + 0.5 * jerk * half) * half;
-  Coefficients there = coefficients(p, midway, v_middle, gap, middle);
+  double midway = x + way_travel(way, half);
+  Coefficients there = coefficients(p, midway, way_speed(way, half), gap, middle);
   if (!(there.spring_slope > 0)) {
     return INFINITY;
   }
@@ -86,10 +85,9 @@ static double frozen(const InerterDevice* p, double x, double v, double a, doubl
   o.drift = (there.varying - before) / half;
   o.push -= o.drift * half;
   double step = midway - middle[S] - (x - z[S]), end[2] = {z[S] - gap, z[W]};
-  oscillator_step(&o, v, a, jerk, h, end);
+  oscillator_step(&o, way, h, end);
   if (side) {
-    double last = series_spring(p, end[S]).value +
-                  p->series_damping * (v + (a + 0.5 * jerk * h) * h - end[W]);
+    double last = series_spring(p, end[S]).value + p->series_damping * (way_speed(way, h) - end[W]);
     if (!(side * start.force > 0 && side * there.force > 0 && side * last > 0)) {
       return INFINITY;
     }
@@ -101,17 +99,15 @@ static double frozen(const InerterDevice* p, double x, double v, double a, doubl
 
 // one step within the play, in which only the flywheel's own forces change its velocity; 0 and
 // nothing done where the play is used up
-static int loose(const InerterDevice* p, double x, double v, double a, double jerk, double h,
-                 double* z) {
+static int loose(const InerterDevice* p, double x, const Way* way, double h, double* z) {
   double d = z[S] - z[GAP], half = 0.5 * h, rest;
   double mass = inertance_felt(p, x - z[S], z[W], &rest);
   double w = z[W] - half * (rest + flywheel_force(p, x - z[S], z[W])) / mass;
-  double midway = x + (v + (0.5 * a + jerk * half / 6) * half) * half;
+  double midway = x + way_travel(way, half);
   double s = z[S] + midway - x - half * 0.5 * (z[W] + w);
   mass = inertance_felt(p, midway - s, w, &rest);
   double end = z[W] - h * (rest + flywheel_force(p, midway - s, w)) / mass;
-  double travel = (v + (0.5 * a + jerk * h / 6) * h) * h;
-  double s1 = z[S] + travel - h * 0.5 * (z[W] + end);
+  double s1 = z[S] + way_travel(way, h) - h * 0.5 * (z[W] + end);
 
   // the spring relaxes with the stiffness of its chord
   double fade = p->series_damping > 0 && d != 0
@@ -129,8 +125,7 @@ static int loose(const InerterDevice* p, double x, double v, double a, double je
 // parts in which the coefficients change by a sixteenth
 enum { PER_CHANGE = 16 };
 
-int series_frozen(const InerterDevice* p, double x, double v, double a, double jerk, double* z,
-                  double h, int most) {
+int series_frozen(const InerterDevice* p, double x, const Way* way, double* z, double h, int most) {
   if (h < 0) {
     return 0;
   }
@@ -139,11 +134,11 @@ int series_frozen(const InerterDevice* p, double x, double v, double a, double j
     double gap = series_gap(p, z);
     side = (gap >= p->backlash) - (gap <= -p->backlash);
     if (side == 0) {
-      return loose(p, x, v, a, jerk, h, z);
+      return loose(p, x, way, h, z);
     }
   }
   double next[2] = {z[S], z[W]};
-  double parts = PER_CHANGE * frozen(p, x, v, a, jerk, h, side, next);
+  double parts = PER_CHANGE * frozen(p, x, way, h, side, next);
   if (!(parts < most)) {
     return 0;
   }
@@ -153,9 +148,8 @@ int series_frozen(const InerterDevice* p, double x, double v, double a, double j
     next[S] = z[S];
     next[W] = z[W];
     for (int i = 0; i < count; i++) {
-      double t = part * i, here = x + (v + (0.5 * a + jerk * t / 6) * t) * t;
-      double speed = v + (a + 0.5 * jerk * t) * t;
-      if (isinf(frozen(p, here, speed, a + jerk * t, jerk, part, side, next))) {
+      Way rest = way_after(way, part * i);
+      if (isinf(frozen(p, x + way_travel(way, part * i), &rest, part, side, next))) {
         return 0;
       }
     }

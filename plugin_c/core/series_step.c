@@ -272,8 +272,8 @@ double series_parts(const InerterDevice* p, double stiffness, double inertance, 
   return PER_RADIAN * fabs(h) * (sqrt(stiffness / inertance) + p->series_damping / inertance);
 }
 
-void series_step(const InerterDevice* p, double x, double v, double a, double jerk, double* bristle,
-                 double* z, double h) {
+void series_step(const InerterDevice* p, double x, const Way* way, double* bristle, double* z,
+                 double h) {
   if (h == 0) {
     return;
   }
@@ -284,21 +284,20 @@ void series_step(const InerterDevice* p, double x, double v, double a, double je
     stiffness += law_of(p)->stiffness(p);
   }
   double parts = series_parts(p, stiffness, inertance, h);
-  int count = FEW_PARTS;
-  if (parts < SERIES_MOST_PARTS) {
-    count = 1 + (int)parts;
+  int count = parts < SERIES_MOST_PARTS ? 1 + (int)parts : FEW_PARTS;
+  if (parts < series_most_parts(p)) {
     SeriesExact steps;
     series_exact_steps(p, h, &steps);
-    if (!rubs && (series_exact(p, &steps, v, a, jerk, z) ||
-                  series_frozen(p, x, v, a, jerk, z, h, 1 + count / 2))) {
+    if (!rubs && (series_exact(p, &steps, way, z) ||
+                  series_frozen(p, x, way, z, h,
+                                1 + (parts < SERIES_MOST_PARTS ? count : SERIES_MOST_PARTS) / 2))) {
       return;
     }
   }
   double part = h / count;
   for (int i = 0; i < count; i++) {
     double t = part * i;
-    double here = x + (v + (0.5 * a + jerk * t / 6) * t) * t;
-    substep(p, here, v + (a + 0.5 * jerk * t) * t, a + jerk * (t + 0.5 * part),
+    substep(p, x + way_travel(way, t), way_speed(way, t), way_acceleration(way, t + 0.5 * part),
             rubs && has_bristle(p) ? bristle : NULL, z, part);
   }
 }

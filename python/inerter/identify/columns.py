@@ -27,9 +27,10 @@ from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import clips, through_channel, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.model import Model
+from inerter.identify.prediction import bristle_reach
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.smoothness import smoothness
-from inerter.identify.transient import RELAXING, relaxing, without_relaxing
+from inerter.identify.transient import RELAXING, relaxing, without_bending, without_relaxing
 
 if TYPE_CHECKING:
     from inerter.identify.fit import Problem
@@ -218,10 +219,9 @@ class Columns:
     def _weighted(self, name: str, model: Model, tones: Tones | None = None) -> Array:
         """Minus a column as it counts, the tones held where none are given."""
         tones = tones or [None] * len(self.problem.runs)
-        key = _key(name, model, _LINEAR)
+        key, unknown = _key(name, model, _LINEAR), _Unknown.of(model)
 
         def column() -> Array:
-            unknown = _Unknown.of(model)
             columns = []
             every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
             for run, mask, tone in every:
@@ -230,9 +230,9 @@ class Columns:
                 columns.append(-_settled(shown, run, mask, unknown, tone))
             return np.concatenate(self.problem.weighted(columns))
 
-        # what a tone does changes with the model
+        # what a tone and a bristle do changes with the model
         whole = _key(name, model, _CHANNEL)
-        return column() if any(tones) else self._kept.found(whole, column)
+        return column() if any(tones) or unknown.reach else self._kept.found(whole, column)
 
     def _by_first_force(
         self, point: Array, base: Sequence[Array], residual: ResidualAt
@@ -320,14 +320,19 @@ def _through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array
 
 @dataclass(frozen=True)
 class _Unknown:
-    """What holds forces of the time before the record: a low-pass, branches that relax [s]."""
+    """What holds forces of the time before the record.
+
+    That is a low-pass, branches that relax [s] and a bristle that forgets along a path [m].
+    """
 
     low_pass: Filter | None
     times: tuple[float, ...]
+    reach: float
 
     @classmethod
     def of(cls, model: Model) -> _Unknown:
-        return cls(slow_start(model.values), relaxing(model.values))
+        reach = bristle_reach(model.device())
+        return cls(slow_start(model.values), relaxing(model.values), reach)
 
 
 def _settled(
@@ -339,6 +344,7 @@ def _settled(
 ) -> Array:
     """A column without what is read off the record, as a residual is (`prediction.settled`)."""
     seen = mask if mask.any() else run.inner
+    shown = without_bending(run.path, unknown.reach, shown, seen)
     shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first, run.cutoff)
     if unknown.low_pass is not None:
         shown = without_start(shown, run.spacing, seen & run.inner, unknown.low_pass, run.first)

@@ -95,10 +95,14 @@ def search(
     fits = [problem.fit(model, _ROUGH, loss) for model in chosen]
     reached = min(_size(fit.residual, problem) for fit in fits)
     inside = [(_error(problem, m), m) for m in embedded(models[0], simpler, problem.scales)]
-    if inside and min(inside, key=_first)[0] < reached:
-        fits.append(problem.fit(min(inside, key=_first)[1], _ROUGH, loss))
+    known, simplest = min(inside, key=_first, default=(math.inf, models[0]))
+    if known < reached:
+        fits.append(problem.fit(simplest, _ROUGH, loss))
     order = sorted(range(len(fits)), key=lambda i: fits[i].cost)
     best = problem.fit(fits[order[0]].model, _THOROUGH, loss)
+    if loss == "linear" and known < _size(best.residual, problem):
+        # a fit keeps off the bounds, at which the simpler law may stand
+        best = replace(best, model=simplest, residual=problem.residual(simplest))
     ends = tuple(fits[i].rmse(problem.masks) for i in order)
     return Multistart(best, ends, best.evaluations < _THOROUGH)
 

@@ -20,7 +20,12 @@ from inerter.identify.channel_filter import (
 )
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
-from inerter.identify.transient import relaxing, without_relaxing, without_transient
+from inerter.identify.transient import (
+    relaxing,
+    without_bending,
+    without_relaxing,
+    without_transient,
+)
 
 Array = NDArray[np.float64]
 
@@ -79,6 +84,13 @@ def _held(device: Device) -> float:
     if narrowing <= 0:
         return device.friction_backlash
     return float((device.bw_alpha / narrowing) ** (1 / device.bw_exponent))
+
+
+def bristle_reach(device: Device) -> float:
+    """Path [m] along which a bristle forgets how it was bent; 0 without one bristle alone."""
+    if device.friction not in ("dahl", "lugre", "bouc_wen"):
+        return 0.0
+    return _held(device)
 
 
 def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
@@ -253,6 +265,7 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
     if device.series_stiffness and not device.backlash:
         speed = float(np.max(np.abs(run.velocity)))
         residual = without_transient(device, residual, run.spacing, mask, speed)
+    residual = without_bending(run.path, bristle_reach(device), residual, mask)
     residual = without_relaxing(
         relaxing(values), residual, run.spacing, mask, run.first, run.cutoff
     )

@@ -154,6 +154,12 @@ class BenchRun:
         return checked_motion(self.spacing, *(channel[self.first :] for channel in channels))
 
     @cached_property
+    def path(self) -> Array:
+        """Path slid since the sample `first` [m], shape (n,); 0 before."""
+        slid = np.cumsum(np.abs(self.velocity)) * self.spacing
+        return np.maximum(slid - slid[self.first], 0.0)
+
+    @cached_property
     def _followed_finely(self) -> list[Array]:
         begin = self.first * self.thinned
         x, v, a = (channel[begin:] for channel in self.measured or ())

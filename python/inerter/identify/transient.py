@@ -1,4 +1,4 @@
-"""What the unknown first states of a series element and of branches leave in a residual: decays."""
+"""What unknown first states of series element, branches and bristle leave in a residual: decays."""
 
 from __future__ import annotations
 
@@ -22,6 +22,8 @@ RELAXING = ("branch_time_1", "branch_time_2")
 MOST_SPEEDS = 5.0
 # exponent of a decay that leaves nothing
 _DECAYED = 60.0
+# lengths of a bristle's decay along which it is followed
+_FORGOTTEN = 15.0
 # samples of the quickest decay that is one
 _FEWEST = 10
 
@@ -86,6 +88,20 @@ def without_relaxing(
         basis = np.array([_decay(-spacing / time, count).real for time in times])
     before = np.ones((len(basis), first))
     return _without(np.concatenate([before, basis], axis=1), residual, mask)
+
+
+def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np.bool_]) -> Array:
+    """A residual without what a bristle was bent by as a record began, shape (n,).
+
+    The first force tells it within the noise of the motion alone. What is wrong of it dies away
+    along the path slid since then [m], shape (n,), as exp(-path / reach).
+    """
+    count = int(np.searchsorted(path, _FORGOTTEN * reach))
+    if reach <= 0 or np.count_nonzero(mask[:count]) < 4:
+        return residual
+    with np.errstate(under="ignore"):
+        basis = np.exp(-path[:count] / reach)
+    return _without(basis[None], residual, mask)
 
 
 def _without(basis: Array, residual: Array, mask: NDArray[np.bool_], most: float = np.inf) -> Array:
