@@ -129,13 +129,15 @@ def _reference(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
 
 
 def _motion(run: BenchRun) -> Motion:
-    """The recorded motion between its samples: cubic in displacement, linear in acceleration."""
+    """The recorded motion between its samples: the quintic through x, v and a of both."""
     h, last = run.spacing, run.displacement.size - 2
     x, v, a = run.displacement, run.velocity, run.acceleration
-    rise = np.diff(x) / h
-    rows = np.column_stack(
-        [x[:-1], v[:-1], (3 * rise - 2 * v[:-1] - v[1:]) / h, (v[:-1] + v[1:] - 2 * rise) / h**2]
-    )
+    rest = np.diff(x) / h - v[:-1] - 0.5 * h * a[:-1]
+    turn, bend = np.diff(v) - h * a[:-1], 0.5 * h * np.diff(a)
+    cubic = (10.0 * rest - 4.0 * turn + bend) / h**2
+    quartic = (7.0 * turn - 15.0 * rest - 2.0 * bend) / h**3
+    quintic = (6.0 * rest - 3.0 * turn + bend) / h**4
+    rows = np.column_stack([x[:-1], v[:-1], 0.5 * a[:-1], cubic, quartic, quintic])
     table = rows.tolist()
 
     def piece(t: Any) -> tuple[Any, Any]:
@@ -147,13 +149,14 @@ def _motion(run: BenchRun) -> Motion:
 
     def displacement(t: Any) -> Any:
         c, u = piece(t)
-        return c[0] + u * (c[1] + u * (c[2] + u * c[3]))
+        return c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5]))))
 
     def velocity(t: Any) -> Any:
         c, u = piece(t)
-        return c[1] + u * (2.0 * c[2] + 3.0 * u * c[3])
+        return c[1] + u * (2.0 * c[2] + u * (3.0 * c[3] + u * (4.0 * c[4] + u * 5.0 * c[5])))
 
     def acceleration(t: Any) -> Any:
-        return np.interp(t, h * np.arange(last + 2), a)
+        c, u = piece(t)
+        return 2.0 * c[2] + u * (6.0 * c[3] + u * (12.0 * c[4] + u * 20.0 * c[5]))
 
     return Motion(displacement, velocity, acceleration)

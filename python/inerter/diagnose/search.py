@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import along_stroke
 from inerter.diagnose.advantage import advantage_of
@@ -24,18 +23,17 @@ from inerter.diagnose.composition import (
     is_distinct,
     is_local,
     is_shaft,
-    simpler_laws,
-    within_blur,
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
+from inerter.diagnose.exchange import exchanged
 from inerter.diagnose.left_out import Folds, left_out_errors
-from inerter.diagnose.low_passes import noise_taken, other_filter, where_late
+from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
+from inerter.diagnose.plainer import swings_on
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.tone import Witness, tone_candidate
-from inerter.diagnose.trials import FAR, Trials
+from inerter.diagnose.trials import Trials
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
@@ -164,7 +162,7 @@ class Search:
             self.found.append(chosen.effect)
             if chosen.effect == until:
                 return chosen
-            current = self._exchange(chosen)
+            current = exchanged(self, chosen)
         return self._prune(current)
 
     def next_effect(self, model: Model) -> str | None:
@@ -219,7 +217,7 @@ class Search:
         trials = [*candidates(current.model, self.problem.scales)]
         trials += tone_candidate(self.runs, self.problem, current.fit, self.witness)
         trials += along_stroke.candidates(self.problem, current.fit)
-        trials = [trial for trial in trials if self._may_be(trial.starts[0])]
+        trials = [trial for trial in trials if self.may_be(trial.starts[0])]
         fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None
@@ -251,7 +249,7 @@ class Search:
         good: list[Scored] = []
         for pairs in (shortlist, level):
             there += self._that_are_there(pairs, folds, current, fitted)
-            good = [s for s in there if self._better(*self._weighed_for(s, [current, s]))]
+            good = [s for s in there if self.better(*self._weighed_for(s, [current, s]))]
             if good:
                 break
         else:
@@ -280,12 +278,12 @@ class Search:
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
             and not self._is_shaft_alone(s)
-            and not (is_shaft(s.effect) and swings_on(s.model, self._longest, sizes.frequency))
+            and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
             and along_stroke.repeats(s.model, sizes)
         ]
 
     @property
-    def _longest(self) -> float:
+    def longest(self) -> float:
         """Duration of the longest run [s]."""
         return max(run.spacing * run.force.size for run in self.runs)
 
@@ -330,7 +328,7 @@ class Search:
         if is_local(first.effect):
             self._folds = self._spread
         second = self._best_step(replace(first, fit=self.problem.fit(first.model)))
-        if second and self._better(*(self.score_on_blocks(s.fit) for s in (current, second))):
+        if second and self.better(*(self.score_on_blocks(s.fit) for s in (current, second))):
             return second
         self._folds = folds
         return None
@@ -345,11 +343,12 @@ class Search:
         plainest = min(plain, default=without.rmse(masks))
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 
-    def _may_be(self, model: Model) -> bool:
+    def may_be(self, model: Model) -> bool:
         """Whether a model has none of the effects excluded."""
         return not self.excluded.intersection(name for name, _ in effects_of(model, self.baseline))
 
-    def _better(self, simple: Scored, rich: Scored) -> bool:
+    def better(self, simple: Scored, rich: Scored) -> bool:
+        """Whether the richer of two models is needed."""
         return better(simple, rich, self.advantage(simple, rich, rich.effect))
 
     def _as_good(self, simple: Scored, best: Scored) -> bool:
@@ -358,67 +357,6 @@ class Search:
         least = CRITERIA.local_gain if loss(simple, best) < CRITERIA.too_much else 0.0
         lost = advantage_of(simple.residual, best.residual, masks, self.blocks, best.effect, least)
         return as_good(simple, best, lost)
-
-    def _exchange(self, current: Scored) -> Scored:
-        """Another friction law, alone or with one more effect, where that needs fewer parameters.
-
-        The law that is best on its own need not be the one that is best beside the effects found
-        since: a rich law stands in for a simple one with, say, viscous friction.
-        """
-        if low_passed := other_filter(self, current):
-            return self._exchange(low_passed)
-        masks, free = self.problem.masks, current.model.free
-        trials = [Candidate("exchange", None, (model,)) for model in as_spring(current.model)]
-        for model in simpler_laws(current.model):
-            trials.append(Candidate("exchange", None, (model,)))
-            for candidate in candidates(model, self.problem.scales):
-                same = candidate.starts[0].friction == model.friction
-                # a Bouc-Wen law has a stiffness of its own
-                stiffens = candidate.effect == "parallel_stiffness" and "bw_ratio" in free
-                if same and (stiffens or not EFFECTS[candidate.effect].unlike_friction):
-                    trials.append(candidate)
-        plainer = (t for t in trials if t.starts[0].complexity < current.model.complexity)
-        trials = [trial for trial in plainer if self._may_be(trial.starts[0])]
-        limit = current.fit.rmse(masks) * (1 + CRITERIA.tolerated_loss)
-        fits = sorted(
-            parallel(lambda trial: self.trials.fit(trial, (FAR * limit, np.inf), limit), trials),
-            key=lambda fit: fit.rmse(masks),
-        )
-        near = [fit for fit in fits if fit.rmse(masks) < limit][:2]
-        for scored in self.scores([("exchange", None, fit) for fit in near]):
-            if loss(scored, current) < CRITERIA.exchange_loss:
-                return self._exchange(scored)
-        if with_spring := self._spring_beside(current):
-            return self._exchange(with_spring)
-        frequency = self.problem.scales.frequency
-        for model in filter(self._may_be, as_plain_part(current.model, self._longest, frequency)):
-            fit = self.problem.fit(model)
-            if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
-                scored = self.score("exchange", None, fit)
-                if loss(scored, current) < CRITERIA.gain:
-                    return self._exchange(scored)
-        for model in filter(self._may_be, as_one(current.model)):
-            fit = self.problem.fit(model)
-            if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):
-                return self.score("exchange", None, fit)
-        return current
-
-    def _spring_beside(self, current: Scored) -> Scored | None:
-        """LuGre friction and a spring in the place of Bouc-Wen friction, which has one of its own.
-
-        Neither explains as much alone, and so they are not found one after the other.
-        """
-        trials = [
-            candidate
-            for model in with_own_spring(current.model)
-            for candidate in candidates(model, self.problem.scales)
-            if candidate.law == "lugre" and self._may_be(candidate.starts[0])
-        ]
-        for candidate in trials:
-            scored = self.score("exchange", None, self.trials.fit(candidate))
-            if self._better(current, scored):
-                return scored
-        return None
 
     def _prune(self, current: Scored) -> Scored:
         """Take away what the others have made unnecessary, the least important first."""
@@ -429,7 +367,7 @@ class Search:
                 (effect, model)
                 for effect, _ in effects_of(current.model, self.baseline)
                 for model in without_effect(current.model, effect, self.baseline)
-                if self._may_be(model)
+                if self.may_be(model)
             ]
             simpler = []
             fits = parallel(lambda pair: self.problem.fit(pair[1]), models)

@@ -244,6 +244,14 @@ class Trials:
         self._rounds.append((current, fitted))
         return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
 
+    def within_reach(
+        self, candidates: Sequence[Candidate], fit: Fit, limit: float
+    ) -> list[Candidate]:
+        """Those that a step from a fitted model tells may come down to an error [N]."""
+        promise = Promise(self.problem, Known(self.problem, fit.model))
+        error = fit.rmse(self.problem.masks)
+        return [c for c in candidates if _at_best(promise.foretold(c), error) < limit]
+
     def _limits(self, fit: Fit, share: float) -> Limits:
         """A share of a fit's errors."""
         part = rms(self._part.residual(fit.model), self._part.masks)

@@ -1,0 +1,114 @@
+"""What needs fewer parameters in the place of what a search has found.
+
+The law that is best on its own need not be the one that is best beside the effects found since: a
+rich law stands in for a simple one with, say, viscous friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.candidates import candidates
+from inerter.diagnose.composition import simpler_laws, within_blur
+from inerter.diagnose.decision import CRITERIA, loss
+from inerter.diagnose.low_passes import other_filter
+from inerter.diagnose.parallel import parallel
+from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, with_own_spring
+from inerter.diagnose.trials import FAR
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
+
+if TYPE_CHECKING:
+    from inerter.diagnose.search import Scored, Search
+
+
+def exchanged(search: Search, current: Scored) -> Scored:
+    """A model that says about as much with fewer parameters, as long as there is one."""
+    for other in (other_filter, _plainer_law, _spring_beside, _plain_part, _one_cause):
+        if found := other(search, current):
+            return found if other is _one_cause else exchanged(search, found)
+    return current
+
+
+def _plainer_law(search: Search, current: Scored) -> Scored | None:
+    """Another friction law, alone or with one more effect."""
+    masks = search.problem.masks
+    limit = current.fit.rmse(masks) * (1 + CRITERIA.tolerated_loss)
+
+    def fit(model: Model) -> Fit:
+        return search.trials.fit(
+            Candidate("exchange", None, (model,)), (FAR * limit, np.inf), limit
+        )
+
+    def is_plainer(model: Model) -> bool:
+        return model.complexity < current.model.complexity and search.may_be(model)
+
+    def with_one_more(base: Fit) -> Sequence[Candidate]:
+        own = "bw_ratio" in current.model.free
+        more = [c for c in _beside(base.model, search, own) if is_plainer(c.starts[0])]
+        return search.trials.within_reach(more, base, limit)
+
+    laws = parallel(fit, list(filter(is_plainer, simpler_laws(current.model))))
+    trials = [trial for each in parallel(with_one_more, laws) for trial in each]
+    fits = parallel(lambda t: search.trials.fit(t, (FAR * limit, np.inf), limit), trials)
+    fits += [*laws, *map(fit, filter(is_plainer, as_spring(current.model)))]
+    near = sorted((f for f in fits if f.rmse(masks) < limit), key=lambda f: f.rmse(masks))[:2]
+    for scored in search.scores([("exchange", None, fit) for fit in near]):
+        if loss(scored, current) < CRITERIA.exchange_loss:
+            return scored
+    return None
+
+
+def _beside(model: Model, search: Search, has_spring: bool) -> Iterator[Candidate]:
+    """Effects that may act beside a friction law in the place of a richer one."""
+    for candidate in candidates(model, search.problem.scales):
+        # a Bouc-Wen law has a stiffness of its own
+        stiffens = candidate.effect == "parallel_stiffness" and has_spring
+        same = candidate.starts[0].friction == model.friction
+        if same and (stiffens or not EFFECTS[candidate.effect].unlike_friction):
+            yield candidate
+
+
+def _spring_beside(search: Search, current: Scored) -> Scored | None:
+    """LuGre friction and a spring in the place of Bouc-Wen friction, which has one of its own.
+
+    Neither explains as much alone, and so they are not found one after the other.
+    """
+    trials = [
+        candidate
+        for model in with_own_spring(current.model)
+        for candidate in candidates(model, search.problem.scales)
+        if candidate.law == "lugre" and search.may_be(candidate.starts[0])
+    ]
+    for candidate in trials:
+        scored = search.score("exchange", None, search.trials.fit(candidate))
+        if search.better(current, scored):
+            return scored
+    return None
+
+
+def _plain_part(search: Search, current: Scored) -> Scored | None:
+    """A plain part in the place of a rich one."""
+    masks, frequency = search.problem.masks, search.problem.scales.frequency
+    for model in filter(search.may_be, as_plain_part(current.model, search.longest, frequency)):
+        fit = search.problem.fit(model)
+        if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
+            scored = search.score("exchange", None, fit)
+            if loss(scored, current) < CRITERIA.gain:
+                return scored
+    return None
+
+
+def _one_cause(search: Search, current: Scored) -> Scored | None:
+    """One cause in the place of two that do the same."""
+    masks = search.problem.masks
+    for model in filter(search.may_be, as_one(current.model)):
+        fit = search.problem.fit(model)
+        if within_blur(model, fit.rmse(masks), current.fit.rmse(masks)):
+            return search.score("exchange", None, fit)
+    return None
