@@ -29,7 +29,7 @@ Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 
 # steps per sample of a device with free play
 PLAY_PARTS = 8
-# samples from which on the engines run at the same time
+# steps from which on the engines run at the same time
 _LONG = 100_000
 
 
@@ -45,9 +45,10 @@ def simulate_engines(
     def of(name: str) -> float | None:
         return _of_engine(name, model, runs, masks)
 
-    names = ["mujoco", "exudyn", "reference"]
+    names = ["reference", "mujoco", "exudyn"]
     # of short runs another process would take longer to begin
-    long = sum(run.force.size for run in runs) > _LONG
+    steps = PLAY_PARTS if "backlash" in model.values else 1
+    long = steps * sum(run.force.size for run in runs) > _LONG
     return dict(zip(names, parallel(of, names) if long else map(of, names), strict=True))
 
 

@@ -58,9 +58,14 @@ _BELIEVED = 2
 # share of every run that these are asked on first; of one of how many the whole is asked then
 _PART = 0.25
 _LEFT = 16
+# the same about what is known
+_NEAR_LEFT = 6
 # points that are followed, and how far
 _FOLLOWED = 4
 _EVALUATIONS = 20
+# evaluations after which these are compared, and how near a second one must be to be followed on
+_SOON = 5
+_RIVAL = 1.1
 _TOLERANCE = 1e-4
 # share of the rms error beyond which errors count little at first, and of that in the next round
 _FAR = 0.5
@@ -278,11 +283,22 @@ def _fit_about(
     if late:
         ranges["delay"] = (model.delay - late, model.delay + late)
     points = _points(model, ranges, _POWER, seed)
+    part = problem.head(_PART)
+    told = all(part_of.any() == mask.any() for part_of, mask in zip(part.masks, problem.masks))
+    if told:
+        points = _best(part, points, len(points) // _NEAR_LEFT)
     best = _best(problem, [model, *points] if with_it else points)
-    fits = parallel(
-        lambda start: problem.fit(start, _EVALUATIONS, tolerance=_TOLERANCE, rough=True), best
-    )
-    return min(fits, key=lambda fit: fit.rmse(problem.masks))
+
+    def fit(start: Model, evaluations: int) -> Fit:
+        return problem.fit(start, evaluations, tolerance=_TOLERANCE, rough=True)
+
+    def error(fit: Fit) -> float:
+        return fit.rmse(problem.masks)
+
+    first, *others = sorted(parallel(lambda start: fit(start, _SOON), best), key=error)
+    near = [each for each in others if error(each) < _RIVAL * error(first)][:1]
+    fits = parallel(lambda soon: fit(soon.model, _EVALUATIONS), [first, *near])
+    return min([first, *near, *fits], key=error)
 
 
 def _points(model: Model, ranges: Ranges, power: int, seed: int) -> list[Model]:
