@@ -11,6 +11,7 @@ from inerter.diagnose.run_constants import (
     constants,
     constants_in_words,
     contradicting,
+    explained,
     without_constants,
 )
 from inerter.diagnose.start import Given, prepared
@@ -95,6 +96,17 @@ def test_a_run_of_another_device_is_named() -> None:
     mine, theirs = (float(part) for part in re.findall(r"([0-9.]+) kg", found["run 2"]))
     assert mine == pytest.approx(80, rel=0.03)
     assert theirs == pytest.approx(50, rel=0.03)
+
+
+def test_a_contradiction_stands_where_nothing_that_is_found_explains_it() -> None:
+    runs = thinned([record(i) for i in range(4)])
+    size = [np.sqrt(np.mean(run.force**2)) for run in runs]
+    errors = [np.full(run.force.size, 0.05 * each) for run, each in zip(runs, size, strict=True)]
+    assert explained(runs, errors, "run 2")
+    assert not explained(runs, [3.0 * e if i == 2 else e for i, e in enumerate(errors)], "run 2")
+    # more than the others, and next to nothing
+    few = [(0.6 if i == 2 else 0.1) * e for i, e in enumerate(errors)]
+    assert explained(runs, few, "run 2")
 
 
 def test_runs_that_agree_contradict_nobody() -> None:

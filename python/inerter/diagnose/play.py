@@ -284,7 +284,8 @@ def _fit_about(
         ranges["delay"] = (model.delay - late, model.delay + late)
     points = _points(model, ranges, _POWER, seed)
     part = problem.head(_PART)
-    told = all(part_of.any() == mask.any() for part_of, mask in zip(part.masks, problem.masks))
+    both = zip(part.masks, problem.masks, strict=True)
+    told = all(some.any() == mask.any() for some, mask in both)
     if told:
         points = _best(part, points, len(points) // _NEAR_LEFT)
     best = _best(problem, [model, *points] if with_it else points)

@@ -38,7 +38,7 @@ from inerter.diagnose.result import (
     RecordSummary,
     RunCurves,
 )
-from inerter.diagnose.run_constants import constants_in_words
+from inerter.diagnose.run_constants import constants_in_words, explained
 from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
 from inerter.diagnose.start import Given, prepared
 from inerter.diagnose.statistics import gain_interval
@@ -257,23 +257,31 @@ def _accuracy(stands: Confirmed, model: Model) -> Accuracy:
 
 def _summaries(stands: Confirmed) -> list[RecordSummary]:
     data = stands.data
-    names = [record.name for record in data.records]
+    names, contradiction = [record.name for record in data.records], _contradiction(stands)
     return [
         RecordSummary(
             record.name,
             record.samples,
             record.sample_rate,
             "unused" if repeats_another(record) else data.split.role(names.index(record.name)),
-            [vars(w) for w in record.warnings] + _contradiction(stands, record.name),
+            [vars(w) for w in record.warnings] + contradiction.get(record.name, []),
         )
         for record in stands.searched.prepared.given.records
     ]
 
 
-def _contradiction(stands: Confirmed, name: str) -> list[dict[str, str]]:
-    """The warning that a run contradicts the others."""
-    said = stands.searched.prepared.contradicting.get(name)
-    return [{"code": "contradicts_others", "text": said}] if said else []
+def _contradiction(stands: Confirmed) -> dict[str, list[dict[str, str]]]:
+    """The warning that a run contradicts the others, by its name."""
+    said = stands.searched.prepared.contradicting
+    if "backlash" in stands.fit.model.free:
+        # impacts that are out of step in one run are no other device
+        return {}
+    runs, errors = stands.data.runs, stands.data.band.errors(stands.fit.model) if said else []
+    return {
+        name: [{"code": "contradicts_others", "text": text}]
+        for name, text in said.items()
+        if not explained(runs, errors, name)
+    }
 
 
 def _method(stands: Confirmed) -> dict:

@@ -3,7 +3,8 @@
 A load cell zeroed anew, or gravity compensated anew, gives each run a constant of its own. It is
 read off a regression of the force on the motion with one constant per run, and what differs from
 their mean is taken off the run; the mean stays, it may be a cause. A run contradicts the others
-where these predict each other, and not it, though it has nothing of its own in its motion.
+where these predict each other, and not it, though it has nothing of its own in its motion, and
+where what is found at the end does not explain it.
 """
 
 from __future__ import annotations
@@ -34,6 +35,8 @@ SLOW, WIDTH = 0.1, 0.02
 # many times less the others are
 CONTRADICTION = 0.15
 TIMES = 4.0
+# share of its force, and how many times more than the others, that such a run is missed at the end
+SMALL, EXPLAINED = 0.25 * CONTRADICTION, 2.0
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,19 @@ def contradicting(runs: Sequence[BenchRun]) -> dict[str, str]:
         "same device?"
     )
     return {runs[worst].name: text}
+
+
+def explained(runs: Sequence[BenchRun], errors: Sequence[Array], name: str) -> bool:
+    """Whether what was found explains a run that seemed to contradict the others.
+
+    It does where errors (n,) [N] per force are small there, or no more than some times those of the
+    others.
+    """
+    parts = {
+        run.name: _rms(error[run.inner]) / (_rms(run.force[run.inner]) or 1.0)
+        for run, error in zip(runs, errors, strict=True)
+    }
+    return parts.pop(name) < max(SMALL, EXPLAINED * max(parts.values(), default=0.0))
 
 
 def _missed(rows: Sequence[_Rows], i: int, others: Sequence[int]) -> float:
