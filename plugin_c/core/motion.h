@@ -29,6 +29,10 @@ INERTER_API void inerter_along_many(const InerterDevice* devices, int ndevice, i
                                     const double* x, const double* v, const double* a,
                                     double* total);
 
+// A signal of n samples through the low-pass 1 / (1 + (f / f_c)^6) of measured records, every
+// `step`th sample of it, 1 + (n - 1) / step; angle: 2 pi f_c per sample rate.
+INERTER_API void inerter_low_pass(int n, int step, double angle, const double* x, double* result);
+
 // Total, inertance and friction force, stored energy and dissipated power at n independent points
 // x, v, a, z (n x nstate); result is 5 x n, rates n x nstate.
 INERTER_API void inerter_evaluate(const InerterDevice* device, int n, const double* x,

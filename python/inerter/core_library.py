@@ -114,6 +114,7 @@ def library() -> ctypes.CDLL:
     found.inerter_force_over_step.argtypes = [at, *[number] * 3, at, number, number, at]
     found.inerter_force_over_step.restype = CForce
     found.inerter_along_commanded.argtypes = [at, ctypes.c_int, number, *[at] * 8]
+    found.inerter_low_pass.argtypes = [ctypes.c_int, ctypes.c_int, number, at, at]
     found.inerter_command.argtypes = [at, number, at]
     return found
 

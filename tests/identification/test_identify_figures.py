@@ -6,7 +6,7 @@ import itertools
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from inerter.identify.figures import log_ticks
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 
 @given(st.floats(-9, 9), st.floats(0.002, 8))
+@example(0.0, 5.0)
 def test_labels_are_few_round_and_apart(begin: float, span: float) -> None:
     low, high = 10**begin, 10 ** (begin + span)
     ticks = log_ticks(low, high)

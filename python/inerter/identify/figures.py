@@ -82,7 +82,7 @@ def log_ticks(low: float, high: float) -> list[float]:
         gaps = [math.log(b / a) / math.log(high / low) for a, b in itertools.pairwise(seen)]
         if 3 <= len(seen) <= _MOST and min(gaps) > _GAP:
             return seen
-    if last - first > _MOST:
+    if last - first >= _MOST:
         return [10.0**decade for decade in range(first + 1, last, -(-(last - first) // _MOST))]
     # within less than a decade the scale is all but even
     for count in range(_MOST, 0, -1):

@@ -22,8 +22,8 @@ from inerter.records.motion import (
     apply_weight,
     band_response,
     filtered,
+    filtered_and_thinned,
     has_one_line,
-    lowpass,
     response,
     weight_above,
 )
@@ -121,7 +121,10 @@ class BenchRun:
 
     def in_band(self, values: Array) -> Array:
         """Values at the measured rate through the low-pass of the measured force, thinned."""
-        return filtered(values, self._response)[:: self.thinned]
+        if self.thinned > 1:
+            spacing = self.spacing / self.thinned
+            return filtered_and_thinned(values, spacing, self.cutoff, self.thinned)
+        return filtered(values, self._response)
 
     def weighted(self, values: Array, mask: NDArray[np.bool_], shaft: Shaft | None = None) -> Array:
         """Masked values as they count against noise, shape (n,); 0 elsewhere is taken for them.
@@ -218,7 +221,7 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
     rate = rate or SAMPLES_PER_PERIOD * cutoff
     step = max(1, int(1 / (rate * motion.spacing)))
     first = int(np.argmax(motion.inner[::step]))
-    force = lowpass(motion.force, motion.spacing, cutoff)
+    force = filtered_and_thinned(motion.force, motion.spacing, cutoff, step)
     velocity = np.where(_resting(motion), 0.0, motion.velocity)
     inner = motion.inner[::step]
     if motion.part and first:
@@ -232,7 +235,7 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
         displacement=np.ascontiguousarray(motion.displacement[::step]),
         velocity=np.ascontiguousarray(motion.velocity[::step]),
         acceleration=np.ascontiguousarray(motion.acceleration[::step]),
-        force=np.ascontiguousarray(force[::step]),
+        force=force,
         inner=inner,
         first_force=_force_at(motion, first * step),
         cutoff=cutoff,
