@@ -392,6 +392,19 @@ class Device:
         first = states[:, 0] if self.nstate else np.zeros(x.size)
         return {"total": result[0], "friction": result[1], "state": first, "states": states}
 
+    def force_checked(
+        self, h: float, x: NDArray, v: NDArray, a: NDArray, state: ArrayLike, name: str
+    ) -> NDArray[np.float64]:
+        """The force "total" or "friction" alone of `along_checked`, shape (n,)."""
+        force, now = np.empty(x.size), self._states(state)
+        at = force.ctypes.data
+        total, friction = (at, None) if name == "total" else (None, at)
+        library().inerter_along_commanded(
+            ctypes.byref(self._c), x.size, h, x.ctypes.data, v.ctypes.data, a.ctypes.data, None,
+            now.ctypes.data, total, friction, None,
+        )  # fmt: skip
+        return force
+
 
 def along_many(
     devices: Sequence[Device],

@@ -12,7 +12,7 @@ what this phase does too.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -26,6 +26,7 @@ from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import clips, through_channel, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
+from inerter.identify.kept import Kept
 from inerter.identify.model import Model
 from inerter.identify.prediction import bristle_reach
 from inerter.identify.runs import BenchRun, forces_along
@@ -63,27 +64,8 @@ _CHANNEL = (*_LINEAR, *RELAXING)
 _PLACES = ("rest_length", "curve_lower", "curve_upper")
 
 
-class _Kept:
-    """Arrays that are worked out once, as long as they do not take too much memory."""
-
-    def __init__(self, most: int) -> None:
-        self.most, self.size = most, 0
-        self.arrays: dict[Hashable, Array] = {}
-
-    def found(self, key: Hashable, work_out: Callable[[], Array]) -> Array:
-        """The array of a key."""
-        known = self.arrays.get(key)
-        if known is None:
-            if self.size > self.most:
-                self.arrays.clear()
-                self.size = 0
-            known = self.arrays[key] = work_out()
-            self.size += known.nbytes
-        return known
-
-
 # what the channels of runs show of coordinates: of use to every problem that has the run
-_OF_RUNS = _Kept(_MOST_OF_RUNS)
+_OF_RUNS = Kept(_MOST_OF_RUNS)
 
 
 class Columns:
@@ -91,12 +73,12 @@ class Columns:
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self._kept = _Kept(_MOST)
+        self._kept = Kept(_MOST)
         self._bases: dict[Hashable, Basis] = {}
 
     def __getstate__(self) -> Mapping[str, Any]:
         """What another process is told: what is kept is soon worked out again."""
-        return {**self.__dict__, "_kept": _Kept(_MOST), "_bases": {}}
+        return {**self.__dict__, "_kept": Kept(_MOST), "_bases": {}}
 
     def of(
         self,

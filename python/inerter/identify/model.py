@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -13,6 +13,18 @@ from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, DeviceError, lists, parameters
 from inerter.identify.channel import clips
 from inerter.records.motion import Shaft
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some of what a device is made of, by name, and the device of that alone."""
+
+    stated: tuple[tuple[str, float | str], ...]
+
+    @cached_property
+    def device(self) -> Device:
+        """Made when it is first asked for."""
+        return Device(**dict(self.stated))
 
 
 @dataclass(frozen=True)
@@ -62,14 +74,6 @@ class Model:
             given.pop("transition_velocity", None)
         return given
 
-    def smooth_part(self) -> Device:
-        """The device's terms that are smooth in the motion: no friction, no stops, no play.
-
-        What changes along the stroke is none of them: along a fast stroke it is quicker than the
-        motion.
-        """
-        return self._smooth_device
-
     # worked out once, for all runs
     @cached_property
     def _device(self) -> Device:
@@ -81,14 +85,37 @@ class Model:
         return _with_ends({**self.texts, **device_values(self.values)})
 
     @cached_property
-    def _smooth_device(self) -> Device:
+    def smooth_part(self) -> Part:
+        """The device's terms that are smooth in the motion: no friction, no stops, no play.
+
+        What changes along the stroke is none of them: along a fast stroke it is quicker than the
+        motion.
+        """
         known, rough = parameters(), {*JUMPS, *lists()}
-        kept = {
-            name: value
-            for name, value in self._stated.items()
-            if name not in rough and not (name in known and known[name].laws)
-        }
-        return Device(**_with_ends(kept))
+        return self._part(lambda n: n not in rough and not (n in known and known[n].laws))
+
+    @cached_property
+    def friction_part(self) -> Part:
+        """The device's friction law between the terminals alone."""
+        return self._part(lambda name: name in _OF_FRICTION, friction=self.friction)
+
+    @cached_property
+    def abrupt_part(self) -> Part | None:
+        """Its end stops and force along the stroke alone; None where more is abrupt."""
+        along = {n for n in self._stated if n in lists() and not n.startswith("friction")}
+        if self._device.backlash or not along <= _OF_FORCE:
+            return None
+        names = {*JUMPS, *_OF_FORCE, *_OF_PLACES}
+        return self._part(lambda name: name in names)
+
+    @cached_property
+    def frictionless_part(self) -> Part:
+        """The device without its friction law."""
+        return self._part(lambda name: name not in _OF_FRICTION or name in _OF_PLACES)
+
+    def _part(self, has: Callable[[str], bool], **also: str) -> Part:
+        kept = {name: value for name, value in self._stated.items() if has(name)}
+        return Part((*also.items(), *_with_ends(kept).items()))
 
     @cached_property
     def has_jumps(self) -> bool:
@@ -133,6 +160,18 @@ class Model:
         free = tuple(name for name in self.free if name not in names)
         values = {name: value for name, value in self.values.items() if name not in names}
         return Model(law, values, _useful(free, law), self.texts)
+
+
+# what says where a device is along its stroke
+_OF_PLACES = {"rest_length", "curve_lower", "curve_upper"}
+# lists of forces that nothing else multiplies
+_OF_FORCE = {"force_curve", "force_periods"}
+_OF_FRICTION = {
+    *(name for name, known in parameters().items() if known.laws),
+    *(name for name, known in lists().items() if known.laws),
+    *_OF_PLACES,
+    "transition_velocity",
+}
 
 
 def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:

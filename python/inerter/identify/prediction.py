@@ -18,6 +18,7 @@ from inerter.identify.channel_filter import (
     slow_start,
     without_start,
 )
+from inerter.identify.force_parts import RUNAWAY, is_sum, sharp_force, smooth_force, states_of
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.transient import (
@@ -34,8 +35,6 @@ _TELLING = 0.1
 # a twist at the start is at most this many strokes of the run: more of it would be an oscillation
 # that nothing in the run excites, by which a shaft without stiffness carries any slow force
 _MOST_TWIST = 10.0
-# friction beyond this [N] is that of a state that has run away
-RUNAWAY = 1e30
 
 
 def first_state(
@@ -115,8 +114,18 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         total = total + warming(device, values, run.velocity, run.elapsed)
         return through_channel(values, total, run.elapsed, run.spacing)
 
-    part = model.smooth_part()
-    rest = _states_of(part, device, state)
+    if is_sum(model):
+        sharp = sharp_force(model, run, state, drift)
+        if not np.isfinite(sharp[-1]):
+            # hysteresis that hardens without end
+            return np.full(run.force.size, np.inf)
+        warmed = warming(device, values, run.velocity, run.elapsed)
+        smooth = smooth_force(model, run, state) + warmed
+        if not model.has_jumps:
+            return through_channel(values, smooth + sharp, run.elapsed, run.spacing)
+        return through_channel(values, smooth, run.elapsed, run.spacing) + sharp
+
+    rest, part = states_of(model.smooth_part, model, state), model.smooth_part.device
     smooth = forces_along(part, run.spacing, run.followed, rest, run.force.size)["total"]
     smooth = smooth + warming(device, values, run.velocity, run.elapsed)
     found = run.at_measured_rate(device, state)
@@ -124,7 +133,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         # hysteresis that hardens without end: nothing that could be low-passed
         return np.full(run.force.size, np.inf)
     law = found["friction"]
-    if drift and device.has_load_friction:
+    if drift:
         law = run.at_measured_rate(_without_load(device), state)["friction"]
     if not model.has_jumps:
         total = smooth + run.in_band(found["friction"])
@@ -144,15 +153,6 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         # such a channel is linear, and what goes with time alone is in both
         added = through_channel({**plain, "force_drift": 0.0}, total - less, times, spacing)
     return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(added)
-
-
-def _states_of(part: Device, device: Device, state: float | Array) -> float | Array:
-    """Those states of a device that a part of it has too."""
-    if not part.nstate:
-        return 0.0
-    known = part.state_names
-    kept = [name in known for name in device.state_names]
-    return np.atleast_1d(state)[kept]
 
 
 def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, float]]:

@@ -119,6 +119,18 @@ class BenchRun:
         spacing, size = self.spacing / self.thinned, self.measured[0].size
         return forces_along(device, spacing, self._followed_finely, state, size)
 
+    def force_at_measured_rate(self, device: Device, state: float | Array, name: str) -> Array:
+        """One of them alone, "total" or "friction"."""
+        x, v, a = self._followed_finely
+        size = self.force.size if self.measured is None else self.measured[0].size
+        spacing = self.spacing / self.thinned
+        return held(device.force_checked(spacing, x, v, a, state, name), size)
+
+    def thinned_force(self, device: Device, state: float | Array) -> Array:
+        """Total force of a device along the thinned motion [N], shape (n,)."""
+        force = device.force_checked(self.spacing, *self.followed, state, "total")
+        return held(force, self.force.size)
+
     def in_band(self, values: Array) -> Array:
         """Values at the measured rate through the low-pass of the measured force, thinned."""
         if self.thinned > 1:

@@ -1,0 +1,132 @@
+"""The force of a device in parts that know nothing of each other.
+
+    smooth     what is smooth in the motion: at the rate of a thinned run
+    friction   the friction law between the terminals: at the measured rate, through the low-pass
+    abrupt     stops, free play and what changes along the stroke: likewise
+
+A fit moves one coordinate after another, and most act on one part alone: the others are kept. What
+hangs together, friction at the flywheel or raised by a load, a channel that clips, is no sum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identify.channel import clips, through_channel
+from inerter.identify.kept import Kept
+from inerter.identify.model import Model, Part
+from inerter.identify.runs import BenchRun
+
+Array = NDArray[np.float64]
+State = float | Array
+
+# forces of runs [bytes] that are kept in a process
+_KEPT = Kept(2**26)
+# friction beyond this [N] is that of a state that has run away
+RUNAWAY = 1e30
+# what of the channel goes with the force, and is linear in it
+_LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
+
+
+def is_sum(model: Model) -> bool:
+    """Whether a model's force is the sum of its parts."""
+    device = model.device()
+    return not (
+        device.has_load_friction or device.friction_side != "terminals" or clips(model.values)
+    )
+
+
+def smooth_force(model: Model, run: BenchRun, state: State) -> Array:
+    """Force of the smooth part along a run [N], shape (n,); `state` is that of the whole."""
+    part, rest = model.smooth_part, states_of(model.smooth_part, model, state)
+
+    def force() -> Array:
+        return run.thinned_force(part.device, rest)
+
+    return _found(run, ("smooth", part.stated, _key(rest)), force)
+
+
+def sharp_force(model: Model, run: BenchRun, state: State, drift: float) -> Array:
+    """Force of the other parts in a run's band [N], shape (n,), not finite if it has run away.
+
+    Where something beside friction is abrupt it is that which the channel shows. `drift` [1/s] is
+    that of the friction level.
+    """
+    channel = {name: model.values[name] for name in _LINEAR if name in model.values}
+    if not model.has_jumps:
+        channel = {}
+    total = np.zeros(run.force.size)
+    if model.friction != "none":
+        law, bent = model.friction_part, states_of(model.friction_part, model, state)
+        key = ("friction", law.stated, _key(bent))
+
+        def friction() -> Array:
+            return run.force_at_measured_rate(law.device, bent, "friction")
+
+        total = total + _shown(run, key, channel, friction)
+        if drift and model.has_jumps:
+            total = total + drift * _shown(
+                run, ("drifting", *key), channel, lambda: run.fine_elapsed * friction()
+            )
+        elif drift:
+            total = total + drift * run.elapsed * total
+    if model.has_jumps:
+        total = total + _abrupt(model, run, state, channel)
+    return total
+
+
+def _abrupt(model: Model, run: BenchRun, state: State, channel: Mapping[str, float]) -> Array:
+    alone = model.abrupt_part
+    if alone is not None:
+
+        def force() -> Array:
+            return run.force_at_measured_rate(alone.device, 0.0, "total")
+
+        return _shown(run, ("abrupt", alone.stated), channel, force)
+    # what changes along the stroke multiplies the rest; a play throws the flywheel about
+    rest, part = model.frictionless_part, model.smooth_part
+    before, smooth = (states_of(each, model, state) for each in (rest, part))
+
+    def difference() -> Array:
+        whole = run.force_at_measured_rate(rest.device, before, "total")
+        return whole - run.force_at_measured_rate(part.device, smooth, "total")
+
+    return _shown(run, ("difference", rest.stated, _key(before)), channel, difference)
+
+
+def _shown(
+    run: BenchRun,
+    key: tuple[Hashable, ...],
+    channel: Mapping[str, float],
+    fine: Callable[[], Array],
+) -> Array:
+    """A force at the measured rate as the channel shows it in the run's band, shape (n,)."""
+
+    def shown() -> Array:
+        force = _found(run, key, fine) if channel else fine()
+        if not abs(force[-1]) < RUNAWAY:
+            return np.full(run.force.size, np.inf)
+        spacing = run.spacing / run.thinned
+        return run.in_band(through_channel(channel, force, run.fine_elapsed, spacing))
+
+    return _found(run, ("shown", *key, *channel.items()), shown)
+
+
+def states_of(part: Part, model: Model, state: State) -> State:
+    """Those states of a model's device that a part of it has too."""
+    if not model.device().nstate or not part.device.nstate:
+        return 0.0
+    known = part.device.state_names
+    kept = [name in known for name in model.device().state_names]
+    return np.atleast_1d(state)[kept]
+
+
+def _found(run: BenchRun, key: tuple[Hashable, ...], work_out: Callable[[], Array]) -> Array:
+    return _KEPT.found((run.identity, *key), work_out)
+
+
+def _key(state: State) -> bytes:
+    return np.asarray(state, dtype=np.float64).tobytes()
