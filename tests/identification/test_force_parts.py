@@ -68,7 +68,7 @@ def test_a_sum_of_parts_is_the_whole(
     size = np.max(np.abs(found))
     for each, parts in ((model, found), (moved, other)):
         whole = prediction.force_along(each, run)
-        np.testing.assert_allclose(parts, whole, rtol=0, atol=1e-12 * size)
+        np.testing.assert_allclose(parts, whole, rtol=0, atol=1e-12 * float(size))
     assert np.max(np.abs(other - found)) > 1e-4 * size
 
 
@@ -83,11 +83,11 @@ def test_the_low_pass_of_a_fit_is_that_of_records(size: int, step: int) -> None:
     edge = int(1.5 * EDGE_PERIODS / (cutoff * H * step)) + 1
     inner = slice(edge, -edge)
     assert known[inner].size > 10
-    np.testing.assert_allclose(found[inner], known[inner], rtol=0, atol=1e-5 * np.std(values))
+    np.testing.assert_allclose(found[inner], known[inner], rtol=0, atol=1e-5 * float(np.std(values)))
 
 
 def test_a_line_passes_the_low_pass_as_it_is() -> None:
-    line = 2.0 - 0.3 * np.arange(500)
+    line = 2.0 - 0.3 * np.arange(500, dtype=np.float64)
     for step in (2, 9, 600):
         found = filtered_and_thinned(line, 1e-3, 20.0, step)
         np.testing.assert_allclose(found, line[::step], rtol=0, atol=1e-10)

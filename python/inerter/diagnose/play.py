@@ -297,9 +297,9 @@ def _fit_about(
         return fit.rmse(problem.masks)
 
     first, *others = sorted(parallel(lambda start: fit(start, _SOON), best), key=error)
-    near = [each for each in others if error(each) < _RIVAL * error(first)][:1]
-    fits = parallel(lambda soon: fit(soon.model, _EVALUATIONS), [first, *near])
-    return min([first, *near, *fits], key=error)
+    second = [each for each in others if error(each) < _RIVAL * error(first)][:1]
+    fits = parallel(lambda soon: fit(soon.model, _EVALUATIONS), [first, *second])
+    return min([first, *second, *fits], key=error)
 
 
 def _points(model: Model, ranges: Ranges, power: int, seed: int) -> list[Model]:

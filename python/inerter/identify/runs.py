@@ -128,7 +128,8 @@ class BenchRun:
 
     def thinned_force(self, device: Device, state: float | Array) -> Array:
         """Total force of a device along the thinned motion [N], shape (n,)."""
-        force = device.force_checked(self.spacing, *self.followed, state, "total")
+        x, v, a = self.followed
+        force = device.force_checked(self.spacing, x, v, a, state, "total")
         return held(force, self.force.size)
 
     def in_band(self, values: Array) -> Array:
