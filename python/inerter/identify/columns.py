@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -31,7 +31,13 @@ from inerter.identify.model import Model
 from inerter.identify.prediction import bristle_reach
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.smoothness import smoothness
-from inerter.identify.transient import RELAXING, relaxing, without_bending, without_relaxing
+from inerter.identify.transient import (
+    RELAXING,
+    bending,
+    relaxing,
+    without_bending,
+    without_relaxing,
+)
 
 if TYPE_CHECKING:
     from inerter.identify.fit import Problem
@@ -75,10 +81,11 @@ class Columns:
         self.problem = problem
         self._kept = Kept(_MOST)
         self._bases: dict[Hashable, Basis] = {}
+        self._last_bent: tuple[float, list[tuple[Array, Array]]] = (0.0, [])
 
     def __getstate__(self) -> Mapping[str, Any]:
         """What another process is told: what is kept is soon worked out again."""
-        return {**self.__dict__, "_kept": Kept(_MOST), "_bases": {}}
+        return {**self.__dict__, "_kept": Kept(_MOST), "_bases": {}, "_last_bent": (0.0, [])}
 
     def of(
         self,
@@ -201,20 +208,54 @@ class Columns:
     def _weighted(self, name: str, model: Model, tones: Tones | None = None) -> Array:
         """Minus a column as it counts, the tones held where none are given."""
         tones = tones or [None] * len(self.problem.runs)
-        key, unknown = _key(name, model, _LINEAR), _Unknown.of(model)
+        unknown = _Unknown.of(model)
 
-        def column() -> Array:
-            columns = []
+        def column(unknown: _Unknown) -> Array:
             every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
-            for run, mask, tone in every:
-                of_run = functools.partial(_shown, name, model, run)
-                shown = _OF_RUNS.found((run.identity, *key), of_run)
-                columns.append(-_settled(shown, run, mask, unknown, tone))
+            columns = [
+                -_settled(self._shown(name, model, run), run, mask, unknown, tone)
+                for run, mask, tone in every
+            ]
             return np.concatenate(self.problem.weighted(columns))
 
-        # what a tone and a bristle do changes with the model
+        if any(tones):
+            # what a tone does changes with the model
+            return column(unknown)
+        apart = replace(unknown, reach=0.0)
+        if unknown.reach and apart != _NOTHING:
+            return column(unknown)
         whole = _key(name, model, _CHANNEL)
-        return column() if any(tones) or unknown.reach else self._kept.found(whole, column)
+        found = self._kept.found(whole, lambda: column(apart))
+        if not unknown.reach:
+            return found
+        # what a bristle does changes with the model, but for one form in every run
+        found, begin = found.copy(), 0
+        for run, (share, form) in zip(self.problem.runs, self._bent(unknown.reach), strict=True):
+            if share.size:
+                shown = self._shown(name, model, run)[: share.size]
+                found[begin : begin + form.size] += (share @ shown) * form
+            begin += run.force.size
+        return found
+
+    def _shown(self, name: str, model: Model, run: BenchRun) -> Array:
+        key = (run.identity, *_key(name, model, _LINEAR))
+        return _OF_RUNS.found(key, functools.partial(_shown, name, model, run))
+
+    def _bent(self, reach: float) -> list[tuple[Array, Array]]:
+        """What tells of every run how a bristle was bent, and what that leaves as it counts."""
+        known, found = self._last_bent
+        if known == reach:
+            return found
+        forms, shares = [], []
+        for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
+            decay, share = bending(run.path, reach, mask if mask.any() else run.inner)
+            form = np.zeros(run.force.size)
+            form[: decay.size] = decay
+            forms.append(form)
+            shares.append(share)
+        found = list(zip(shares, self.problem.weighted(forms), strict=True))
+        self._last_bent = reach, found
+        return found
 
     def _by_first_force(
         self, point: Array, base: Sequence[Array], residual: ResidualAt
@@ -315,6 +356,9 @@ class _Unknown:
     def of(cls, model: Model) -> _Unknown:
         reach = bristle_reach(model.device())
         return cls(slow_start(model.values), relaxing(model.values), reach)
+
+
+_NOTHING = _Unknown(None, (), 0.0)
 
 
 def _settled(

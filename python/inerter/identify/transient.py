@@ -79,6 +79,8 @@ def without_relaxing(
     share of the masked samples that has this form is taken out, as above. Not of branches that
     relax while a low-pass of this `cutoff` [Hz] begins.
     """
+    if not times:
+        return residual
     shortest = max(EDGE_PERIODS / cutoff, _FEWEST * spacing)
     times = [time for time in times if time > shortest]
     count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
@@ -96,12 +98,26 @@ def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np
     The first force tells it within the noise of the motion alone. What is wrong of it dies away
     along the path slid since then [m], shape (n,), as exp(-path / reach).
     """
-    count = int(np.searchsorted(path, _FORGOTTEN * reach))
-    if reach <= 0 or np.count_nonzero(mask[:count]) < 4:
+    decay, share = bending(path, reach, mask)
+    if not decay.size:
         return residual
+    rest = residual.copy()
+    rest[: decay.size] -= (share @ residual[: decay.size]) * decay
+    return rest
+
+
+def bending(path: Array, reach: float, mask: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """That decay, as long as it is something, and what tells its size of a residual's beginning.
+
+    Both (k,) with k = 0 where there is none.
+    """
+    count = int(np.searchsorted(path, _FORGOTTEN * reach)) if reach > 0 else 0
+    if np.count_nonzero(mask[:count]) < 4:
+        return np.zeros(0), np.zeros(0)
     with np.errstate(under="ignore"):
-        basis = np.exp(-path[:count] / reach)
-    return _without(basis[None], residual, mask)
+        decay = np.exp(-path[:count] / reach)
+    seen = decay * mask[:count]
+    return decay, seen / (seen @ decay + TIMID)
 
 
 def _without(basis: Array, residual: Array, mask: NDArray[np.bool_], most: float = np.inf) -> Array:
