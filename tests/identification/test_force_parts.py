@@ -83,7 +83,9 @@ def test_the_low_pass_of_a_fit_is_that_of_records(size: int, step: int) -> None:
     edge = int(1.5 * EDGE_PERIODS / (cutoff * H * step)) + 1
     inner = slice(edge, -edge)
     assert known[inner].size > 10
-    np.testing.assert_allclose(found[inner], known[inner], rtol=0, atol=1e-5 * float(np.std(values)))
+    np.testing.assert_allclose(
+        found[inner], known[inner], rtol=0, atol=1e-5 * float(np.std(values))
+    )
 
 
 def test_a_line_passes_the_low_pass_as_it_is() -> None:

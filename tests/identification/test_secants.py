@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from inerter.estimation.least_squares import Secants, Tolerances, minimise
+from inerter.estimation.least_squares import Tolerances, minimise
+from inerter.estimation.secants import Secants
 
 TIMES = np.linspace(0.0, 3.0, 80)
 FREE = (np.full(3, -5.0), np.full(3, 5.0))

@@ -63,9 +63,9 @@ _NEAR_LEFT = 6
 # points that are followed, and how far
 _FOLLOWED = 4
 _EVALUATIONS = 20
-# evaluations after which these are compared, and how near a second one must be to be followed on
+# evaluations after which these are compared, and how many are followed to the end
 _SOON = 5
-_RIVAL = 1.1
+_TO_THE_END = 2
 _TOLERANCE = 1e-4
 # share of the rms error beyond which errors count little at first, and of that in the next round
 _FAR = 0.5
@@ -296,10 +296,9 @@ def _fit_about(
     def error(fit: Fit) -> float:
         return fit.rmse(problem.masks)
 
-    first, *others = sorted(parallel(lambda start: fit(start, _SOON), best), key=error)
-    second = [each for each in others if error(each) < _RIVAL * error(first)][:1]
-    fits = parallel(lambda soon: fit(soon.model, _EVALUATIONS), [first, *second])
-    return min([first, *second, *fits], key=error)
+    soon = sorted(parallel(lambda start: fit(start, _SOON), best), key=error)[:_TO_THE_END]
+    fits = parallel(lambda begun: fit(begun.model, _EVALUATIONS), soon)
+    return min([*soon, *fits], key=error)
 
 
 def _points(model: Model, ranges: Ranges, power: int, seed: int) -> list[Model]:

@@ -15,16 +15,16 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares, lsq_linear
 
 from inerter.estimation.covariance import usual_size
+from inerter.estimation.secants import Secants
+from inerter.estimation.trust_region import Ends, trust_region
 
 Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
 
 # search variables, which are of the order of 1, below this are none
 _NOTHING = 1e-50
-# share of the change of a residual by a step that secants have to foretell; at 0.5, and where fits
-# to be followed ended without true derivatives, a search on a measured rack took 2.5 times as many
-# predictions
-_FORETOLD = 0.7
+# evaluations at most where nobody says, per variable
+_MOST = 100
 
 Residuals = Callable[[Array], Array]
 """Points (sets, p) to residuals (sets, n)."""
@@ -111,100 +111,69 @@ def minimise(
     secants
         Takes the Jacobian's place between the points at which it is worked out.
     """
-    before = 0
-
-    def watch(intermediate_result: OptimizeResult) -> None:
-        error = float(np.sqrt(np.mean(intermediate_result.fun**2)))
-        if give_up and give_up(before + intermediate_result.nfev, error):
-            raise StopIteration
-
     begin = inside(start, bounds)
     # the first region is as wide as the start is far from 0: of next to nothing powers overflow
     begin[np.abs(begin) < _NOTHING] = 0.0
-    scale = usual_size(residual(begin)) if loss != "linear" else 1.0
-    cost = np.inf
+    derivatives = secants or jacobian
+    if derivatives is None or loss != "linear" or scaled:
+        return _by_scipy(
+            residual, derivatives, begin, bounds, tolerances, evaluations, loss, scaled, give_up
+        )
+    before, cost, most = 0, np.inf, evaluations or _MOST * begin.size
+
+    def watch(done: int, here: Array) -> bool:
+        return bool(give_up and give_up(before + done, float(np.sqrt(np.mean(here**2)))))
+
     while True:
-        found = least_squares(
-            residual, begin,
-            jac=secants or jacobian or "2-point",  # pyright: ignore[reportArgumentType]
-            bounds=bounds, loss=loss, x_scale="jac" if scaled else 1.0, f_scale=scale,
-            xtol=tolerances.point, ftol=tolerances.cost, gtol=tolerances.gradient,
-            max_nfev=evaluations and evaluations - before, callback=watch if give_up else None,
+        found = trust_region(
+            residual, derivatives, begin, bounds,
+            Ends(tolerances.point, tolerances.cost, tolerances.gradient, most - before), watch,
         )  # fmt: skip
-        before += int(found.nfev)
-        spent = evaluations is not None and before >= evaluations
-        if secants is None or secants.rough or not secants.stale or found.status <= 0 or spent:
+        before += found.evaluations
+        spent = before >= most
+        if secants is None or secants.rough or not secants.stale or not found.ended or spent:
             break
         if found.cost > (1 - tolerances.cost) * cost:
             break
         # no step that these derivatives tell lowers the cost: what do true ones tell?
         secants.forget()
-        begin, cost = inside(found.x, bounds), float(found.cost)
+        begin, cost = inside(found.variables, bounds), found.cost
     return Solution(
-        variables=found.x, residual=found.fun, jacobian=np.asarray(found.jac),
-        cost=float(found.cost), evaluations=before, ended=found.status > 0,
+        variables=found.variables, residual=found.residual, jacobian=found.jacobian,
+        cost=found.cost, evaluations=before, ended=found.ended,
     )  # fmt: skip
 
 
-class Secants:
-    """A Jacobian that follows a search from point to point by what the residual did (Broyden 1965).
+def _by_scipy(
+    residual: Callable[[Array], Array],
+    jacobian: Callable[[Array], Array] | None,
+    begin: Array,
+    bounds: Bounds,
+    tolerances: Tolerances,
+    evaluations: int | None,
+    loss: str,
+    scaled: bool,
+    give_up: GiveUp | None,
+) -> Solution:
+    """A search with a robust loss, scaled, or with derivatives by differences."""
 
-    It is worked out anew where too little of a step was foretold.
+    def watch(intermediate_result: OptimizeResult) -> None:
+        error = float(np.sqrt(np.mean(intermediate_result.fun**2)))
+        if give_up and give_up(intermediate_result.nfev, error):
+            raise StopIteration
 
-    Parameters
-    ----------
-    residual, jacobian
-        Of a point (p,): residual (n,) and derivatives (n, p).
-    enough
-        Relative fall of the cost below which a step is the last one, and its derivatives are not
-        asked for.
-    rough
-        Whether a search may end without true derivatives.
-    first
-        Derivatives (n, p) that are near those at the first point, if there are such.
-    """
-
-    def __init__(
-        self,
-        residual: Callable[[Array], Array],
-        jacobian: Callable[[Array], Array],
-        enough: float = 0.0,
-        rough: bool = False,
-        first: Array | None = None,
-    ) -> None:
-        self._residual, self._jacobian, self._enough, self.rough = residual, jacobian, enough, rough
-        self._known: tuple[Array, Array, Array] | None = None
-        self._first = first
-        self.stale = False
-
-    def forget(self) -> None:
-        """Be worked out anew at the next point."""
-        self._known = None
-
-    def __call__(self, point: Array) -> Array:
-        """Derivatives at a point, (n, p)."""
-        here = self._residual(point)
-        if self._known is None:
-            found, self._first = self._first, None
-        else:
-            found = self._followed(point, here, *self._known)
-        self.stale = found is not None
-        if found is None:
-            found = self._jacobian(point)
-        self._known = point.copy(), here, found
-        return found
-
-    def _followed(
-        self, point: Array, here: Array, last: Array, was: Array, old: Array
-    ) -> Array | None:
-        step, change = point - last, here - was
-        length, before = float(step @ step), float(was @ was)
-        if not length or before - float(here @ here) < self._enough * before:
-            return old
-        miss = change - old @ step
-        if not np.linalg.norm(miss) < (1 - _FORETOLD) * np.linalg.norm(change):
-            return None
-        return old + np.outer(miss / length, step)
+    found = least_squares(
+        residual, begin,
+        jac=jacobian or "2-point",  # pyright: ignore[reportArgumentType]
+        bounds=bounds, loss=loss, x_scale="jac" if scaled else 1.0,
+        f_scale=usual_size(residual(begin)) if loss != "linear" else 1.0,
+        xtol=tolerances.point, ftol=tolerances.cost, gtol=tolerances.gradient,
+        max_nfev=evaluations, callback=watch if give_up else None,
+    )  # fmt: skip
+    return Solution(
+        variables=found.x, residual=found.fun, jacobian=np.asarray(found.jac),
+        cost=float(found.cost), evaluations=int(found.nfev), ended=found.status > 0,
+    )  # fmt: skip
 
 
 def differences(residuals: Residuals, at: Array, here: Array, bounds: Bounds, step: float) -> Array:

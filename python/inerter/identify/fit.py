@@ -14,7 +14,8 @@ from inerter.catalogue.coordinates import (
 )
 from inerter.catalogue.scales import Scales
 from inerter.estimation.covariance import robust_weight, sandwich, usual_size
-from inerter.estimation.least_squares import Secants, Tolerances, minimise
+from inerter.estimation.least_squares import Tolerances, minimise
+from inerter.estimation.secants import Secants
 from inerter.estimation.variables import Variables
 from inerter.identify.apart import Apart
 from inerter.identify.columns import Columns, ResidualAt
