@@ -144,10 +144,11 @@ class _Local:
         self.bend = gradient * slope
         self.gradient = gradient * self.scale
         both = np.concatenate([self.triangle, np.diag(np.sqrt(self.bend))])
-        left, self.sizes, self.right = np.linalg.svd(both, full_matrices=False)
-        self.along = left[: len(triangle)].T @ triangle[:, count]
-        least = _EPSILON * (columns.shape[0] + count) * self.sizes[0]
-        self.is_full = bool(self.sizes[-1] > least)
+        left, sizes, right = np.linalg.svd(both, full_matrices=False)
+        # a variable that does nothing stays where it is
+        told = sizes > _EPSILON * (columns.shape[0] + count) * sizes[0]
+        self.sizes, self.right = sizes[told], right[told]
+        self.along = left[: len(triangle), told].T @ triangle[:, count]
 
     def cost(self, step: Array) -> float:
         """By how much the linearised cost changes."""
@@ -156,11 +157,10 @@ class _Local:
 
     def step(self, radius: float, damping: float) -> tuple[Array, float]:
         """The step that is best within a radius, and its damping, of which a guess is given."""
+        step = -(self.along / self.sizes) @ self.right
+        if np.linalg.norm(step) <= radius:
+            return step, 0.0
         scaled = self.sizes * self.along
-        if self.is_full:
-            step = -(self.along / self.sizes) @ self.right
-            if np.linalg.norm(step) <= radius:
-                return step, 0.0
 
         def excess(damping: float) -> tuple[float, float]:
             """Length of a step beyond the radius, and its slope over the damping."""
@@ -168,24 +168,18 @@ class _Local:
             length = float(np.linalg.norm(divided))
             return length - radius, -float(np.sum(divided**2 / (self.sizes**2 + damping))) / length
 
-        low, high = 0.0, float(np.linalg.norm(scaled)) / radius
-        if high == 0.0:
-            return 0.0 * scaled, 0.0
-        if self.is_full:
-            value, slope = excess(0.0)
-            low = -value / slope
-        last = guess = damping if damping > 0 or self.is_full else -1.0
+        value, slope = excess(0.0)
+        low, high, guess = -value / slope, float(np.linalg.norm(scaled)) / radius, damping
         for _ in range(_TRIES):
-            if not low <= guess <= high or not (guess > 0 or self.is_full):
+            if not low <= guess <= high:
                 guess = max(1e-3 * high, math.sqrt(low * high))
             value, slope = excess(guess)
             if value < 0:
                 high = guess
-            low, last = max(low, guess - value / slope), guess
-            guess -= (value + radius) / radius * value / slope
+            low = max(low, guess - value / slope)
+            guess = max(guess - (value + radius) / radius * value / slope, 0.0)
             if abs(value) < _MET * radius:
                 break
-        guess = guess if guess > 0 else last
         step = -(scaled / (self.sizes**2 + guess)) @ self.right
         return step * (radius / float(np.linalg.norm(step))), guess
 
