@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from xml.etree import ElementTree
 
@@ -108,10 +108,11 @@ def simulate_along(
     At each sample the rig is put at x and v and accelerated by a; the sensor gives the force of
     that instant (which the stages of RK4 are made of). Then the table moves on to the next sample,
     which advances the states: at constant velocity by the laws' own steps (Euler), or with a series
-    element along the cubic through both samples, by stages of RK4 short enough for it. This is what
-    `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far below
-    the table's 1e12 kg), with a series element to the error of its second-order steps, with load
-    friction on a bristle to that of first-order ones.
+    element along the quintic through both samples, by stages of RK4 short enough for it. This is
+    what `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far
+    below the table's 1e12 kg), with a series element to the error of its second-order steps, with
+    load friction on a bristle to that of first-order ones. Viscoelastic branches take these steps
+    at constant velocity too, where `Device.along` follows the quintic.
 
     Parameters
     ----------
@@ -157,11 +158,9 @@ def simulate_along(
     total, friction = np.zeros((2, x.size))
     states = np.zeros((x.size, device.nstate))
     between = np.append(np.diff(x) / h, 0.0)
-    # accelerations at both ends of the cubic between two samples
-    start = np.append((6 * between[:-1] - 4 * v[:-1] - 2 * v[1:]) / h, 0.0)
-    end = np.append((-6 * between[:-1] + 2 * v[:-1] + 4 * v[1:]) / h, 0.0)
     instant = mujoco.mjtIntegrator.mjINT_RK4
     pieces = _pieces(device, h)
+    gains = _gains(h, x, v, a, pieces)
     moving = instant if pieces > 1 else mujoco.mjtIntegrator.mjINT_EULER
     model.opt.timestep = h / pieces
     for i in range(x.size):
@@ -178,12 +177,35 @@ def simulate_along(
             qvel[0], ctrl[0] = between[i], 0.0
             mujoco.mj_step(model, data)
             continue
-        for piece in range(pieces if i + 1 < x.size else 0):
-            share = (piece + 0.5) / pieces
-            ctrl[0] = (1 - share) * start[i] + share * end[i]
+        for gain in gains(i) if i + 1 < x.size else ():
+            ctrl[0] = gain
             mujoco.mj_step(model, data)
     first = states[:, 0] if device.nstate else np.zeros(x.size)
     return {"total": total, "friction": friction, "state": first, "states": states}
+
+
+def _gains(
+    h: float, x: NDArray, v: NDArray, a: NDArray, pieces: int
+) -> Callable[[int], list[float]]:
+    """Mean accelerations in the pieces of a sample spacing, of the quintic through x, v and a."""
+    rest = np.diff(x) / h - v[:-1] - 0.5 * h * a[:-1]
+    turn, bend = np.diff(v) - h * a[:-1], 0.5 * h * np.diff(a)
+    # what the velocity gains up to a share of the spacing, by powers of that
+    terms = np.column_stack(
+        [
+            h * a[:-1],
+            3.0 * (10.0 * rest - 4.0 * turn + bend),
+            4.0 * (7.0 * turn - 15.0 * rest - 2.0 * bend),
+            5.0 * (6.0 * rest - 3.0 * turn + bend),
+        ]
+    )
+    share = np.arange(pieces + 1) / pieces
+    powers = np.array([share, share**2, share**3, share**4])
+
+    def of(i: int) -> list[float]:
+        return (np.diff(terms[i] @ powers) * (pieces / h)).tolist()
+
+    return of
 
 
 def _pieces(device: Device, h: float) -> int:

@@ -110,7 +110,10 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         def along(each: Device) -> dict[str, Array]:
             return forces_along(each, run.spacing, run.followed, state, run.force.size)
 
-        total = with_friction_drift(device, drift, along, run.elapsed)
+        if drift:
+            total = with_friction_drift(device, drift, along, run.elapsed)
+        else:
+            total = run.thinned_force(device, state)
         total = total + warming(device, values, run.velocity, run.elapsed)
         return through_channel(values, total, run.elapsed, run.spacing)
 
