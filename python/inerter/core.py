@@ -373,22 +373,12 @@ class Device:
         result, states = np.empty((2, x.size)), np.empty((x.size, self.nstate))
         now = self._states(state)
         at, row = result.ctypes.data, result.strides[0]
-        told = None
-        if command is not None:
-            told = np.ascontiguousarray(np.broadcast_to(command, x.shape), dtype=float)
+        told = None if command is None else np.array(np.broadcast_to(command, x.shape), float)
         library().inerter_along_commanded(
-            ctypes.byref(self._c),
-            x.size,
-            h,
-            x.ctypes.data,
-            v.ctypes.data,
-            a.ctypes.data,
-            None if told is None else told.ctypes.data,
-            now.ctypes.data,
-            at,
-            at + row,
+            ctypes.byref(self._c), x.size, h, x.ctypes.data, v.ctypes.data, a.ctypes.data,
+            None if told is None else told.ctypes.data, now.ctypes.data, at, at + row,
             states.ctypes.data,
-        )
+        )  # fmt: skip
         first = states[:, 0] if self.nstate else np.zeros(x.size)
         return {"total": result[0], "friction": result[1], "state": first, "states": states}
 
@@ -397,11 +387,10 @@ class Device:
     ) -> NDArray[np.float64]:
         """The force "total" or "friction" alone of `along_checked`, shape (n,)."""
         force, now = np.empty(x.size), self._states(state)
-        at = force.ctypes.data
-        total, friction = (at, None) if name == "total" else (None, at)
+        wanted = [force.ctypes.data if each == name else None for each in ("total", "friction")]
         library().inerter_along_commanded(
             ctypes.byref(self._c), x.size, h, x.ctypes.data, v.ctypes.data, a.ctypes.data, None,
-            now.ctypes.data, total, friction, None,
+            now.ctypes.data, *wanted, None,
         )  # fmt: skip
         return force
 
@@ -438,9 +427,9 @@ def along_many(
     size = ctypes.sizeof(device_type())
 
     def run(first: int, count: int) -> None:
-        start, motion = ctypes.byref(array, first * size), (x, v, a, total[first:])
-        pointers = map(_pointer, motion)
-        library().inerter_along_many(start, count, x.size, ctypes.c_double(h), *pointers)
+        motion = map(_pointer, (x, v, a, total[first:]))
+        start, spacing = ctypes.byref(array, first * size), ctypes.c_double(h)
+        library().inerter_along_many(start, count, x.size, spacing, *motion)
 
     workers = min(threads or os.cpu_count() or 1, len(devices)) or 1
     bounds = np.linspace(0, len(devices), workers + 1).astype(int)

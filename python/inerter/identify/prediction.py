@@ -86,10 +86,14 @@ def _held(device: Device) -> float:
 
 
 def bristle_reach(device: Device) -> float:
-    """Path [m] along which a bristle forgets how it was bent; 0 without one bristle alone."""
+    """Path [m] along which a bristle forgets how it was bent; 0 without one bristle alone.
+
+    Behind a larger play it begins somewhere in that, which says how it was bent.
+    """
     if device.friction not in ("dahl", "lugre", "bouc_wen"):
         return 0.0
-    return _held(device)
+    reach = _held(device)
+    return reach if device.friction_backlash <= reach else 0.0
 
 
 def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
