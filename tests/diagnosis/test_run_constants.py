@@ -29,6 +29,7 @@ def record(
     drift: float = 0.0,
     centre: float = 0.0,
     start: float = 0.0,
+    uneven: float = 0.0,
 ) -> Record:
     """An inerter with Coulomb and viscous friction and a hardening spring along three sines."""
     random = np.random.default_rng(number)
@@ -38,6 +39,7 @@ def record(
     x = centre + size @ np.sin(phase)
     v, a = (size * speed) @ np.cos(phase), -(size * speed**2) @ np.sin(phase)
     force = inertance * a + 30 * v + 8 * np.sign(v) + 2e5 * x**3 + offset + drift * TIME
+    force += uneven * np.abs(v)
     return Record(
         name=f"run {number}", time=start + TIME,
         displacement=x + random.normal(0, 2e-6, x.size),
@@ -67,10 +69,12 @@ def test_constants_are_found_and_taken_off() -> None:
         # an offset that grows: a cause, whether the runs share a clock or not
         [{"drift": 0.2}] * 3,
         [{"drift": 0.2, "offset": 0.2 * s, "start": s} for s in (0.0, 20.0, 40.0)],
+        # damping that differs between the directions has a mean that grows with the speed
+        [{"uneven": 120.0}] * 3,
         # strokes about other places
         [{"centre": c} for c in (-0.01, 0.0, 0.012)],
     ],
-    ids=["none", "common", "drift", "drift through all", "places"],
+    ids=["none", "common", "drift", "drift through all", "uneven", "places"],
 )
 def test_what_is_a_cause_is_left_alone(changes: list[dict[str, float]]) -> None:
     assert constants(thinned([record(i, **change) for i, change in enumerate(changes)])) == {}

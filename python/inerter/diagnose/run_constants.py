@@ -166,7 +166,7 @@ def _rows(run: BenchRun, *, rich: bool) -> _Rows:
     way = np.tanh(v / (WIDTH * size))
     columns = [a, v, way, x]
     if rich:
-        columns += [v * np.abs(v), np.abs(a) * way, x * x, x**3, x * way, run.elapsed]
+        columns += [np.abs(v), v * np.abs(v), np.abs(a) * way, x * x, x**3, x * way, run.elapsed]
     return _Rows(np.column_stack(columns)[moving], run.force[moving])
 
 
