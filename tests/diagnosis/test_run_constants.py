@@ -30,10 +30,11 @@ def record(
     centre: float = 0.0,
     start: float = 0.0,
     uneven: float = 0.0,
+    pace: float = 1.0,
 ) -> Record:
     """An inerter with Coulomb and viscous friction and a hardening spring along three sines."""
     random = np.random.default_rng(number)
-    speed = 2 * np.pi * np.array([0.4, 0.9, 1.7]) * (1 + 0.1 * number)
+    speed = 2 * np.pi * np.array([0.4, 0.9, 1.7]) * (1 + 0.1 * number) * pace
     size = np.array([0.02, 0.01, 0.005])
     phase = speed[:, None] * TIME + random.uniform(0, 6, 3)[:, None]
     x = centre + size @ np.sin(phase)
@@ -70,7 +71,7 @@ def test_constants_are_found_and_taken_off() -> None:
         [{"drift": 0.2}] * 3,
         [{"drift": 0.2, "offset": 0.2 * s, "start": s} for s in (0.0, 20.0, 40.0)],
         # damping that differs between the directions has a mean that grows with the speed
-        [{"uneven": 120.0}] * 3,
+        [{"uneven": 120.0, "pace": pace} for pace in (0.5, 1.0, 2.0)],
         # strokes about other places
         [{"centre": c} for c in (-0.01, 0.0, 0.012)],
     ],
