@@ -127,7 +127,7 @@ static void oscillate(const Oscillator* o, const Swing* swing, double* u, double
 
 void oscillator_swung(const Oscillator* o, const Swing* swing, const Way* way, double* z) {
   double lost = o->lost / o->mass, u = z[S], r = way->v - z[W];
-  double force[RESPONSES] = {
+  const double force[RESPONSES] = {
       way->a + lost * way->v + o->push / o->mass, way->jerk + lost * way->a + o->drift / o->mass,
       way->snap + lost * way->jerk, way->crackle + lost * way->snap, lost * way->crackle};
   oscillate(o, swing, &u, &r);

@@ -57,8 +57,9 @@ def test_it_ends_where_scipy_does(case: str) -> None:
     bounds = np.full(begin.size, lower), np.full(begin.size, upper)
     found = trust_region(residual, lambda p: problem(p)[1], begin, bounds, ENDS)
     known = least_squares(
-        lambda p: problem(p)[0], begin, lambda p: problem(p)[1], bounds,
-        xtol=1e-10, ftol=1e-12, gtol=1e-12,
+        lambda p: problem(p)[0], begin,
+        lambda p: problem(p)[1],  # pyright: ignore[reportArgumentType]
+        bounds, xtol=1e-10, ftol=1e-12, gtol=1e-12,
     )  # fmt: skip
     assert found.ended
     assert found.evaluations == len(asked)

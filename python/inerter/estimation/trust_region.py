@@ -137,14 +137,15 @@ class _Local:
         self, columns: Array, residual: Array, gradient: Array, room: Array, slope: Array
     ) -> None:
         count = columns.shape[1]
-        triangle = np.linalg.qr(np.column_stack([columns, residual]), mode="r")[:count]
+        both: Array = np.asarray(np.linalg.qr(np.column_stack([columns, residual]), mode="r"))
+        triangle = both[:count]
         self.scale = np.sqrt(room)
         self.triangle = triangle[:, :count] * self.scale
         # what the scale itself changes along the way
         self.bend = gradient * slope
         self.gradient = gradient * self.scale
-        both = np.concatenate([self.triangle, np.diag(np.sqrt(self.bend))])
-        left, sizes, right = np.linalg.svd(both, full_matrices=False)
+        rows = np.concatenate([self.triangle, np.diag(np.sqrt(self.bend))])
+        left, sizes, right = np.linalg.svd(rows, full_matrices=False)
         # a variable that does nothing stays where it is
         told = sizes > _EPSILON * (columns.shape[0] + count) * sizes[0]
         self.sizes, self.right = sizes[told], right[told]
