@@ -7,6 +7,7 @@ the data, for tenths of a second, many times in a row.
 from __future__ import annotations
 
 import os
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
@@ -82,6 +83,8 @@ def helped() -> Iterator[None]:
     if _helpers.get() or not count:
         yield
         return
+    # one that has come to hold much is begun anew, and goes on
+    warnings.filterwarnings("ignore", "A worker was restarted", UserWarning, r"loky\.")
     with deaf_children(resource_tracker):
         pool = ProcessPoolExecutor(
             count, env=ONE_THREAD, initializer=_begin, initargs=(os.getpid(),)

@@ -23,8 +23,8 @@ from inerter.identify.runs import BenchRun
 Array = NDArray[np.float64]
 State = float | Array
 
-# forces of runs [bytes] that are kept in a process
-_KEPT = Kept(2**26)
+# forces of runs [bytes] that are kept in a process: those of some points of a fit
+_KEPT = Kept(2**24)
 # friction beyond this [N] is that of a state that has run away
 RUNAWAY = 1e30
 # what of the channel goes with the force, and is linear in it
