@@ -26,8 +26,8 @@ from benchmarks.picture import figure, save
 CASES = ("viscous friction", "LuGre friction", "series elasticity", "backlash")
 # kinds of work, by a part of "file:function"
 KINDS = {
-    "core: forces along a motion": ("core.py:along_checked",),
-    "Fourier transforms": ("_pocketfft.py",),
+    "core: forces along a motion": ("core.py:along_checked", "core.py:force_checked"),
+    "low-passes, Fourier transforms": ("_pocketfft.py", "motion.py:filtered_and_thinned"),
     "linear algebra": ("_decomp_svd.py", "_linalg.py", "linalg", "method 'dot'", "outer"),
     "making devices": ("core.py:__init__", "coordinates.py", "along_stroke.py", "parameter_text"),
 }
