@@ -67,7 +67,7 @@ def draw(profiles: Mapping[str, Mapping[str, Mapping[str, float]]], path: Path) 
     axes.set_yticks(range(len(rows)), labels, fontsize=9)
     axes.invert_yaxis()
     axes.set_xlabel("seconds of one processor under the profiler", fontsize=9)
-    axes.legend(frameon=False, fontsize=8, loc="lower right")
+    axes.legend(frameon=False, fontsize=8, loc="upper right")
     save(made_figure, path)
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import cast
+
 import numpy as np
 import pytest
 from inerter.catalogue.scales import Scales
 from inerter.diagnose import along_stroke
 from inerter.diagnose.composition import effects_of
+from inerter.diagnose.exchange import _plain_part
 from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
+from inerter.diagnose.search import Scored, Search
 from inerter.identify.model import Model
 
 BASELINE = Model("none", {"inertance": 80.0}, ("inertance",))
@@ -77,6 +82,26 @@ def test_a_slow_shaft_that_never_settles_is_any_slow_sine() -> None:
     assert not swings_on(shaft.holding(series_loss=0.1), 20.0, 3.0)
     assert not swings_on(shaft.adding(None, backlash=1e-3), 20.0, 3.0)
     assert not swings_on(shaft.without(("series_frequency", "series_loss")), 20.0, 3.0)
+
+
+@pytest.mark.parametrize(("loss", "kept"), [(0.3, True), (1e-3, False)])
+def test_a_shaft_that_lost_its_damping_goes_whatever_it_explains(loss: float, kept: bool) -> None:
+    values = {"inertance": 2.0, "series_frequency": 2.0, "series_loss": loss}
+
+    def fitted(model: Model) -> SimpleNamespace:
+        error = 1.0 if "series_frequency" in model.values else 5.0
+        squares = np.array([error**2])
+        fit = SimpleNamespace(model=model, rmse=lambda masks: error)
+        return SimpleNamespace(fit=fit, model=model, squares=squares, rmse=fit.rmse)
+
+    search = SimpleNamespace(
+        problem=SimpleNamespace(masks=[], scales=SimpleNamespace(frequency=3.0), fit=fitted),
+        longest=20.0, may_be=lambda model: True, score=lambda effect, law, fit: fit,
+    )  # fmt: skip
+    current = fitted(Model("none", values, tuple(values)))
+    found = _plain_part(cast("Search", search), cast("Scored", current))
+    assert (found is None) is kept
+    assert found is None or "series_frequency" not in found.model.values
 
 
 def test_the_spring_of_a_bouc_wen_law_stands_beside_another_law() -> None:

@@ -18,7 +18,7 @@ from inerter.diagnose.composition import simpler_laws, within_blur
 from inerter.diagnose.decision import CRITERIA, loss
 from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, with_own_spring
+from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
 from inerter.diagnose.trials import FAR
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
@@ -93,13 +93,14 @@ def _spring_beside(search: Search, current: Scored) -> Scored | None:
 
 
 def _plain_part(search: Search, current: Scored) -> Scored | None:
-    """A plain part in the place of a rich one."""
+    """A plain part in the place of a rich one, or of a shaft that stands for any slow sine."""
     masks, frequency = search.problem.masks, search.problem.scales.frequency
+    none = swings_on(current.model, search.longest, frequency)
     for model in filter(search.may_be, as_plain_part(current.model, search.longest, frequency)):
         fit = search.problem.fit(model)
-        if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
+        if none or fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
             scored = search.score("exchange", None, fit)
-            if loss(scored, current) < CRITERIA.gain:
+            if none or loss(scored, current) < CRITERIA.gain:
                 return scored
     return None
 
