@@ -284,13 +284,12 @@ void series_step(const InerterDevice* p, double x, const Way* way, double* brist
     stiffness += law_of(p)->stiffness(p);
   }
   double parts = series_parts(p, stiffness, inertance, h);
-  int count = parts < SERIES_MOST_PARTS ? 1 + (int)parts : FEW_PARTS;
+  int resolved = parts < SERIES_MOST_PARTS, count = resolved ? 1 + (int)parts : FEW_PARTS;
   if (parts < series_most_parts(p)) {
     SeriesExact steps;
     series_exact_steps(p, h, &steps);
     if (!rubs && (series_exact(p, &steps, way, z) ||
-                  series_frozen(p, x, way, z, h,
-                                1 + (parts < SERIES_MOST_PARTS ? count : SERIES_MOST_PARTS) / 2))) {
+                  series_frozen(p, x, way, z, h, 1 + (resolved ? count : SERIES_MOST_PARTS) / 2))) {
       return;
     }
   }

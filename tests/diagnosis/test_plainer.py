@@ -7,8 +7,6 @@ from typing import cast
 
 import numpy as np
 import pytest
-from inerter.catalogue.scales import Scales
-from inerter.diagnose import along_stroke
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.exchange import _plain_part
 from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
@@ -152,14 +150,3 @@ def test_a_curve_of_a_force_may_be_a_gas_and_a_constant_force() -> None:
     pulling = Model("none", {**curve.values, **{n: -f for n, f in nodes.items()}}, curve.free)
     assert len(as_plain_part(pulling, 20.0, 3.0)) == 2
     assert len(as_plain_part(curve.adding(None, **gas), 20.0, 3.0)) == 2
-
-
-def test_a_period_longer_than_the_travel_repeats_nowhere() -> None:
-    sizes = Scales(
-        force=10.0, displacement=0.02, velocity=0.1, acceleration=2.0, travel=(-0.03, 0.02)
-    )
-    names = ("force_period_1", "force_cosine_1", "force_sine_1")
-    for length, is_one in ((0.04, True), (0.06, False)):
-        model = BASELINE.adding(None, **dict(zip(names, (length, 1.0, 0.0), strict=True)))
-        assert along_stroke.repeats(model, sizes) is is_one
-    assert along_stroke.repeats(BASELINE, sizes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from inerter import Device
+from inerter.catalogue.scales import Scales
 from inerter.diagnose import along_stroke
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, submodel, without_effect
@@ -164,3 +165,15 @@ def test_a_play_before_the_friction_is_found() -> None:
         for model in without_effect(found.model, "hysteretic_friction", first.model)
         if model.friction in ("none", "coulomb")
     )
+
+
+def test_a_period_longer_than_the_travel_repeats_nowhere() -> None:
+    sizes = Scales(
+        force=10.0, displacement=0.02, velocity=0.1, acceleration=2.0, travel=(-0.03, 0.02)
+    )
+    plain = Model("none", {"inertance": 80.0}, ("inertance",))
+    names = ("force_period_1", "force_cosine_1", "force_sine_1")
+    for length, is_one in ((0.04, True), (0.06, False)):
+        model = plain.adding(None, **dict(zip(names, (length, 1.0, 0.0), strict=True)))
+        assert along_stroke.repeats(model, sizes) is is_one
+    assert along_stroke.repeats(plain, sizes)

@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from inerter.estimation.trust_region import Ends, trust_region
+from inerter.estimation.solution import Tolerances
+from inerter.estimation.trust_region import trust_region
 from scipy.optimize import least_squares
 
-ENDS = Ends(1e-10, 1e-12, 1e-12, 500)
+FINE, MOST = Tolerances(1e-10, 1e-12, 1e-12), 500
 TIME = np.linspace(0.0, 3.0, 200)
 Array = np.ndarray
 
@@ -55,7 +56,7 @@ def test_it_ends_where_scipy_does(case: str) -> None:
         return problem(point)[0]
 
     bounds = np.full(begin.size, lower), np.full(begin.size, upper)
-    found = trust_region(residual, lambda p: problem(p)[1], begin, bounds, ENDS)
+    found = trust_region(residual, lambda p: problem(p)[1], begin, bounds, FINE, MOST)
     known = least_squares(
         lambda p: problem(p)[0], begin,
         lambda p: problem(p)[1],  # pyright: ignore[reportArgumentType]
@@ -76,10 +77,12 @@ def test_it_backs_off_where_there_is_no_residual() -> None:
         return np.where(p < 2.0, p - 1.5, np.nan)
 
     bounds = np.array([-np.inf]), np.array([np.inf])
-    found = trust_region(residual, lambda p: np.array([[0.05]]), np.array([1.0]), bounds, ENDS)
+    found = trust_region(
+        residual, lambda p: np.array([[0.05]]), np.array([1.0]), bounds, FINE, MOST
+    )
     assert found.variables[0] == pytest.approx(1.5, abs=1e-3)
     with pytest.raises(ValueError, match="not finite where the search starts"):
-        trust_region(residual, lambda p: np.eye(1), np.array([3.0]), bounds, ENDS)
+        trust_region(residual, lambda p: np.eye(1), np.array([3.0]), bounds, FINE, MOST)
 
 
 def test_it_stops_when_told_and_when_all_is_spent() -> None:
@@ -92,12 +95,12 @@ def test_it_stops_when_told_and_when_all_is_spent() -> None:
     bounds = np.full(2, -np.inf), np.full(2, np.inf)
     begin = np.array([-1.2, 1.0])
 
-    def search(ends: Ends, watch: Callable[[int, Array], bool] | None = None) -> tuple[int, bool]:
+    def search(most: int, watch: Callable[[int, Array], bool] | None = None) -> tuple[int, bool]:
         found = trust_region(
-            lambda p: rosenbrock(p)[0], lambda p: rosenbrock(p)[1], begin, bounds, ends, watch
+            lambda p: rosenbrock(p)[0], lambda p: rosenbrock(p)[1], begin, bounds, FINE, most, watch
         )
         return found.evaluations, found.ended
 
-    assert search(ENDS, watch) == (told[-1], False)
+    assert search(MOST, watch) == (told[-1], False)
     assert len(told) == 3
-    assert search(Ends(1e-10, 1e-12, 1e-12, 7)) == (7, False)
+    assert search(7) == (7, False)

@@ -307,11 +307,15 @@ def test_what_follows_a_motion_follows_it_closely(part: str) -> None:
 
 @pytest.mark.parametrize("stiffness", [1e5, 1e7, 1e9, 1e13])
 @pytest.mark.parametrize("damping", [0.0, 1e3, 1e6])
-def test_a_stiff_shaft_is_none(stiffness: float, damping: float) -> None:
+@pytest.mark.parametrize("hardening", [0.0, 1.0])
+def test_a_stiff_shaft_is_none(stiffness: float, damping: float, hardening: float) -> None:
     h, w = 7e-3, 50.0
     t = h * np.arange(600)
     x, v, a = np.sin(w * t), w * np.cos(w * t), -(w**2) * np.sin(w * t)
-    shaft = Device(inertance=2.0, series_stiffness=stiffness, series_damping=damping)
+    shaft = Device(
+        inertance=2.0, series_stiffness=stiffness, series_damping=damping,
+        series_hardening=hardening,
+    )  # fmt: skip
     # from where it does not ring
     twist = -(w**2) * 2.0 / (stiffness + 1j * w * damping - w**2 * 2.0)
     start = [twist.imag, v[0] - (1j * w * twist).imag]

@@ -16,57 +16,20 @@ from scipy.optimize import OptimizeResult, least_squares, lsq_linear
 
 from inerter.estimation.covariance import usual_size
 from inerter.estimation.secants import Secants
-from inerter.estimation.trust_region import Ends, trust_region
+from inerter.estimation.solution import Bounds, Solution, Tolerances
+from inerter.estimation.trust_region import trust_region
 
 Array = NDArray[np.float64]
-Bounds = tuple[Array, Array]
 
 # search variables, which are of the order of 1, below this are none
 _NOTHING = 1e-50
-# evaluations at most where nobody says, per variable
+# what ends a search, and evaluations at most per variable, where nobody says
+_USUAL = Tolerances()
 _MOST = 100
 
 Residuals = Callable[[Array], Array]
 """Points (sets, p) to residuals (sets, n)."""
 GiveUp = Callable[[int, float], bool]
-
-
-@dataclass(frozen=True)
-class Tolerances:
-    """What ends a search: relative change of the point and of the cost, size of the gradient."""
-
-    point: float = 1e-8
-    cost: float = 1e-8
-    gradient: float = 1e-10
-
-
-@dataclass(frozen=True, kw_only=True)
-class Solution:
-    """Where a search ended.
-
-    Attributes
-    ----------
-    variables, residual, jacobian
-        The point (p,), the residual there (n,) and its derivatives (n, p).
-    cost
-        Half the sum of what counts of the squared residuals.
-    evaluations
-        How often the residual was asked for.
-    ended
-        Whether no step lowered the cost any more, in place of too many.
-    """
-
-    variables: Array
-    residual: Array
-    jacobian: Array
-    cost: float
-    evaluations: int
-    ended: bool
-
-    @property
-    def squares(self) -> float:
-        """Sum of the squared residuals."""
-        return float(np.sum(self.residual**2))
 
 
 def inside(point: Array, bounds: Bounds, margin: float = 1e-9) -> Array:
@@ -85,14 +48,14 @@ def minimise(
     bounds: Bounds,
     jacobian: Callable[[Array], Array] | None = None,
     *,
-    tolerances: Tolerances = Tolerances(),
+    tolerances: Tolerances = _USUAL,
     evaluations: int | None = None,
     loss: str = "linear",
     scaled: bool = False,
     give_up: GiveUp | None = None,
     secants: Secants | None = None,
 ) -> Solution:
-    """A trust region reflective search from a point, see `scipy.optimize.least_squares`.
+    """A search from a point on a trust region; with a robust loss or scaled it is SciPy's.
 
     Parameters
     ----------
@@ -125,10 +88,7 @@ def minimise(
         return bool(give_up and give_up(before + done, float(np.sqrt(np.mean(here**2)))))
 
     while True:
-        found = trust_region(
-            residual, derivatives, begin, bounds,
-            Ends(tolerances.point, tolerances.cost, tolerances.gradient, most - before), watch,
-        )  # fmt: skip
+        found = trust_region(residual, derivatives, begin, bounds, tolerances, most - before, watch)
         before += found.evaluations
         spent = before >= most
         if secants is None or secants.rough or not secants.stale or not found.ended or spent:
@@ -138,10 +98,7 @@ def minimise(
         # no step that these derivatives tell lowers the cost: what do true ones tell?
         secants.forget()
         begin, cost = inside(found.variables, bounds), found.cost
-    return Solution(
-        variables=found.variables, residual=found.residual, jacobian=found.jacobian,
-        cost=found.cost, evaluations=before, ended=found.ended,
-    )  # fmt: skip
+    return replace(found, evaluations=before)
 
 
 def _by_scipy(

@@ -11,16 +11,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Bounds = tuple[Array, Array]
+from inerter.estimation.solution import Bounds, Solution, Tolerances
 
-# a step from which on the radius is kept and grows: gain per what was foretold
+Array = NDArray[np.float64]
+
+# gain per what was foretold from which on the radius is kept, and grows; of a step that is poor the
+# next radius
 _POOR, _GOOD = 0.25, 0.75
+_SHORTER = 0.25
 # how exactly a step meets the radius, and how often that is tried
 _MET, _TRIES = 0.01, 10
 # share of the way to a bound that is gone at least
@@ -28,36 +30,15 @@ _NEARLY = 0.995
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Found:
-    """Where a search ended; `ended`: whether no step lowered the cost any more."""
-
-    variables: Array
-    residual: Array
-    jacobian: Array
-    cost: float
-    evaluations: int
-    ended: bool
-
-
-@dataclass(frozen=True)
-class Ends:
-    """What ends a search: relative change of point and cost, size of the gradient, evaluations."""
-
-    point: float
-    cost: float
-    gradient: float
-    evaluations: int
-
-
 def trust_region(
     residual: Callable[[Array], Array],
     jacobian: Callable[[Array], Array],
     start: Array,
     bounds: Bounds,
-    ends: Ends,
+    tolerances: Tolerances,
+    evaluations: int,
     watch: Callable[[int, Array], bool] | None = None,
-) -> Found:
+) -> Solution:
     """The point (p,) within bounds from `start` at which a residual's square is least.
 
     Parameters
@@ -66,7 +47,7 @@ def trust_region(
         Of a point (p,): residual (n,) and derivatives (n, p).
     start, bounds
         (p,) each, the start strictly within the bounds.
-    ends
+    tolerances, evaluations
         What ends it.
     watch
         Told the evaluations so far and the residual after every step; whether to stop there.
@@ -88,15 +69,15 @@ def trust_region(
         if radius < 0:
             radius = float(np.linalg.norm(point / np.sqrt(room))) or 1.0
         steepest = float(np.max(np.abs(gradient * room), initial=0.0))
-        ended = ended or steepest < ends.gradient
-        if ended or done >= ends.evaluations:
-            return Found(
+        ended = ended or steepest < tolerances.gradient
+        if ended or done >= evaluations:
+            return Solution(
                 variables=point, residual=here, jacobian=columns, cost=cost, evaluations=done,
                 ended=ended,
             )  # fmt: skip
         local = _Local(columns, here, gradient, room, slope)
         gain = -1.0
-        while gain <= 0 and done < ends.evaluations:
+        while gain <= 0 and done < evaluations:
             whole, damping = local.step(radius, damping)
             step, foretold = local.inside(point, whole, radius, bounds, max(_NEARLY, 1 - steepest))
             there = _strictly_inside(point + local.scale * step, bounds)
@@ -104,19 +85,19 @@ def trust_region(
             done += 1
             length = float(np.linalg.norm(step))
             if not np.isfinite(residual_there).all():
-                radius = _POOR * length
+                radius = _SHORTER * length
                 continue
             cost_there = 0.5 * float(residual_there @ residual_there)
             gain = cost - cost_there
             share = gain / foretold if foretold > 0 else float(gain == foretold == 0)
             way = float(np.linalg.norm(local.scale * step))
-            little = gain < ends.cost * cost and share > _POOR
-            if little or way < ends.point * (ends.point + float(np.linalg.norm(point))):
+            little = gain < tolerances.cost * cost and share > _POOR
+            if little or way < tolerances.point * (tolerances.point + float(np.linalg.norm(point))):
                 ended = True
                 break
             before = radius
             if share < _POOR:
-                radius = _POOR * length
+                radius = _SHORTER * length
             elif share > _GOOD and length > 0.95 * radius:
                 radius *= 2.0
             damping *= before / radius
@@ -124,7 +105,7 @@ def trust_region(
             point, here, cost = there, residual_there, cost_there
             columns = jacobian(point)
         if watch and watch(done, here):
-            return Found(
+            return Solution(
                 variables=point, residual=here, jacobian=columns, cost=cost, evaluations=done,
                 ended=False,
             )  # fmt: skip

@@ -29,6 +29,8 @@ from inerter.identify.channel_filter import filter_of, filtered
 Array = NDArray[np.float64]
 
 LIMITS = ("force_maximum", "force_minimum")
+LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
+"""What of the channel is a linear filter of the force."""
 
 
 def channel_values(values: Mapping[str, float]) -> dict[str, float]:

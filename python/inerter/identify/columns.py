@@ -24,7 +24,7 @@ from inerter.catalogue.coordinates import COORDINATES, ENTANGLED, device_values,
 from inerter.core import Device
 from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
-from inerter.identify.channel import clips, through_channel, tone_follows
+from inerter.identify.channel import LINEAR, clips, through_channel, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.kept import Kept
 from inerter.identify.model import Model
@@ -62,10 +62,8 @@ _MOST, _MOST_OF_RUNS = 2**25, 2**26
 _WORTH_WHILE, _MOST_BASES = 5, 4
 # with one of these a column is no longer that of the motion as it is
 _FILTER = "displacement_filter"
-# what of the channel is a linear filter of the force
-_LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
-# that, and what says how long the time before the record shows
-_CHANNEL = (*_LINEAR, *RELAXING)
+# what is a linear filter of the force, and what says how long the time before the record shows
+_CHANNEL = (*LINEAR, *RELAXING)
 # what beside a node says what its curve adds to the force
 _PLACES = ("rest_length", "curve_lower", "curve_upper")
 
@@ -173,7 +171,7 @@ class Columns:
         nodes = along_friction.nodes_of(names, model)
         if len(nodes) < _WORTH_WHILE:
             return {}
-        channel = {each: model.values[each] for each in _LINEAR if each in model.values}
+        channel = {each: model.values[each] for each in LINEAR if each in model.values}
         unknown = _Unknown.of(model)
         shown: dict[str, list[Array]] = {name: [] for name in nodes}
         every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
@@ -238,7 +236,7 @@ class Columns:
         return found
 
     def _shown(self, name: str, model: Model, run: BenchRun) -> Array:
-        key = (run.identity, *_key(name, model, _LINEAR))
+        key = (run.identity, *_key(name, model, LINEAR))
         return _OF_RUNS.found(key, functools.partial(_shown, name, model, run))
 
     def _bent(self, reach: float) -> list[tuple[Array, Array]]:
@@ -322,7 +320,7 @@ def _nodes(name: str, model: Model) -> tuple[int, ...]:
 
 def _shown(name: str, model: Model, run: BenchRun) -> Array:
     """What one of a coordinate adds to a run's force channel, shape (n,)."""
-    channel = {each: model.values[each] for each in _LINEAR if each in model.values}
+    channel = {each: model.values[each] for each in LINEAR if each in model.values}
     if _curve(name) and np.isfinite(run.cutoff):
         # a curve bends more sharply than the motion: it passes the low-pass of the measured force
         device, less = _alone(name, model)

@@ -15,7 +15,7 @@ from collections.abc import Callable, Hashable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.channel import clips, through_channel
+from inerter.identify.channel import LINEAR, clips, through_channel
 from inerter.identify.kept import Kept
 from inerter.identify.model import Model, Part
 from inerter.identify.runs import BenchRun
@@ -27,8 +27,6 @@ State = float | Array
 _KEPT = Kept(2**24)
 # friction beyond this [N] is that of a state that has run away
 RUNAWAY = 1e30
-# what of the channel goes with the force, and is linear in it
-_LINEAR = ("delay", "force_filter", "force_filter_order", "force_filter_bessel")
 
 
 def is_sum(model: Model) -> bool:
@@ -55,7 +53,7 @@ def sharp_force(model: Model, run: BenchRun, state: State, drift: float) -> Arra
     Where something beside friction is abrupt it is that which the channel shows. `drift` [1/s] is
     that of the friction level.
     """
-    channel = {name: model.values[name] for name in _LINEAR if name in model.values}
+    channel = {name: model.values[name] for name in LINEAR if name in model.values}
     if not model.has_jumps:
         channel = {}
     total = np.zeros(run.force.size)

@@ -140,7 +140,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         # hysteresis that hardens without end: nothing that could be low-passed
         return np.full(run.force.size, np.inf)
     law = found["friction"]
-    if drift:
+    if drift and device.has_load_friction:
         law = run.at_measured_rate(_without_load(device), state)["friction"]
     if not model.has_jumps:
         total = smooth + run.in_band(found["friction"])
