@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 import pytest
 from inerter.diagnose.composition import effects_of
-from inerter.diagnose.exchange import _plain_part
+from inerter.diagnose.exchange import plain_part
 from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
 from inerter.diagnose.search import Scored, Search
 from inerter.identify.model import Model
@@ -97,7 +97,7 @@ def test_a_shaft_that_lost_its_damping_goes_whatever_it_explains(loss: float, ke
         longest=20.0, may_be=lambda model: True, score=lambda effect, law, fit: fit,
     )  # fmt: skip
     current = fitted(Model("none", values, tuple(values)))
-    found = _plain_part(cast("Search", search), cast("Scored", current))
+    found = plain_part(cast("Search", search), cast("Scored", current))
     assert (found is None) is kept
     assert found is None or "series_frequency" not in found.model.values
 

@@ -21,6 +21,7 @@ from inerter.blind_test.vehicle import (
 from inerter.core import Device
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.diagnose.parallel import serial
+from inerter.identify.channel_filter import Filter
 from inerter.records import Record
 from inerter.reference import (
     HiddenCase,
@@ -266,7 +267,8 @@ def shown_parameters(case: HiddenCase) -> dict[str, float]:
     """The hidden parameters as the records of a bench show them, whoever reads them.
 
     A mass m between load cell and device is inertance, the drift of the cell adds to one that is
-    hidden, and friction mu |b a| is mu b / (b + m) of the inertance force that is measured. What
+    hidden, and friction mu |b a| is mu b / (b + m) of the inertance force that is measured. Of a
+    tone a filter of the force leaves less, whether the displacement has the same one or not. What
     the bench does to the same channel as a hidden delay or filter, and a drift to a constant
     force, has no value of its own in such a sum, and is left out.
     """
@@ -276,6 +278,11 @@ def shown_parameters(case: HiddenCase) -> dict[str, float]:
     inertance = case.device.inertance
     more = {"inertance": chain.grip_mass, "force_drift": chain.drift}
     shown |= {name: shown[name] + value for name, value in more.items() if name in shown}
+    if "disturbance_amplitude" in shown and chain.force_filter:
+        kind = "bessel" if chain.is_bessel else "butterworth"
+        low_pass = Filter(kind, int(chain.order), chain.force_filter)
+        gain = low_pass.response(np.array([shown["disturbance_frequency"]]))
+        shown["disturbance_amplitude"] *= float(np.abs(gain[0]))
     if "load_friction" in shown:
         shown["load_friction"] *= inertance / (inertance + chain.grip_mass)
     mixed = {"force_offset"} if chain.drift else set()

@@ -94,7 +94,8 @@ def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float
     """
     cutoff = preparation.cutoff
     power, frequency = _power_missed(learnt, model)
-    power = np.minimum(power, _TONE * median_filter(power, _BESIDE))
+    apart = np.minimum(power, _TONE * median_filter(power, _BESIDE))
+    power = np.where(_of_motion(frequency, learnt.scales), power, apart)
     noise = preparation.noise_floor**2 / power.size
     missed = np.maximum(power - noise, 0.0)
     beyond = float(missed[frequency > cutoff].sum())
@@ -106,6 +107,16 @@ def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float
     share = np.cumsum(missed) / missed.sum()
     widest = float(frequency[np.searchsorted(share, CRITERIA.kept_beyond)])
     return float(np.clip(widest, cutoff, CRITERIA.widest_force_band * cutoff))
+
+
+def _of_motion(frequency: Array, sizes: Scales) -> NDArray[np.bool_]:
+    """Lines that end at these frequencies [Hz] and may be harmonics of one sine, so no tones."""
+    if not sizes.one_tone:
+        return np.zeros(frequency.size, bool)
+    width = frequency[0] / sizes.frequency
+    order = frequency / sizes.frequency
+    # by the line's middle, and by what its neighbours have of a harmonic between two lines
+    return np.abs(order - 0.5 * width - np.round(order - 0.5 * width)) <= width
 
 
 def _power_missed(learnt: Problem, model: Model) -> tuple[Array, Array]:

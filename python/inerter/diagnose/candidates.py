@@ -236,7 +236,8 @@ def _saturation(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candida
 def _variable_inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if not any(name.startswith("inertance_node") for name in model.values):
         yield from _free(effect.name, ("inertance_gradient", "inertance_curvature"), model, sizes)
-    if "inertance_speed_gradient" not in model.free:
+    # along one sine abs(v) a has the third harmonic of x^3, which the curvature has too
+    if "inertance_speed_gradient" not in model.free and not sizes.one_tone:
         yield Candidate(effect.name, "speed", (model.adding(inertance_speed_gradient=0.0),))
 
 

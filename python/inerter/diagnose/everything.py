@@ -18,7 +18,7 @@ from inerter.diagnose.tone import with_tone_from_raw
 from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.split import split
-from inerter.records.motion import smooth, white_noise
+from inerter.records.motion import force_noise, smooth
 from inerter.records.preparation import Preparation
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ def on_everything(stands: Confirmed, found: Excerpts) -> Confirmed:
 def _whole(preparation: Preparation, found: Excerpts) -> Preparation:
     """Everything smoothed as the stretches were."""
     motions = [smooth(r, preparation.cutoff, preparation.channels) for r in found.records]
-    noise = [white_noise(record.force) ** 2 for record in found.records]
+    noise = [force_noise(record.force) ** 2 for record in found.records]
     return replace(preparation, motions=motions, noise_floor=float(np.sqrt(np.mean(noise))))
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
-    for other in (other_filter, _plainer_law, _spring_beside, _plain_part, _one_cause):
+    for other in (other_filter, _plainer_law, _spring_beside, plain_part, _one_cause):
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
     return current
@@ -92,7 +92,7 @@ def _spring_beside(search: Search, current: Scored) -> Scored | None:
     return None
 
 
-def _plain_part(search: Search, current: Scored) -> Scored | None:
+def plain_part(search: Search, current: Scored) -> Scored | None:
     """A plain part in the place of a rich one, or of a shaft that stands for any slow sine."""
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)

@@ -9,11 +9,14 @@ that differs between the directions is a level and a constant force, but at rest
 Each finding with such a counterpart is fitted once more with the counterpart beside it. Where its
 own parameter may then be none, the two are one finding with two members; where the parameter only
 moves, its error is at least as large as that.
+
+A low-pass is first of all late. One of another order with a delay beside it is as late as the one
+found, and where it takes as little of what the motion has, the finding has both members.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,12 +24,13 @@ import numpy as np
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
 from inerter.diagnose.composition import stripped
-from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.decision import CRITERIA, visible_delay
+from inerter.diagnose.low_passes import as_delay, filters
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
 from inerter.diagnose.values import parameter_units
-from inerter.identify.channel_filter import USUAL_ORDER, Filter
+from inerter.identify.channel_filter import CHANNELS, USUAL_ORDER, Filter, filter_of
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
@@ -224,3 +228,55 @@ def _with_error(
     parameters: Mapping[str, ParameterValue], name: str, error: float
 ) -> dict[str, ParameterValue]:
     return {**parameters, name: replace(parameters[name], stderr=error)}
+
+
+def with_delay(
+    finding: Finding,
+    search: Search,
+    fit: Fit,
+    covered: Callable[[Fit], Fit] = lambda found: found,
+) -> Finding:
+    """A low-pass that is found, and what a delay beside another one would leave of it."""
+    found = [each for each in CHANNELS if f"{each}_filter" in finding.parameters]
+    if finding.effect != "sensor_filter" or not found or "delay" in fit.model.values:
+        return finding
+    masks, cutoff = search.problem.masks, f"{found[0]}_filter"
+    fits = parallel(search.problem.fit, list(_others_with_delay(fit.model, found[0])))
+    most = (1 + CRITERIA.tolerated_loss) * fit.rmse(masks)
+    near = [each for each in fits if each.rmse(masks) < most]
+    spacing = max(run.spacing / run.thinned for run in search.runs)
+    late, told = as_delay(fit.model).delay, []
+    for each in sorted(near, key=lambda other: other.rmse(masks)):
+        value, error = parameter_errors(covered(each)).get("delay", (0.0, 0.0))
+        if abs(value) > CRITERIA.distinction * error and visible_delay(value, spacing):
+            told.append((value, each.model.values[cutoff]))
+    # a clock that is off the same way as the filter is the likelier one
+    told.sort(key=lambda pair: pair[0] * late < 0)
+    if not told:
+        return finding
+    known = finding.parameters[cutoff]
+    delay, other = told[0]
+    # a value without the delay, and none of it with the filter alone
+    apart = abs(other - known.value) / CRITERIA.distinction
+    parameters = _with_error(finding.parameters, cutoff, max(known.stderr, apart))
+    found_with = replace(
+        finding,
+        members=(finding.effect, "sensor_delay"),
+        parameters={**parameters, "delay": ParameterValue(delay, abs(delay), "s")},
+    )
+    return replace(found_with, evidence=wording.evidence(found_with))
+
+
+def _others_with_delay(model: Model, channel: str) -> Iterator[Model]:
+    """The model with low-passes of every other shape, and a delay that makes them as late."""
+    here, late = filter_of(model.values, channel), as_delay(model).delay
+    sign = 1.0 if channel == "force" else -1.0
+    for candidate in filters(model):
+        (start,) = candidate.starts
+        other = filter_of(start.values, channel)
+        if here is None or other is None or (other.kind, other.order) == (here.kind, here.order):
+            continue
+        # as steep where the motion is: the cut-off found, and the delay what that lacks
+        begin = start.holding(**{f"{channel}_filter": here.cutoff})
+        lateness = replace(other, cutoff=here.cutoff).lateness
+        yield begin.adding(None, delay=late - sign * lateness)

@@ -15,7 +15,7 @@ from inerter.diagnose.statistics import block_squares
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.split import blocks
-from inerter.records.motion import NOISE_SEGMENT, white_noise
+from inerter.records.motion import NOISE_SEGMENT, force_noise
 from inerter.records.preparation import Preparation
 
 Array = NDArray[np.float64]
@@ -104,7 +104,7 @@ class Judge:
         """
         pairs = zip(self.raw.errors(model), self.raw.runs, strict=True)
         inner = [error[run.inner] for error, run in pairs]
-        noise = [white_noise(error) ** 2 for error in inner if error.size >= NOISE_SEGMENT]
+        noise = [force_noise(error) ** 2 for error in inner if error.size >= NOISE_SEGMENT]
         least = float(np.sqrt(np.mean(noise))) if noise else np.inf
         return self._noise(min(self.preparation.noise_floor, least), model)
 

@@ -120,3 +120,12 @@ def split_in_words(data: Data, other: tuple[str, str] | None) -> str:
         f"Held out is {held}: with {name} held out instead, {EFFECTS[effect].plain} would be "
         f"added. Try --holdout {name}."
     )
+
+
+def swapped_in_words(data: Data, name: str, effect: str) -> str:
+    """A sentence about a run that is held out in the place of the usual one."""
+    usual = " and ".join(data.held)
+    return (
+        f"{usual} would be held out by default, and would take {EFFECTS[effect].plain} away with "
+        f"it: {name} is held out instead."
+    )

@@ -65,9 +65,9 @@ def as_spring(model: Model) -> list[Model]:
 
 
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
-    """A damper, or a spring with any zero, in the place of what may be no more, plainest first.
+    """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
-    That is a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
+    That is damping that bends with the speed, a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
     of this frequency [Hz], a curve of the force, and a shaft on which little turns or so softly
     that it does not follow the motion.
     """
@@ -89,7 +89,21 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         elif 2 * np.pi * frequency * lasts < 1.0:
             damping = model.values.get("viscous", 0.0) + size * lasts
             found.append(bare.adding(None, viscous=damping))
-    return found + _as_law_of_the_place(model)
+    return [*found, *_as_friction(model), *_as_law_of_the_place(model)]
+
+
+def _as_friction(model: Model) -> list[Model]:
+    """Coulomb friction, and with a damper, for damping that bends at a low speed."""
+    bends = EFFECTS["digressive_damping"].coordinates
+    if model.friction != "none" or not set(bends) <= set(model.free):
+        return []
+    damping, knee, beyond = (
+        model.values[name] for name in ("viscous", "damping_knee", "damping_beyond")
+    )
+    bare = model.without((*bends, "viscous"))
+    level = damping * knee * max(1.0 - beyond, 0.1)
+    friction = bare.adding("coulomb", coulomb_force=level, transition_velocity=0.1 * knee)
+    return [friction, friction.adding(None, viscous=damping * beyond)]
 
 
 def _as_law_of_the_place(model: Model) -> list[Model]:

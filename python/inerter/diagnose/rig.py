@@ -20,13 +20,14 @@ from inerter.diagnose.doubt import doubted
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
-from inerter.diagnose.exchangeable import exchanges, with_exchange
+from inerter.diagnose.exchangeable import exchanges, with_delay, with_exchange
 from inerter.diagnose.other_runs import (
     badly_missed,
     badly_missed_stretches,
     missed_in_words,
     other_split,
     split_in_words,
+    swapped_in_words,
 )
 from inerter.diagnose.parallel import helped
 from inerter.diagnose.quantisation import steps_in_words, steps_of
@@ -46,6 +47,7 @@ from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.channel import channel_values
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of, named
+from inerter.identify.fit import rms
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.prediction import settled as without_nuisances
@@ -104,7 +106,27 @@ def diagnose_bench(
     quiet = np.errstate(over="ignore", invalid="ignore")
     with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
         stands, long = _stood(given)
-        return diagnosis_of(stands, long)
+        other = other_split_of(stands)
+        if other and not long and not given.holdout:
+            better = _with_other_split(given, stands, *other)
+            if better:
+                words = swapped_in_words(stands.data, *other)
+                return diagnosis_of(better, None, None, words)
+        return diagnosis_of(stands, long, other, split_in_words(stands.data, other))
+
+
+def _with_other_split(given: Given, stands: Confirmed, name: str, effect: str) -> Confirmed | None:
+    """What stands with another run held out, where that meets all runs better.
+
+    What is held out must not take away what it alone tells.
+    """
+    given.progress(f"{EFFECTS[effect].plain} shows in what is held out: holding out {name} instead")
+    again = confirmed(settled(searched(prepared(replace(given, holdout=[name])))))
+    before, after = (
+        rms(each.data.raw.errors(each.fit.model), [run.inner for run in each.data.whole])
+        for each in (stands, again)
+    )
+    return again if after < (1 - CRITERIA.gain) * before else None
 
 
 def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
@@ -121,15 +143,28 @@ def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
     return stands, found
 
 
+def other_split_of(stands: Confirmed) -> tuple[str, str] | None:
+    """Another run to hold out, and the effect that would be found then besides, if any."""
+    data, final = stands.data, stands.fit.model
+    missed = badly_missed(data, data.raw.errors(final), stands.judge.noise_left(final))
+    return other_split(stands.searched.search, data, final, bool(missed))
+
+
 def _on_stretches(found: Excerpts) -> Confirmed:
     given = found.given
     return on_everything(confirmed(settled(searched(prepared(given)))), found)
 
 
-def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
+def diagnosis_of(
+    stands: Confirmed,
+    long: Excerpts | None,
+    other: tuple[str, str] | None,
+    about_split: str,
+) -> Diagnosis:
     """What is said of a model that stands: findings, figures, what remains.
 
-    Of a `long` record what takes time for every sample is read off its stretches.
+    Of a `long` record what takes time for every sample is read off its stretches. `other`: another
+    run to hold out and the effect that it would show; `about_split` says so.
     """
     data, judge, final = stands.data, stands.judge, stands.fit.model
     part = stands.searched.data
@@ -158,7 +193,6 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
     missed = badly_missed(data, errors, floor)
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
-    other = other_split(stands.searched.search, data, final, bool(missed))
     values = parameter_values(
         stands.fit,
         given.device,
@@ -171,10 +205,17 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
         [link.effect for link in stands.chain],
         stands.searched.covered,
     )
+    searched = stands.searched
     findings = [
-        doubted(with_exchange(finding, same.get(finding.effect)), remains.structure)
+        doubted(
+            with_delay(
+                with_exchange(finding, same.get(finding.effect)),
+                searched.search, stands.fit, searched.covered,
+            ),
+            remains.structure,
+        )
         for finding in _findings(stands, values)
-    ]
+    ]  # fmt: skip
     # a member that the model has not is told by its finding alone
     told = {name: v for each in findings for name, v in each.parameters.items()}
     values = values | {name: told[name] for name in values if name in told}
@@ -200,7 +241,7 @@ def diagnosis_of(stands: Confirmed, long: Excerpts | None = None) -> Diagnosis:
             for note in (
                 constants_in_words(stands.searched.prepared.constants, motion),
                 missed_in_words(missed, extended.rmse, motion),
-                split_in_words(data, other),
+                about_split,
                 steps_in_words(steps, motion),
                 long.in_words() if long else "",
             )

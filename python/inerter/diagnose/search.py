@@ -26,7 +26,7 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
-from inerter.diagnose.exchange import exchanged
+from inerter.diagnose.exchange import exchanged, plain_part
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.parallel import parallel
@@ -155,6 +155,9 @@ class Search:
         if any(is_local(effect) for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
+        # another band may tell that a part found before is a plain one
+        while plainer := plain_part(self, current):
+            current = plainer
         while len(self.found) < most:
             chosen = self._best_step(current) or self._two_steps(current)
             if chosen is None:

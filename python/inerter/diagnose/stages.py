@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 
+from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.candidates import candidates
@@ -40,7 +41,7 @@ from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.channel_filter import filters_of
-from inerter.identify.choices import covered
+from inerter.identify.choices import TONE, covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, on_clocks, thin
@@ -352,6 +353,7 @@ def confirmed(start: Settled) -> Confirmed:
     search, judge = found.search, found.judge
     progress = found.prepared.given.progress
     progress("measuring the gain of each effect")
+    before_held_out = final.fit
     final, chain, dropped = _standing_on_held_out(found, final)
     standings = dict(start.standings)
     if dropped and chain and (further := _searched_on(found, final, dropped)):
@@ -372,7 +374,7 @@ def confirmed(start: Settled) -> Confirmed:
         fit = replace(fit, covariance=fit.covariance + spread)
     else:
         progress("asking how far other choices of the analysis would lead")
-        fit = found.covered(fit)
+        fit = _with_what_was_dropped(found.covered(fit), before_held_out)
     return Confirmed(
         searched=found, data=found.data, judge=found.judge, before=start.before, fit=fit,
         chain=tuple(chain), standings=standings,
@@ -395,6 +397,23 @@ def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[
         final = search.score("", None, fit)
         chain = chain_of(search, judge, final.model)
     return final, chain, dropped
+
+
+def _with_what_was_dropped(fit: Fit, before: Fit) -> Fit:
+    """A fit whose errors hold what effects would move it by that are there and not confirmed.
+
+    What the held-out data do not show may be there, and small: the fit data have shown it.
+    """
+    here, there = fit.model.values, before.model.values
+    if fit.model.friction != before.model.friction:
+        return fit
+
+    def moved_by(name: str) -> float:
+        # a node of another curve is another place, and a tone is fitted to other data
+        return 0.0 if node_of(name) or name in TONE else there.get(name, here[name]) - here[name]
+
+    moved = np.array([moved_by(name) for name in fit.model.free])
+    return replace(fit, covariance=fit.covariance + np.outer(moved, moved))
 
 
 def _searched_on(

@@ -61,8 +61,14 @@ def effect_in_words(finding: Finding) -> str:
     law = _law(finding.law)
     other = finding.effect != "inertance_error" and _is_stated(finding)
     if finding.members:
-        return " or ".join(EFFECTS[member].plain for member in finding.members)
+        between = ", with or without " if _is_filter_at_least(finding) else " or "
+        return between.join(EFFECTS[member].plain for member in finding.members)
     return EFFECTS[finding.effect].plain + law + (" other than stated" if other else "")
+
+
+def _is_filter_at_least(finding: Finding) -> bool:
+    """Whether a low-pass is there in any case, and beside another one perhaps a delay."""
+    return finding.effect == "sensor_filter" and finding.members[1:] == ("sensor_delay",)
 
 
 def _is_stated(finding: Finding) -> bool:
@@ -150,6 +156,13 @@ def either_in_words(finding: Finding) -> str:
         "variable_inertance": "inertance_curvature",
         "asymmetric_friction": "friction_asymmetry",
     }
+    if _is_filter_at_least(finding):
+        found = next(n for n in finding.parameters if n.endswith("_filter"))
+        delay = amount_in_words("sensor_delay", finding.parameters["delay"].value, finding.motion)
+        return (
+            f"a low-pass of {finding.parameters[found].value:.3g} Hz ({finding.law}), or one of "
+            f"another order with {delay} beside it"
+        )
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     if "displacement_filter" in finding.parameters:
         coordinates["sensor_filter"] = "displacement_filter"
@@ -163,6 +176,8 @@ def _teller(finding: Finding) -> str:
     """What would tell the members of a finding apart."""
     if "force_offset" in finding.members:
         return "the device turned round"
+    if _is_filter_at_least(finding):
+        return "quicker motion, up to the filter's cut-off,"
     return "a second frequency"
 
 

@@ -39,6 +39,9 @@ EDGE_PERIODS = 2.5
 LEAST_LOSS = 0.01
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
+# samples of shorter ones, and noise of these, per that of such, below which the longer ones have
+# something sudden in each
+_SHORTER, _CALMER = 16, 0.7
 # share of a velocity's power within so much of one frequency, or so many bins of a windowed line,
 # from which it has no other; samples below which a run tells nothing of it
 _ONE_LINE, _WITHIN, _MAIN_LOBE, _FEWEST = 0.99, 0.1, 2.5, 16
@@ -363,9 +366,23 @@ def white_noise(values: Array) -> float:
     reversal of friction, do not count. A channel that was filtered before it was stored has no
     noise there: then this is too low.
     """
-    length, quantile = NOISE_SEGMENT, 0.2
+    return _in_segments(values, NOISE_SEGMENT)
+
+
+def force_noise(force: Array) -> float:
+    """`white_noise` of a force, over shorter segments where each longer one has a jump in it.
+
+    At a few hundred samples per second friction turns about within every longer one.
+    """
+    usual, shorter = (_in_segments(force, length) for length in (NOISE_SEGMENT, _SHORTER))
+    return shorter if 0.0 < shorter < _CALMER * usual else usual
+
+
+def _in_segments(values: Array, length: int) -> float:
+    """That of segments of a length; 0 of channels that are shorter."""
+    quantile = 0.2
     usable = values.size // length * length
-    if not usable:
+    if values.size < NOISE_SEGMENT:
         return 0.0
     segments = values[:usable].reshape(-1, length)
     ends = segments[:, :1] + (segments[:, -1:] - segments[:, :1]) * np.linspace(0, 1, length)

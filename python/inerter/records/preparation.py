@@ -13,6 +13,7 @@ from inerter.core import Device
 from inerter.records.motion import (
     Motion,
     apply_weight,
+    force_noise,
     has_one_line,
     lowpass,
     smooth,
@@ -121,7 +122,7 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
         cutoffs=cutoffs,
         errors=row,
         channels=use,
-        noise_floor=float(np.sqrt(np.mean([white_noise(record.force) ** 2 for record in records]))),
+        noise_floor=float(np.sqrt(np.mean([force_noise(record.force) ** 2 for record in records]))),
         one_line=one_line,
     )
 

@@ -101,10 +101,10 @@ def effect_name(effect: str) -> str:
 
 def finding_name(finding: Finding) -> str:
     """An effect in words, with its law; everything that it may be, where data cannot tell."""
-    if finding.members:
-        return " or ".join(effect_name(member) for member in finding.members)
     if finding.effect in EFFECTS:
         return effect_in_words(finding)
+    if finding.members:
+        return " or ".join(effect_name(member) for member in finding.members)
     law = f" ({finding.law})" if finding.law else ""
     return effect_name(finding.effect) + law
 
