@@ -95,12 +95,16 @@ def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float
     cutoff = preparation.cutoff
     power, frequency = _power_missed(learnt, model)
     apart = np.minimum(power, _TONE * median_filter(power, _BESIDE))
-    power = np.where(_of_motion(frequency, learnt.scales), power, apart)
+    harmonic = _of_motion(frequency, learnt.scales)
+    power = np.where(harmonic, power, apart)
     noise = preparation.noise_floor**2 / power.size
     missed = np.maximum(power - noise, 0.0)
     beyond = float(missed[frequency > cutoff].sum())
+    # of the noise what is in the lines that may show something
+    heard = np.sqrt(harmonic.mean()) if harmonic.any() else 1.0
     loud = max(
-        CRITERIA.loud_beyond * preparation.noise_floor, CRITERIA.force_share * learnt.scales.force
+        CRITERIA.loud_beyond * heard * preparation.noise_floor,
+        CRITERIA.force_share * learnt.scales.force,
     )
     if not beyond or beyond < max(CRITERIA.share_beyond * float(missed.sum()), loud**2):
         return 0.0

@@ -16,6 +16,7 @@ from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
 from inerter.identify.prediction import (
     first_state,
+    lateness,
     settled,
     warming,
     with_friction_drift,
@@ -79,8 +80,10 @@ def _error(
             continue
         moved, values = with_late_motion(model, run)
 
-        def forces(each: Device, run: BenchRun = moved) -> dict[str, Array]:
-            found = along(each, from_first(run), first_state(device, run))
+        begins = first_state(device, moved, late=lateness(values))
+
+        def forces(each: Device, run: BenchRun = moved, begins: Any = begins) -> dict[str, Array]:
+            found = along(each, from_first(run), begins)
             return {name: held(force, run.force.size) for name, force in found.items()}
 
         drift = values.get("friction_drift", 0.0)

@@ -29,6 +29,7 @@ from inerter.diagnose.low_passes import as_delay, filters
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
+from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.values import parameter_units
 from inerter.identify.channel_filter import CHANNELS, USUAL_ORDER, Filter, filter_of
 from inerter.identify.fit import Fit, parameter_errors
@@ -242,8 +243,13 @@ def with_delay(
         return finding
     masks, cutoff = search.problem.masks, f"{found[0]}_filter"
     fits = parallel(search.problem.fit, list(_others_with_delay(fit.model, found[0])))
-    most = (1 + CRITERIA.tolerated_loss) * fit.rmse(masks)
-    near = [each for each in fits if each.rmse(masks) < most]
+
+    def is_as_good(other: Fit) -> bool:
+        squares = [block_squares(each.residual, search.blocks) for each in (other, here)]
+        return advantage(*squares) < CRITERIA.tolerated_advantage
+
+    here = replace(fit, residual=search.problem.residual(fit.model))
+    near = [each for each in fits if is_as_good(each)]
     spacing = max(run.spacing / run.thinned for run in search.runs)
     late, told = as_delay(fit.model).delay, []
     for each in sorted(near, key=lambda other: other.rmse(masks)):

@@ -25,6 +25,7 @@ from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 from inerter.identify.split import blocks
+from inerter.records.motion import motion_noise, through_shaft
 
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
@@ -68,23 +69,28 @@ def filters(model: Model, delay: float = 0.0) -> Iterator[Candidate]:
 def noise_taken(
     model: Model, runs: Sequence[BenchRun], blocks: Sequence[tuple[int, NDArray[np.intp]]]
 ) -> Array:
-    """What a model's low-pass of the force takes of the noise that it foretells [N^2], by block.
+    """What a model takes of the noise that it foretells [N^2], by block.
 
-    Noise of the displacement is one of b a in what is foretold, and goes through the filter: a
-    model with one misses less for that alone, and would win by it over a delay. Where errors count
-    by the noise of the motion, as much of what is expected is added to them again.
+    Noise of the displacement is one of b a in what is foretold, and goes through a low-pass of the
+    force or a shaft with much damping: a model with one misses less for that alone, and would win
+    by it over a delay. Where errors count by the noise of the motion, as much of what is expected
+    is added to them again.
     """
     found = np.zeros(len(blocks))
-    low_pass = filter_of(model.values, "force")
-    if low_pass is None:
+    low_pass, shaft = filter_of(model.values, "force"), model.shaft
+    if low_pass is None and shaft is None:
         return found
     for i, (number, index) in enumerate(blocks):
         run = runs[number]
         if run.noise and np.isfinite(run.corner):
             frequency = np.linspace(0.0, run.cutoff, 65)
-            motion = (frequency / run.corner) ** 4
-            passed = np.abs(low_pass.response(frequency)) ** 2
-            left = np.mean((1.0 + passed * motion) / (1.0 + motion))
+            expected = motion_noise(frequency, run.corner, run.shaft, run.quiet)
+            passed = motion_noise(frequency, run.corner, None, run.quiet) - 1.0
+            if low_pass is not None:
+                passed = passed * np.abs(low_pass.response(frequency)) ** 2
+            if shaft is not None:
+                passed = passed * through_shaft(frequency, shaft)
+            left = np.mean(np.minimum((1.0 + passed) / expected, 1.0))
             found[i] = index.size * run.noise**2 * (1.0 - float(left))
     return found
 

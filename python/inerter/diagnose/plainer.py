@@ -67,9 +67,9 @@ def as_spring(model: Model) -> list[Model]:
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
-    That is damping that bends with the speed, a branch that hardly relaxes in the longest run [s], or so soon that it follows a motion
-    of this frequency [Hz], a curve of the force, and a shaft on which little turns or so softly
-    that it does not follow the motion.
+    That is damping that bends with the speed, a branch that hardly relaxes in the longest run [s],
+    or so soon that it follows a motion of this frequency [Hz], a curve of the force, and a shaft on
+    which little turns or so softly that it does not follow the motion.
     """
     found = []
     if "inertance" in model.free and _has_plain_shaft(model):

@@ -201,14 +201,15 @@ def _behind_low_pass(
         return search, final
     start.given.progress("one sine: searching once more, from a low-pass of the force on")
     again = search_in(start, band)
-    late, models = _LATE / scales.frequency, [start.baseline]
+    begins, models = _LATE / scales.frequency, [start.baseline]
     models += [
         m for c in candidates(start.baseline, scales) if c.effect == _JUMPS for m in c.starts
     ]
-    fits = parallel(again.trials.fit, [each for m in models for each in filters(m, late)])
+    fits = parallel(again.trials.fit, [each for m in models for each in filters(m, begins)])
     begin = min(fits, key=lambda fit: fit.rmse(again.problem.masks))
     other = again.run(begin.model, until="backlash")
-    if "backlash" in other.model.free or not has_filter(other.model):
+    late = has_filter(other.model) or "delay" in other.model.free
+    if "backlash" in other.model.free or not late:
         return search, final
     plainer = other.complexity <= final.complexity and loss(other, final) < CRITERIA.exchange_loss
     plainer = plainer or as_good(other, final, again.advantage(other, final, "sensor_filter"))

@@ -24,7 +24,7 @@ from inerter.catalogue.along_stroke import QUANTITIES, curves_of_nodes
 from inerter.catalogue.friction import FRICTION
 from inerter.identify.channel import clips
 from inerter.identify.model import Model
-from inerter.identify.prediction import first_state, with_late_motion
+from inerter.identify.prediction import first_state, lateness, with_late_motion
 from inerter.identify.runs import BenchRun, forces_along
 
 Array = NDArray[np.float64]
@@ -60,13 +60,14 @@ class Response:
         lower, upper = model.values["curve_lower"], model.values["curve_upper"]
         grid = np.linspace(lower, upper, _POINTS)
         self._curves = _curves(lower, upper, len(nodes))
-        run, _ = with_late_motion(model, run)
+        run, shown = with_late_motion(model, run)
         fine = run.measured is not None and np.isfinite(run.cutoff)
 
         def friction(rise: Array) -> Array:
             values = {n: model.values[n] + r for n, r in zip(nodes, rise.tolist(), strict=True)}
             device = replace(model, values={**model.values, **values}).device()
-            state = first_state(device, run, model.values.get("friction_place", 0.0))
+            place = model.values.get("friction_place", 0.0)
+            state = first_state(device, run, place, late=lateness(shown))
             if fine:
                 return run.at_measured_rate(device, state)["friction"]
             along = forces_along(device, run.spacing, run.followed, state, run.force.size)

@@ -38,18 +38,18 @@ _MOST_TWIST = 10.0
 
 
 def first_state(
-    device: Device, run: BenchRun, place: float = 0.0, pressed: float = 0.0
+    device: Device, run: BenchRun, place: float = 0.0, pressed: float = 0.0, late: float = 0.0
 ) -> float | Array:
     """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
     A force near 0 does not tell where in a free play before the friction a run begins: that is
     `place`, -1 ... 1 of half the play. A number for a device with at most one state, else an array
-    (nstate,). `pressed` [N] is added to the force.
+    (nstate,). `pressed` [N] is added to the force, which the channel shows so `late` [s].
     """
     if device.nstate == 0:
         return 0.0
     i = run.first
-    force = run.first_force + pressed
+    force = run.first_force + pressed + (run.force_later(late) if late else 0.0)
     state = device.state_of_force(run.displacement[i], run.velocity[i], run.acceleration[i], force)
     if device.series_stiffness:
         state = _twisted(device, run, np.atleast_1d(state))
@@ -106,7 +106,8 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     """
     device = model.device()
     run, values = with_late_motion(model, run)
-    state = first_state(device, run, values.get("friction_place", 0.0), pressed)
+    place, late = values.get("friction_place", 0.0), lateness(values)
+    state = first_state(device, run, place, pressed, late)
     rough = model.has_jumps or device.friction != "none" or device.has_load_friction
     drift = values.get("friction_drift", 0.0)
     if np.isinf(run.cutoff) or not rough:
@@ -160,6 +161,12 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         # such a channel is linear, and what goes with time alone is in both
         added = through_channel({**plain, "force_drift": 0.0}, total - less, times, spacing)
     return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(added)
+
+
+def lateness(values: Mapping[str, float]) -> float:
+    """Time by which a force channel with these coordinates shows what is slow late [s]."""
+    low_pass = filter_of(values, "force")
+    return values.get("delay", 0.0) + (low_pass.lateness if low_pass else 0.0)
 
 
 def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, float]]:

@@ -31,6 +31,8 @@ from inerter.records.record import Part
 
 Array = NDArray[np.float64]
 
+# time over which a first force is a mean [s]
+FIRST = 0.01
 # samples per period of the cut-off that a fit works on; more add time and no information
 SAMPLES_PER_PERIOD = 8
 # a velocity within this many standard deviations of its noise may be none
@@ -77,6 +79,9 @@ class BenchRun:
         Resonance [Hz] and damping ratio of a series element, which amplifies the motion's noise.
     far : float
         Size [N] beyond which a residual counts little, see `weighted`.
+    quiet : float
+        Cut-off of the motion [Hz] where forces are compared in a wider band: above it the motion
+        has no noise.
     motion : str
         What the device does; in rotation read rad for m and N m for N.
     part : Part, optional
@@ -103,6 +108,7 @@ class BenchRun:
     noise: float = 0.0
     shaft: Shaft | None = None
     far: float = np.inf
+    quiet: float = np.inf
     motion: Kind = TRANSLATION
     part: Part | None = None
     identity: tuple[int, int] = field(init=False, default_factory=_new_identity)
@@ -162,6 +168,13 @@ class BenchRun:
             values = self.far * np.sign(share) * np.sqrt(np.log1p(share**2))
         return values
 
+    def force_later(self, late: float) -> float:
+        """By how much the force is larger some time after the sample `first` [N]."""
+        window = np.linspace(-0.5, 0.5, max(1, round(FIRST / self.spacing)) + 1) * FIRST
+        places = self.first + np.array([[0.0], [late]]) / self.spacing + window / self.spacing
+        means = np.interp(places, np.arange(self.force.size), self.force).mean(axis=1)
+        return float(means[1] - means[0])
+
     # checked once, for the many devices that are tried along it
     @cached_property
     def followed(self) -> list[Array]:
@@ -188,12 +201,12 @@ class BenchRun:
 
     @cached_property
     def _weight(self) -> Array:
-        return weight_above(self.force.size, self.spacing, self.corner, self.shaft)
+        return weight_above(self.force.size, self.spacing, self.corner, self.shaft, self.quiet)
 
     def _weight_of(self, shaft: Shaft) -> Array:
         if self.shaft is None or shaft == self.shaft:
             return self._weight
-        weight = weight_above(self.force.size, self.spacing, self.corner, shaft)
+        weight = weight_above(self.force.size, self.spacing, self.corner, shaft, self.quiet)
         return weight * np.exp(self._mean_logarithm(self._weight) - self._mean_logarithm(weight))
 
     def _mean_logarithm(self, weight: Array) -> float:
@@ -256,6 +269,7 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
         thinned=step,
         first=first,
         clock=motion.clock,
+        quiet=motion.cutoff if cutoff > motion.cutoff else np.inf,
         motion=motion.motion,
         part=motion.part,
     )
@@ -278,7 +292,7 @@ def held(values: Array, count: int) -> Array:
 
 def _force_at(motion: Motion, index: int) -> float:
     """Mean measured force over 10 ms [N], at the beginning from it on, else around the sample."""
-    width = max(1, round(0.01 / motion.spacing))
+    width = max(1, round(FIRST / motion.spacing))
     begin = max(0, index - width // 2) if index else 0
     return float(np.mean(motion.force[begin : begin + width]))
 

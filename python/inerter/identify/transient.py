@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
-from inerter.records.motion import EDGE_PERIODS
 
 Array = NDArray[np.float64]
 
@@ -24,8 +23,9 @@ MOST_SPEEDS = 5.0
 _DECAYED = 60.0
 # lengths of a bristle's decay along which it is followed
 _FORGOTTEN = 15.0
-# samples of the quickest decay that is one
-_FEWEST = 10
+# samples of the quickest decay that is one, and its length in periods of a low-pass: one of more is
+# hardly changed by that
+_FEWEST, _PERIODS = 3, 0.5
 
 
 def without_transient(
@@ -76,20 +76,33 @@ def without_relaxing(
     """A residual without what branches were bent by as a record began, shape (n,).
 
     A branch that was bent before goes on to relax, exp(-t / time) from the sample `first` on; the
-    share of the masked samples that has this form is taken out, as above. Not of branches that
-    relax while a low-pass of this `cutoff` [Hz] begins.
+    share of the masked samples that has this form is taken out, as above. Not of branches so quick
+    that a low-pass of this `cutoff` [Hz] makes another form of it.
     """
     if not times:
         return residual
-    shortest = max(EDGE_PERIODS / cutoff, _FEWEST * spacing)
+    shortest = max(_PERIODS / cutoff, _FEWEST * spacing)
     times = [time for time in times if time > shortest]
     count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
+    mask = _with_beginning(mask, first, int(max(times) / spacing) + 1)
     with np.errstate(under="ignore"):
         basis = np.array([_decay(-spacing / time, count).real for time in times])
     before = np.ones((len(basis), first))
     return _without(np.concatenate([before, basis], axis=1), residual, mask)
+
+
+def _with_beginning(mask: NDArray[np.bool_], first: int, count: int) -> NDArray[np.bool_]:
+    """Masked samples, and those from the `first` on where of so many none is masked.
+
+    What is left out of a fit has a beginning of its own, which nothing else tells.
+    """
+    if mask[first : first + count].any():
+        return mask
+    mask = mask.copy()
+    mask[first : first + 3 * count] = True
+    return mask
 
 
 def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np.bool_]) -> Array:

@@ -200,16 +200,21 @@ def filtered_and_thinned(values: Array, spacing: float, cutoff: float, step: int
     return found
 
 
-def weight_above(size: int, spacing: float, corner: float, shaft: Shaft | None = None) -> Array:
+def weight_above(
+    size: int, spacing: float, corner: float, shaft: Shaft | None = None, quiet: float = np.inf
+) -> Array:
     """1 / `motion_noise`^(1/2) for channels of a size, see `apply_weight`."""
     slowest = corner if shaft is None else min(corner, shaft[0] * max(shaft[1], LEAST_LOSS))
     least = (size + round(1 / (slowest * spacing)) + 1) // 2
     length = 2 * int(next_fast_len(least, real=True) or least)
-    return motion_noise(rfftfreq(length, spacing), corner, shaft) ** -0.5
+    return motion_noise(rfftfreq(length, spacing), corner, shaft, quiet) ** -0.5
 
 
 def motion_noise(
-    frequency: NDArray[np.floating], corner: float, shaft: Shaft | None = None
+    frequency: NDArray[np.floating],
+    corner: float,
+    shaft: Shaft | None = None,
+    quiet: float = np.inf,
 ) -> Array:
     """Power of a force's noise and of what the motion's noise adds, per the former (n,).
 
@@ -224,13 +229,21 @@ def motion_noise(
         Frequency at which both are alike without a shaft [Hz].
     shaft : (float, float), optional
         Resonance [Hz] and damping ratio of the inertance on its series element.
+    quiet : float
+        Cut-off of a motion along which a force is compared in a wider band [Hz]: above it the
+        motion has no noise any more.
     """
-    noise = np.asarray(frequency / corner, dtype=float) ** 4
+    noise = np.asarray(frequency / corner, dtype=float) ** 4 * response(frequency, quiet) ** 2
     if shaft is not None:
-        ratio = frequency / shaft[0]
-        damping = 2j * max(shaft[1], LEAST_LOSS) * ratio
-        noise *= np.maximum(np.abs((1 + damping) / (1 - ratio**2 + damping)) ** 2, 1.0)
+        noise *= np.maximum(through_shaft(frequency, shaft), 1.0)
     return 1 + noise
+
+
+def through_shaft(frequency: NDArray[np.floating], shaft: Shaft) -> Array:
+    """Power of b a behind a shaft, per that without, at frequencies [Hz], shape (n,)."""
+    ratio = frequency / shaft[0]
+    damping = 2j * max(shaft[1], LEAST_LOSS) * ratio
+    return np.asarray(np.abs((1 + damping) / (1 - ratio**2 + damping)) ** 2, dtype=float)
 
 
 def apply_weight(values: Array, weight: Array) -> Array:

@@ -244,7 +244,7 @@ def record_case(
         drive, clock, felt = run.drive, run.drive.time + run.start, truth.force
         displacement = drive.displacement
         if chain is not None:
-            felt, displacement = chain.force(truth), chain.displacement(drive)
+            felt, displacement = chain.force(truth, drive, channel), chain.displacement(drive)
             felt, displacement = (
                 chain.sampled(each, drive.time, shake) for each in (felt, displacement)
             )

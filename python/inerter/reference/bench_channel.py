@@ -13,6 +13,7 @@ equation that it is, on a grid fine enough for it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -95,6 +96,15 @@ def answers(
         kept |= {"time": truth.time[rows] + run.start, "force": force[rows]}
         found.append(replace(truth, **kept))
     return found
+
+
+def shown(channel: Channel, drive: Drive, force: Callable[[Array], Array]) -> Array:
+    """What the delay and the low-pass of a channel make of a force [N] of time [s], (n,)."""
+    times, every, lead = _grid(channel, drive)
+    values = force(times - channel.delay)
+    if channel.force_filter:
+        values = low_passed(channel, times, values)
+    return values[lead::every]
 
 
 def _grid(channel: Channel, drive: Drive) -> tuple[Array, int, int]:
