@@ -199,7 +199,7 @@ def test_a_bench_without_filters_shows_its_mass_and_drift_with_those_hidden() ->
     hidden, run = drifting.parameters["force_drift"], drifting.runs[0]
     shown = shown_parameters(drifting)["force_drift"]
     assert drifting.chain is not None
-    added = drifting.chain.force(run.truth) - run.truth.force
+    added = drifting.chain.force(run.truth, run.truth.acceleration) - run.truth.force
     slope = np.polyfit(run.truth.time - run.truth.time[0], added, 1)[0]
     assert shown - hidden == pytest.approx(slope)
 
@@ -247,3 +247,12 @@ def test_a_peak_that_noise_hides_may_be_called_coulomb_friction() -> None:
     assert plainer_forms(realistic("series_elasticity")) == ()
     drawn = [hide_effect(seed, "rate_state_friction", realistic=True) for seed in range(4)]
     assert {plainer_forms(each) for each in drawn} <= {(), ("coulomb_friction",)}
+
+
+def test_of_a_tone_a_filter_of_both_channels_leaves_less() -> None:
+    late = {"force_filter": 20.0, "displacement_filter": 20.0, "order": 2.0}
+    hidden = realistic("periodic_disturbance", **late)
+    frequency = hidden.parameters["disturbance_frequency"]
+    gain = 1.0 / np.sqrt(1.0 + (frequency / 20.0) ** 4)
+    shown = shown_parameters(hidden)["disturbance_amplitude"]
+    assert shown == pytest.approx(gain * hidden.parameters["disturbance_amplitude"])

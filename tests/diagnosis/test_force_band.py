@@ -9,6 +9,7 @@ import pytest
 from inerter.diagnose.band import force_band
 from inerter.diagnose.start import Given, Prepared, prepared
 from inerter.records import Record
+from inerter.records.motion import motion_noise
 
 STEP, SECONDS = 1e-3, 6.0
 TIME = np.arange(0, SECONDS, STEP)
@@ -57,3 +58,33 @@ def test_a_tone_needs_no_wider_band(effects_seed: int) -> None:
     ]
     begun = prepared(Given(records=made, holdout=["c"]))
     assert force_band(begun.data.learnt, begun.baseline, begun.weighed) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("cubic", "hum", "more"), [(0.0, 0.0, False), (2e7, 0.0, True), (0.0, 3.0, False)]
+)
+def test_harmonics_of_one_sine_are_no_tones(
+    cubic: float, hum: float, more: bool, effects_seed: int
+) -> None:
+    """A coarse displacement asks for much smoothing, and 2e7 N/m^3 (10 mm)^3 shows at 9 Hz."""
+    draw, omega = np.random.default_rng(effects_seed), 2 * np.pi * 3.0
+    x = 0.01 * np.sin(omega * TIME + draw.uniform(0, 6))
+    force = -40 * omega**2 * x + cubic * x**3 + hum * np.sin(2 * np.pi * 50.0 * TIME)
+    (record,) = (
+        Record(
+            name="sine", time=TIME, displacement=x + 3e-5 * draw.standard_normal(TIME.size),
+            force=force + 0.3 * draw.standard_normal(TIME.size),
+        ),
+    )  # fmt: skip
+    begun = prepared(Given(records=[record]))
+    assert begun.weighed.cutoff < 9.0
+    band = force_band(begun.data.learnt, begun.baseline, begun.weighed)
+    assert (band > begun.weighed.cutoff) == more
+
+
+def test_above_the_motions_cut_off_its_noise_is_none() -> None:
+    frequency = np.array([2.0, 5.0, 20.0, 60.0])
+    everywhere = motion_noise(frequency, 4.0)
+    quiet = motion_noise(frequency, 4.0, quiet=8.0)
+    np.testing.assert_allclose(quiet[:1], everywhere[:1], rtol=1e-3)
+    assert quiet[-1] == pytest.approx(1.0 + 15.0**4 / (1.0 + 7.5**6) ** 2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,18 @@ from inerter.device_file import DeviceError, device_text, read_delay, read_devic
 from inerter.diagnose import diagnose, diagnose_bench
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.composition import effects_of, stripped
-from inerter.diagnose.low_passes import filters
-from inerter.identify.channel_filter import Filter
+from inerter.diagnose.data import divided
+from inerter.diagnose.exchangeable import with_delay
+from inerter.diagnose.low_passes import filters, noise_taken
+from inerter.diagnose.result import Finding, ParameterValue
+from inerter.diagnose.search import Search
+from inerter.diagnose.wording import effect_in_words
+from inerter.identify.channel_filter import Filter, named
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
+from inerter.identify.runs import thin
 from inerter.records import Record
+from inerter.records.preparation import prepare, weighed
 from inerter.reference.bench_channel import Channel, low_passed
 
 SIZES = Scales(force=10.0, displacement=0.01, velocity=0.1, acceleration=1.0, cutoff=30.0)
@@ -121,3 +131,62 @@ def test_a_device_file_keeps_the_filter(tmp_path: Path) -> None:
 def test_what_is_no_filter_of_a_channel_is_refused(given: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"--filter .* such as .*bessel:50"):
         diagnose([tmp_path / "none.csv"], filters=[given])
+
+
+def sine_behind(cutoff: float, highest: float) -> tuple[Finding, Search, Fit]:
+    """A finding of a Butterworth low-pass of order 4 in front of 60 kg along sines."""
+    random = np.random.default_rng(3)
+    time = np.arange(-1000 * FINE, 4000 * FINE) / (RATE * FINE)
+    x, a = np.zeros((2, time.size))
+    for frequency in highest * np.array([0.2, 0.45, 0.7, 1.0]):
+        w, phase = 2 * np.pi * frequency, random.uniform(0, 6)
+        x += 8.0 / w**2 * np.sin(w * time + phase)
+        a -= 8.0 * np.sin(w * time + phase)
+    low_pass = Channel(force_filter=cutoff, force_filter_order=4.0)
+    force, rows = low_passed(low_pass, time, 60 * a), slice(1000 * FINE, None, FINE)
+    record = Record(
+        name="run", time=time[rows],
+        displacement=x[rows] + 1e-7 * random.normal(size=4000),
+        force=force[rows] + 2.0 * random.normal(size=4000),
+    )  # fmt: skip
+    data = divided([record], prepare([record]), ())
+    baseline = Model("none", {"inertance": 60.0}, ("inertance",))
+    search = Search(data.runs, data.split, baseline)
+    found = named("force", Filter("butterworth", 4, cutoff))
+    model = baseline.adding(None, force_filter=found.pop("force_filter")).holding(**found)
+    finding = Finding(
+        effect="sensor_filter", law="force, Butterworth, order 4", confidence=0.99,
+        parameters={"force_filter": ParameterValue(cutoff, 0.01, "Hz")},
+        rmse_before=9.0, rmse_after=0.5, evidence="It is there.", rivals=[],
+    )  # fmt: skip
+    return finding, search, search.problem.fit(model)
+
+
+def test_a_low_pass_far_above_the_motion_may_be_another_one_with_a_delay() -> None:
+    finding, search, fit = sine_behind(60.0, 6.0)
+    told = with_delay(finding, search, fit)
+    assert told.members == ("sensor_filter", "sensor_delay")
+    assert told.confidence == finding.confidence
+    delay = told.parameters["delay"]
+    assert delay.stderr >= abs(delay.value) > 0
+    assert told.parameters["force_filter"].stderr > 0.01
+    assert "with a delay of" in told.evidence
+    assert ", with or without a delay" in effect_in_words(told)
+
+
+def test_one_within_the_motion_is_told() -> None:
+    finding, search, fit = sine_behind(10.0, 12.0)
+    assert with_delay(finding, search, fit) is finding
+
+
+def test_what_a_shafts_damping_takes_of_the_motions_noise_is_added_again() -> None:
+    record = run(1, None)
+    prepared = weighed([record], prepare([record]))
+    (thinned,) = (replace(each, corner=8.0, noise=0.4) for each in map(thin, prepared.motions))
+    counted = [(0, np.arange(100))]
+    stiff, loose = (
+        Model("none", {"inertance": 60.0, "series_frequency": f, "series_loss": 2.0}, ())
+        for f in (3e3, 6.0)
+    )
+    assert noise_taken(stiff, [thinned], counted)[0] < 0.02 * 100 * 0.4**2
+    assert noise_taken(loose, [thinned], counted)[0] > 0.1 * 100 * 0.4**2

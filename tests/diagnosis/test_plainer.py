@@ -150,3 +150,16 @@ def test_a_curve_of_a_force_may_be_a_gas_and_a_constant_force() -> None:
     pulling = Model("none", {**curve.values, **{n: -f for n, f in nodes.items()}}, curve.free)
     assert len(as_plain_part(pulling, 20.0, 3.0)) == 2
     assert len(as_plain_part(curve.adding(None, **gas), 20.0, 3.0)) == 2
+
+
+def test_damping_that_bends_at_once_is_friction() -> None:
+    bends = {"viscous": 4000.0, "damping_knee": 2e-3, "damping_beyond": 0.01}
+    model = BASELINE.adding(None, **bends)
+    friction, damped = as_plain_part(model, 20.0, 3.0)
+    assert friction.friction == damped.friction == "coulomb"
+    assert set(damped.free) - set(friction.free) == {"viscous"}
+    v = np.array([-0.3, -0.1, 0.1, 0.3])
+    one, two = (each.device().evaluate(0.0, v, 0.0, 0.0)["total"] for each in (model, damped))
+    np.testing.assert_allclose(one, two, rtol=1e-3)
+    # beside a law there is a level already
+    assert as_plain_part(model.adding("coulomb", coulomb_force=3.0), 20.0, 3.0) == []

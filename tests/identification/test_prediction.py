@@ -195,3 +195,23 @@ def test_what_came_before_a_part_of_a_record_does_not_count() -> None:
         assert np.mean(run.inner) > 0.9
     # no more than where the motion turns
     assert max(begins) < np.median(rest)
+
+
+@pytest.mark.parametrize("time", [0.03, 0.25])
+def test_a_beginning_that_is_left_out_is_read_off_it(time: float) -> None:
+    """A fold with the beginning of a record would else count what no fit can know."""
+    wave = 40.0 * np.exp(-TIME / time)
+    left = without_relaxing((time,), wave, 1e-3, TIME > 3.0, cutoff=30.0)
+    assert np.max(np.abs(left)) < 0.1
+
+
+def test_the_first_force_is_read_as_late_as_it_is_shown(run: BenchRun) -> None:
+    """A bristle 4 ms late begins as the same one in time does."""
+    values = {"inertance": 60.0, "coulomb_force": 400.0, "presliding": 0.05}
+    soft = Model("dahl", values, ()).device()
+    state = {late: float(first_state(soft, run, late=late)) for late in (0.0, 4e-3)}
+    there = run.first_force + 4e-3 * float(np.gradient(run.force, run.spacing)[run.first])
+    i = run.first
+    expected = soft.state_of_force(run.displacement[i], run.velocity[i], run.acceleration[i], there)
+    assert state[4e-3] != state[0.0]
+    assert state[4e-3] == pytest.approx(float(expected), abs=0.15 * abs(state[4e-3] - state[0.0]))

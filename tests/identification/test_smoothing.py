@@ -7,7 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter.records import Record
-from inerter.records.motion import lowpass, response, smooth, uniform, white_noise
+from inerter.records.motion import (
+    force_noise,
+    lowpass,
+    response,
+    smooth,
+    uniform,
+    white_noise,
+)
 
 H, N = 1e-3, 8000
 TIME = H * np.arange(N)
@@ -130,3 +137,14 @@ def test_noise_is_seen_beneath_a_force_that_jumps() -> None:
         force = 10 * np.sign(np.sin(2 * np.pi * 0.4 * t)) + 50 * np.sin(7 * t)
         found = white_noise(force + random.normal(0, 0.2, t.size))
         assert found == pytest.approx(0.2, rel=0.15)
+
+
+def test_the_noise_of_a_force_that_jumps_in_every_segment() -> None:
+    random = np.random.default_rng(7)
+    t = np.arange(0, 30, 1 / 250)
+    force = 40 * np.sign(np.sin(2 * np.pi * 4.0 * t)) + 50 * np.sin(7 * t)
+    noisy = force + random.normal(0, 0.5, t.size)
+    assert white_noise(noisy) > 2.0
+    assert force_noise(noisy) == pytest.approx(0.5, rel=0.4)
+    calm = random.normal(0, 0.5, t.size)
+    assert force_noise(calm) == white_noise(calm)

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
+from scipy.ndimage import maximum_filter, median_filter
 
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.decision import CRITERIA
@@ -26,8 +26,9 @@ from inerter.records.preparation import Preparation, prepare_again
 Array = NDArray[np.float64]
 Error = Callable[[Problem], float]
 
-# lines of a spectrum of errors, at most; how far one of a tone is above the median of those about
-_LINES, _TONE, _BESIDE = 250, 4.0, 21
+# lines of a spectrum of errors, at most; how far one of a tone is above the median of those about;
+# lines of one sine's harmonic
+_LINES, _TONE, _BESIDE, _PARTED = 250, 4.0, 21, 8
 
 
 def best_band(
@@ -94,9 +95,13 @@ def force_band(learnt: Problem, model: Model, preparation: Preparation) -> float
     """
     cutoff = preparation.cutoff
     power, frequency = _power_missed(learnt, model)
-    apart = np.minimum(power, _TONE * median_filter(power, _BESIDE))
     harmonic = _of_motion(frequency, learnt.scales)
-    power = np.where(harmonic, power, apart)
+    # along one sine all that the motion makes is in its harmonics
+    above = 1.0 if learnt.scales.one_tone else _TONE
+    apart = np.minimum(power, above * median_filter(power, _BESIDE))
+    # a line beside a larger one of a tone is what leaks of that
+    largest = harmonic & (power == maximum_filter(power, 5))
+    power = np.where(maximum_filter(largest, 3), power, apart)
     noise = preparation.noise_floor**2 / power.size
     missed = np.maximum(power - noise, 0.0)
     beyond = float(missed[frequency > cutoff].sum())
@@ -118,9 +123,9 @@ def _of_motion(frequency: Array, sizes: Scales) -> NDArray[np.bool_]:
     if not sizes.one_tone:
         return np.zeros(frequency.size, bool)
     width = frequency[0] / sizes.frequency
-    order = frequency / sizes.frequency
-    # by the line's middle, and by what its neighbours have of a harmonic between two lines
-    return np.abs(order - 0.5 * width - np.round(order - 0.5 * width)) <= width
+    middle = frequency / sizes.frequency - 0.5 * width
+    # half a line, and half as much for what leaks into the next one
+    return np.abs(middle - np.round(middle)) <= 0.75 * width
 
 
 def _power_missed(learnt: Problem, model: Model) -> tuple[Array, Array]:
@@ -132,8 +137,10 @@ def _power_missed(learnt: Problem, model: Model) -> tuple[Array, Array]:
         if mask.any()
     ]
     highest = min(0.5 / spacing for _, spacing in used)
-    # each with some lines of every run
-    lines = int(np.clip(min(error.size for error, _ in used) // 8, 1, _LINES))
+    # each with some lines of every run; along one sine so narrow that they part its harmonics
+    sizes = learnt.scales
+    most = max(_LINES, int(_PARTED * highest / sizes.frequency)) if sizes.one_tone else _LINES
+    lines = int(np.clip(min(error.size for error, _ in used) // 8, 1, most))
     edges = np.linspace(0.0, highest, lines + 1)
     power = np.zeros(lines)
     for error, spacing in used:

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from .bench_channel import Channel, Situation, answers
+from .bench_channel import Channel, Situation, answers, shown
 from .bench_devices import draw_effect, draw_limits, joined, own_names
 from .bench_effects import EFFECTS, HYSTERETIC_LAWS, NEEDS_LEVEL, check_effect, clash
 from .bench_motions import draw_drives
@@ -244,7 +244,8 @@ def record_case(
         drive, clock, felt = run.drive, run.drive.time + run.start, truth.force
         displacement = drive.displacement
         if chain is not None:
-            felt, displacement = chain.force(truth, drive, channel), chain.displacement(drive)
+            grip = shown(channel, drive, drive.motion.acceleration)
+            felt, displacement = chain.force(truth, grip), chain.displacement(drive)
             felt, displacement = (
                 chain.sampled(each, drive.time, shake) for each in (felt, displacement)
             )

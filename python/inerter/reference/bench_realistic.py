@@ -23,7 +23,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .bench_channel import Channel, low_passed, shown
+from .bench_channel import Channel, low_passed
 from .bench_motions import Drive, draw_drives
 from .motion import Motion, Response
 from .motions import sum_of_sines
@@ -78,14 +78,14 @@ class Chain:
         """Simulated samples per recorded one."""
         return round(FINE / self.rate)
 
-    def force(self, truth: Response, drive: Drive, channel: Channel) -> Array:
+    def force(self, truth: Response, acceleration: Array) -> Array:
         """The force before the converter [N] at the simulated times, (n,).
 
-        The load cell feels the grip as it feels the device, behind whatever the channel hides.
+        The load cell feels the grip as it feels the device: `acceleration` (n,) [m/s^2] is what the
+        hidden channel makes of that of the motion.
         """
         t = truth.time
-        grip = self.grip_mass * shown(channel, drive, drive.motion.acceleration)
-        force = truth.force + grip + self.drift * (t - t[0])
+        force = truth.force + self.grip_mass * acceleration + self.drift * (t - t[0])
         force = force + self.hum * np.sin(2.0 * np.pi * self.hum_frequency * t + self.phase)
         return self._passed(force, t, self.force_filter)
 
