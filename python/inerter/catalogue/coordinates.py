@@ -392,6 +392,12 @@ ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
 """With one of these the force is no longer the coordinate times its column."""
 JUMPS = tuple(name for each in _ALL if each.jumps for name in (each.name, *each.also))
 """Beside the friction laws' own, those by which a force is not smooth in the motion."""
+BENDS = (
+    "stiffness_cubic", "quadratic_damping", *_BENT,
+    "inertance_gradient", "inertance_curvature", "inertance_speed_gradient",
+    "gas_pressure", "gas_area", "gas_volume", "gas_exponent",
+)  # fmt: skip
+"""Those by which it is not linear in the motion, and has harmonics that the motion has not."""
 PARAMETER_WORDS: Mapping[str, str] = MappingProxyType(
     {name: words for each in _ALL for name, words in each.words.items()}
 )

@@ -20,7 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.catalogue.along_stroke import Quantity, node_of
-from inerter.catalogue.coordinates import COORDINATES, ENTANGLED, device_values, search_range
+from inerter.catalogue.coordinates import (
+    BENDS,
+    COORDINATES,
+    ENTANGLED,
+    device_values,
+    search_range,
+)
 from inerter.core import Device
 from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
@@ -321,8 +327,8 @@ def _nodes(name: str, model: Model) -> tuple[int, ...]:
 def _shown(name: str, model: Model, run: BenchRun) -> Array:
     """What one of a coordinate adds to a run's force channel, shape (n,)."""
     channel = {each: model.values[each] for each in LINEAR if each in model.values}
-    if _curve(name) and np.isfinite(run.cutoff):
-        # a curve bends more sharply than the motion: it passes the low-pass of the measured force
+    if (_curve(name) or name in BENDS) and np.isfinite(run.cutoff):
+        # what bends more sharply than the motion passes the low-pass of the measured force
         device, less = _alone(name, model)
         fine = run.at_measured_rate(device, 0.0)["total"]
         if less:
@@ -393,10 +399,14 @@ def _column(name: str, model: Model, run: BenchRun) -> Array:
 
 
 def _alone(name: str, model: Model) -> tuple[Device, Device | None]:
-    """A device whose only force is that of one node of a curve, or that and the other one's."""
+    """A device whose only force is that of one coordinate, or that and the other one's.
+
+    The coordinate is a node of a curve, or a parameter of a device.
+    """
     quantity = _curve(name)
     if quantity is None:
-        raise ValueError(f"{name} does not enter the force in proportion")
+        places = {n: model.values[n] for n in _PLACES[:1] if n in model.values}
+        return Device(friction="none", **device_values({**places, name: 1.0})), None
     values = {each: 0.0 for each in model.values if node_of(each) is quantity}
     values |= {each: model.values[each] for each in _PLACES if each in model.values}
     if quantity.name == "force":

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
-from inerter.catalogue.coordinates import JUMPS, NUISANCES, device_values
+from inerter.catalogue.coordinates import BENDS, JUMPS, NUISANCES, device_values
 from inerter.catalogue.friction import FRICTION
 from inerter.core import Device, DeviceError, lists, parameters
 from inerter.identify.channel import clips
@@ -86,12 +86,12 @@ class Model:
 
     @cached_property
     def smooth_part(self) -> Part:
-        """The device's terms that are smooth in the motion: no friction, no stops, no play.
+        """The device's terms that are linear in the motion: no friction, no stops, no play.
 
-        What changes along the stroke is none of them: along a fast stroke it is quicker than the
-        motion.
+        What bends or changes along the stroke is none of them: it is quicker than the motion, and
+        the low-pass of the measured force takes some of that away.
         """
-        known, rough = parameters(), {*JUMPS, *lists()}
+        known, rough = parameters(), {*JUMPS, *BENDS, "gas_law", *lists()}
         return self._part(lambda n: n not in rough and not (n in known and known[n].laws))
 
     @cached_property
@@ -103,7 +103,7 @@ class Model:
     def abrupt_part(self) -> Part | None:
         """Its end stops and force along the stroke alone; None where more is abrupt."""
         along = {n for n in self._stated if n in lists() and not n.startswith("friction")}
-        if self._device.backlash or not along <= _OF_FORCE:
+        if self._device.backlash or self._bends or not along <= _OF_FORCE:
             return None
         names = {*JUMPS, *_OF_FORCE, *_OF_PLACES}
         return self._part(lambda name: name in names)
@@ -119,10 +119,15 @@ class Model:
 
     @cached_property
     def has_jumps(self) -> bool:
-        """Whether something beside friction makes the force jump or bend sharply."""
+        """Whether something beside friction makes the force jump, or bend with the motion."""
         device = self._device
         along = any(n in lists() and not n.startswith("friction") for n in self._stated)
-        return clips(self.values) or along or bool(device.backlash or device.stop_stiffness)
+        jumps = bool(device.backlash or device.stop_stiffness)
+        return clips(self.values) or along or jumps or self._bends
+
+    @cached_property
+    def _bends(self) -> bool:
+        return any(self._stated.get(name, 0.0) for name in BENDS)
 
     @property
     def delay(self) -> float:
