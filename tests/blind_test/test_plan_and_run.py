@@ -199,7 +199,7 @@ def test_a_bench_without_filters_shows_its_mass_and_drift_with_those_hidden() ->
     hidden, run = drifting.parameters["force_drift"], drifting.runs[0]
     shown = shown_parameters(drifting)["force_drift"]
     assert drifting.chain is not None
-    added = drifting.chain.force(run.truth, run.truth.acceleration) - run.truth.force
+    added = drifting.chain.force(run.truth) - run.truth.force
     slope = np.polyfit(run.truth.time - run.truth.time[0], added, 1)[0]
     assert shown - hidden == pytest.approx(slope)
 

@@ -17,7 +17,7 @@ from inerter.diagnose.composition import effects_of, stripped
 from inerter.diagnose.data import divided
 from inerter.diagnose.exchangeable import with_delay
 from inerter.diagnose.low_passes import filters, noise_taken
-from inerter.diagnose.result import Finding, ParameterValue
+from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
 from inerter.diagnose.wording import effect_in_words
 from inerter.identify.channel_filter import Filter, named
@@ -190,3 +190,34 @@ def test_what_a_shafts_damping_takes_of_the_motions_noise_is_added_again() -> No
     )
     assert noise_taken(stiff, [thinned], counted)[0] < 0.02 * 100 * 0.4**2
     assert noise_taken(loose, [thinned], counted)[0] > 0.1 * 100 * 0.4**2
+
+
+def test_along_one_sine_a_low_pass_may_be_a_damper() -> None:
+    random = np.random.default_rng(4)
+    time = np.arange(0, 8, 1 / RATE)
+    w = 2 * np.pi * 2.0
+    x, v = 0.01 * np.sin(w * time), 0.01 * w * np.cos(w * time)
+    a = -(w**2) * x
+    record = Record(
+        name="sine", time=time, displacement=x + 1e-6 * random.normal(size=time.size),
+        force=60 * a + 50 * v + 0.5 * random.normal(size=time.size),
+    )  # fmt: skip
+    data = divided([record], prepare([record]), ())
+    search = Search(data.runs, data.split, Model("none", {"inertance": 60.0}, ("inertance",)))
+    assert search.problem.scales.one_tone
+    found = named("force", Filter("bessel", 2, 12.0))
+    model = search.baseline.adding(None, force_filter=found.pop("force_filter")).holding(**found)
+    fit = search.problem.fit(model)
+    value = fit.model.values["force_filter"]
+    finding = Finding(
+        effect="sensor_filter", law="force, Bessel, order 2", confidence=0.9,
+        parameters={"force_filter": ParameterValue(value, 0.1, "Hz")},
+        rmse_before=4.0, rmse_after=0.5, evidence="It is there.",
+        rivals=[Rival("sensor_delay", 0.1)],
+    )  # fmt: skip
+    told = with_delay(finding, search, fit)
+    assert told.members == ("sensor_filter", "viscous_friction", "sensor_delay")
+    assert told.confidence == pytest.approx(0.45)
+    assert told.parameters["viscous"].value == pytest.approx(50.0, rel=0.05)
+    assert [rival.effect for rival in told.rivals] == ["viscous_friction"]
+    assert "this motion cannot tell" in told.evidence

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from inerter.reference import NoiseLevels, hide_effect, hide_unknown
+from inerter.reference.bench_channel import Channel, shown
 from inerter.reference.bench_motions import Drive
 from inerter.reference.bench_realistic import FINE, RATES, Chain, draw_bench_drives, quantised
 from inerter.reference.motion import Response, sine_motion
@@ -70,6 +71,17 @@ def test_filters_are_those_of_their_transfer_function(is_bessel: bool) -> None:
     # alike on both there is nothing to name; on one there is
     assert chain.brings == ()
     assert "sensor_filter" in replace(chain, force_filter=0.0).brings
+
+
+def test_a_grip_is_felt_behind_what_the_channel_hides() -> None:
+    hidden = Channel(delay=4e-3, force_filter=20.0, force_filter_order=2.0)
+    felt = shown(hidden, SINE, SINE.motion.acceleration)
+    turn, above_below = 2j * np.pi * 3.0, butter(2, 2 * np.pi * 20.0, analog=True)
+    above, below = (np.polyval(each, turn) for each in above_below)
+    there = wave(SINE.acceleration, 3.0) * complex(above / below) * np.exp(-turn * 4e-3)
+    assert wave(Chain(grip_mass=2.0).force(truth(), felt), 3.0) == pytest.approx(
+        2 * there, rel=2e-3
+    )
 
 
 def test_converters_and_clocks() -> None:

@@ -249,6 +249,9 @@ def with_delay(
         return advantage(*squares) < CRITERIA.tolerated_advantage
 
     here = replace(fit, residual=search.problem.residual(fit.model))
+    damper = _with_damper(search, fit.model)
+    if damper and is_as_good(other := search.problem.fit(damper)):
+        return _or_damper(finding, covered(other), as_delay(fit.model).delay)
     near = [each for each in fits if is_as_good(each)]
     spacing = max(run.spacing / run.thinned for run in search.runs)
     late, told = as_delay(fit.model).delay, []
@@ -271,6 +274,40 @@ def with_delay(
         parameters={**parameters, "delay": ParameterValue(delay, abs(delay), "s")},
     )
     return replace(found_with, evidence=wording.evidence(found_with))
+
+
+def _with_damper(search: Search, model: Model) -> Model | None:
+    """The model with a damper in the place of its low-pass, where both are late the same way."""
+    sizes = search.problem.scales
+    if not sizes.one_tone or model.friction != "none" or "viscous" in model.values:
+        return None
+    bare = stripped(model, "sensor_filter", search.baseline)
+    return bare.adding(None, viscous=0.01 * sizes.force / sizes.velocity)
+
+
+def _or_damper(finding: Finding, damped: Fit, delay: float) -> Finding:
+    """A low-pass along one sine that may as well be a damper, or a delay [s]."""
+    value, error = parameter_errors(damped)["viscous"]
+    share = finding.confidence / 2
+    members = (finding.effect, "viscous_friction", "sensor_delay")
+    unit = parameter_units(finding.motion)["viscous"]
+    either = {
+        "viscous": ParameterValue(value, max(error, abs(value) / CRITERIA.distinction), unit),
+        "delay": ParameterValue(delay, abs(delay) / CRITERIA.distinction, "s"),
+    }
+    parameters = {
+        name: replace(known, stderr=max(known.stderr, abs(known.value) / CRITERIA.distinction))
+        for name, known in finding.parameters.items()
+    }
+    told = replace(
+        finding, members=members, confidence=share, parameters={**parameters, **either},
+        rivals=[Rival("viscous_friction", share), *_others(finding.rivals, members)],
+    )  # fmt: skip
+    return replace(told, evidence=wording.evidence(told))
+
+
+def _others(rivals: Sequence[Rival], members: Sequence[str]) -> list[Rival]:
+    return [rival for rival in rivals if rival.effect not in members]
 
 
 def _others_with_delay(model: Model, channel: str) -> Iterator[Model]:

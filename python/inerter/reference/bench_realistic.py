@@ -78,14 +78,14 @@ class Chain:
         """Simulated samples per recorded one."""
         return round(FINE / self.rate)
 
-    def force(self, truth: Response, acceleration: Array) -> Array:
+    def force(self, truth: Response, felt: Array | None = None) -> Array:
         """The force before the converter [N] at the simulated times, (n,).
 
-        The load cell feels the grip as it feels the device: `acceleration` (n,) [m/s^2] is what the
-        hidden channel makes of that of the motion.
+        The load cell feels the grip as it feels the device: what is `felt` (n,) of the acceleration
+        [m/s^2] is behind the hidden channel; by default it is that of the motion.
         """
-        t = truth.time
-        force = truth.force + self.grip_mass * acceleration + self.drift * (t - t[0])
+        t, a = truth.time, truth.acceleration if felt is None else felt
+        force = truth.force + self.grip_mass * a + self.drift * (t - t[0])
         force = force + self.hum * np.sin(2.0 * np.pi * self.hum_frequency * t + self.phase)
         return self._passed(force, t, self.force_filter)
 
