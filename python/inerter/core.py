@@ -128,7 +128,7 @@ class Device:
         """Number of states."""
         return self._c.nstate  # type: ignore[attr-defined]
 
-    @property
+    @cached_property
     def state_names(self) -> tuple[str, ...]:
         """Names of the states, such as friction_state."""
         name, at = library().inerter_state_name, ctypes.byref(self._c)

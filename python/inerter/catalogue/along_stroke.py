@@ -93,9 +93,19 @@ class Quantity:
     @property
     def reported(self) -> tuple[str, ...]:
         """What a finding reports."""
+        return (
+            *(name for names in self.told_periods for name in names),
+            *self.nodes,
+            *self.back_nodes,
+        )
+
+    @cached_property
+    def told_periods(self) -> tuple[tuple[str, ...], ...]:
+        """Length, amplitude and phase of each period."""
         words = ("period", "amplitude", "phase")
-        periods = (f"{self.name}_{word}_{i}" for i in range(1, PERIODS + 1) for word in words)
-        return (*periods, *self.nodes, *self.back_nodes)
+        return tuple(
+            tuple(f"{self.name}_{word}_{i}" for word in words) for i in range(1, PERIODS + 1)
+        )
 
     def form(self, names: set[str]) -> str | None:
         """What some coordinates are of it: "flanks", "curve", "period" or nothing."""
@@ -221,23 +231,26 @@ def told(values: Values) -> None:
 def lists(values: Values) -> dict[str, str]:
     """Lists of a device that told parameters stand for; these are taken out of the values."""
     found: dict[str, str] = {}
-    if values.keys().isdisjoint(_NAMES):
+    present = values.keys() & _NAMES
+    if not present:
         return found
     for quantity in QUANTITIES:
         rows = []
-        for i in range(1, PERIODS + 1):
-            names = [f"{quantity.name}_{word}_{i}" for word in ("period", "amplitude", "phase")]
-            row = [values.pop(name, 0.0) for name in names]
-            if row[1]:
-                rows += row
+        for names in quantity.told_periods:
+            if not present.isdisjoint(names):
+                row = [values.pop(name, 0.0) for name in names]
+                rows += row if row[1] else []
         if rows:
             found[f"{quantity.name}_periods"] = " ".join(map(repr, rows))
         forth, back = f"{quantity.name}_curve", f"{quantity.name}_back_curve"
         for name, names in ((forth, quantity.nodes), (back, quantity.back_nodes)):
-            nodes = [values.pop(each, None) for each in names]
-            known = [i for i, node in enumerate(nodes) if node is not None]
+            known = [i for i, each in enumerate(names) if each in present]
+            if not known:
+                continue
+            curve = [0.0] * (known[-1] + 1)
+            for i in known:
+                curve[i] = float(values.pop(names[i]))
             # none for v < 0 would be that for v > 0
-            if any(nodes) or (known and name == back):
-                curve = [float(node or 0.0) for node in nodes[: known[-1] + 1]]
+            if any(curve) or name == back:
                 found[name] = " ".join(map(repr, curve))
     return found

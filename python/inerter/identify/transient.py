@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 
@@ -86,11 +87,25 @@ def without_relaxing(
     count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
-    mask = _with_beginning(mask, first, int(max(times) / spacing) + 1)
+    basis, share = _relaxing(tuple(times), spacing, first, first + count, mask.tobytes())
+    rest = residual.copy()
+    rest[: first + count] -= (share @ residual[: first + count]) @ basis
+    return rest
+
+
+# asked for once for each column of a fit, at the same times
+@functools.lru_cache(maxsize=16)
+def _relaxing(
+    times: tuple[float, ...], spacing: float, first: int, count: int, masked: bytes
+) -> tuple[Array, Array]:
+    """Decays (m, count) of branches, and what tells their sizes of a residual's beginning."""
+    mask = np.frombuffer(masked, dtype=np.bool_)
+    mask = _with_beginning(mask, first, int(max(times) / spacing) + 1)[:count]
+    basis = np.ones((len(times), count))
     with np.errstate(under="ignore"):
-        basis = np.array([_decay(-spacing / time, count).real for time in times])
-    before = np.ones((len(basis), first))
-    return _without(np.concatenate([before, basis], axis=1), residual, mask)
+        for row, time in zip(basis, times, strict=True):
+            row[first:] = _decay(-spacing / time, count - first).real
+    return basis, _share(basis, mask)
 
 
 def _with_beginning(mask: NDArray[np.bool_], first: int, count: int) -> NDArray[np.bool_]:
@@ -141,14 +156,18 @@ def _without(basis: Array, residual: Array, mask: NDArray[np.bool_], most: float
     basis = basis / (np.max(np.abs(basis), axis=1, keepdims=True) + 1e-300)
     if not np.isfinite(basis).all():
         return residual
-    # normal equations do: what holds the size back keeps them well conditioned
     count = basis.shape[1]
-    seen = basis * mask[:count]
-    share = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen @ residual[:count])
-    rest, form = residual.copy(), share @ basis
+    rest, form = residual.copy(), (_share(basis, mask[:count]) @ residual[:count]) @ basis
     largest = float(np.max(np.abs(form)))
     rest[:count] -= form if largest <= most else most / largest * form
     return rest
+
+
+def _share(basis: Array, mask: NDArray[np.bool_]) -> Array:
+    """What tells the shares of a basis (m, k) of masked values (k,), (m, k)."""
+    # normal equations do: what holds the size back keeps them well conditioned
+    seen = basis * mask
+    return np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen)
 
 
 def _roots(b: float, damping: float, stiffness: float) -> NDArray[np.complex128]:
