@@ -7,7 +7,7 @@ from typing import cast
 
 import numpy as np
 import pytest
-from inerter.diagnose.chain import Link, weakest
+from inerter.diagnose.chain import Link, weakest, with_what_was_dropped
 from inerter.diagnose.judge import Judge
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
@@ -52,3 +52,18 @@ def test_a_play_that_predicts_nothing_better_is_dropped(after: float, dropped: s
 def test_only_a_play_can_predict_worse_and_stand() -> None:
     assert weakest([link("viscous_friction")], judge(10.0, 12.0), WHOLE) is None
     assert weakest([], judge(10.0, 10.0), WHOLE) is None
+
+
+def test_errors_hold_what_an_unconfirmed_effect_would_move_a_value_by() -> None:
+    model = BARE.adding(None, viscous=100.0, force_node_1=3.0)
+    without = Fit(model, [], np.diag([0.1, 2.0, 0.5]) ** 2, 1)
+    values = {**model.values, "viscous": 106.0, "force_node_1": 9.0, "force_drift": 0.2}
+    before = Fit(Model("none", values, (*model.free, "force_drift")), [], np.zeros((4, 4)), 1)
+    held = with_what_was_dropped(without, before)
+    inertance, viscous, node = np.sqrt(np.diag(held.covariance))
+    assert viscous == pytest.approx(np.hypot(2.0, 6.0))
+    assert inertance == pytest.approx(0.1)
+    # a node of another curve is another place
+    assert node == pytest.approx(0.5)
+    other = Fit(before.model.adding("coulomb", coulomb_force=3.0), [], np.zeros((5, 5)), 1)
+    assert with_what_was_dropped(without, other) is without

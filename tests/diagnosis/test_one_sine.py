@@ -13,7 +13,10 @@ RATE, FINE = 500.0, 4
 
 
 def one_sine(
-    draw: np.random.Generator, low_pass: Channel | None = None, **device: float | str
+    draw: np.random.Generator,
+    low_pass: Channel | None = None,
+    noise: float = 1e-6,
+    **device: float | str,
 ) -> Record:
     """Some 8 s of a device along 30 mm at about 1 Hz, its force behind a low-pass or not."""
     omega, ahead = 2 * np.pi * draw.uniform(0.8, 1.5), round(2 * RATE * FINE)
@@ -27,7 +30,7 @@ def one_sine(
     return Record(
         name="one sine",
         time=time[rows],
-        displacement=x[rows] + 1e-6 * draw.standard_normal(count),
+        displacement=x[rows] + noise * draw.standard_normal(count),
         force=force[rows] + 0.5 * draw.standard_normal(count),
     )
 
@@ -63,3 +66,23 @@ def test_friction_with_memory_has_no_spring_that_is_an_inertance(
     assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.01)
     stiffness = found.parameters["bristle_stiffness"]
     assert stiffness.value == pytest.approx(15e3, rel=0.02)
+
+
+@pytest.mark.turns(3)
+@pytest.mark.parametrize(
+    ("effect", "name", "device"),
+    [
+        ("quadratic_damping", "quadratic_damping", {"quadratic_damping": 400.0}),
+        ("asymmetric_damping", "damping_asymmetry", {"viscous": 60.0, "damping_asymmetry": 0.5}),
+    ],
+)
+def test_what_bends_shows_in_harmonics_near_the_cut_off(
+    effect: str, name: str, device: dict[str, float], effects_seed: int
+) -> None:
+    """A coarse displacement asks for a cut-off that takes a part of what the law makes."""
+    draw = np.random.default_rng(effects_seed)
+    made = one_sine(draw, None, 2e-4, inertance=54.0, friction="none", **device)
+    found = diagnose_bench([made], carry="nothing")
+    assert [each.effect for each in found.findings] == [effect]
+    value = found.parameters[name]
+    assert abs(value.value - device[name]) < max(3 * value.stderr, 0.03 * device[name])

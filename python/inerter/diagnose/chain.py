@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from inerter.catalogue.along_stroke import node_of
 from inerter.diagnose.composition import effects_of, is_local, submodel
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
@@ -19,6 +20,7 @@ from inerter.diagnose.statistics import (
     gain_interval,
     win_shares,
 )
+from inerter.identify.choices import TONE
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
@@ -159,3 +161,20 @@ def tone_link(judge: Judge, before: Fit, after: Fit) -> tuple[Link, float]:
         stands=stands,
     )
     return link, float(win_shares(squares[::-1])[0])
+
+
+def with_what_was_dropped(fit: Fit, before: Fit) -> Fit:
+    """A fit whose errors hold what effects would move it by that are there and not confirmed.
+
+    What the held-out data do not show may be there, and small: the fit data have shown it.
+    """
+    here, there = fit.model.values, before.model.values
+    if fit.model.friction != before.model.friction:
+        return fit
+
+    def moved_by(name: str) -> float:
+        # a node of another curve is another place, and a tone is fitted to other data
+        return 0.0 if node_of(name) or name in TONE else there.get(name, here[name]) - here[name]
+
+    moved = np.array([moved_by(name) for name in fit.model.free])
+    return replace(fit, covariance=fit.covariance + np.outer(moved, moved))

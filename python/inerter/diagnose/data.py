@@ -82,7 +82,10 @@ def divided(records: Sequence[Record], preparation: Preparation, holdout: Sequen
     parted = split(runs, holdout)
     held = [run.name for i, run in enumerate(runs) if parted.role(i) == "holdout"]
     full = split(raw, held)
-    band = Problem(runs, parted.holdout, scales(runs))
+    sizes = scales(runs)
+    # noise of a wide band may hide that there is one line
+    sizes = replace(sizes, one_tone=sizes.one_tone or preparation.one_line)
+    band = Problem(runs, parted.holdout, sizes)
     return Data(
         records=records, preparation=preparation, runs=runs, split=parted, whole=raw, full=full,
         band=band, raw=Problem(raw, full.holdout, band.scales),

@@ -32,7 +32,7 @@ from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.plainer import swings_on
 from inerter.diagnose.statistics import Array, block_squares
-from inerter.diagnose.tone import Witness, tone_candidate
+from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
@@ -283,6 +283,7 @@ class Search:
             and not self._is_shaft_alone(s)
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
             and along_stroke.repeats(s.model, sizes)
+            and not is_harmonic(s.model, sizes, self.longest)
         ]
 
     @property
@@ -347,8 +348,17 @@ class Search:
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 
     def may_be(self, model: Model) -> bool:
-        """Whether a model has none of the effects excluded."""
-        return not self.excluded.intersection(name for name, _ in effects_of(model, self.baseline))
+        """Whether a model has none of the effects excluded, nor along one sine what that hides.
+
+        There a shaft is an inertance of another size, and a low-pass with a delay is as late as the
+        one that it takes back.
+        """
+        names = {name for name, _ in effects_of(model, self.baseline)}
+        if self.problem.scales.one_tone:
+            shaft = "series_elasticity" in names and "inertance" in model.free
+            if shaft or {"sensor_filter", "sensor_delay"} <= names:
+                return False
+        return not self.excluded & names
 
     def better(self, simple: Scored, rich: Scored) -> bool:
         """Whether the richer of two models is needed."""

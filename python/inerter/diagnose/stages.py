@@ -16,11 +16,10 @@ from functools import cached_property
 
 import numpy as np
 
-from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.chain import Link, chain_of, tone_link, weakest
+from inerter.diagnose.chain import Link, chain_of, tone_link, weakest, with_what_was_dropped
 from inerter.diagnose.composition import (
     bristle_is_known,
     effects_of,
@@ -41,7 +40,7 @@ from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.channel_filter import filters_of
-from inerter.identify.choices import TONE, covered
+from inerter.identify.choices import covered
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, on_clocks, thin
@@ -197,7 +196,9 @@ def _behind_low_pass(
     """
     scales, model = start.data.band.scales, final.model
     named, stated = effects_of(model, start.baseline), filters_of(start.baseline.values)
-    if not scales.one_tone or not named or "backlash" in model.free or stated:
+    # without a jump it is no more than late
+    jumps = model.friction != "none" or "damping_knee" in model.free
+    if not scales.one_tone or not named or not jumps or "backlash" in model.free or stated:
         return search, final
     start.given.progress("one sine: searching once more, from a low-pass of the force on")
     again = search_in(start, band)
@@ -268,7 +269,10 @@ def _with_play(found: Searched, play: Model) -> Searched:
     data = data.with_play(play)
     learnt = forgiving(data.learnt, play)
     told = start.given.progress
-    search = Search(learnt.runs, data.full, start.baseline, told, witness=data.witness)
+    search = Search(
+        learnt.runs, data.full, start.baseline, told, witness=data.witness,
+        one_tone=start.data.band.scales.one_tone,
+    )  # fmt: skip
     return replace(found, data=data, search=search, final=search.run(play))
 
 
@@ -377,7 +381,7 @@ def confirmed(start: Settled) -> Confirmed:
         fit = replace(fit, covariance=fit.covariance + spread)
     else:
         progress("asking how far other choices of the analysis would lead")
-        fit = _with_what_was_dropped(found.covered(fit), before_held_out)
+        fit = with_what_was_dropped(found.covered(fit), before_held_out)
     return Confirmed(
         searched=found, data=found.data, judge=found.judge, before=start.before, fit=fit,
         chain=tuple(chain), standings=standings,
@@ -400,23 +404,6 @@ def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[
         final = search.score("", None, fit)
         chain = chain_of(search, judge, final.model)
     return final, chain, dropped
-
-
-def _with_what_was_dropped(fit: Fit, before: Fit) -> Fit:
-    """A fit whose errors hold what effects would move it by that are there and not confirmed.
-
-    What the held-out data do not show may be there, and small: the fit data have shown it.
-    """
-    here, there = fit.model.values, before.model.values
-    if fit.model.friction != before.model.friction:
-        return fit
-
-    def moved_by(name: str) -> float:
-        # a node of another curve is another place, and a tone is fitted to other data
-        return 0.0 if node_of(name) or name in TONE else there.get(name, here[name]) - here[name]
-
-    moved = np.array([moved_by(name) for name in fit.model.free])
-    return replace(fit, covariance=fit.covariance + np.outer(moved, moved))
 
 
 def _searched_on(

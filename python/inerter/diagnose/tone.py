@@ -16,6 +16,7 @@ from scipy.linalg import block_diag
 from scipy.ndimage import median_filter
 
 from inerter.catalogue.coordinates import LOWEST_TONE
+from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.identify.channel_filter import filter_of
@@ -39,8 +40,8 @@ _NEIGHBOURS = 2
 _FEWEST = 64
 # bins about a line whose power is its own, and farther ones that tell the noise
 _WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
-# lines that are asked about, one after another
-_ASKED = 8
+# lines that are asked about, one after another; the highest harmonic of one sine that is no tone
+_ASKED, _HARMONICS = 8, 9
 
 MAINS = (50.0, 60.0)
 """Frequencies of the mains [Hz]."""
@@ -190,6 +191,16 @@ def of_mains(frequency: float, resolution: float = 0.0) -> tuple[int, float] | N
     return None
 
 
+def is_harmonic(model: Model, sizes: Scales, longest: float) -> bool:
+    """Whether a model's tone is a harmonic of one sine, told to 1 / the longest run [s]."""
+    if not sizes.one_tone or _TONE[0] not in model.free:
+        return False
+    frequency = model.values[_TONE[1]]
+    order = round(frequency / sizes.frequency)
+    off = abs(frequency - order * sizes.frequency)
+    return 1 <= order <= _HARMONICS and off < 1.0 / longest
+
+
 def tone_candidate(
     runs: Sequence[BenchRun], problem: Problem, fit: Fit, witness: Witness | None
 ) -> list[Candidate]:
@@ -211,7 +222,9 @@ def _line(
     lowest: float = LOWEST_TONE,
 ) -> tuple[float, float] | None:
     """Frequency [Hz] and amplitude [N] of the clearest line that is none of the motion."""
-    errors, but = problem.errors(model), []
+    sizes, errors = problem.scales, problem.errors(model)
+    # what bends makes harmonics of one sine
+    but = [n * sizes.frequency for n in range(2, _HARMONICS + 1)] if sizes.one_tone else []
     for _ in range(_ASKED):
         line = strongest_line(runs, errors, problem.masks, lowest, but=but)
         if line is None or witness is None or witness.clears(model, line[0]):
