@@ -76,8 +76,9 @@ def test_filters_are_those_of_their_transfer_function(is_bessel: bool) -> None:
 def test_a_grip_is_felt_behind_what_the_channel_hides() -> None:
     hidden = Channel(delay=4e-3, force_filter=20.0, force_filter_order=2.0)
     felt = shown(hidden, SINE, SINE.motion.acceleration)
-    turn, above_below = 2j * np.pi * 3.0, butter(2, 2 * np.pi * 20.0, analog=True)
-    above, below = (np.polyval(each, turn) for each in above_below)
+    turn = 2j * np.pi * 3.0
+    transfer: Any = butter(2, 2 * np.pi * 20.0, analog=True)
+    above, below = (np.polyval(each, turn) for each in transfer)
     there = wave(SINE.acceleration, 3.0) * complex(above / below) * np.exp(-turn * 4e-3)
     assert wave(Chain(grip_mass=2.0).force(truth(), felt), 3.0) == pytest.approx(
         2 * there, rel=2e-3

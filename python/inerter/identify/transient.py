@@ -167,7 +167,8 @@ def _share(basis: Array, mask: NDArray[np.bool_]) -> Array:
     """What tells the shares of a basis (m, k) of masked values (k,), (m, k)."""
     # normal equations do: what holds the size back keeps them well conditioned
     seen = basis * mask
-    return np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen)
+    found = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen)
+    return np.asarray(found, dtype=np.float64)
 
 
 def _roots(b: float, damping: float, stiffness: float) -> NDArray[np.complex128]:

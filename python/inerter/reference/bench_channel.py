@@ -13,7 +13,6 @@ equation that it is, on a grid fine enough for it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,7 +22,7 @@ from scipy.signal import bessel, butter, lsim
 
 from .bench_motions import Drive
 from .device import ReferenceDevice
-from .motion import Response, response
+from .motion import Response, Signal, response
 from .sizes import rounded
 
 Array = NDArray[np.float64]
@@ -98,10 +97,10 @@ def answers(
     return found
 
 
-def shown(channel: Channel, drive: Drive, force: Callable[[Array], Array]) -> Array:
+def shown(channel: Channel, drive: Drive, force: Signal) -> Array:
     """What the delay and the low-pass of a channel make of a force [N] of time [s], (n,)."""
     times, every, lead = _grid(channel, drive)
-    values = force(times - channel.delay)
+    values = np.asarray(force(times - channel.delay), dtype=float)
     if channel.force_filter:
         values = low_passed(channel, times, values)
     return values[lead::every]
