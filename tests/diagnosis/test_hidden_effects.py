@@ -121,10 +121,9 @@ def test_engines_agree_with_the_diagnosis(solved) -> None:
     if play:
         _agree_mostly(diagnosis)
     rmse = diagnosis.extended.rmse
-    # one impact that comes otherwise makes a tenth of the error and more
-    assert diagnosis.engines["mujoco"] == pytest.approx(rmse, rel=0.2 if play else 1e-3)
+    assert diagnosis.engines["mujoco"] == pytest.approx(rmse, rel=0.02 if play else 1e-3)
     for engine in ("reference", *(["exudyn"] if installed() else [])):
-        assert diagnosis.engines[engine] == pytest.approx(rmse, rel=0.2 if play else 0.02), engine
+        assert diagnosis.engines[engine] == pytest.approx(rmse, rel=0.02), engine
 
 
 def _agree_mostly(diagnosis: Diagnosis) -> None:
