@@ -131,6 +131,9 @@ def is_blur(model: Model, scales: Scales, plain: float, error: float) -> bool:
     peak = FRICTION[model.friction].peak
     if peak not in model.values:
         return False
+    if model.values.get("age_effect", 1.0) < model.values.get("rate_effect", 0.0):
+        # friction that rises with the logarithm of speed has no peak
+        return False
     narrow = CRITERIA.narrow_peak * search_range(peak, scales).lower
     return model.values[peak] < narrow and within_blur(model, plain, error)
 

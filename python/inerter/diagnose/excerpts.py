@@ -182,7 +182,7 @@ def excerpts(given: Given) -> Excerpts | None:
     found = Excerpts(
         whole=given, records=without_constants(records, apart), holdout=held, constants=apart,
         contradicting=contradicting(runs), clocks=[run.clock for run in runs], every=every,
-        spacings=[run.spacing / run.thinned for run in runs],
+        spacings=[run.sample_spacing for run in runs],
     )  # fmt: skip
     if left <= CRITERIA.long_record or needed > WORTH * left:
         return found

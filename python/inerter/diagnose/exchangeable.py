@@ -253,7 +253,7 @@ def with_delay(
     if damper and is_as_good(other := search.problem.fit(damper)):
         return _or_damper(finding, covered(other), as_delay(fit.model).delay)
     near = [each for each in fits if is_as_good(each)]
-    spacing = max(run.spacing / run.thinned for run in search.runs)
+    spacing = max(run.sample_spacing for run in search.runs)
     late, told = as_delay(fit.model).delay, []
     for each in sorted(near, key=lambda other: other.rmse(masks)):
         value, error = parameter_errors(covered(each)).get("delay", (0.0, 0.0))

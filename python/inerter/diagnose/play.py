@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import kurtosis, qmc
 
+from inerter.catalogue.scales import Scales
 from inerter.diagnose.parallel import parallel
 from inerter.identify.fit import Fit, Problem, rms, typical
 from inerter.identify.model import Model
@@ -84,6 +85,16 @@ _LATE = 0.25
 # share of the rms force that tells a contact, and of the longest contact that is long
 _CONTACT = 0.2
 _LONG = 0.5
+
+
+def is_felt(model: Model, scales: Scales, spacing: float) -> bool:
+    """Whether the flywheel is in flight for as long as a force sample, `spacing` [s], or longer.
+
+    It comes free where the force between it and the terminals changes its sign: they leave it
+    behind by jerk t^3 / 6. What takes less time is no more than late.
+    """
+    jerk = 2.0 * np.pi * scales.frequency * scales.acceleration
+    return bool(np.cbrt(6.0 * model.values["backlash"] / jerk) >= spacing)
 
 
 def from_contact(run: BenchRun) -> BenchRun:

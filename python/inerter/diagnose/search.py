@@ -31,6 +31,7 @@ from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.plainer import swings_on
+from inerter.diagnose.play import is_felt
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials
@@ -77,6 +78,19 @@ class Scored:
 
 def _silent(text: str) -> None:
     """Tell nobody."""
+
+
+def shortlisted(worthy: Sequence[Fitted]) -> list[Fitted]:
+    """The best of some candidates; forms of few effects do not crowd the others out."""
+    c = CRITERIA
+    first = list(worthy[: c.shortlist])
+    for pair in worthy[c.shortlist :]:
+        effects = {candidate.effect for candidate, _ in first}
+        if len(effects) >= c.effects_checked:
+            break
+        if pair[0].effect not in effects:
+            first.append(pair)
+    return first
 
 
 @dataclass
@@ -235,8 +249,8 @@ class Search:
 
         # simpler candidates that are nearly as good must have their chance
         near = floor * (1 + 5 * CRITERIA.tolerated_loss)
-        shortlist = worthy[: CRITERIA.shortlist]
-        shortlist += [pair for pair in worthy[CRITERIA.shortlist :] if pair[1].rmse(masks) < near]
+        shortlist = shortlisted(worthy)
+        shortlist += [p for p in worthy if p[1].rmse(masks) < near and p not in shortlist]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 
@@ -281,6 +295,7 @@ class Search:
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
             and not self._is_shaft_alone(s)
+            and (s.effect != "backlash" or is_felt(s.model, sizes, self.spacing))
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
             and along_stroke.repeats(s.model, sizes)
             and not is_harmonic(s.model, sizes, self.longest)
@@ -290,6 +305,11 @@ class Search:
     def longest(self) -> float:
         """Duration of the longest run [s]."""
         return max(run.spacing * run.force.size for run in self.runs)
+
+    @property
+    def spacing(self) -> float:
+        """Longest time between two samples as measured [s]."""
+        return max(run.sample_spacing for run in self.runs)
 
     def _is_shaft_alone(self, scored: Scored) -> bool:
         """Whether a play does no more than its shaft, which is no candidate along one sine."""

@@ -32,9 +32,10 @@ from inerter.diagnose.composition import (
 from inerter.diagnose.data import Data
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss
 from inerter.diagnose.judge import Judge
+from inerter.diagnose.lateness import DRIVE, from_delay_on
 from inerter.diagnose.low_passes import filters, has_filter
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
+from inerter.diagnose.play import fit_play, forgiving, is_felt, jackknife, play_of
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
@@ -49,8 +50,6 @@ from inerter.records.preparation import Preparation
 
 # share of a period that a low-pass along one sine begins with, and what it may smooth
 _LATE, _JUMPS = 0.03, "coulomb_friction"
-# effects that take away the rigid drive of the flywheel
-_DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,6 +121,7 @@ def searched(start: Prepared) -> Searched:
         band, search, plainer = calmer
         final = search.run(plainer, until="backlash")
     search, final = _behind_low_pass(start, band, search, final)
+    final = from_delay_on(search, final) or final
     if "backlash" in final.model.free:
         start.given.progress("free play: fitting it to the force as measured")
     elif raw := _wider(data, data.preparation, final.model):
@@ -159,7 +159,7 @@ def judge_of(data: Data, search: Search, baseline: Model) -> Judge:
 
 def _share_in_band(run: BenchRun) -> float:
     """Of white noise at the measured rate what a run's band has, rms."""
-    return float(np.sqrt(min(2.0 * run.cutoff * run.spacing / run.thinned, 1.0)))
+    return float(np.sqrt(min(2.0 * run.cutoff * run.sample_spacing, 1.0)))
 
 
 def _wider(data: Data, band: Preparation, model: Model) -> Preparation | None:
@@ -248,7 +248,7 @@ def _play(found: Searched) -> Model | None:
     baseline, model = found.prepared.baseline, found.final.model
     starts: list[Model] = []
     if not has_series(baseline):
-        kept = [name for name, _ in effects_of(model, baseline) if name not in _DRIVE]
+        kept = [name for name, _ in effects_of(model, baseline) if name not in DRIVE]
         rigid = submodel(model, kept, baseline)
         starts = [rigid] if rigid.free == baseline.free else [rigid, baseline]
     return play_of(found.data.followed, model, starts, found.judge.noise_floor(model))
@@ -308,6 +308,9 @@ def identified(search: Search, baseline: Model, final: Scored) -> Scored:
     varies along the stroke leaves the level that it varies about.
     """
     for effect, _ in effects_of(final.model, baseline):
+        if effect == "backlash" and not is_felt(final.model, search.problem.scales, search.spacing):
+            shaft = final.model.without(("backlash",))
+            return identified(search, baseline, search.score("", None, search.problem.fit(shaft)))
         if is_distinct(effect, final.fit, baseline, CRITERIA.keeping_advantage):
             continue
         if EFFECTS[effect].local or EFFECTS[effect].kind in ("law", "play"):
@@ -417,7 +420,7 @@ def _searched_on(
     baseline = found.prepared.baseline
     if has_series(final.model):
         return None
-    search = replace(found.search, found=[], excluded=frozenset({*dropped, *_DRIVE}))
+    search = replace(found.search, found=[], excluded=frozenset({*dropped, *DRIVE}))
     search.progress(f"searching on without {', '.join(sorted(dropped))}")
     more = identified(search, baseline, search.run(final.model, most=len(dropped)))
     if not dict(effects_of(more.model, baseline)).keys() - dict(effects_of(final.model, baseline)):

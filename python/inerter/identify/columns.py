@@ -341,8 +341,7 @@ def _through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array
     """A force that bends sharply, (m,), as the force channel shows it in the run's band, (n,)."""
     if np.isinf(run.cutoff):
         return through_channel(channel, force, run.elapsed, run.spacing)
-    spacing = run.spacing / run.thinned
-    return run.in_band(through_channel(channel, force, run.fine_elapsed, spacing))
+    return run.in_band(through_channel(channel, force, run.fine_elapsed, run.fine_spacing))
 
 
 @dataclass(frozen=True)

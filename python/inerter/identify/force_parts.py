@@ -107,8 +107,7 @@ def _shown(
         force = _found(run, key, fine) if channel else fine()
         if not abs(force[-1]) < RUNAWAY:
             return np.full(run.force.size, np.inf)
-        spacing = run.spacing / run.thinned
-        return run.in_band(through_channel(channel, force, run.fine_elapsed, spacing))
+        return run.in_band(through_channel(channel, force, run.fine_elapsed, run.fine_spacing))
 
     return _found(run, ("shown", *key, *channel.items()), shown)
 

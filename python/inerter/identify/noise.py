@@ -102,7 +102,7 @@ def _truth(
     model: Model, record: Record, preparation: Preparation, change: Callable[[BenchRun], BenchRun]
 ) -> _Truth:
     """The record that the model would leave along the smoothed motion."""
-    motion = smooth(record, preparation.cutoff, preparation.channels)
+    motion = replace(smooth(record, preparation.cutoff, preparation.channels), instants=1)
     # at rest the smoothed velocity is noise, and would turn friction about
     still = thin(motion).measured
     assert still is not None

@@ -113,7 +113,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     if np.isinf(run.cutoff) or not rough:
 
         def along(each: Device) -> dict[str, Array]:
-            return forces_along(each, run.spacing, run.followed, state, run.force.size)
+            return run.along(each, state)
 
         if drift:
             total = with_friction_drift(device, drift, along, run.elapsed)
@@ -148,7 +148,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         if drift:
             total = total + drift * run.elapsed * run.in_band(law)
         return through_channel(values, total, run.elapsed, run.spacing)
-    times, spacing = run.fine_elapsed, run.spacing / run.thinned
+    times, spacing = run.fine_elapsed, run.fine_spacing
     total = found["total"] + drift * times * law if drift else found["total"]
     plain, less = without_limits(values), run.at_measured_rate(part, rest)["total"]
     if clips(values):
@@ -214,7 +214,9 @@ def _before_filter(run: BenchRun, values: Mapping[str, float]) -> BenchRun:
     found = kept.get(key)
     if found is None:
         found = unfiltered(run, low_pass)
-        samples = sum(each.displacement.size * each.thinned for each in kept.values())
+        samples = sum(
+            each.displacement.size * each.thinned * each.instants for each in kept.values()
+        )
         if samples > _MOST_SAMPLES:
             kept.clear()
         elif len(kept) == _MOST_RUNS:
@@ -232,7 +234,7 @@ def unfiltered(run: BenchRun, low_pass: Filter) -> BenchRun:
     x, v, a = before((run.displacement, run.velocity, run.acceleration), run.spacing)
     measured = run.measured
     if measured is not None:
-        fine = before(measured, run.spacing / run.thinned)
+        fine = before(measured, run.fine_spacing)
         measured = (fine[0], fine[1], fine[2])
     return replace(run, displacement=x, velocity=v, acceleration=a, measured=measured)
 

@@ -10,10 +10,12 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from inerter.catalogue.scales import Scales
 from inerter.checked_motion import checked_motion
 from inerter.core import Device
+from inerter.identify.between import between
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.motion import (
     EDGE_PERIODS,
@@ -60,10 +62,13 @@ class BenchRun:
     inner : ndarray of bool (n,)
         False near the ends.
     measured : tuple of ndarray (m,), optional
-        Displacement, velocity, acceleration at the measured rate; the velocity is 0 in rests, where
-        it would be noise.
+        Displacement, velocity, acceleration at the measured rate, or more often; the velocity is 0
+        in rests, where it would be noise.
     thinned : int
         Measured samples per sample here.
+    instants : int
+        Instants per measured sample at which the force is followed: more than one where what it
+        jumps by is smooth in the record.
     first_force : float
         Mean measured force over 10 ms [N] at the sample `first`, which tells the state there.
     first : int
@@ -102,6 +107,7 @@ class BenchRun:
     cutoff: float
     measured: tuple[Array, Array, Array] | None = None
     thinned: int = 1
+    instants: int = 1
     first: int = 0
     clock: float = 0.0
     corner: float = np.inf
@@ -118,31 +124,45 @@ class BenchRun:
 
         Friction jumps where the velocity changes sign. At the instants of the measured samples a
         jump falls between the same two samples as in the record; elsewhere it would be misplaced,
-        and other effects would be found to make up for that.
+        and other effects would be found to make up for that. A jump that went through a low-pass
+        before it was sampled is in several samples, and when it was is told from between them.
         """
         if self.measured is None:
             raise ValueError(f"{self.name}: a run at the measured rate has no band")
-        spacing, size = self.spacing / self.thinned, self.measured[0].size
-        return forces_along(device, spacing, self._followed_finely, state, size)
+        size = self.measured[0].size
+        return forces_along(device, self.fine_spacing, self._followed_finely, state, size)
 
     def force_at_measured_rate(self, device: Device, state: float | Array, name: str) -> Array:
         """One of them alone, "total" or "friction"."""
         x, v, a = self._followed_finely
         size = self.force.size if self.measured is None else self.measured[0].size
-        spacing = self.spacing / self.thinned
-        return held(device.force_checked(spacing, x, v, a, state, name), size)
+        return held(device.force_checked(self.fine_spacing, x, v, a, state, name), size)
+
+    def along(self, device: Device, state: float | Array) -> dict[str, Array]:
+        """Forces of a device along the thinned motion [N], shape (n,) each.
+
+        Where the force is as measured and its jumps were smoothed, friction is the mean about each
+        sample.
+        """
+        if self.instants == 1 or np.isfinite(self.cutoff):
+            return forces_along(device, self.spacing, self.followed, state, self.force.size)
+        found = self.at_measured_rate(device, state)
+        smooth = (found["total"] - found["friction"])[:: self.instants]
+        friction = uniform_filter1d(found["friction"], self.instants)[:: self.instants]
+        return {"total": smooth + friction, "friction": friction}
 
     def thinned_force(self, device: Device, state: float | Array) -> Array:
-        """Total force of a device along the thinned motion [N], shape (n,)."""
+        """The total of them alone."""
+        if self.instants > 1 and np.isinf(self.cutoff):
+            return self.along(device, state)["total"]
         x, v, a = self.followed
         force = device.force_checked(self.spacing, x, v, a, state, "total")
         return held(force, self.force.size)
 
     def in_band(self, values: Array) -> Array:
         """Values at the measured rate through the low-pass of the measured force, thinned."""
-        if self.thinned > 1:
-            spacing = self.spacing / self.thinned
-            return filtered_and_thinned(values, spacing, self.cutoff, self.thinned)
+        if (steps := self.thinned * self.instants) > 1:
+            return filtered_and_thinned(values, self.fine_spacing, self.cutoff, steps)
         return filtered(values, self._response)
 
     def weighted(self, values: Array, mask: NDArray[np.bool_], shaft: Shaft | None = None) -> Array:
@@ -175,6 +195,16 @@ class BenchRun:
         means = np.interp(places, np.arange(self.force.size), self.force).mean(axis=1)
         return float(means[1] - means[0])
 
+    @property
+    def sample_spacing(self) -> float:
+        """Time between two samples as measured [s]."""
+        return self.spacing / self.thinned
+
+    @property
+    def fine_spacing(self) -> float:
+        """Time between two instants at which the force is followed [s]."""
+        return self.spacing / (self.thinned * self.instants)
+
     # checked once, for the many devices that are tried along it
     @cached_property
     def followed(self) -> list[Array]:
@@ -190,14 +220,14 @@ class BenchRun:
 
     @cached_property
     def _followed_finely(self) -> list[Array]:
-        begin = self.first * self.thinned
+        begin = self.first * self.thinned * self.instants
         x, v, a = (channel[begin:] for channel in self.measured or ())
-        return checked_motion(self.spacing / self.thinned, x, v, a)
+        return checked_motion(self.fine_spacing, x, v, a)
 
     @cached_property
     def _response(self) -> Array:
         size = self.force.size if self.measured is None else self.measured[0].size
-        return band_response(size, self.spacing / self.thinned, self.cutoff)
+        return band_response(size, self.fine_spacing, self.cutoff)
 
     @cached_property
     def _weight(self) -> Array:
@@ -229,7 +259,7 @@ class BenchRun:
     def fine_elapsed(self) -> Array:
         """The same at the measured rate, shape (m,)."""
         size = self.force.size if self.measured is None else self.measured[0].size
-        return self.start - self.clock + self.spacing / self.thinned * np.arange(size, dtype=float)
+        return self.start - self.clock + self.fine_spacing * np.arange(size, dtype=float)
 
     @property
     def time(self) -> Array:
@@ -249,6 +279,9 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
     first = int(np.argmax(motion.inner[::step]))
     force = filtered_and_thinned(motion.force, motion.spacing, cutoff, step)
     velocity = np.where(_resting(motion), 0.0, motion.velocity)
+    measured = (motion.displacement, velocity, motion.acceleration)
+    if motion.instants > 1:
+        measured = between(motion.spacing, measured, motion.instants)
     inner = motion.inner[::step]
     if motion.part and first:
         # what the force was before is not followed, and the low-pass remembers it
@@ -265,8 +298,9 @@ def thin(motion: Motion, rate: float | None = None, force_band: float = 0.0) -> 
         inner=inner,
         first_force=_force_at(motion, first * step),
         cutoff=cutoff,
-        measured=(motion.displacement, velocity, motion.acceleration),
+        measured=measured,
         thinned=step,
+        instants=motion.instants,
         first=first,
         clock=motion.clock,
         quiet=motion.cutoff if cutoff > motion.cutoff else np.inf,
@@ -310,6 +344,8 @@ def _resting(motion: Motion) -> NDArray[np.bool_]:
 def whole(motion: Motion) -> BenchRun:
     """A run at the record's own rate with the force as measured: what figures are reported on."""
     first = int(np.argmax(motion.inner))
+    measured = (motion.displacement, motion.velocity, motion.acceleration)
+    often = motion.instants > 1
     return BenchRun(
         name=motion.name,
         start=motion.start,
@@ -321,6 +357,8 @@ def whole(motion: Motion) -> BenchRun:
         inner=motion.inner,
         first_force=_force_at(motion, first),
         cutoff=np.inf,
+        measured=between(motion.spacing, measured, motion.instants) if often else None,
+        instants=motion.instants,
         first=first,
         clock=motion.clock,
         motion=motion.motion,
@@ -332,6 +370,9 @@ def from_first(run: BenchRun) -> BenchRun:
     """The part of a run at the measured rate whose motion is known from the beginning."""
     arrays = ("displacement", "velocity", "acceleration", "force", "inner")
     part = {name: getattr(run, name)[run.first :] for name in arrays}
+    if run.measured is not None:
+        x, v, a = (channel[run.first * run.instants :] for channel in run.measured)
+        part["measured"] = (x, v, a)
     return replace(run, **part, start=run.start + run.first * run.spacing, first=0)
 
 
@@ -347,7 +388,7 @@ def head(run: BenchRun, share: float) -> BenchRun:
     arrays = ("displacement", "velocity", "acceleration", "force", "inner")
     part = {name: getattr(run, name)[:n] for name in arrays}
     if run.measured is not None:
-        x, v, a = (channel[: (n - 1) * run.thinned + 1] for channel in run.measured)
+        x, v, a = (channel[: (n - 1) * run.thinned * run.instants + 1] for channel in run.measured)
         part["measured"] = (x, v, a)
     return replace(run, **part)
 

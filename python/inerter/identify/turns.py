@@ -34,7 +34,7 @@ def with_turns(run: BenchRun) -> BenchRun:
     if run.measured is None:
         return replace(run, displacement=turned(run.displacement, run.velocity, run.spacing))
     x, v, a = run.measured
-    return replace(run, measured=(turned(x, v, run.spacing / run.thinned), v, a))
+    return replace(run, measured=(turned(x, v, run.fine_spacing), v, a))
 
 
 def turned(x: Array, v: Array, spacing: float) -> Array:

@@ -39,6 +39,8 @@ EDGE_PERIODS = 2.5
 LEAST_LOSS = 0.01
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
+# power of a line per that of the white noise about it
+_LINE = 6.0
 # samples of shorter ones, and noise of these, per that of such, below which the longer ones have
 # something sudden in each
 _SHORTER, _CALMER = 16, 0.7
@@ -69,6 +71,8 @@ class Motion:
         What the device does; in rotation read rad for m and N m for N.
     part : Part, optional
         Of which run it is a part.
+    instants : int
+        As of a `Record`.
     """
 
     name: str
@@ -84,6 +88,7 @@ class Motion:
     acceleration_noise: float
     motion: Kind = TRANSLATION
     part: Part | None = None
+    instants: int = 1
 
     @property
     def clock(self) -> float:
@@ -369,6 +374,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         acceleration_noise=acceleration_noise,
         motion=record.motion,
         part=record.part,
+        instants=record.instants,
     )
 
 
@@ -403,6 +409,8 @@ def _in_segments(values: Array, length: int) -> float:
     power = np.abs(rfft((segments - ends) * window, axis=1)) ** 2 / np.sum(window**2)
     upper = np.quantile(power[:, 2 * power.shape[1] // 3 : -1], quantile, axis=0)
 
+    # what stands out of it is a tone: hum, or a drive that rings
+    upper = upper[upper <= _LINE * np.median(upper)]
     # the power of white noise is distributed exponentially
     return float(np.sqrt(np.mean(upper) / -np.log(1 - quantile)))
 

@@ -154,8 +154,7 @@ def weighed(
     noise = inertance * np.sqrt(np.mean([white_noise(r.displacement) ** 2 for r in records]))
     if not noise > 0:
         return preparation
-    corner = np.sqrt(preparation.noise_floor / noise) / (2 * np.pi)
-    corner = float(max(corner, preparation.cutoffs[0]))
+    corner = float(np.sqrt(preparation.noise_floor / noise) / (2 * np.pi))
 
     def error(motions: Sequence[Motion], masks: Masks) -> float:
         return _force_error(motions, _both(masks, learnt), preparation.one_line, corner)

@@ -162,7 +162,8 @@ class Part:
 class Record(TimeRecord):
     """One run on a bench: time s, displacement m, force N; velocity m/s, acceleration m/s^2.
 
-    part: where it is a part of a longer one.
+    part: where it is a part of a longer one. instants: per sample, at which forces are followed;
+    more than one where a low-pass before the converter has smoothed what jumps.
     """
 
     displacement: Array
@@ -170,6 +171,7 @@ class Record(TimeRecord):
     velocity: Array | None = None
     acceleration: Array | None = None
     part: Part | None = None
+    instants: int = 1
 
     kind: ClassVar[str] = "bench"
     required: ClassVar[tuple[str, ...]] = ("time", "displacement", "force")
