@@ -242,3 +242,13 @@ def test_whatever_is_taken_out_leaves_a_device_that_can_be(law: str) -> None:
                     looked_at += 1
     # this one is held as it is stated, and no level of it varies
     assert looked_at == 0 if law == "maxwell_slip" else looked_at > 20
+
+
+@pytest.mark.parametrize(("ages", "blur"), [(0.05, True), (0.01, False)])
+def test_friction_that_rises_with_the_logarithm_of_speed_has_no_peak(
+    ages: float, blur: bool
+) -> None:
+    narrowest = search_range("age_distance", SCALES).lower
+    values = {"coulomb_force": 20.0, "rate_effect": 0.03, "age_effect": ages}
+    law = BASELINE.adding("rate_state", **values, age_distance=narrowest)
+    assert is_blur(law, SCALES, 1.05, 1.0) is blur

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inerter.catalogue.scales import Scales
 from inerter.core import Device
 from inerter.diagnose.play import (
     comes_in_blows,
@@ -13,6 +14,7 @@ from inerter.diagnose.play import (
     fit_play,
     forgiving,
     from_contact,
+    is_felt,
     jackknife,
 )
 from inerter.identify.fit import Problem, rms
@@ -157,3 +159,16 @@ def test_the_first_part_of_a_run_holds_where_it_is_followed_from() -> None:
     assert head_size(late, 0.3) == head(late, 0.3).force.size == size - 700
     assert head_size(replace(whole, first=0), 0.3) == int(0.3 * size)
     assert head_size(replace(whole, first=size - 50), 0.3) == size
+
+
+@pytest.mark.parametrize(("gap", "felt"), [(1e-3, True), (1.5e-5, True), (2e-7, False)])
+def test_a_flight_shorter_than_a_sample_is_not_felt(gap: float, felt: bool) -> None:
+    """Along a sine of 3 Hz, 10 mm: the terminals leave the flywheel by jerk t^3 / 6."""
+    speed = 2 * np.pi * 3.0
+    x, v, a = (0.01 * speed**k / np.sqrt(2) for k in range(3))
+    sizes = Scales(force=1.0, displacement=x, velocity=v, acceleration=a)
+    flight = np.cbrt(6 * gap / (speed * a))
+    model = RIGID.adding(backlash=gap)
+    assert is_felt(model, sizes, 0.004) is felt
+    assert is_felt(model, sizes, 0.99 * flight)
+    assert not is_felt(model, sizes, 1.01 * flight)

@@ -130,3 +130,25 @@ def test_a_line_that_a_noisy_displacement_may_have_is_of_the_motion(rings: bool,
     seen = [run.displacement + moved + random.normal(0, 1.4e-6, TIME.size) for run in RUNS]
     found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
     assert (found is None) is rings
+
+
+@pytest.mark.parametrize("alone", [False, True])
+def test_a_line_among_those_of_a_drive_that_rings_is_none(alone: bool) -> None:
+    """The noise of the displacement hides one of three; one alone that it lacks is a tone."""
+    frequencies = 47.3 * np.array([0.98, 1.0, 1.03])
+    waves = [np.sin(2 * np.pi * f * TIME + i) for i, f in enumerate(frequencies)]
+    force = 0.6 * (waves[1] if alone else sum(waves))
+    shaken = [replace(run, force=run.force + force) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    moved = sum(
+        -0.6 * share * wave / (40.0 * (2 * np.pi * f) ** 2)
+        for share, f, wave in zip((1.0, 0.3, 1.0), frequencies, waves, strict=True)
+    )
+    random = np.random.default_rng(3)
+    seen = [
+        run.displacement + (0.0 if alone else moved) + random.normal(0, 1e-7, TIME.size)
+        for run in RUNS
+    ]
+    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    assert (found is not None) is alone

@@ -148,3 +148,23 @@ def test_the_noise_of_a_force_that_jumps_in_every_segment() -> None:
     assert force_noise(noisy) == pytest.approx(0.5, rel=0.4)
     calm = random.normal(0, 0.5, t.size)
     assert force_noise(calm) == white_noise(calm)
+
+
+@pytest.mark.parametrize("rate", [100, 1000])
+@pytest.mark.parametrize("share", [0.36, 0.43])
+def test_noise_is_told_beside_a_tone(rate: int, share: float) -> None:
+    """Hum or a drive that rings stands out of white noise and is none of it."""
+    random = np.random.default_rng(7)
+    t = np.arange(0, 30, 1 / rate)
+    tone = 2.0 * np.sin(2 * np.pi * share * rate * t)
+    found = white_noise(tone + random.normal(0, 0.2, t.size))
+    # with the tone it would be ten to thirty times that
+    assert found == pytest.approx(0.2, rel=0.35)
+
+
+@pytest.mark.parametrize("segments", [1, 2, 4, 8])
+def test_noise_of_a_short_record_is_no_larger(segments: int) -> None:
+    """A low quantile of few segments is that of few."""
+    random = np.random.default_rng(7)
+    found = [white_noise(random.normal(0, 1, 64 * segments)) for _ in range(200)]
+    assert np.mean(found) == pytest.approx(1.0, abs=0.2)

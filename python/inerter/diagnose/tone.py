@@ -40,6 +40,9 @@ _NEIGHBOURS = 2
 _FEWEST = 64
 # bins about a line whose power is its own, and farther ones that tell the noise
 _WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
+# share of a frequency about it where a drive that rings has its lines, and of the power of the
+# highest of them that another one has
+_ABOUT, _AS_HIGH = 0.05, 0.25
 # lines that are asked about, one after another; the highest harmonic of one sine that is no tone
 _ASKED, _HARMONICS = 8, 9
 
@@ -143,14 +146,11 @@ class Witness:
 
     def clears(self, model: Model, frequency: float) -> bool:
         """Whether a tone in what a model leaves is none of the motion, as far as can be told."""
-        omega, values = 2 * np.pi * frequency, model.values
-        follows = -values.get("inertance", 0.0) * omega**2
-        follows = follows * np.exp(-1j * omega * values.get("delay", 0.0))
-        for channel, way in (("force", 1), ("displacement", -1)):
-            if (low_pass := filter_of(values, channel)) is not None:
-                follows = follows * low_pass.response(np.array([frequency]))[0] ** way
+        follows = complex(_follows(model, np.array([frequency]))[0])
         shown = left = hidden = own = 0.0
         errors = self.raw.errors(model)
+        if self._rings(model, frequency, errors):
+            return False
         everything = zip(
             self.raw.runs, self.raw.masks, errors, self.displacements, strict=True
         )  # fmt: skip
@@ -179,6 +179,44 @@ class Witness:
         may_have_one = own > max(CRITERIA.tone_hidden * shown, _MAY_BE_THERE * hidden)
         told = hidden < CRITERIA.tone_hidden * shown and not may_have_one
         return bool(told) or of_mains(frequency, 1 / longest) is not None
+
+    def _rings(self, model: Model, frequency: float, errors: Sequence[Array]) -> bool:
+        """Whether lines about a frequency are, all together, those of the displacement.
+
+        A drive that rings has some side by side, and the noise may have hidden one of them.
+        """
+        shown = left = 0.0
+        lines = 0
+        for run, mask, error, displacement in zip(
+            self.raw.runs, self.raw.masks, errors, self.displacements, strict=True
+        ):
+            if mask.sum() <= _FEWEST or displacement.size != error.size:
+                continue
+            window = np.hanning(mask.size) * mask
+            grid = np.fft.rfftfreq(mask.size, run.spacing)
+            near = np.abs(grid - frequency) < _ABOUT * frequency
+            force, motion = (
+                np.fft.rfft(window * each)[near]
+                for each in (error, displacement - run.displacement)
+            )
+            there = _follows(model, grid[near]) * motion
+            power = np.abs(force) ** 2
+            high = power > _AS_HIGH * np.max(power, initial=0.0)
+            lines = max(lines, int(np.sum(np.diff(np.flatnonzero(high)) > 2)) + 1)
+            shown += float(power[high].sum())
+            left += float(np.sum(np.abs(force - there)[high] ** 2))
+        return lines > 1 and left < CRITERIA.tone_of_motion * shown
+
+
+def _follows(model: Model, frequency: Array) -> NDArray[np.complex128]:
+    """Force [N] that follows a displacement of 1 m at frequencies [Hz], as the channels show it."""
+    omega, values = 2 * np.pi * frequency, model.values
+    late = np.exp(-1j * omega * values.get("delay", 0.0))
+    found = np.asarray(-values.get("inertance", 0.0) * omega**2 * late, dtype=np.complex128)
+    for channel, way in (("force", 1), ("displacement", -1)):
+        if (low_pass := filter_of(values, channel)) is not None:
+            found = found * low_pass.response(frequency) ** way
+    return found
 
 
 def of_mains(frequency: float, resolution: float = 0.0) -> tuple[int, float] | None:

@@ -22,11 +22,13 @@ from inerter.diagnose.remainder.battery import ORDER, Remainder, Tested, battery
 from inerter.diagnose.remainder.bursts import Bursts, bursts
 from inerter.diagnose.remainder.columns import sizes_of
 from inerter.diagnose.remainder.learning import LearntPart, gather
+from inerter.diagnose.remainder.lines import lines
 from inerter.diagnose.remainder.proposal import propose
-from inerter.diagnose.remainder.words import summary
+from inerter.diagnose.remainder.words import MORE, summary
 from inerter.diagnose.result import Unexplained
 from inerter.identify.runs import BenchRun, on_clocks
 from inerter.identify.split import Split
+from inerter.records.motion import lowpass
 
 Array = NDArray[np.float64]
 
@@ -43,6 +45,9 @@ BURST_FORCE_PART = 0.03
 # share of the residual's power that the first dependence, and each further one, has to predict
 FIRST_SHARE = 0.05
 FURTHER_SHARE = 0.1
+# share of what remains above the band that tones have to predict there, and samples of a run that
+# they are looked for in
+TONE_SHARE, MOST_SAMPLES = 0.2, 60_000
 # of the best test's share, what a plainer one must reach to be named instead
 PLAIN_ENOUGH = 0.85
 MOST = 3
@@ -143,6 +148,7 @@ def unexplained(
         proposal["text"] if proposal else None,
         _usual(whole, whole_residual, split, runs, raw),
         runs[0].motion,
+        _tone_above(remainder, whole, whole_residual) if raw > MORE * floor else None,
     )
     return Unexplained(
         significant=significant,
@@ -269,6 +275,28 @@ def _held_at(
         np.interp(run.time, thin.time, out.astype(float)) > 0.5
         for run, thin, out in zip(whole, runs, split.holdout, strict=True)
     ]
+
+
+def _tone_above(
+    remainder: Remainder, whole: Sequence[BenchRun], residual: Sequence[Array]
+) -> tuple[float, float, float] | None:
+    """Frequency [Hz] and rms [N] of tones above the fits' band, and the end of that [Hz]."""
+    end = max((run.cutoff for run in remainder.runs), default=np.inf)
+    if not len(whole) or not np.isfinite(end):
+        return None
+    high, model, masks = [], [], []
+    for run, r in zip(whole, residual, strict=True):
+        high.append((r - lowpass(r, run.spacing, end))[:MOST_SAMPLES])
+        model.append((run.force - r)[:MOST_SAMPLES])
+        masks.append(run.inner[:MOST_SAMPLES])
+    found = lines(high, model, [run.spacing for run in whole], masks)
+    power, values = (
+        np.concatenate([each[m] for each, m in zip(channels, masks, strict=True)])
+        for channels in (high, found.values)
+    )
+    if found.p > FALSE_ALARM or found.frequency < end or found.share < TONE_SHARE:
+        return None
+    return found.frequency, _taken(power, values), end
 
 
 def _usual(

@@ -39,8 +39,8 @@ EDGE_PERIODS = 2.5
 LEAST_LOSS = 0.01
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
-# power of a line per that of the white noise about it
-_LINE = 6.0
+# bins of the upper third below which there is no more than noise, and power of a line per theirs
+_QUIET, _LINE = 0.3, 5.0
 # samples of shorter ones, and noise of these, per that of such, below which the longer ones have
 # something sudden in each
 _SHORTER, _CALMER = 16, 0.7
@@ -410,9 +410,12 @@ def _in_segments(values: Array, length: int) -> float:
     upper = np.quantile(power[:, 2 * power.shape[1] // 3 : -1], quantile, axis=0)
 
     # what stands out of it is a tone: hum, or a drive that rings
-    upper = upper[upper <= _LINE * np.median(upper)]
-    # the power of white noise is distributed exponentially
-    return float(np.sqrt(np.mean(upper) / -np.log(1 - quantile)))
+    upper = upper[upper <= _LINE * np.quantile(upper, _QUIET)]
+    # the power of white noise is distributed exponentially; this is the mean of that quantile
+    count = len(segments)
+    ordered = np.cumsum(1.0 / (count - np.arange(count)))
+    expected = np.interp(quantile * (count - 1), np.arange(count), ordered)
+    return float(np.sqrt(np.mean(upper) / expected))
 
 
 def _derivative_noise(displacement: Array, spacing: float, cutoff: float) -> tuple[float, float]:

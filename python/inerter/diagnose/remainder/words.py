@@ -40,6 +40,7 @@ def summary(
     proposal: str | None,
     usual: float | None = None,
     motion: Kind = TRANSLATION,
+    above: tuple[float, float, float] | None = None,
 ) -> str:
     """One paragraph.
 
@@ -59,6 +60,9 @@ def summary(
         What half of the errors are below [N], where few large ones make the rms.
     motion
         What the device does; in rotation read N m for N.
+    above
+        Frequency [Hz] and rms [N] of a tone in what remains, and the end of the motion's band [Hz],
+        above which it lies.
     """
     newton, force = words(motion, "N"), force_word(motion)
     blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} {newton}"
@@ -71,6 +75,13 @@ def summary(
         )
     if not depends:
         more = "is more than this noise, but " if raw > MORE * floor else ""
+        if above:
+            frequency, size, end = above
+            more = (
+                f"is more than this noise: {size:.3g} {newton} rms of it is a tone of "
+                f"{frequency:.3g} Hz, above the {end:.3g} Hz up to which the motion is told from "
+                "noise, a ringing of the drive for example. Else it "
+            )
         return (
             f"{start} {more}shows no dependence on position, velocity, acceleration, time, "
             "frequency or what went before that is of any size."

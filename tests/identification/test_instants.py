@@ -1,0 +1,97 @@
+"""Jumps that a low-pass smoothed are followed between samples, those sampled as they are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from inerter.identify.between import between
+from inerter.identify.fit import Problem
+from inerter.identify.instants import with_instants
+from inerter.identify.model import Model
+from inerter.identify.runs import thin, whole
+from inerter.records import Record
+from inerter.records.preparation import prepare
+from inerter.reference import ReferenceDevice, response, sum_of_sines
+from scipy.signal import bessel, sosfilt
+
+MOTION = sum_of_sines([0.008, 0.004, 0.002], [0.7, 1.9, 3.7], [0.3, 1.0, 2.0])
+MODEL = Model("none", {"inertance": 40.0, "transition_velocity": 1e-4}, ("inertance",))
+FINE = 40
+
+
+def record(rate: float, cutoff: float, friction: float = 60.0) -> Record:
+    """What a converter tells, behind a low-pass or with a cut-off of 0 without one."""
+    time = np.arange(0, 12, 1 / (FINE * rate))
+    law = {"friction": "coulomb", "coulomb_force": friction} if friction else {}
+    device = ReferenceDevice(inertance=50.0, **law)
+    truth = response(device, MOTION, time)
+    force = truth.force
+    if cutoff:
+        low_pass = bessel(4, cutoff, fs=FINE * rate, norm="mag", output="sos")
+        force = sosfilt(low_pass, force)
+    random, kept = np.random.default_rng(2), slice(0, None, FINE)
+    noise = random.normal(0, 0.3, force[kept].size), random.normal(0, 2e-6, force[kept].size)
+    return Record(
+        name="run", time=time[kept], force=force[kept] + noise[0],
+        displacement=truth.displacement[kept] + noise[1],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("rate", [100.0, 250.0])
+@pytest.mark.parametrize(("share", "friction", "more"), [(0.5, 60, 1), (0, 60, 0), (0.5, 0, 0)])
+def test_more_instants_where_jumps_were_smoothed(
+    rate: float, share: float, friction: float, more: int
+) -> None:
+    records = [record(rate, share * rate, friction)]
+    motions = prepare(records).motions
+    learnt = [np.ones(motion.force.size, bool) for motion in motions]
+    found = with_instants(records, motions, MODEL, learnt)
+    assert (found[0].instants > 1) is bool(more)
+    if not more:
+        assert found is records
+
+
+def test_what_more_instants_tell() -> None:
+    """Friction and delay as they are, and less than half of the error left, in the band and raw."""
+    plain = record(250.0, 100.0)
+    errors = {}
+    for instants in (1, 4):
+        (motion,) = prepare([plain]).motions
+        motion = type(motion)(**{**vars(motion), "instants": instants})
+        run, raw = thin(motion), whole(motion)
+        model = MODEL.adding("coulomb", coulomb_force=50.0, transition_velocity=1e-3, delay=0.002)
+        problem = Problem([run], [run.inner])
+        fit = problem.fit(model)
+        wide = Problem([raw], [raw.inner])
+        errors[instants] = (
+            fit.rmse(problem.masks), float(np.std(wide.errors(fit.model)[0][raw.inner])),
+        )  # fmt: skip
+        if instants > 1:
+            assert fit.model.values["coulomb_force"] == pytest.approx(60.0, rel=0.01)
+            assert fit.model.values["inertance"] == pytest.approx(50.0, rel=0.005)
+    assert errors[4][0] < 0.5 * errors[1][0]
+    assert errors[4][1] < errors[1][1]
+
+
+def test_a_motion_between_its_samples() -> None:
+    spacing, instants = 0.01, 5
+    time = spacing * np.arange(200)
+    fine = spacing / instants * np.arange(199 * instants + 1)
+
+    def motion(t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        w = 2 * np.pi * 3.0
+        return np.sin(w * t), w * np.cos(w * t), -(w**2) * np.sin(w * t)
+
+    x, v, a = between(spacing, motion(time), instants)
+    for found, exact in zip((x, v, a), motion(fine), strict=True):
+        np.testing.assert_allclose(found, exact, atol=1e-5 * np.max(np.abs(exact)))
+        np.testing.assert_allclose(
+            found[::instants], exact[::instants], rtol=0, atol=1e-9 * np.ptp(exact)
+        )
+
+
+def test_what_rests_goes_on_resting() -> None:
+    x, v, a = np.array([0.0, 1.0, 1.001, 1.0]), np.array([1.0, 0.0, 0.0, 0.0]), np.ones(4)
+    fine = between(0.1, (x, v, a), 4)
+    assert np.all(fine[1][4:] == 0.0)
+    np.testing.assert_array_equal(fine[0][4:], [1.0] * 4 + [1.001] * 4 + [1.0])
