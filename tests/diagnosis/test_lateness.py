@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
+from inerter.blind_test.case import hide, records_of
+from inerter.blind_test.plan import Task
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.remainder.words import summary
 from inerter.records import Record
@@ -51,3 +54,16 @@ def test_a_tone_above_the_band_is_told_before_what_is_not_there() -> None:
     text = summary([], {}, {}, 1.4, 0.4, 0.0, False, None, above=(38.5, 1.35, 15.0))
     assert "is more than this noise: 1.35 N rms of it is a tone of 38.5 Hz, above the 15 Hz" in text
     assert "Else it shows no dependence" in text
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("effect", "seed"), [("viscoelasticity", 2844657545), ("friction_drift", 89049161)]
+)
+def test_a_late_force_is_no_shaft_and_no_play(effect: str, seed: int) -> None:
+    """Cases in which it was: from the delay on, and with jumps followed between samples, not."""
+    task = Task(group="single", seed=seed, noise=0.01, effects=(effect,), bench="realistic")
+    found = diagnose_bench(records_of(hide(task)))
+    names = {finding.effect for finding in found.findings}
+    assert effect in names
+    assert not names & {"series_elasticity", "backlash", "viscous_friction"}, found.verdict
