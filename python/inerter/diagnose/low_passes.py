@@ -126,14 +126,14 @@ def _best(
 ) -> list[tuple[Candidate, Fit]]:
     """The best fits of low-passes; what comes nowhere near a `reach` [N] is left as it is."""
     masks = search.problem.masks
-    trials = _likeliest(search, list(filters(here.model, delay)))
+    trials = likeliest(search, list(filters(here.model, delay)))
     limit = (here.rmse(masks), np.inf)
     fits = parallel(lambda trial: search.trials.fit(trial, limit, reach), trials)
     pairs = sorted(zip(trials, fits, strict=True), key=lambda pair: pair[1].rmse(masks))
     return pairs[: CRITERIA.filters_kept]
 
 
-def _likeliest(search: Search, trials: list[Candidate]) -> list[Candidate]:
+def likeliest(search: Search, trials: list[Candidate]) -> list[Candidate]:
     """Low-passes that do best while curves along the stroke stay as they are, where there are some.
 
     Behind a low-pass of the displacement nothing is linear, and each node costs a prediction.
@@ -150,12 +150,13 @@ def _likeliest(search: Search, trials: list[Candidate]) -> list[Candidate]:
     return [trials[i] for i in np.argsort(errors)[: CRITERIA.filters_kept]]
 
 
-def _jumps_late(search: Search, delayed: Scored, filtered: Scored) -> bool:
+def jumps_late(search: Search, delayed: Scored, filtered: Scored) -> bool:
     """Whether the force as measured jumps, late, where a low-pass would have smoothed it.
 
     Friction that jumps tells the two apart above the band in which a search compares them.
     """
-    if search.witness is None or loss(delayed, filtered) > CRITERIA.too_much:
+    jumps = delayed.model.friction != "none" or "backlash" in delayed.model.values
+    if search.witness is None or not jumps or loss(delayed, filtered) > CRITERIA.too_much:
         return False
     raw = search.witness.raw
     counted = blocks(raw.masks)
@@ -173,11 +174,11 @@ def other_filter(search: Search, current: Scored) -> Scored | None:
         return None
     delayed = search.score("exchange", None, search.problem.fit(as_delay(current.model)))
     masks, force = search.problem.masks, search.problem.scales.force
-    errors = rms(delayed.errors, masks), rms(current.errors, masks)
+    errors = rms(delayed.residual, masks), rms(current.residual, masks)
     # also where the two differ by no more than what interpolation between samples leaves
     if loss(delayed, current) < CRITERIA.gain or not visible(*errors, 0.0, force):
         return delayed
-    if _jumps_late(search, delayed, current):
+    if jumps_late(search, delayed, current):
         return delayed
     for _, fit in _best(search, current.fit, current.fit.rmse(masks)):
         scored = search.score("exchange", None, fit)

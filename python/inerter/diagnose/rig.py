@@ -20,7 +20,7 @@ from inerter.diagnose.doubt import doubted
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
-from inerter.diagnose.exchangeable import exchanges, with_delay, with_exchange
+from inerter.diagnose.exchangeable import exchanges, with_delay, with_exchange, with_low_pass
 from inerter.diagnose.other_runs import (
     badly_missed,
     badly_missed_stretches,
@@ -208,9 +208,12 @@ def diagnosis_of(
     searched = stands.searched
     findings = [
         doubted(
-            with_delay(
-                with_exchange(finding, same.get(finding.effect)),
-                searched.search, stands.fit, searched.covered,
+            with_low_pass(
+                with_delay(
+                    with_exchange(finding, same.get(finding.effect)),
+                    searched.search, stands.fit, searched.covered,
+                ),
+                searched.search, stands.fit,
             ),
             remains.structure,
         )

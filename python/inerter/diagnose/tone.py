@@ -208,7 +208,7 @@ class Witness:
         return lines > 1 and left < CRITERIA.tone_of_motion * shown
 
 
-def _follows(model: Model, frequency: Array) -> NDArray[np.complex128]:
+def _follows(model: Model, frequency: NDArray[np.floating]) -> NDArray[np.complex128]:
     """Force [N] that follows a displacement of 1 m at frequencies [Hz], as the channels show it."""
     omega, values = 2 * np.pi * frequency, model.values
     late = np.exp(-1j * omega * values.get("delay", 0.0))

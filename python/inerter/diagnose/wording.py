@@ -176,7 +176,8 @@ def _teller(finding: Finding) -> str:
     """What would tell the members of a finding apart."""
     if "force_offset" in finding.members:
         return "the device turned round"
-    if _is_filter_at_least(finding):
+    late = finding.members == ("sensor_delay", "sensor_filter")
+    if late or _is_filter_at_least(finding):
         return "quicker motion, up to the filter's cut-off,"
     return "a second frequency"
 
