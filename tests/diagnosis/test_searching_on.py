@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import effects_of
-from inerter.diagnose.search import shortlisted
 from inerter.diagnose.stages import Confirmed, Settled, compared, confirmed, searched
 from inerter.diagnose.start import Given, prepared
 from inerter.records import Record
@@ -82,14 +79,3 @@ def test_what_is_excluded_comes_back_on_no_way(effects_seed: int) -> None:
     there = {name for name, _ in effects_of(model.model, baseline)}
     assert "viscous_friction" in there
     assert not there & excluded
-
-
-def test_forms_of_few_effects_do_not_crowd_the_others_out() -> None:
-    """Five that are best are three curves of one effect and two filters; the next two come too."""
-    effects = [*["variable_inertance"] * 3, *["sensor_filter"] * 2]
-    effects += ["sensor_filter", "rate_state_friction", "variable_inertance", "viscous_friction"]
-    pairs = [(Candidate(effect, str(i), ()), Mock()) for i, effect in enumerate(effects)]
-    kept = [candidate.effect for candidate, _ in shortlisted(pairs)]
-    assert kept == [*effects[:5], "rate_state_friction", "viscous_friction"]
-    many = [(Candidate(str(i), None, ()), Mock()) for i in range(9)]
-    assert shortlisted(many) == many[:5]

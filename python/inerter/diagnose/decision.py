@@ -72,7 +72,6 @@ class Criteria:
         0.7, "share of the least gain", "what one step of Gauss and Newton foretells of a candidate"
     )
     shortlist: int = _bound(5, COUNT, "of candidates that are checked on data left out")
-    effects_checked: int = _bound(4, COUNT, "of different effects among them, at least")
     most_effects: int = _bound(8, COUNT, "of effects on a bench")
     most_in_vehicles: int = _bound(5, COUNT, "of effects in a vehicle: each costs simulations")
     most_on_tables: int = _bound(3, COUNT, "of effects that a table of amplitudes may show")

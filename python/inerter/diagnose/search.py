@@ -80,19 +80,6 @@ def _silent(text: str) -> None:
     """Tell nobody."""
 
 
-def shortlisted(worthy: Sequence[Fitted]) -> list[Fitted]:
-    """The best of some candidates; forms of few effects do not crowd the others out."""
-    c = CRITERIA
-    first = list(worthy[: c.shortlist])
-    for pair in worthy[c.shortlist :]:
-        effects = {candidate.effect for candidate, _ in first}
-        if len(effects) >= c.effects_checked:
-            break
-        if pair[0].effect not in effects:
-            first.append(pair)
-    return first
-
-
 @dataclass
 class Search:
     """A search over the fit data of a split; effects `excluded` are not added.
@@ -249,8 +236,8 @@ class Search:
 
         # simpler candidates that are nearly as good must have their chance
         near = floor * (1 + 5 * CRITERIA.tolerated_loss)
-        shortlist = shortlisted(worthy)
-        shortlist += [p for p in worthy if p[1].rmse(masks) < near and p not in shortlist]
+        shortlist = worthy[: CRITERIA.shortlist]
+        shortlist += [pair for pair in worthy[CRITERIA.shortlist :] if pair[1].rmse(masks) < near]
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 
