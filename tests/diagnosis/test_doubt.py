@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose.doubt import doubted, stand_ins, trust, warning
+from inerter.diagnose.doubt import doubted, of_one_sine, stand_ins, trust, warning
 from inerter.diagnose.result import Finding
 from inerter.reference import NoiseLevels, hide_effect
 from inerter.report.page import render_report
@@ -55,6 +55,19 @@ def test_warning_names_only_what_may_stand_in() -> None:
     assert warning([]) == ""
     assert "a, b and c explain," in warning(["a", "b", "c"])
     assert "a explains," in warning(["a"])
+
+
+def test_many_effects_along_one_sine_are_not_sure() -> None:
+    """What goes with time alone is told beside them."""
+    names = ["coulomb_friction", "gas_spring", "asymmetric_damping"]
+    few = [replace(THREE, effect=name) for name in (*names, "force_drift", "periodic_disturbance")]
+    assert of_one_sine(few) == few
+    many = of_one_sine([*few, replace(THREE, effect="variable_inertance")])
+    sure = {each.effect: each.confidence for each in many}
+    assert sure["force_drift"] == sure["periodic_disturbance"] == 0.98
+    for name in (*names, "variable_inertance"):
+        assert sure[name] == pytest.approx(0.75 * 0.98)
+    assert "4 effects can draw the force of a period" in many[0].evidence
 
 
 @pytest.mark.long

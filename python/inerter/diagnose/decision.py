@@ -209,6 +209,9 @@ class Criteria:
         "times what stays unexplained",
         "an effect that explains so much is there in half of the cases: 43 findings in 40 cases",
     )
+    effects_of_one_sine: int = _bound(
+        3, COUNT, "of effects that one closed curve of the force tells"
+    )
     doubt_told: float = _bound(0.8, "trust", "below which doubt is told in words")
 
     def rows(self) -> Iterator[tuple[str, float, str, str]]:

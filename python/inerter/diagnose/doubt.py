@@ -16,6 +16,10 @@ from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding
 
 
+# what the force of one period does not hold
+_BESIDE_A_PERIOD = {"force_drift", "force_offset", "periodic_disturbance"}
+
+
 def trust(finding: Finding, structure: float) -> float:
     """How surely an effect does not stand in for something else, 0 to 1.
 
@@ -52,6 +56,27 @@ def doubted(finding: Finding, structure: float) -> Finding:
     confidence = trust(finding, structure) * finding.confidence
     evidence = f"{finding.evidence} {reason(finding, structure)}".strip()
     return replace(finding, confidence=confidence, evidence=evidence)
+
+
+def of_one_sine(findings: Sequence[Finding]) -> list[Finding]:
+    """Findings along one sine, where a few effects draw whatever the force does in a period.
+
+    What goes with time alone, or is none of the motion, is told beside it.
+    """
+    drawing = [f for f in findings if not {f.effect, *f.members} & _BESIDE_A_PERIOD]
+    if len(drawing) <= CRITERIA.effects_of_one_sine:
+        return list(findings)
+    told = (
+        f"Along one sine {len(drawing)} effects can draw the force of a period in more than one "
+        "way; a record at a second frequency would tell."
+    )
+    share = CRITERIA.effects_of_one_sine / len(drawing)
+    return [
+        replace(f, confidence=share * f.confidence, evidence=f"{f.evidence} {told}")
+        if f in drawing
+        else f
+        for f in findings
+    ]
 
 
 def stand_ins(findings: Sequence[Finding], structure: float) -> list[Finding]:

@@ -16,7 +16,7 @@ from inerter.diagnose.budget.carried import Carrying, carried
 from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import doubted
+from inerter.diagnose.doubt import doubted, of_one_sine
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
@@ -219,6 +219,8 @@ def diagnosis_of(
         )
         for finding in _findings(stands, values)
     ]  # fmt: skip
+    if data.band.scales.one_tone:
+        findings = of_one_sine(findings)
     # a member that the model has not is told by its finding alone
     told = {name: v for each in findings for name, v in each.parameters.items()}
     values = values | {name: told[name] for name in values if name in told}
