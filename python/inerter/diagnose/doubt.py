@@ -15,7 +15,6 @@ import numpy as np
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding
 
-
 # what the force of one period does not hold
 _BESIDE_A_PERIOD = {"force_drift", "force_offset", "periodic_disturbance"}
 
