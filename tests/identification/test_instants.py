@@ -28,7 +28,7 @@ def record(rate: float, cutoff: float, friction: float = 60.0) -> Record:
     force = truth.force
     if cutoff:
         low_pass = bessel(4, cutoff, fs=FINE * rate, norm="mag", output="sos")
-        force = sosfilt(low_pass, force)
+        force = np.asarray(sosfilt(low_pass, force))
     random, kept = np.random.default_rng(2), slice(0, None, FINE)
     noise = random.normal(0, 0.3, force[kept].size), random.normal(0, 2e-6, force[kept].size)
     return Record(
