@@ -17,9 +17,11 @@ from inerter.diagnose.play import (
     is_felt,
     jackknife,
 )
+from inerter.diagnose.search import Search
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, head, head_size
+from inerter.identify.split import Split
 
 RATE = 1000.0
 TRUTH = Device(inertance=60.0, backlash=4e-4, series_stiffness=8e5, series_damping=5e3)
@@ -172,3 +174,15 @@ def test_a_flight_shorter_than_a_sample_is_not_felt(gap: float, felt: bool) -> N
     assert is_felt(model, sizes, 0.004) is felt
     assert is_felt(model, sizes, 0.99 * flight)
     assert not is_felt(model, sizes, 1.01 * flight)
+
+
+def test_a_stated_play_is_judged_whatever_its_size() -> None:
+    """The search may come upon none of it, which contradicts what is stated."""
+    runs = [run(3)]
+    masks = [np.ones(runs[0].force.size, bool)]
+    none = RIGID.adding(backlash=1e-12)
+    stated = RIGID.holding(backlash=1e-3)
+    for baseline, felt in ((RIGID, False), (stated, True)):
+        search = Search(runs, Split(masks, masks, [masks], "all"), baseline)
+        assert search.is_felt(none) is felt
+        assert search.is_felt(RIGID)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from inerter.identify.between import between
+from inerter.diagnose.engines import simulate_engines
+from inerter.identify.between import about_samples, between
 from inerter.identify.fit import Problem
 from inerter.identify.instants import with_instants
 from inerter.identify.model import Model
@@ -57,7 +60,7 @@ def test_what_more_instants_tell() -> None:
     errors = {}
     for instants in (1, 4):
         (motion,) = prepare([plain]).motions
-        motion = type(motion)(**{**vars(motion), "instants": instants})
+        motion = replace(motion, instants=instants)
         run, raw = thin(motion), whole(motion)
         model = MODEL.adding("coulomb", coulomb_force=50.0, transition_velocity=1e-3, delay=0.002)
         problem = Problem([run], [run.inner])
@@ -95,3 +98,37 @@ def test_what_rests_goes_on_resting() -> None:
     fine = between(0.1, (x, v, a), 4)
     assert np.all(fine[1][4:] == 0.0)
     np.testing.assert_array_equal(fine[0][4:], [1.0] * 4 + [1.001] * 4 + [1.0])
+
+
+def test_engines_show_jumps_as_the_samples_do() -> None:
+    """Four instants per sample in every engine, friction as a low-pass leaves it."""
+    (motion,) = prepare([record(250.0, 100.0)]).motions
+    raw = whole(replace(motion, instants=4))
+    values = {"inertance": 50.0, "coulomb_force": 60.0, "transition_velocity": 1e-3}
+    model = Model("coulomb", {**values, "delay": 0.002}, ())
+    (error,) = Problem([raw], [raw.inner]).errors(model)
+    expected = float(np.sqrt(np.mean(error[raw.inner] ** 2)))
+    found = simulate_engines(model, [raw], [raw.inner])
+    known = {name: value for name, value in found.items() if value is not None}
+    assert {"mujoco", "reference"} <= known.keys()
+    for name, value in known.items():
+        assert value == pytest.approx(expected, rel=1e-5), name
+    # at the samples' instants jumps lie elsewhere
+    (plain,) = Problem([whole(motion)], [raw.inner]).errors(model)
+    assert float(np.sqrt(np.mean(plain[raw.inner] ** 2))) > 1.05 * expected
+
+
+@pytest.mark.parametrize("instants", [2, 3, 4, 8])
+def test_friction_about_a_sample_jumps_when_it_does(instants: int) -> None:
+    """A step in the middle between two samples is half of it at none; one at a sample, at that."""
+    fine = np.arange(10 * instants + 1)
+    zero = np.zeros(fine.size)
+    for jump in (5 * instants, 5 * instants + instants // 2):
+        friction = np.sign(fine - jump).astype(float)
+        shown = about_samples({"total": friction, "friction": friction}, instants)["friction"]
+        exact = np.clip(2.0 * (np.arange(11) * instants - jump) / instants, -1.0, 1.0)
+        # between two samples to one instant
+        within = 1.0 / instants if jump % instants else 1e-12
+        np.testing.assert_allclose(shown, exact, rtol=0, atol=within)
+    smooth = about_samples({"total": fine + zero, "friction": zero}, instants)
+    np.testing.assert_array_equal(smooth["total"], fine[::instants])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from inerter import rig
 from inerter.core import Device
 from inerter.diagnose.parallel import parallel
 from inerter.exudyn.engine import installed
+from inerter.identify.between import about_samples, between, quintics
 from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
 from inerter.identify.prediction import (
@@ -102,29 +103,35 @@ def _error(
 def _mujoco(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     parts, channels = _steps(device, run)
     found = rig.simulate_along(device, run.spacing / parts, *channels, state, run.motion)
-    return {name: found[name][::parts] for name in ("total", "friction")}
+    return _at_samples(run, found, parts)
 
 
 def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
     parts, channels = _steps(device, run)
-    step = run.spacing / parts
-    found = simulate_along(device, step, *channels, state, every=parts, motion=run.motion)
-    return {name: found[name] for name in ("total", "friction")}
+    step, every = run.spacing / parts, parts if run.instants == 1 else 1
+    found = simulate_along(device, step, *channels, state, every=every, motion=run.motion)
+    return _at_samples(run, found, parts // every)
 
 
 def _steps(device: Device, run: BenchRun) -> tuple[int, tuple[Any, Any, Any]]:
     """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands."""
-    if not device.backlash:
-        return 1, (run.displacement, run.velocity, run.acceleration)
-    motion, parts = _motion(run), PLAY_PARTS
-    times: Any = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
-    return parts, (motion.displacement(times), motion.velocity(times), motion.acceleration(times))
+    channels = run.displacement, run.velocity, run.acceleration
+    parts = PLAY_PARTS if device.backlash else run.instants
+    return parts, between(run.spacing, channels, parts) if parts > 1 else channels
+
+
+def _at_samples(run: BenchRun, found: Mapping[str, Array], parts: int) -> dict[str, Array]:
+    """Forces of some steps per sample as the run's samples show them."""
+    if run.instants > 1:
+        return about_samples(found, parts)
+    return {name: found[name][::parts] for name in ("total", "friction")}
 
 
 def _reference(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
-    times = run.spacing * np.arange(run.displacement.size)
+    parts = run.instants
+    times = run.spacing / parts * np.arange(parts * (run.displacement.size - 1) + 1)
     given: dict[str, Any] = device.given
     reference, motion = ReferenceDevice(**given), _motion(run)
     found = response(reference, motion, times, initial_state=state, rtol=1e-8)
@@ -132,19 +139,13 @@ def _reference(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     friction = reference.friction_force(
         found.displacement, found.velocity, states, a=found.acceleration
     )
-    return {"total": found.force, "friction": np.asarray(friction)}
+    return _at_samples(run, {"total": found.force, "friction": np.asarray(friction)}, parts)
 
 
 def _motion(run: BenchRun) -> Motion:
     """The recorded motion between its samples: the quintic through x, v and a of both."""
     h, last = run.spacing, run.displacement.size - 2
-    x, v, a = run.displacement, run.velocity, run.acceleration
-    rest = np.diff(x) / h - v[:-1] - 0.5 * h * a[:-1]
-    turn, bend = np.diff(v) - h * a[:-1], 0.5 * h * np.diff(a)
-    cubic = (10.0 * rest - 4.0 * turn + bend) / h**2
-    quartic = (7.0 * turn - 15.0 * rest - 2.0 * bend) / h**3
-    quintic = (6.0 * rest - 3.0 * turn + bend) / h**4
-    rows = np.column_stack([x[:-1], v[:-1], 0.5 * a[:-1], cubic, quartic, quintic])
+    rows = quintics(h, run.displacement, run.velocity, run.acceleration)
     table = rows.tolist()
 
     def piece(t: Any) -> tuple[Any, Any]:

@@ -282,7 +282,7 @@ class Search:
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self.is_blur(s.fit, current.fit, fitted)
             and not self._is_shaft_alone(s)
-            and (s.effect != "backlash" or is_felt(s.model, sizes, self.spacing))
+            and self.is_felt(s.model)
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
             and along_stroke.repeats(s.model, sizes)
             and not is_harmonic(s.model, sizes, self.longest)
@@ -297,6 +297,12 @@ class Search:
     def spacing(self) -> float:
         """Longest time between two samples as measured [s]."""
         return max(run.sample_spacing for run in self.runs)
+
+    def is_felt(self, model: Model) -> bool:
+        """Whether a play that is searched for can be felt; one that is stated may be none."""
+        if "backlash" not in model.free or "backlash" in self.baseline.values:
+            return True
+        return is_felt(model, self.problem.scales, self.spacing)
 
     def _is_shaft_alone(self, scored: Scored) -> bool:
         """Whether a play does no more than its shaft, which is no candidate along one sine."""

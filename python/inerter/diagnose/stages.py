@@ -35,7 +35,7 @@ from inerter.diagnose.judge import Judge
 from inerter.diagnose.lateness import DRIVE, from_delay_on
 from inerter.diagnose.low_passes import filters, has_filter
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.play import fit_play, forgiving, is_felt, jackknife, play_of
+from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
@@ -308,7 +308,7 @@ def identified(search: Search, baseline: Model, final: Scored) -> Scored:
     varies along the stroke leaves the level that it varies about.
     """
     for effect, _ in effects_of(final.model, baseline):
-        if effect == "backlash" and not is_felt(final.model, search.problem.scales, search.spacing):
+        if effect == "backlash" and not search.is_felt(final.model):
             shaft = final.model.without(("backlash",))
             return identified(search, baseline, search.score("", None, search.problem.fit(shaft)))
         if is_distinct(effect, final.fit, baseline, CRITERIA.keeping_advantage):

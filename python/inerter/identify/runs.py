@@ -10,12 +10,11 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from inerter.catalogue.scales import Scales
 from inerter.checked_motion import checked_motion
 from inerter.core import Device
-from inerter.identify.between import between
+from inerter.identify.between import about_samples, between
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.motion import (
     EDGE_PERIODS,
@@ -146,10 +145,7 @@ class BenchRun:
         """
         if self.instants == 1 or np.isfinite(self.cutoff):
             return forces_along(device, self.spacing, self.followed, state, self.force.size)
-        found = self.at_measured_rate(device, state)
-        smooth = (found["total"] - found["friction"])[:: self.instants]
-        friction = uniform_filter1d(found["friction"], self.instants)[:: self.instants]
-        return {"total": smooth + friction, "friction": friction}
+        return about_samples(self.at_measured_rate(device, state), self.instants)
 
     def thinned_force(self, device: Device, state: float | Array) -> Array:
         """The total of them alone."""
