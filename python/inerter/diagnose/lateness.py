@@ -9,16 +9,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidates import candidates
+from inerter.diagnose.composition import DRIVE
 from inerter.diagnose.decision import as_good, better
 from inerter.diagnose.search import Scored, Search
 from inerter.identify.channel_filter import filters_of
 
 # damping ratio from which a shaft hardly swings; 1 is the aperiodic limit
 _DAMPED = 0.3
-# effects that take away the rigid drive of the flywheel
-DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
 
 
 def from_delay_on(search: Search, final: Scored) -> Scored | None:

@@ -21,6 +21,7 @@ from inerter.diagnose.band import best_band, force_band, narrower_band, wider_ba
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.chain import Link, chain_of, tone_link, weakest, with_what_was_dropped
 from inerter.diagnose.composition import (
+    DRIVE,
     bristle_is_known,
     effects_of,
     has_series,
@@ -32,7 +33,7 @@ from inerter.diagnose.composition import (
 from inerter.diagnose.data import Data
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss
 from inerter.diagnose.judge import Judge
-from inerter.diagnose.lateness import DRIVE, from_delay_on
+from inerter.diagnose.lateness import from_delay_on
 from inerter.diagnose.low_passes import filters, has_filter
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.play import fit_play, forgiving, jackknife, play_of
