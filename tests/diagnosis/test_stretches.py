@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from inerter.diagnose import diagnose_bench, excerpts, rig
 from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.everything import followed_as
 from inerter.diagnose.excerpts import Excerpts
 from inerter.diagnose.other_runs import badly_missed_stretches
 from inerter.diagnose.start import Given
@@ -227,3 +228,18 @@ def test_a_gap_moves_no_stretch(random: np.random.Generator) -> None:
         assert times[-1] < (stretch.end - 0.4) / RATE
         assert times.size > 0.5 * (stretch.end - stretch.begin)
     assert max(s.end for s in found.possible) > 55_000
+
+
+@pytest.mark.parametrize(("instants", "expected"), [(1, [1, 1]), (4, [4, 1]), (8, [8, 2])])
+def test_everything_is_followed_as_often_as_its_stretches(
+    instants: int, expected: list[int]
+) -> None:
+    """Of the second run a sample of a stretch is the mean of five."""
+    time = np.arange(10.0)
+    records = [Record(name=n, time=time, displacement=time, force=time) for n in ("a", "b")]
+    found = Excerpts(
+        whole=Given(records=records), records=records, holdout=(), constants={}, contradicting={},
+        clocks=[0.0, 0.0], spacings=[1.0, 1.0], every=[1, 5],
+    )  # fmt: skip
+    told = followed_as(found, instants).records
+    assert [record.instants for record in told] == expected

@@ -31,7 +31,7 @@ def on_everything(stands: Confirmed, found: Excerpts) -> Confirmed:
     """The same findings, with values and figures of all samples."""
     start = stands.searched.prepared
     start.given.progress("fitting what was found to the whole record")
-    found = _followed(found, stands.data.records[0].instants)
+    found = followed_as(found, stands.data.records[0].instants)
     data = divided(found.records, _whole(stands.data.preparation, found), found.holdout)
     play = "backlash" in stands.fit.model.free
     if play:
@@ -53,7 +53,7 @@ def on_everything(stands: Confirmed, found: Excerpts) -> Confirmed:
     )
 
 
-def _followed(found: Excerpts, instants: int) -> Excerpts:
+def followed_as(found: Excerpts, instants: int) -> Excerpts:
     """Everything followed as often as the stretches, whose samples are means of some."""
     pairs = zip(found.records, found.every, strict=True)
     records = [replace(record, instants=-(-instants // every)) for record, every in pairs]
