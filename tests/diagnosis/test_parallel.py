@@ -107,16 +107,21 @@ def test_work_within_work_is_not_shared_again(tmp_path: Path) -> None:
 
 @with_a_helper
 def test_an_error_is_raised_wherever_it_occurs_and_leaves_nothing_behind(tmp_path: Path) -> None:
-    here, both = os.getpid(), when_both_are_there(tmp_path)
+    here = os.getpid()
 
-    def fails(i: int, there: bool) -> int:
-        if (both(i) != here) is there:
-            raise ValueError(f"item {i}")
-        return i
+    def fails_in(folder: Path, *, there: bool) -> Callable[[int], None]:
+        folder.mkdir()
+        both = when_both_are_there(folder)
 
-    for there in (True, False):
+        def fails(i: int) -> None:
+            if (both(i) != here) is there:
+                raise ValueError(f"item {i}")
+
+        return fails
+
+    for where, there in (("there", True), ("here", False)):
         with pytest.raises(ValueError, match="item"):
-            parallel(lambda i, there=there: fails(i, there), range(6))
+            parallel(fails_in(tmp_path / where, there=there), range(6))
     assert parallel(lambda i: i + 1, range(6)) == [1, 2, 3, 4, 5, 6]
 
 
