@@ -7,8 +7,9 @@ from typing import cast
 
 import numpy as np
 import pytest
-from inerter.diagnose.chain import Link, weakest, with_what_was_dropped
+from inerter.diagnose.chain import Link, helping_most, weakest, with_what_was_dropped
 from inerter.diagnose.judge import Judge
+from inerter.diagnose.search import Search
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 
@@ -67,3 +68,27 @@ def test_errors_hold_what_an_unconfirmed_effect_would_move_a_value_by() -> None:
     assert node == pytest.approx(0.5)
     other = Fit(before.model.adding("coulomb", coulomb_force=3.0), [], np.zeros((5, 5)), 1)
     assert with_what_was_dropped(without, other) is without
+
+
+@pytest.mark.parametrize(
+    ("fitted", "left_out", "first"),
+    [
+        # what bends with more coefficients follows the fit data a little closer
+        ({"viscoelasticity": 2.20, "hysteretic_friction": 2.25}, (2.6, 2.0), "hysteretic_friction"),
+        ({"viscoelasticity": 2.20, "hysteretic_friction": 2.25}, (2.0, 2.6), "viscoelasticity"),
+        # much more is not asked about
+        ({"viscoelasticity": 1.20, "hysteretic_friction": 2.25}, (2.6, 2.0), "viscoelasticity"),
+    ],
+)
+def test_the_main_cause_is_what_foretells_best(
+    fitted: dict[str, float], left_out: tuple[float, float], first: str
+) -> None:
+    trials = [
+        ((effect, None), Fit(BARE, [np.full(4, error)], np.zeros((1, 1)), 1))
+        for effect, error in fitted.items()
+    ]
+    scores = [SimpleNamespace(squares=np.full(3, error**2)) for error in left_out]
+    problem = SimpleNamespace(masks=[np.full(4, True)])
+    search = cast(Search, SimpleNamespace(problem=problem, scores=lambda _: scores))
+    (effect, _), _ = helping_most(search, trials)
+    assert effect == first

@@ -24,6 +24,8 @@ from inerter.identify.choices import TONE
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
+Trial = tuple[tuple[str, str | None], Fit]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Link:
@@ -60,18 +62,28 @@ def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
     """
     left = effects_of(model, search.baseline)
     fit = search.baseline_fit()
-    masks = search.problem.masks
     taken: list[str] = []
     chain = []
     while left:
         models = [submodel(model, [*taken, effect], search.baseline) for effect, _ in left]
-        trials = zip(left, parallel(search.problem.fit, models), strict=True)
-        (effect, law), after = min(trials, key=lambda trial: trial[1].rmse(masks))
+        fits = parallel(search.problem.fit, models)
+        (effect, law), after = helping_most(search, list(zip(left, fits, strict=True)))
         chain.append(_link(search, judge, effect, law, fit, after))
         left = [pair for pair in left if pair[0] != effect]
         taken.append(effect)
         fit = after
     return [link if link.stands else _last(search, judge, link, taken, fit) for link in chain]
+
+
+def helping_most(search: Search, trials: Sequence[Trial]) -> Trial:
+    """What helps most; of some that do about equally well, what foretells folds left out best."""
+    masks = search.problem.masks
+    least = min(fit.rmse(masks) for _, fit in trials)
+    near = [t for t in trials if t[1].rmse(masks) <= (1 + CRITERIA.too_much) * least]
+    if len(near) == 1:
+        return near[0]
+    scored = search.scores([(effect, law, fit) for (effect, law), fit in near])
+    return min(zip(near, scored, strict=True), key=lambda pair: pair[1].squares.sum())[0]
 
 
 def _last(search: Search, judge: Judge, link: Link, taken: list[str], whole: Fit) -> Link:
