@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import cast
 
@@ -48,6 +49,13 @@ def test_the_last_effect_that_does_not_stand_is_dropped() -> None:
 def test_a_play_that_predicts_nothing_better_is_dropped(after: float, dropped: str | None) -> None:
     chain = [link("viscous_friction"), link("backlash")]
     assert weakest(chain, judge(10.0, after), WHOLE) == dropped
+
+
+def test_a_play_may_stand_and_help_with_another_effect_alone() -> None:
+    play = link("backlash")
+    assert play.helps
+    assert not replace(play, rmse_after=12.0).helps
+    assert not link("viscous_friction", stands=False).helps
 
 
 def test_only_a_play_can_predict_worse_and_stand() -> None:

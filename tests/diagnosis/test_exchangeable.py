@@ -91,6 +91,16 @@ def test_one_sine_tells_no_delay_from_damping() -> None:
     assert "nearly as well" not in told.evidence
 
 
+def test_a_damper_is_never_early() -> None:
+    """Behind a low-pass of the displacement the force comes before it: no damper does that."""
+    search, fit = searched(record((2.0,), viscous=0.0, late=-3e-3), IDEAL.adding(None, delay=0.0))
+    assert fit.model.values["delay"] == pytest.approx(-3e-3, rel=0.02)
+    assert exchanges(search, fit, ["sensor_delay"]) == {}
+    # late by as much it may be one
+    search, fit = searched(record((2.0,), viscous=0.0, late=3e-3), IDEAL.adding(None, delay=0.0))
+    assert not exchanges(search, fit, ["sensor_delay"])["sensor_delay"].is_told_apart
+
+
 @pytest.mark.parametrize("asked", ["hardening_stiffness", "variable_inertance"])
 def test_one_sine_tells_no_hardening_from_an_inertance_that_varies(
     asked: str, effects_seed: int

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inerter.blind_test.case import records_of
 from inerter.catalogue.scales import Scales
 from inerter.core import Device
+from inerter.diagnose import diagnose_bench
 from inerter.diagnose.play import (
     comes_in_blows,
     find_play,
@@ -18,10 +20,12 @@ from inerter.diagnose.play import (
     jackknife,
 )
 from inerter.diagnose.search import Search
+from inerter.diagnose.trials import of_each_size
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, head, head_size
 from inerter.identify.split import Split
+from inerter.reference import NoiseLevels, hide_effect
 
 RATE = 1000.0
 TRUTH = Device(inertance=60.0, backlash=4e-4, series_stiffness=8e5, series_damping=5e3)
@@ -186,3 +190,25 @@ def test_a_stated_play_is_judged_whatever_its_size() -> None:
         search = Search(runs, Split(masks, masks, [masks], "all"), baseline)
         assert search.is_felt(none) is felt
         assert search.is_felt(RIGID)
+
+
+def test_a_play_of_each_size_is_tried() -> None:
+    """Small ones change next to nothing: as they are, they are nearer than the true size is."""
+    plays = ((1e-5, 5.0), (1e-5, 20.0), (1e-4, 5.0), (1e-3, 5.0), (1e-3, 20.0))
+    starts = [RIGID.adding(backlash=gap, series_frequency=hertz) for gap, hertz in plays]
+    tried = of_each_size(starts, [1.1, 1.0, 1.2, 9.0, 5.0])
+    assert tried == [starts[1], starts[2], starts[4]]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [1414139476, 1413328355, 1775747102])
+def test_a_play_behind_low_passes_is_found(seed: int) -> None:
+    """5.8 mm along one sine and 1.4 mm behind a filter of the displacement, both at 100 Hz; and
+    0.33 mm behind a filter of the force, which makes contacts seem to creep.
+    """
+    hidden = hide_effect(seed, "backlash", noise=NoiseLevels(0.0, 0.01, 1e-6), realistic=True)
+    found = {f.effect: f for f in diagnose_bench(records_of(hidden)).findings}
+    assert found["backlash"].confidence > 0.9
+    gap = found["backlash"].parameters["backlash"].value
+    assert gap == pytest.approx(hidden.parameters["backlash"], rel=0.02)
+    assert found.keys() <= {"backlash", "sensor_delay", "sensor_filter", "force_drift"}

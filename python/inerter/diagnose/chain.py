@@ -53,6 +53,11 @@ class Link:
     seen_in_blocks: bool
     stands: bool
 
+    @property
+    def helps(self) -> bool:
+        """Whether it stands and the plain error falls: blows out of step count little, and much."""
+        return self.stands and self.rmse_after < self.rmse_before
+
 
 def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
     """The effects of a model, each time the one that helps most on the fit data.
@@ -72,7 +77,7 @@ def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
         left = [pair for pair in left if pair[0] != effect]
         taken.append(effect)
         fit = after
-    return [link if link.stands else _last(search, judge, link, taken, fit) for link in chain]
+    return [link if link.helps else _last(search, judge, link, taken, fit) for link in chain]
 
 
 def helping_most(search: Search, trials: Sequence[Trial]) -> Trial:

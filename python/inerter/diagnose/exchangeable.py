@@ -145,10 +145,24 @@ def exchanges(
             exchange = Exchange(other, value, error, amount, same, (0.0, 0.0), *zeros)
             if not exchange.is_told_apart:
                 bare = _beside(_bare(fit.model, effect, baseline), other, spacing)
-                alone = parameter_errors(covered(search.problem.fit(bare)))
-                exchange = replace(exchange, instead=alone[_COORDINATE[other]])
+                instead = search.problem.fit(bare)
+                amount, error = parameter_errors(covered(instead))[_COORDINATE[other]]
+                none = abs(amount - exchange.other_none) <= CRITERIA.distinction * error
+                if none and _is_worse(search, instead, fit):
+                    # a damper is never early, say
+                    continue
+                exchange = replace(exchange, instead=(amount, error))
             found[effect] = exchange
     return found
+
+
+def _is_worse(search: Search, instead: Fit, fit: Fit) -> bool:
+    """Whether what stands in for an effect surely leaves more, and much more."""
+    masks = search.problem.masks
+    if instead.rmse(masks) <= (1 + CRITERIA.too_much) * fit.rmse(masks):
+        return False
+    squares = [block_squares(each.residual, search.blocks) for each in (instead, fit)]
+    return advantage(*squares) > CRITERIA.advantage
 
 
 def rests(runs: Sequence[BenchRun]) -> float:

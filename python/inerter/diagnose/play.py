@@ -82,6 +82,8 @@ _PROMISE = 0.1
 _WORTH = 0.2
 # a delay beside a play is sought within this many periods of the band's end: the band tells others
 _LATE = 0.25
+# the same where contacts creep, within this share of their period
+_SLOW = 0.1
 # share of the rms force that tells a contact, and of the longest contact that is long
 _CONTACT = 0.2
 _LONG = 0.5
@@ -202,16 +204,25 @@ def play_of(problem: Problem, model: Model, rigid: Sequence[Model], noise: float
             if min(found) < (1.0 if has_play else 1 - _WORTH) * here:
                 best = plays[int(np.argmin(found))]
         if "backlash" in best.free and "delay" not in best.free:
-            best = _late(problem, best) or best
+            best = _late(problem, best, _LATE / problem.scales.cutoff) or best
+    if _creeps(best) and "delay" not in best.free:
+        best = _late(problem, best, _SLOW / best.values["series_frequency"]) or best
     return best if "backlash" in best.free else None
 
 
-def _late(problem: Problem, model: Model) -> Model | None:
-    """The play fitted with a delay beside it: late impacts are out of step with any play.
+def _creeps(model: Model) -> bool:
+    """Whether the contacts of a play are damped beyond the aperiodic limit.
+
+    So they make the force late, and may stand in for a low-pass that does.
+    """
+    return "backlash" in model.free and model.values.get("series_loss", 0.0) > 1.0
+
+
+def _late(problem: Problem, model: Model, late: float) -> Model | None:
+    """The play fitted with a delay up to `late` [s] beside it: impacts are out of step with none.
 
     None where one round does not promise, or all of them do not bring, a clearly smaller error.
     """
-    late = _LATE / problem.scales.cutoff
     problem = forgiving(problem, model, _FAR * rms(problem.errors(model), problem.masks))
     here = rms(problem.residual(model), problem.masks)
     first = _fit_about(problem, model.adding(delay=model.delay), 0, late=late)

@@ -32,9 +32,7 @@ MOST = 40
 STEPS = 3
 # evaluations on part of the data after which that is asked first
 FEWEST = 5
-# starting points of a free play that are tried, and how far above what it has to beat a fit to part
-# of the data may be to be followed
-NEAREST = 3
+# how far above what it has to beat a fit to part of the data may be to be followed
 AT_LEAST = 1.5
 # share of the way to the error that a rival needs which a step of Gauss and Newton has to foretell
 FORETOLD = 0.5
@@ -83,6 +81,17 @@ def _at_best(foretold: float, current: float) -> float:
     return float(np.sqrt(max(current**2 - AT_BEST * (current**2 - foretold**2), 0.0)))
 
 
+def of_each_size(starts: Sequence[Model], errors: Sequence[float]) -> list[Model]:
+    """Of each size of play the starting point with the least error, the best first.
+
+    A play that does next to nothing is never far off, and need not be the nearest when fitted.
+    """
+    best: dict[float, Model] = {}
+    for i in np.argsort(errors):
+        best.setdefault(starts[i].values["backlash"], starts[i])
+    return list(best.values())
+
+
 def _asked_for(candidate: Candidate, model: Model) -> bool:
     """Whether other candidates are judged by it: another friction law, a delay."""
     return candidate.effect == "sensor_delay" or candidate.starts[0].friction != model.friction
@@ -122,7 +131,8 @@ class Trials:
         """A few steps from the best starting points, with derivatives `known` of most of it."""
         starts = candidate.starts
         if candidate.effect == "backlash":
-            starts = self._nearest(starts)
+            errors = [rms(self._part.residual(start), self._part.masks) for start in starts]
+            starts = of_each_size(starts, errors)
         if len(starts) > 1:
             best = self._compared(starts, limits, known)
             if isinstance(best, Fit):
@@ -176,11 +186,6 @@ class Trials:
             for fit in rough
         ]
         return min(fits, key=lambda fit: fit.rmse(masks))
-
-    def _nearest(self, starts: Sequence[Model]) -> list[Model]:
-        """The starting points whose errors are least as they are."""
-        errors = [rms(self._part.residual(start), self._part.masks) for start in starts]
-        return [starts[i] for i in np.argsort(errors)[:NEAREST]]
 
     def fit_all(
         self, candidates: Sequence[Candidate], current: Fit, aim: Fit | None = None
