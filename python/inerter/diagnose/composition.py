@@ -301,7 +301,8 @@ def level_and_distance(model: Model) -> tuple[float, float | None]:
     if "bw_stiffness" in values and bend > 0:
         distance = bend ** (-1 / device.bw_exponent)
         return device.bw_stiffness * distance, distance
-    return values.get("coulomb_force", values.get("bw_level", 0.0)), values.get("presliding")
+    distance = values.get("presliding", values.get("age_distance"))
+    return values.get("coulomb_force", values.get("bw_level", 0.0)), distance
 
 
 def simpler_laws(model: Model) -> list[Model]:

@@ -53,7 +53,9 @@ def _plainer_law(search: Search, current: Scored) -> Scored | None:
         more = [c for c in _beside(base.model, search, own) if is_plainer(c.starts[0])]
         return search.trials.within_reach(more, base, limit)
 
-    laws = parallel(fit, list(filter(is_plainer, simpler_laws(current.model))))
+    # alone a law may be far off, and right beside one more effect
+    plainer = list(filter(is_plainer, simpler_laws(current.model)))
+    laws = parallel(lambda model: search.trials.fit(Candidate("exchange", None, (model,))), plainer)
     trials = [trial for each in parallel(with_one_more, laws) for trial in each]
     fits = parallel(lambda t: search.trials.fit(t, (FAR * limit, np.inf), limit), trials)
     fits += [*laws, *map(fit, filter(is_plainer, as_spring(current.model)))]

@@ -80,6 +80,8 @@ class Exchange:
         Whether the two are the same force along the motion.
     none, other_none : float
         The parameter, and the counterpart's, where there is no such effect.
+    alone : bool
+        Whether there is nothing of the counterpart without the effect.
     """
 
     counterpart: str
@@ -90,6 +92,7 @@ class Exchange:
     instead: tuple[float, float] = (0.0, 0.0)
     none: float = 0.0
     other_none: float = 0.0
+    alone: bool = False
 
     @property
     def is_told_apart(self) -> bool:
@@ -151,7 +154,7 @@ def exchanges(
                 if none and _is_worse(search, instead, fit):
                     # a damper is never early, say
                     continue
-                exchange = replace(exchange, instead=(amount, error))
+                exchange = replace(exchange, instead=(amount, error), alone=none)
             found[effect] = exchange
     return found
 
@@ -207,18 +210,21 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     # it may be none, and so may be what stands in for it
     size = abs(found.value - exchange.none)
     error = float(np.clip(error, size / CRITERIA.distinction, max(size, found.stderr)))
+    share = finding.confidence / 2
+    known = _with_error(finding.parameters, name, error)
+    if exchange.alone:
+        told = replace(finding, confidence=share, parameters=known)
+        return replace(told, evidence=wording.evidence(told))
     value, spread = exchange.instead
     spread = max(spread, error / size * abs(value - exchange.other_none)) if size else spread
     other = _COORDINATE[exchange.counterpart]
     unit = parameter_units(finding.motion)[other]
-    share = finding.confidence / 2
     rivals = [rival for rival in finding.rivals if rival.effect != exchange.counterpart]
     told = replace(
         finding,
         confidence=share,
         members=(finding.effect, exchange.counterpart),
-        parameters=_with_error(finding.parameters, name, error)
-        | {other: ParameterValue(value, spread, unit)},
+        parameters={**known, other: ParameterValue(value, spread, unit)},
         rivals=[Rival(exchange.counterpart, share), *rivals],
     )
     told = _with_low_pass(told) if exchange.same else told
