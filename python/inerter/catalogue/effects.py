@@ -369,7 +369,8 @@ _ALL = (
         stated_as=("series_stiffness", "series_damping"), unlike_friction=True,
         plain="elasticity in series with the inertance",
         meaning="spring k_s and damper c_s between the terminal and the inertance",
-        cause="shaft twist, bearing and mount flexibility, fluid compressibility",
+        cause="shaft twist, bearing and mount flexibility, fluid compressibility, "
+        "a base that gives",
         taken_for="inertance or delay",
         experiment="repeat at higher frequency, where the inertance resonates on it",
         rivals=("inertance_error", "sensor_delay"),
@@ -377,9 +378,10 @@ _ALL = (
     Effect(
         name="inertance_error", rank=1, coordinates=("inertance",), telling=(), on_table=True,
         plain="an inertance other than stated", meaning="b differs from what is stated",
-        cause="flywheel inertia, lead or gear ratio other than in the data sheet",
+        cause="flywheel inertia, lead or gear ratio other than in the data sheet, or the mass of a "
+        "grip behind the load cell",
         taken_for="a wrong force or displacement calibration",
-        experiment="check both against a known mass",
+        experiment="weigh the grip and check both channels against a known mass",
     ),
 )  # fmt: skip
 

@@ -154,8 +154,8 @@ _ALL = (
         coordinates=("coulomb_force", "rate_effect", "age_effect", "age_distance"),
         constants=("rate_velocity",), spread=("age_distance", "age_effect", "rate_effect"),
         smoothed=True, memory=True, peak="age_distance", contains=("none", "coulomb"),
-        simpler=("coulomb", "dahl"), tried_on=("none", "coulomb"), grid={"age_distance": (1e-3, 0.03)},
-        begin={"rate_effect": 0.02, "age_effect": 0.03},
+        simpler=("coulomb", "dahl"), tried_on=("none", "coulomb"),
+        grid={"age_distance": (1e-3, 0.03)}, begin={"rate_effect": 0.02, "age_effect": 0.03},
     ),
 )  # fmt: skip
 
