@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from inerter.diagnose.engines import simulate_engines
 from inerter.identify.between import about_samples, between
+from inerter.identify.channel_filter import Filter
+from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem
 from inerter.identify.instants import with_instants
 from inerter.identify.model import Model
@@ -132,3 +134,13 @@ def test_friction_about_a_sample_jumps_when_it_does(instants: int) -> None:
         np.testing.assert_allclose(shown, exact, rtol=0, atol=within)
     smooth = about_samples({"total": fine + zero, "friction": zero}, instants)
     np.testing.assert_array_equal(smooth["total"], fine[::instants])
+
+
+def test_identify_follows_jumps_that_a_stated_low_pass_smoothed() -> None:
+    """Level and inertance within their errors, which are a fourth smaller than at the samples."""
+    stated = {"force": Filter("bessel", 4, 100.0)}
+    (coulomb,) = identify([record(250.0, 100.0)], ["coulomb"], filters=stated).results
+    assert all(run.instants > 1 for run in coulomb.runs)
+    level, inertance = (coulomb.parameters[name] for name in ("coulomb_force", "inertance"))
+    assert abs(level.value - 60.0) < 2 * level.stderr < 0.2
+    assert abs(inertance.value - 50.0) < 2 * inertance.stderr < 0.1

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from inerter.core import Device
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.budget.carried import Carrying
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.run_constants import constants, contradicting, without_constants
-from inerter.identify.instants import with_instants
+from inerter.identify.instants import at_instants, with_instants
 from inerter.identify.model import Model
 from inerter.identify.runs import thin
 from inerter.records import Record
@@ -103,16 +103,10 @@ def prepared(given: Given) -> Prepared:
     baseline = baseline.holding(**{name: v for name, v in given.channel.items() if v})
     followed = with_instants(records, plain.motions, baseline, data.full.fit)
     if followed is not records:
-        records, plain = followed, _on(followed, plain)
-        data = divided(records, _on(followed, smoothed), given.holdout)
+        records, plain = followed, at_instants(followed, plain)
+        data = divided(records, at_instants(followed, smoothed), given.holdout)
     return Prepared(
         given=given, data=data, plain=plain, baseline=baseline,
         weighed=weighed(records, plain, data.full.fit),
         constants=apart, contradicting=contradicting(runs),
     )  # fmt: skip
-
-
-def _on(records: Sequence[Record], smoothed: Preparation) -> Preparation:
-    """Smoothed records with the instants of others that are the same else."""
-    pairs = zip(smoothed.motions, records, strict=True)
-    return replace(smoothed, motions=[replace(m, instants=r.instants) for m, r in pairs])

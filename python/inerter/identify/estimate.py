@@ -24,6 +24,7 @@ from inerter.identify.choices import moved_by_choices
 from inerter.identify.correction import allowed_for
 from inerter.identify.fit import Fit, Masks, Problem, parameter_correlation, parameter_errors
 from inerter.identify.identifiability import identifiability
+from inerter.identify.instants import at_instants, with_instants
 from inerter.identify.laws import LAWS, FittedLaw, law_named
 from inerter.identify.model import Model
 from inerter.identify.multistart import Multistart, search
@@ -123,6 +124,10 @@ def identify(
         progress(0.0, "smoothing")
         preparation = prepare(records)
         data = prepared(records, preparation, holdout, known)
+        followed = with_instants(records, preparation.motions, data.inerter, data.learnt)
+        if followed is not records:
+            records, preparation = followed, at_instants(followed, preparation)
+            data = prepared(records, preparation, holdout, known)
         bristled = prepared(records, preparation, holdout, known, turns=True)
         found: list[_Fitted] = []
         results: list[Identified] = []
@@ -202,6 +207,20 @@ class _Data:
     def _problem(self) -> Problem:
         """The runs that are fitted."""
         return Problem([self.runs[i] for i in self._used], [self.parted.fit[i] for i in self._used])
+
+    @cached_property
+    def inerter(self) -> Model:
+        """The ideal inerter behind the channels as stated."""
+        sizes = self._problem().scales
+        start = {"inertance": sizes.force / sizes.acceleration, "transition_velocity": 1e-4}
+        model = Model("none", start, ("inertance",))
+        return model.holding(**{k: float(v) for k, v in self.fixed.items() if k in CHANNEL_UNITS})
+
+    @property
+    def learnt(self) -> list[NDArray[np.bool_]]:
+        """The samples as measured that are fitted, of every run."""
+        pairs = zip(self.parted.fit, self.runs, self.raw, strict=True)
+        return [np.repeat(m, run.thinned)[: raw.force.size] for m, run, raw in pairs]
 
     @property
     def _used(self) -> list[int]:

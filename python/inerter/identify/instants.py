@@ -19,6 +19,7 @@ from inerter.identify.model import Model
 from inerter.identify.runs import thin
 from inerter.records import Record
 from inerter.records.motion import Motion
+from inerter.records.preparation import Preparation
 
 # instants per period of the motion's cut-off, and per sample at most
 _PER_PERIOD, _MOST = 32, 8
@@ -43,6 +44,12 @@ def with_instants(
     if fine > (1 - _GAIN) * plain:
         return records
     return [replace(record, instants=most) for record in records]
+
+
+def at_instants(records: Sequence[Record], smoothed: Preparation) -> Preparation:
+    """Smoothed records with the instants of others that are the same else."""
+    pairs = zip(smoothed.motions, records, strict=True)
+    return replace(smoothed, motions=[replace(m, instants=r.instants) for m, r in pairs])
 
 
 def _fit(
