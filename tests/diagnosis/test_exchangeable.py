@@ -96,6 +96,9 @@ def test_a_damper_is_never_early() -> None:
     search, fit = searched(record((2.0,), viscous=0.0, late=-3e-3), IDEAL.adding(None, delay=0.0))
     assert fit.model.values["delay"] == pytest.approx(-3e-3, rel=0.02)
     assert exchanges(search, fit, ["sensor_delay"]) == {}
+    both = search.problem.fit(fit.model.adding(None, stiffness_cubic=0.0))
+    asked = exchanges(search, both, ["sensor_delay", "hardening_stiffness"])
+    assert asked.keys() == {"hardening_stiffness"}
     # late by as much it may be one
     search, fit = searched(record((2.0,), viscous=0.0, late=3e-3), IDEAL.adding(None, delay=0.0))
     assert not exchanges(search, fit, ["sensor_delay"])["sensor_delay"].is_told_apart

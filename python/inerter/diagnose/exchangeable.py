@@ -143,18 +143,18 @@ def exchanges(
             value, error = known[_COORDINATE[effect]]
             same = quiet or effect in (*_OF_ONE_SINE, *_OF_STATED)
             same = is_even if effect in _OF_FRICTION else same
-            zeros = (none.get(_COORDINATE[each], 0.0) for each in (effect, other))
+            zero, other_zero = (none.get(_COORDINATE[each], 0.0) for each in (effect, other))
             amount = known[_COORDINATE[other]][0]
-            exchange = Exchange(other, value, error, amount, same, (0.0, 0.0), *zeros)
+            exchange = Exchange(other, value, error, amount, same, none=zero, other_none=other_zero)
             if not exchange.is_told_apart:
                 bare = _beside(_bare(fit.model, effect, baseline), other, spacing)
                 instead = search.problem.fit(bare)
                 amount, error = parameter_errors(covered(instead))[_COORDINATE[other]]
-                none = abs(amount - exchange.other_none) <= CRITERIA.distinction * error
-                if none and _is_worse(search, instead, fit):
+                absent = abs(amount - exchange.other_none) <= CRITERIA.distinction * error
+                if absent and _is_worse(search, instead, fit):
                     # a damper is never early, say
                     continue
-                exchange = replace(exchange, instead=(amount, error), alone=none)
+                exchange = replace(exchange, instead=(amount, error), alone=absent)
             found[effect] = exchange
     return found
 
