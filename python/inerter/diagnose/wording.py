@@ -276,8 +276,9 @@ def doubts_of_records(records: Sequence[RecordSummary]) -> str:
 
 _ONE_TONE = (
     "The motion is nearly one sine. Along it a parallel stiffness and a series elasticity are an "
-    "inertance of another size, and a delay is viscous friction: what is said of one of them "
-    "holds for all together, and a record at a second frequency tells them apart. "
+    "inertance of another size, a delay is viscous friction, and a spring that relaxes is both: "
+    "what is said of one of them holds for all together, and a record at a second frequency tells "
+    "them apart. "
 )
 
 
