@@ -152,3 +152,21 @@ def test_a_line_among_those_of_a_drive_that_rings_is_none(alone: bool) -> None:
     ]
     found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
     assert (found is not None) is alone
+
+
+@pytest.mark.parametrize(("ringing", "named"), [(0.0, True), (47.4, False), (83.0, True)])
+def test_a_line_of_the_mains_beside_a_higher_one_may_be_of_what_rings(
+    ringing: float, named: bool
+) -> None:
+    """The displacement's noise hides both: only a frequency can tell hum, and not beside a ring."""
+    hum = 0.4 * np.sin(2 * np.pi * 50.0 * TIME)
+    ring = 1.2 * np.sin(2 * np.pi * ringing * TIME)
+    shaken = [replace(run, force=run.force + hum + ring) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    random = np.random.default_rng(5)
+    seen = [run.displacement + random.normal(0, 1e-5, TIME.size) for run in RUNS]
+    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    assert (found is not None) is named
+    if found:
+        assert found.model.values["disturbance_frequency"] == pytest.approx(50.0, abs=0.02)

@@ -43,6 +43,8 @@ _WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
 # share of a frequency about it where a drive that rings has its lines, and of the power of the
 # highest of them that another one has
 _ABOUT, _AS_HIGH = 0.05, 0.25
+# the same about a line of the mains that is to be the highest there
+_NEAR = 0.1
 # lines that are asked about, one after another; the highest harmonic of one sine that is no tone
 _ASKED, _HARMONICS = 8, 9
 
@@ -178,7 +180,22 @@ class Witness:
         # a line that the displacement has may be told badly: in coarse steps, for one
         may_have_one = own > max(CRITERIA.tone_hidden * shown, _MAY_BE_THERE * hidden)
         told = hidden < CRITERIA.tone_hidden * shown and not may_have_one
-        return bool(told) or of_mains(frequency, 1 / longest) is not None
+        hum = of_mains(frequency, 1 / longest) is not None
+        return bool(told) or (hum and self._stands_out(frequency, errors))
+
+    def _stands_out(self, frequency: float, errors: Sequence[Array]) -> bool:
+        """Whether no higher line is near a frequency: beside one it may be of what rings there."""
+        high = beside = 0.0
+        for run, mask, error in zip(self.raw.runs, self.raw.masks, errors, strict=True):
+            if mask.sum() <= _FEWEST:
+                continue
+            power = np.abs(np.fft.rfft(np.hanning(mask.size) * mask * error)) ** 2
+            grid = np.fft.rfftfreq(mask.size, run.spacing)
+            off, bin_ = np.abs(grid - frequency), 1 / (run.spacing * mask.size)
+            own = off <= _WIDTH * bin_
+            high += np.max(power[own], initial=0.0)
+            beside += np.max(power[(off < _NEAR * frequency) & ~own], initial=0.0)
+        return high > beside
 
     def _rings(self, model: Model, frequency: float, errors: Sequence[Array]) -> bool:
         """Whether lines about a frequency are, all together, those of the displacement.
