@@ -7,7 +7,14 @@ from dataclasses import replace
 import pytest
 from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose.doubt import doubted, of_one_sine, stand_ins, trust, warning
+from inerter.diagnose.doubt import (
+    doubted,
+    may_be_none,
+    of_one_sine,
+    stand_ins,
+    trust,
+    warning,
+)
 from inerter.diagnose.result import Finding
 from inerter.reference import NoiseLevels, hide_effect
 from inerter.report.page import render_report
@@ -32,6 +39,21 @@ def test_trust_is_even_beside_an_equal_rest_and_whole_without_a_rest() -> None:
     assert trust(THREE, 3.0) == pytest.approx(0.5)
     assert trust(THREE, 6.0) == pytest.approx(0.2)
     assert trust(THREE, 0.1) > 0.99
+
+
+def test_a_value_that_may_be_none_is_as_likely_not_there() -> None:
+    doubtful = may_be_none(THREE)
+    assert doubtful.confidence == pytest.approx(0.49)
+    assert doubtful.evidence == "c = 1. Its own value may be none."
+
+
+@pytest.mark.long
+def test_what_the_errors_of_its_values_hold_to_be_none_is_not_sure() -> None:
+    """Friction that grows with the load, one sine behind filters: all else is next to none."""
+    hidden = hide_effect(2316903413, "load_dependent_friction", noise=QUIET, realistic=True)
+    found = {f.effect: f for f in diagnose_bench(records_of(hidden)).findings}
+    assert found.pop("load_dependent_friction").confidence > 0.9
+    assert all(f.confidence <= 0.5 for f in found.values())
 
 
 def test_what_explains_nothing_is_not_trusted() -> None:

@@ -209,6 +209,12 @@ class Criteria:
         "times what stays unexplained",
         "an effect that explains so much is there in half of the cases: 43 findings in 40 cases",
     )
+    own_value: float = _bound(
+        1.0,
+        ERRORS,
+        "what other choices of the analysis would change among them, by which its own value "
+        "differs from none; below, an effect is as likely not there",
+    )
     effects_of_one_sine: int = _bound(
         3, COUNT, "of effects that one closed curve of the force tells"
     )

@@ -57,6 +57,15 @@ def doubted(finding: Finding, structure: float) -> Finding:
     return replace(finding, confidence=confidence, evidence=evidence)
 
 
+def may_be_none(finding: Finding) -> Finding:
+    """A finding whose own value, as far as other choices of the analysis tell it, may be none."""
+    return replace(
+        finding,
+        confidence=0.5 * finding.confidence,
+        evidence=f"{finding.evidence} Its own value may be none.",
+    )
+
+
 def of_one_sine(findings: Sequence[Finding]) -> list[Finding]:
     """Findings along one sine, where a few effects draw whatever the force does in a period.
 

@@ -15,8 +15,9 @@ from inerter.diagnose import wording
 from inerter.diagnose.budget.carried import Carrying, carried
 from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
+from inerter.diagnose.composition import is_distinct
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import doubted, of_one_sine
+from inerter.diagnose.doubt import doubted, may_be_none, of_one_sine
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
@@ -281,7 +282,10 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
             gain_interval=link.interval,
             motion=stands.data.whole[0].motion,
         )
-        findings.append(replace(finding, evidence=wording.evidence(finding)))
+        finding = replace(finding, evidence=wording.evidence(finding))
+        baseline = stands.searched.prepared.baseline
+        distinct = is_distinct(link.effect, stands.fit, baseline, CRITERIA.own_value)
+        findings.append(finding if distinct else may_be_none(finding))
     return sorted(findings, key=lambda finding: -finding.gain)
 
 
