@@ -33,13 +33,21 @@ def constant_inertance(values: Mapping[str, float | str], motions: Sequence[Moti
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("ratio", "inertance", "aim"), [("r0", 61.35, 15.0), ("r16", 32.56, 8.0)])
-def test_rack_inerter(measured_data: Path, ratio: str, inertance: float, aim: float) -> None:
-    """The makers' dry and viscous friction model leaves 34-47 N (r0) and 18-26 N (r16)."""
+@pytest.mark.parametrize(
+    ("ratio", "inertance", "aim", "among"), [("r0", 61.35, 15.0, 1), ("r16", 32.56, 8.0, 2)]
+)
+def test_rack_inerter(
+    measured_data: Path, ratio: str, inertance: float, aim: float, among: int
+) -> None:
+    """The makers' dry and viscous friction model leaves 34-47 N (r0) and 18-26 N (r16).
+
+    Friction with memory alone leaves 20.3 N and 22.5 N of the run held out; a spring that relaxes,
+    which does what a damper does and more, 23.4 N and 16.1 N.
+    """
     paths = [measured_data / "rack_inerter" / f"{ratio}_*.csv"]
     result = diagnose(paths)
     assert result.extended.rmse < aim
-    assert result.findings[0].effect == "hysteretic_friction"
+    assert "hysteretic_friction" in [finding.effect for finding in result.findings[:among]]
     # one that changes along the stroke and with the speed, as a constant one fits these motions
     motions = prepare(read_records(paths, "bench")).motions
     found = constant_inertance(result.extended.device, motions)
