@@ -219,7 +219,7 @@ def _creeps(model: Model) -> bool:
 
 
 def _late(problem: Problem, model: Model, late: float) -> Model | None:
-    """The play fitted with a delay up to `late` [s] beside it: impacts are out of step with none.
+    """The play fitted with a delay of up to `late` [s]: late impacts are out of step with any play.
 
     None where one round does not promise, or all of them do not bring, a clearly smaller error.
     """

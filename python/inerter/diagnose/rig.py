@@ -209,12 +209,16 @@ def diagnosis_of(
     searched = stands.searched
     findings = [
         doubted(
-            with_low_pass(
-                with_delay(
-                    with_exchange(finding, same.get(finding.effect)),
-                    searched.search, stands.fit, searched.covered,
+            _with_own_value(
+                finding,
+                with_low_pass(
+                    with_delay(
+                        with_exchange(finding, same.get(finding.effect)),
+                        searched.search, stands.fit, searched.covered,
+                    ),
+                    searched.search, stands.fit,
                 ),
-                searched.search, stands.fit,
+                stands,
             ),
             remains.structure,
         )
@@ -282,11 +286,18 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
             gain_interval=link.interval,
             motion=stands.data.whole[0].motion,
         )
-        finding = replace(finding, evidence=wording.evidence(finding))
-        baseline = stands.searched.prepared.baseline
-        distinct = is_distinct(link.effect, stands.fit, baseline, CRITERIA.own_value)
-        findings.append(finding if distinct else may_be_none(finding))
+        findings.append(replace(finding, evidence=wording.evidence(finding)))
     return sorted(findings, key=lambda finding: -finding.gain)
+
+
+def _with_own_value(before: Finding, finding: Finding, stands: Confirmed) -> Finding:
+    """A finding, less sure where its value may be none, unless a counterpart told so before."""
+    baseline = stands.searched.prepared.baseline
+    if finding.confidence < before.confidence or is_distinct(
+        finding.effect, stands.fit, baseline, CRITERIA.own_value
+    ):
+        return finding
+    return may_be_none(finding)
 
 
 def _filter(effect: str, model: Model) -> str | None:
