@@ -291,13 +291,15 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
 
 
 def _with_own_value(before: Finding, finding: Finding, stands: Confirmed) -> Finding:
-    """A finding, less sure where its value may be none, unless a counterpart told so before."""
-    baseline = stands.searched.prepared.baseline
-    if finding.confidence < before.confidence or is_distinct(
-        finding.effect, stands.fit, baseline, CRITERIA.own_value
-    ):
+    """A finding, less sure where its value may be none, unless a counterpart told so before.
+
+    Values of a hysteresis have no normal error: they change together, and its loop stays.
+    """
+    if finding.confidence < before.confidence or finding.effect == "hysteretic_friction":
         return finding
-    return may_be_none(finding)
+    baseline = stands.searched.prepared.baseline
+    distinct = is_distinct(finding.effect, stands.fit, baseline, CRITERIA.own_value)
+    return finding if distinct else may_be_none(finding)
 
 
 def _filter(effect: str, model: Model) -> str | None:
