@@ -9,11 +9,11 @@ from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import (
     doubted,
-    may_be_none,
     of_one_sine,
     stand_ins,
     trust,
     warning,
+    with_own_value,
 )
 from inerter.diagnose.result import Finding
 from inerter.reference import NoiseLevels, hide_effect
@@ -42,9 +42,15 @@ def test_trust_is_even_beside_an_equal_rest_and_whole_without_a_rest() -> None:
 
 
 def test_a_value_that_may_be_none_is_as_likely_not_there() -> None:
-    doubtful = may_be_none(THREE)
+    doubtful = with_own_value(THREE, 0.98, is_distinct=False)
     assert doubtful.confidence == pytest.approx(0.49)
     assert doubtful.evidence == "c = 1. Its own value may be none."
+    assert with_own_value(THREE, 0.98, is_distinct=True) is THREE
+    # a counterpart told so already, and the values of a loop change together
+    halved = replace(THREE, confidence=0.49)
+    assert with_own_value(halved, 0.98, is_distinct=False) is halved
+    loop = replace(THREE, effect="hysteretic_friction")
+    assert with_own_value(loop, 0.98, is_distinct=False) is loop
 
 
 @pytest.mark.long

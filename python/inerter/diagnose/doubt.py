@@ -15,6 +15,7 @@ import numpy as np
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding
 
+_LOOP = "hysteretic_friction"
 # what the force of one period does not hold
 _BESIDE_A_PERIOD = {"force_drift", "force_offset", "periodic_disturbance"}
 
@@ -57,8 +58,15 @@ def doubted(finding: Finding, structure: float) -> Finding:
     return replace(finding, confidence=confidence, evidence=evidence)
 
 
-def may_be_none(finding: Finding) -> Finding:
-    """A finding whose own value, as far as other choices of the analysis tell it, may be none."""
+def with_own_value(finding: Finding, before: float, is_distinct: bool) -> Finding:
+    """A finding, half as sure where its own value may be none.
+
+    before: its confidence before counterparts were asked, which may have told that already;
+    is_distinct: whether its value differs from none, as far as other choices of the analysis tell.
+    Values of a hysteresis have no normal error: they change together, and its loop stays.
+    """
+    if is_distinct or finding.confidence < before or finding.effect == _LOOP:
+        return finding
     return replace(
         finding,
         confidence=0.5 * finding.confidence,

@@ -17,7 +17,7 @@ from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.composition import is_distinct
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import doubted, may_be_none, of_one_sine
+from inerter.diagnose.doubt import doubted, of_one_sine, with_own_value
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
@@ -209,8 +209,7 @@ def diagnosis_of(
     searched = stands.searched
     findings = [
         doubted(
-            _with_own_value(
-                finding,
+            with_own_value(
                 with_low_pass(
                     with_delay(
                         with_exchange(finding, same.get(finding.effect)),
@@ -218,7 +217,10 @@ def diagnosis_of(
                     ),
                     searched.search, stands.fit,
                 ),
-                stands,
+                finding.confidence,
+                is_distinct(
+                    finding.effect, stands.fit, searched.prepared.baseline, CRITERIA.own_value
+                ),
             ),
             remains.structure,
         )
@@ -288,18 +290,6 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
         )
         findings.append(replace(finding, evidence=wording.evidence(finding)))
     return sorted(findings, key=lambda finding: -finding.gain)
-
-
-def _with_own_value(before: Finding, finding: Finding, stands: Confirmed) -> Finding:
-    """A finding, less sure where its value may be none, unless a counterpart told so before.
-
-    Values of a hysteresis have no normal error: they change together, and its loop stays.
-    """
-    if finding.confidence < before.confidence or finding.effect == "hysteretic_friction":
-        return finding
-    baseline = stands.searched.prepared.baseline
-    distinct = is_distinct(finding.effect, stands.fit, baseline, CRITERIA.own_value)
-    return finding if distinct else may_be_none(finding)
 
 
 def _filter(effect: str, model: Model) -> str | None:
