@@ -139,6 +139,7 @@ def test_nodes_of_friction_are_right_beside_every_channel(beside: str, band: flo
 @pytest.mark.parametrize("low_pass", [{}, LOW_PASS], ids=["", "low-pass"])
 @pytest.mark.parametrize("band", [np.inf, 60.0])
 @pytest.mark.parametrize("law", ["none", "dahl", "bouc_wen", "lugre"])
+@pytest.mark.parametrize("by_speed", [0.0, 0.8, -0.6], ids=["", "faster", "slower"])
 @pytest.mark.parametrize(
     ("quantity", "flanks"),
     [(QUANTITIES[0], False), (QUANTITIES[1], False), (QUANTITIES[1], True)],
@@ -147,6 +148,7 @@ def test_nodes_of_friction_are_right_beside_every_channel(beside: str, band: flo
 def test_nodes_of_a_curve_are_differences_of_the_residual(
     quantity: Quantity,
     flanks: bool,
+    by_speed: float,
     law: str,
     band: float,
     low_pass: dict[str, float],
@@ -159,7 +161,7 @@ def test_nodes_of_a_curve_are_differences_of_the_residual(
     names = (*quantity.nodes[:7], *(quantity.back_nodes[:7] if flanks else ()))
     nodes = {name: float(draw.uniform(-size, size)) for name in names}
     also = {"inertance": 40.0, "viscous": 90.0, "inertance_gradient": 1.5, "delay": 1.3 * H}
-    ends = {"curve_lower": low, "curve_upper": high}
+    ends = {"curve_lower": low, "curve_upper": high, "inertance_speed_gradient": by_speed}
     model = Model(law, also | LAWS[law] | low_pass | ends | nodes, (*nodes, "viscous"))
     assert errors_of_columns(data, model).max() < 1e-4
 
@@ -191,7 +193,7 @@ def problem_in(band: float) -> Problem:
 def errors_of_columns(data: Problem, model: Model) -> np.ndarray:
     """How far each column is from the difference of the residual, per its largest value."""
     # short, for a bristle has a kink where the first force comes to what it can hold
-    there = differences(data, model, 1e-4)
+    there = differences(data, model, 1e-5)
     return np.abs(data.jacobian(model) - there).max(axis=0) / np.abs(there).max(axis=0)
 
 

@@ -1,41 +1,45 @@
 """Derivatives of a problem's residual by the search variables of its model, one column each.
 
 Most are differences. A coordinate that enters the force in proportion to a function of the motion
-has that function as its column, which the model does not change: it is weighted once. That holds
-for a node of a curve along the stroke too, whose function is what the core gives of a device that
-has nothing else. Where the device has a state, this begins where the first force puts it; a
-coordinate acts on that through the share of the first force that it takes, so that one difference
-by the first force serves all. Beside a tone, whose phase is read off the residual, a column has
-what this phase does too.
+has that function as its column (`in_proportion`), which the model does not change: it is weighted
+once. A node of an inertance that changes with the speed has a mean of two such columns. Where the
+device has a state, this begins where the first force puts it; a coordinate acts on that through the
+share of the first force that it takes, so that one difference by the first force serves all. Beside
+a tone, whose phase is read off the residual, a column has what this phase does too.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.catalogue.along_stroke import Quantity, node_of
-from inerter.catalogue.coordinates import (
-    BENDS,
-    COORDINATES,
-    ENTANGLED,
-    device_values,
-    search_range,
-)
-from inerter.core import Device
+from inerter.catalogue.coordinates import COORDINATES, search_range
 from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
-from inerter.identify.channel import LINEAR, clips, through_channel, tone_follows
+from inerter.identify.channel import LINEAR, clips, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
+from inerter.identify.in_proportion import (
+    BY_SPEED,
+    PLACES,
+    at_speeds,
+    column_key,
+    column_of,
+    curve_of,
+    entangling,
+    factor_of,
+    shown_by,
+    through,
+    times_inertance,
+)
 from inerter.identify.kept import Kept
 from inerter.identify.model import Model
 from inerter.identify.prediction import bristle_reach
-from inerter.identify.runs import BenchRun, forces_along
+from inerter.identify.runs import BenchRun
 from inerter.identify.smoothness import smoothness
 from inerter.identify.transient import (
     RELAXING,
@@ -70,8 +74,8 @@ _WORTH_WHILE, _MOST_BASES = 5, 4
 _FILTER = "displacement_filter"
 # what is a linear filter of the force, and what says how long the time before the record shows
 _CHANNEL = (*LINEAR, *RELAXING)
-# what beside a node says what its curve adds to the force
-_PLACES = ("rest_length", "curve_lower", "curve_upper")
+# share of an inertance that it may lose with the speed at most; its floor is 0.01
+_NEAR_FLOOR = 0.98
 
 
 # what the channels of runs show of coordinates: of use to every problem that has the run
@@ -112,12 +116,17 @@ class Columns:
                 size = search_range(name, self.problem.scales).size
                 columns.append(of_friction[name] * size)
             elif self._in_proportion(name, model):
-                column = self._weighted(name, model, tones)
+                unknown, parts = _Unknown.of(model), at_speeds(name, model)
+                column = _sum(
+                    share * self._weighted(name, each, unknown, tones) for share, each in parts
+                )
                 if model.device().nstate and COORDINATES[name].belongs_to == "device":
                     base = base or residual(point)
                     by_first_force = by_first_force or self._by_first_force(point, base, residual)
-                    column = column - self._taken(name, model, by_first_force)
-                size = _factor(name, model) * search_range(name, self.problem.scales).size
+                    column = column - _sum(
+                        share * self._taken(name, each, by_first_force) for share, each in parts
+                    )
+                size = factor_of(name, model) * search_range(name, self.problem.scales).size
                 columns.append(column * size)
             else:
                 base = base or residual(point)
@@ -127,35 +136,51 @@ class Columns:
     def apart(self, model: Model) -> Apart | None:
         """What the residual is linear in, where that is so much that it is worth while."""
         names = [name for name in model.free if self._in_proportion(name, model)]
-        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*_PLACES, *_CHANNEL)):
+        if BY_SPEED in model.free:
+            # what an inertance gains along the stroke is then no column that stays as it is
+            names = [name for name in names if not times_inertance(name)]
+        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*PLACES, *_CHANNEL)):
             return None
         which = [model.free.index(name) for name in names]
         smooth = smoothness(model)[:, which]
-        key = (*(_key(name, model, _CHANNEL) for name in names), len(smooth))
+        key = (*(column_key(name, model, _CHANNEL) for name in names), len(smooth))
         basis = self._bases.get(key)
         if basis is None:
             if len(self._bases) == _MOST_BASES:
                 self._bases.clear()
-            weighted = np.column_stack([self._weighted(name, model) for name in names])
+            unknown = _Unknown.of(model)
+            weighted = np.column_stack([self._weighted(name, model, unknown) for name in names])
             sizes = self.problem.scales
             # by one of each, as the columns; of an inertance that of the first model
-            units = [search_range(name, sizes).size * _factor(name, model) for name in names]
+            units = [search_range(name, sizes).size * factor_of(name, model) for name in names]
             rows = weighted[np.concatenate(self.problem.masks)]
             basis = Basis.of(np.concatenate([rows, sizes.force * smooth / units]))
             self._bases[key] = basis
-        return Apart(names, basis, [_times_inertance(name) for name in names])
+        return Apart(names, basis, [times_inertance(name) for name in names])
 
     def _in_proportion(self, name: str, model: Model) -> bool:
         """Whether a coordinate enters the force times its column."""
         device = model.device()
         return bool(
-            (COORDINATES[name].column or _curve(name))
+            (COORDINATES[name].column or curve_of(name))
             # a flywheel on its spring is set going by whatever acts
             and not (device.nstate and (device.series_stiffness or device.series_damping))
             and not clips(model.values)
-            and not any(each in model.values for each in (_FILTER, *_entangled(name)))
+            and not any(each in model.values for each in (_FILTER, *entangling(name)))
             and all(np.isinf(run.far) for run in self.problem.runs)
+            and not (times_inertance(name) and self._is_floored(model.values.get(BY_SPEED, 0.0)))
         )
+
+    def _is_floored(self, by_speed: float) -> bool:
+        """Whether an inertance that falls with the speed would reach its floor, or come near it."""
+        return bool(by_speed < 0 and by_speed * self._fastest < -_NEAR_FLOOR)
+
+    @functools.cached_property
+    def _fastest(self) -> float:
+        """Largest speed of all runs [m/s]."""
+        runs = self.problem.runs
+        channels = [r.velocity if r.measured is None else r.measured[1] for r in runs]
+        return max(float(np.max(np.abs(velocity))) for velocity in channels)
 
     def _tones(self, model: Model) -> Tones:
         """How the tone of every run follows what is left; None where there is none."""
@@ -188,7 +213,7 @@ class Columns:
                 continue
             response = along_friction.Response(model, run)
             for name in nodes:
-                column = _through(channel, response.of(name), run)
+                column = through(channel, response.of(name), run)
                 shown[name].append(-_settled(column, run, mask, unknown, tone))
         weighted = self.problem.weighted
         return {name: np.concatenate(weighted(columns)) for name, columns in shown.items()}
@@ -209,10 +234,11 @@ class Columns:
         moved[index] += step
         return (np.concatenate(residual(moved)) - np.concatenate(base)) / step
 
-    def _weighted(self, name: str, model: Model, tones: Tones | None = None) -> Array:
+    def _weighted(
+        self, name: str, model: Model, unknown: _Unknown, tones: Tones | None = None
+    ) -> Array:
         """Minus a column as it counts, the tones held where none are given."""
         tones = tones or [None] * len(self.problem.runs)
-        unknown = _Unknown.of(model)
 
         def column(unknown: _Unknown) -> Array:
             every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
@@ -228,7 +254,7 @@ class Columns:
         apart = replace(unknown, reach=0.0)
         if unknown.reach and apart != _NOTHING:
             return column(unknown)
-        whole = _key(name, model, _CHANNEL)
+        whole = column_key(name, model, _CHANNEL)
         found = self._kept.found(whole, lambda: column(apart))
         if not unknown.reach:
             return found
@@ -242,8 +268,8 @@ class Columns:
         return found
 
     def _shown(self, name: str, model: Model, run: BenchRun) -> Array:
-        key = (run.identity, *_key(name, model, LINEAR))
-        return _OF_RUNS.found(key, functools.partial(_shown, name, model, run))
+        key = (run.identity, *column_key(name, model, LINEAR))
+        return _OF_RUNS.found(key, functools.partial(shown_by, name, model, run))
 
     def _bent(self, reach: float) -> list[tuple[Array, Array]]:
         """What tells of every run how a bristle was bent, and what that leaves as it counts."""
@@ -271,77 +297,14 @@ class Columns:
 
     def _taken(self, name: str, model: Model, by_first_force: Sequence[Array]) -> Array:
         """What a coordinate does by the share of each run's first force that it takes."""
-        key, taken = _key(name, model), []
+        key, taken = column_key(name, model), []
         for run, column in zip(self.problem.runs, by_first_force, strict=True):
 
             def share(run: BenchRun = run) -> Array:
-                return _column(name, model, run)[run.first : run.first + 1].copy()
+                return column_of(name, model, run)[run.first : run.first + 1].copy()
 
             taken.append(_OF_RUNS.found((run.identity, *key), share) * column)
         return np.concatenate(taken)
-
-
-def _key(name: str, model: Model, channel: Sequence[str] = ()) -> tuple[Hashable, ...]:
-    """What of a model a coordinate's column depends on; `channel`: what the channel does to it."""
-    places = _PLACES if _curve(name) else ("rest_length",)
-    values = (model.values.get(each, 0.0) for each in (*places, *channel))
-    return name, _nodes(name, model), *values
-
-
-def _curve(name: str) -> Quantity | None:
-    """What a coordinate is a node of, where the force is in proportion to it."""
-    quantity = node_of(name)
-    return quantity if quantity and quantity.name in ("force", "inertance") else None
-
-
-def _entangled(name: str) -> Sequence[str]:
-    """Coordinates beside which the force is not in proportion to this one."""
-    quantity = _curve(name)
-    if quantity is None:
-        return ENTANGLED.get(name, ())
-    if quantity.name == "force":
-        return ()
-    # what the inertance gains along the stroke adds up
-    others = (each for each in ENTANGLED["inertance"] if each not in quantity.coordinates)
-    return tuple(each for each in others if each not in quantity.stands_for)
-
-
-def _factor(name: str, model: Model) -> float:
-    """What a column is multiplied by in this model."""
-    return model.values["inertance"] if _times_inertance(name) else 1.0
-
-
-def _times_inertance(name: str) -> bool:
-    quantity = _curve(name)
-    return quantity is not None and quantity.name == "inertance"
-
-
-def _nodes(name: str, model: Model) -> tuple[int, ...]:
-    """Numbers of nodes of the curve that a coordinate is a node of, and of that for v < 0."""
-    if (quantity := _curve(name)) is None:
-        return ()
-    names = model.values.keys()
-    return tuple(len(names & set(each)) for each in (quantity.nodes, quantity.back_nodes))
-
-
-def _shown(name: str, model: Model, run: BenchRun) -> Array:
-    """What one of a coordinate adds to a run's force channel, shape (n,)."""
-    channel = {each: model.values[each] for each in LINEAR if each in model.values}
-    if (_curve(name) or name in BENDS) and np.isfinite(run.cutoff):
-        # what bends more sharply than the motion passes the low-pass of the measured force
-        device, less = _alone(name, model)
-        fine = run.at_measured_rate(device, 0.0)["total"]
-        if less:
-            fine = fine - run.at_measured_rate(less, 0.0)["total"]
-        return _through(channel, fine, run)
-    return through_channel(channel, _column(name, model, run), run.elapsed, run.spacing)
-
-
-def _through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
-    """A force that bends sharply, (m,), as the force channel shows it in the run's band, (n,)."""
-    if np.isinf(run.cutoff):
-        return through_channel(channel, force, run.elapsed, run.spacing)
-    return run.in_band(through_channel(channel, force, run.fine_elapsed, run.fine_spacing))
 
 
 @dataclass(frozen=True)
@@ -383,32 +346,9 @@ def _settled(
     return shown
 
 
-def _column(name: str, model: Model, run: BenchRun) -> Array:
-    """What one of a coordinate adds to a device's force along a run, shape (n,)."""
-    column = COORDINATES[name].column
-    if column is None:
-        pair = (each for each in _alone(name, model) if each)
-        totals = [
-            forces_along(each, run.spacing, run.followed, 0.0, run.force.size)["total"]
-            for each in pair
-        ]
-        return totals[0] - totals[1] if len(totals) > 1 else totals[0]
-    stretch = run.displacement - model.values.get("rest_length", 0.0)
-    return column(stretch, run.velocity, run.acceleration, run.elapsed)
-
-
-def _alone(name: str, model: Model) -> tuple[Device, Device | None]:
-    """A device whose only force is that of one coordinate, or that and the other one's.
-
-    The coordinate is a node of a curve, or a parameter of a device.
-    """
-    quantity = _curve(name)
-    if quantity is None:
-        places = {n: model.values[n] for n in _PLACES[:1] if n in model.values}
-        return Device(friction="none", **device_values({**places, name: 1.0})), None
-    values = {each: 0.0 for each in model.values if node_of(each) is quantity}
-    values |= {each: model.values[each] for each in _PLACES if each in model.values}
-    if quantity.name == "force":
-        return Device(friction="none", **device_values({**values, name: 1.0})), None
-    plain = Device(friction="none", inertance=1.0)
-    return Device(friction="none", **device_values({**values, name: 1.0, "inertance": 1.0})), plain
+def _sum(arrays: Iterable[Array]) -> Array:
+    """The sum of some arrays, at least one."""
+    first, *others = arrays
+    for other in others:
+        first = first + other
+    return first
