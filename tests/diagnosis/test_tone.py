@@ -9,6 +9,7 @@ import pytest
 from inerter.diagnose.tone import Witness, strongest_line, with_tone_above
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
+from inerter.identify.prediction import force_along
 from inerter.identify.runs import BenchRun, whole
 from inerter.records import Record
 from inerter.records.preparation import prepare
@@ -170,3 +171,21 @@ def test_a_line_of_the_mains_beside_a_higher_one_may_be_of_what_rings(
     assert (found is not None) is named
     if found:
         assert found.model.values["disturbance_frequency"] == pytest.approx(50.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("delay", "one_sine", "clear"),
+    [(0.0, True, True), (0.015, True, True), (-0.015, False, True), (-0.015, True, False)],
+)
+def test_a_late_displacement_may_have_lost_a_line_in_a_low_pass(
+    delay: float, one_sine: bool, clear: bool
+) -> None:
+    """Along one sine, where a delay cannot be told from that; its noise would hide the rest."""
+    model = Model("none", {"inertance": 40.0, "delay": delay}, ("inertance",))
+    tone = 0.6 * np.sin(2 * np.pi * 47.3 * TIME)
+    (run,) = (replace(r, force=force_along(model, r) + tone) for r in RUNS[:1])
+    problem = Problem([run], EVERYTHING[:1])
+    problem.scales = replace(problem.scales, one_tone=one_sine)
+    random = np.random.default_rng(7)
+    seen = [run.displacement + random.normal(0, 2e-6, TIME.size)]
+    assert Witness(problem, seen).clears(model, 47.3) is clear

@@ -19,7 +19,7 @@ from inerter.catalogue.coordinates import LOWEST_TONE
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
-from inerter.identify.channel_filter import filter_of
+from inerter.identify.channel_filter import ORDERS, Filter, filter_of
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
@@ -149,6 +149,7 @@ class Witness:
     def clears(self, model: Model, frequency: float) -> bool:
         """Whether a tone in what a model leaves is none of the motion, as far as can be told."""
         follows = complex(_follows(model, np.array([frequency]))[0])
+        lost = _may_be_lost(model, frequency) if self.raw.scales.one_tone else 1.0
         shown = left = hidden = own = 0.0
         errors = self.raw.errors(model)
         if self._rings(model, frequency, errors):
@@ -172,8 +173,8 @@ class Witness:
             noise = of_error + of_motion
             shown += abs(line) ** 2 / noise
             left += abs(line - there) ** 2 / noise
-            hidden += of_motion / noise
-            own += abs(there) ** 2 / noise
+            hidden += lost * of_motion / noise
+            own += lost * abs(there) ** 2 / noise
         if left < CRITERIA.tone_of_motion * shown:
             return False
         longest = max(run.spacing * run.force.size for run in self.raw.runs)
@@ -234,6 +235,20 @@ def _follows(model: Model, frequency: NDArray[np.floating]) -> NDArray[np.comple
         if (low_pass := filter_of(values, channel)) is not None:
             found = found * low_pass.response(frequency) ** way
     return found
+
+
+def _may_be_lost(model: Model, frequency: float) -> float:
+    """How many times the power of a line in the displacement the motion's own may have.
+
+    Along one sine a displacement that is late may have gone through a low-pass as well.
+    """
+    late = -model.values.get("delay", 0.0)
+    if late <= 0 or filter_of(model.values, "displacement") is not None:
+        return 1.0
+    steepest = ORDERS[-1]
+    cutoff = Filter("butterworth", steepest, 1.0).lateness / late
+    low_pass = Filter("butterworth", steepest, cutoff)
+    return float(np.abs(low_pass.response(np.array([frequency]))[0]) ** -2)
 
 
 def of_mains(frequency: float, resolution: float = 0.0) -> tuple[int, float] | None:
