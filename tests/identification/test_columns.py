@@ -164,7 +164,8 @@ def test_nodes_of_a_curve_are_differences_of_the_residual(
     also = {"inertance": 40.0, "viscous": 90.0, "inertance_gradient": 1.5, "delay": 1.3 * H}
     ends = {"curve_lower": low, "curve_upper": high, "inertance_speed_gradient": by_speed}
     # with another exponent a step over z = 0 is smooth to 1e-3 alone
-    stated = LAWS[law] | ({"bw_exponent": 1.0} if law == "bouc_wen" else {})
+    smooth = law == "bouc_wen" and by_speed
+    stated = LAWS[law] | ({"bw_exponent": 1.0} if smooth else {})
     model = Model(law, also | stated | low_pass | ends | nodes, (*nodes, "viscous"))
     assert errors_of_columns(data, model).max() < 1e-4
 
@@ -196,7 +197,7 @@ def problem_in(band: float) -> Problem:
 def errors_of_columns(data: Problem, model: Model) -> np.ndarray:
     """How far each column is from the difference of the residual, per its largest value."""
     # short, for a bristle has a kink where the first force comes to what it can hold
-    there = differences(data, model, 1e-5)
+    there = differences(data, model, 1e-4)
     return np.abs(data.jacobian(model) - there).max(axis=0) / np.abs(there).max(axis=0)
 
 

@@ -11,7 +11,8 @@ a tone, whose phase is read off the residual, a column has what this phase does 
 from __future__ import annotations
 
 import functools
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+import operator
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -117,15 +118,15 @@ class Columns:
                 columns.append(of_friction[name] * size)
             elif self._in_proportion(name, model):
                 unknown, parts = _Unknown.of(model), at_speeds(name, model)
-                column = _sum(
-                    share * self._weighted(name, each, unknown, tones) for share, each in parts
+                column = functools.reduce(
+                    operator.add,
+                    (share * self._weighted(name, each, unknown, tones) for share, each in parts),
                 )
                 if model.device().nstate and COORDINATES[name].belongs_to == "device":
                     base = base or residual(point)
                     by_first_force = by_first_force or self._by_first_force(point, base, residual)
-                    column = column - _sum(
-                        share * self._taken(name, each, by_first_force) for share, each in parts
-                    )
+                    for share, each in parts:
+                        column -= share * self._taken(name, each, by_first_force)
                 size = factor_of(name, model) * search_range(name, self.problem.scales).size
                 columns.append(column * size)
             else:
@@ -344,11 +345,3 @@ def _settled(
         per_radian, phase = tone
         shown = shown + (phase @ shown) * per_radian
     return shown
-
-
-def _sum(arrays: Iterable[Array]) -> Array:
-    """The sum of some arrays, at least one."""
-    first, *others = arrays
-    for other in others:
-        first = first + other
-    return first
