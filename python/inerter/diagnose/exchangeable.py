@@ -32,7 +32,7 @@ from inerter.diagnose.search import Search
 from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.trials import FAR
 from inerter.diagnose.values import parameter_units
-from inerter.identify.channel_filter import CHANNELS, USUAL_ORDER, Filter, filter_of
+from inerter.identify.channel_filter import CHANNELS, Filter, filter_of
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
@@ -237,7 +237,7 @@ def _with_low_pass(finding: Finding) -> Finding:
     if late is None or not late.value:
         return finding
     channel = "force" if late.value > 0 else "displacement"
-    cutoff = Filter("butterworth", USUAL_ORDER, 1.0).lateness / abs(late.value)
+    cutoff = Filter.as_late_as(abs(late.value)).cutoff
     known = ParameterValue(cutoff, cutoff * late.stderr / abs(late.value), "Hz")
     return replace(
         finding,

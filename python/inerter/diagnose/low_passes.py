@@ -60,7 +60,7 @@ def filters(model: Model, delay: float = 0.0) -> Iterator[Candidate]:
     bare = model.without((*dropped, "delay") if "delay" in model.free else dropped)
     shapes = [(kind, order) for order in ORDERS for kind in KINDS if order > 1 or kind == KINDS[0]]
     for kind, order in shapes:
-        found = named(channel, Filter(kind, order, Filter(kind, order, 1.0).lateness / abs(late)))
+        found = named(channel, Filter.as_late_as(abs(late), kind, order))
         cutoff = {f"{channel}_filter": found.pop(f"{channel}_filter")}
         law = f"{channel} {kind} {order}"
         yield Candidate("sensor_filter", law, (bare.adding(None, **cutoff).holding(**found),))

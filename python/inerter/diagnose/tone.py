@@ -245,10 +245,8 @@ def _may_be_lost(model: Model, frequency: float) -> float:
     late = -model.values.get("delay", 0.0)
     if late <= 0 or filter_of(model.values, "displacement") is not None:
         return 1.0
-    steepest = ORDERS[-1]
-    cutoff = Filter("butterworth", steepest, 1.0).lateness / late
-    low_pass = Filter("butterworth", steepest, cutoff)
-    return float(np.abs(low_pass.response(np.array([frequency]))[0]) ** -2)
+    steepest = Filter.as_late_as(late, order=ORDERS[-1])
+    return float(np.abs(steepest.response(np.array([frequency]))[0]) ** -2)
 
 
 def of_mains(frequency: float, resolution: float = 0.0) -> tuple[int, float] | None:

@@ -45,6 +45,12 @@ class Filter:
     order: int
     cutoff: float
 
+    @classmethod
+    def as_late_as(cls, delay: float, kind: str = KINDS[0], order: int = USUAL_ORDER) -> Filter:
+        """The one of a kind and order that makes what is slow late by a delay > 0 [s]."""
+        unit = cls(kind, order, 1.0)
+        return replace(unit, cutoff=unit.lateness / delay)
+
     @property
     def text(self) -> str:
         """As it is stated: "bessel:50:4"."""
@@ -103,8 +109,7 @@ def slow_start(values: Mapping[str, float]) -> Filter | None:
     delay = values.get("delay", 0.0)
     if (low_pass := filter_of(values, "force")) is not None or not delay > 0.0:
         return low_pass
-    unit = Filter("butterworth", USUAL_ORDER, 1.0)
-    return replace(unit, cutoff=unit.lateness / delay)
+    return Filter.as_late_as(delay)
 
 
 def filters_of(values: Mapping[str, float]) -> dict[str, Filter]:

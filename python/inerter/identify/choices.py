@@ -113,8 +113,8 @@ def _as_filter(problem: Problem, model: Model, least: Array) -> Iterator[Array]:
         return
     here = np.sum(problem.masked(problem.residual(model)) ** 2)
     for kind, order in FILTERS:
-        cutoff = Filter(kind, order, 1.0).lateness / abs(model.delay)
-        late = model.holding(delay=0.0, **named(channel, Filter(kind, order, cutoff)))
+        low_pass = Filter.as_late_as(abs(model.delay), kind, order)
+        late = model.holding(delay=0.0, **named(channel, low_pass))
         step = _step(problem, late, least)
         there = np.sum(problem.masked(problem.residual(problem.moved(late, step))) ** 2)
         if there < AS_GOOD * here:
