@@ -106,3 +106,28 @@ def test_wrong_derivatives_are_not_followed_to_an_end() -> None:
         problem.residual, start, FREE, problem.jacobian, tolerances=FINE, secants=secants
     )
     np.testing.assert_allclose(found.variables, [0.5, -0.3, 0.2], atol=1e-6)
+
+
+def test_columns_that_bend_are_asked_for_before_all_of_them() -> None:
+    """A term beside a linear model whose columns are known: no other column is asked for again."""
+    problem = Counted(np.array([0.5, -0.3, 0.2]))
+    start = np.array([0.0, 0.6, -0.5])
+    first, bent = problem.jacobian(start), 0
+    problem.asked = 0
+
+    def bending(point: np.ndarray) -> tuple[list[int], np.ndarray]:
+        nonlocal bent
+        bent += 1
+        decay = np.exp(point[0]) * np.exp(-np.exp(point[1]) * TIMES)
+        return [0, 1], np.column_stack([decay, -np.exp(point[1]) * TIMES * decay])
+
+    secants = Secants(
+        problem.residual, problem.jacobian, 1e-10, rough=True, first=first, bending=bending
+    )
+    found = minimise(problem.residual, start, FREE, problem.jacobian, secants=secants)
+    np.testing.assert_allclose(found.variables, [0.5, -0.3, 0.2], atol=1e-4)
+    alone = Counted(np.array([0.5, -0.3, 0.2]))
+    secants = Secants(alone.residual, alone.jacobian, 1e-10, rough=True, first=first)
+    minimise(alone.residual, start, FREE, alone.jacobian, secants=secants)
+    assert bent > 0
+    assert problem.asked < alone.asked

@@ -9,7 +9,7 @@ import numpy as np
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import Array
 from inerter.diagnose.trials import ROUGH
-from inerter.identify.fit import Fit, Problem
+from inerter.identify.fit import Fit, Near, Problem
 from inerter.identify.split import Mask
 
 Folds = Sequence[tuple[Problem, list[Mask]]]
@@ -34,7 +34,7 @@ def left_out_errors(
         fit, derivatives, k = task
         without = folds[k][0]
         refit = without.fit(
-            fit.model, _EVALUATIONS, tolerance=ROUGH, rough=True, derivatives=derivatives
+            fit.model, _EVALUATIONS, tolerance=ROUGH, rough=True, near=Near(derivatives, ())
         )
         return without.errors(refit.model)
 

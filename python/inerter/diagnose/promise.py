@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
-from inerter.identify.fit import Problem
+from inerter.identify.fit import Near, Problem
 from inerter.identify.model import Model
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ class Known:
         """By the model's free coordinates, over all samples, (n, p)."""
         return self.problem.derivatives(self.model, counted=True)
 
-    def near(self, problem: Problem, start: Model) -> Array | None:
+    def near(self, problem: Problem, start: Model) -> Near | None:
         """Derivatives of a problem near a start that adds to the model; None of another one.
 
         The problem may have the first parts of the runs.
@@ -40,13 +40,13 @@ class Known:
         begins = np.cumsum([0, *sizes[:-1]])
         pairs = zip(begins, problem.runs, strict=True)
         rows = np.concatenate([begin + np.arange(run.force.size) for begin, run in pairs])
-        added = [name for name in start.free if name not in self.model.free]
+        added = tuple(name for name in start.free if name not in self.model.free)
         columns = np.empty((rows.size, len(start.free)))
         columns[:, [start.free.index(name) for name in self.model.free]] = self.columns[rows]
         columns[:, [start.free.index(name) for name in added]] = problem.derivatives(
             start, added, counted=True
         )
-        return columns
+        return Near(columns, added)
 
 
 class Promise:

@@ -141,7 +141,7 @@ class Trials:
         fits = []
         for start in starts:
             near = known.near(self.problem, start) if known else None
-            fits.append(self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, derivatives=near))
+            fits.append(self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, near=near))
         return fits
 
     def _compared(
@@ -162,7 +162,7 @@ class Trials:
             trials.append(
                 part.fit(
                     start, evaluations, tolerance=1e-3, give_up=hopeless, rough=True,
-                    derivatives=near,
+                    near=near,
                 )
             )  # fmt: skip
         trials.sort(key=lambda fit: fit.rmse(part.masks))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,8 @@ _FORETOLD = 0.7
 class Secants:
     """A Jacobian that follows a search from point to point by what the residual did (Broyden 1965).
 
-    It is worked out anew where too little of a step was foretold.
+    It is worked out anew where too little of a step was foretold: the columns that bend most first,
+    where there are such, and all of them where that is not enough.
 
     Parameters
     ----------
@@ -31,6 +32,8 @@ class Secants:
         Whether a search may end without true derivatives.
     first
         Derivatives (n, p) that are near those at the first point, if there are such.
+    bending
+        Of a point (p,): numbers of the columns that bend most (m,), and these (n, m).
     """
 
     def __init__(
@@ -40,10 +43,12 @@ class Secants:
         enough: float = 0.0,
         rough: bool = False,
         first: Array | None = None,
+        bending: Callable[[Array], tuple[Sequence[int], Array]] | None = None,
     ) -> None:
         self._residual, self._jacobian, self._enough, self.rough = residual, jacobian, enough, rough
         self._known: tuple[Array, Array, Array] | None = None
-        self._first = first
+        self._first, self._bending = first, bending
+        self._was_poor = False
         self.stale = False
 
     def forget(self) -> None:
@@ -71,6 +76,13 @@ class Secants:
         if not length or before - float(here @ here) < self._enough * before:
             return old
         miss = change - old @ step
-        if not np.linalg.norm(miss) < (1 - _FORETOLD) * np.linalg.norm(change):
+        is_poor = not np.linalg.norm(miss) < (1 - _FORETOLD) * np.linalg.norm(change)
+        if is_poor and (self._bending is None or self._was_poor):
+            self._was_poor = False
             return None
-        return old + np.outer(miss / length, step)
+        found = old + np.outer(miss / length, step)
+        if is_poor and self._bending:
+            which, columns = self._bending(point)
+            found[:, which] = columns
+        self._was_poor = is_poor
+        return found

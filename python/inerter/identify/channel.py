@@ -51,14 +51,14 @@ def without_limits(values: Mapping[str, float]) -> dict[str, float]:
 def through_channel(
     values: Mapping[str, float], force: Array, elapsed: Array, spacing: float
 ) -> Array:
-    """A device's force as the channel shows it, shape (n,).
+    """A device's force as the channel shows it, shape (..., n).
 
     Parameters
     ----------
     values
         Coordinates; those of the channel are read.
     force, elapsed
-        Force [N] and elapsed time [s], shape (n,).
+        Force [N], shape (..., n), and elapsed time [s], shape (n,).
     spacing
         Of the samples [s].
     """
@@ -74,21 +74,21 @@ def through_channel(
 
 
 def delayed(force: Array, delay: float, spacing: float) -> Array:
-    """A force `delay` seconds later, by four-point Lagrange interpolation; ends held."""
+    """A force (..., n) `delay` seconds later, by four-point Lagrange interpolation; ends held."""
     if delay == 0:
         return force
-    n = force.size
+    n = force.shape[-1]
     shift = delay / spacing
     whole = int(np.floor(shift))
     s = 1 - (shift - whole)  # position after sample i - whole - 1
-    held = force[np.arange(-whole - 2, n - whole + 1).clip(0, n - 1)]
+    held = force[..., np.arange(-whole - 2, n - whole + 1).clip(0, n - 1)]
     weights = (
         -s * (s - 1) * (s - 2) / 6,
         (s + 1) * (s - 1) * (s - 2) / 2,
         -(s + 1) * s * (s - 2) / 2,
         (s + 1) * s * (s - 1) / 6,
     )
-    return sum(weight * held[i : i + n] for i, weight in enumerate(weights))  # type: ignore[return-value]
+    return sum(weight * held[..., i : i + n] for i, weight in enumerate(weights))  # type: ignore[return-value]
 
 
 def without_tone(

@@ -168,23 +168,24 @@ def stated_filters(given: Iterable[str]) -> dict[str, Filter]:
 
 
 def filtered(values: Array, spacing: float, by: Filter, inverse: bool = False) -> Array:
-    """A channel (n,) through a filter, or before it; samples `spacing` apart [s].
+    """Channels (..., n) through a filter, or before it; samples `spacing` apart [s].
 
     Before its first sample the channel is taken to have been odd about it.
     """
-    n = values.size
+    n = values.shape[-1]
     half = int(next_fast_len(n - 1, real=True) or n - 1)
     response = by.response(rfftfreq(2 * half, spacing))
     lateness = by.lateness
     if inverse:
         response, lateness = _inverted(response), -lateness
     # the line through both ends passes as it is, only later
-    slope = (values[-1] - values[0]) / (n - 1)
-    line = values[0] + slope * np.arange(n)
-    wave = np.zeros(2 * half)
-    np.subtract(values, line, out=wave[:n])
-    np.negative(wave[n - 2 : 0 : -1], out=wave[wave.size - n + 2 :])
-    return line - slope * lateness / spacing + irfft(rfft(wave) * response, wave.size)[:n]
+    first, last = values[..., :1], values[..., -1:]
+    slope = (last - first) / (n - 1)
+    line = first + slope * np.arange(n)
+    wave = np.zeros((*values.shape[:-1], 2 * half))
+    np.subtract(values, line, out=wave[..., :n])
+    np.negative(wave[..., n - 2 : 0 : -1], out=wave[..., 2 * half - n + 2 :])
+    return line - slope * lateness / spacing + irfft(rfft(wave) * response, 2 * half)[..., :n]
 
 
 # share of a free response that has to be seen to tell its size
@@ -194,29 +195,45 @@ _SEEN = 0.5
 def without_start(
     residual: Array, spacing: float, mask: NDArray[np.bool_], by: Filter, first: int
 ) -> Array:
-    """A residual (n,) without what a filter still holds of the time before the sample `first`.
+    """A residual (..., n) without what a filter still holds of the time before the sample `first`.
 
     That is a sum of the filter's free responses, read off the masked samples that follow; where
     these have less than half of one of them (a fold without the beginning), off all samples, for
     nothing else tells it: what is left of a response later on tells next to nothing of its size.
     """
-    poles = np.roots(denominator(by.kind, by.order)) * 2 * math.pi * by.cutoff
-    count = min(int(START / abs(float(np.max(poles.real))) / spacing) + 1, residual.size - first)
+    poles = _poles(by.kind, by.order) * by.cutoff
+    slowest = abs(float(np.max(poles.real)))
+    count = min(int(START / slowest / spacing) + 1, residual.shape[-1] - first)
     part = slice(first, first + count)
     if count < 2 * by.order:
         return residual
-    times = spacing * np.arange(count)
+    responses, sizes = _free_responses(by, spacing, count, mask[part].tobytes())
+    left = residual.copy()
+    left[..., part] -= (residual[..., part] @ sizes) @ responses
+    return left
+
+
+@functools.cache
+def _poles(kind: str, order: int) -> NDArray[np.complex128]:
+    """Of a filter with a cut-off of 1 Hz [1/s]."""
+    return np.asarray(np.roots(denominator(kind, order)) * 2 * math.pi, dtype=np.complex128)
+
+
+# asked for once for each column of a fit, with the same filter
+@functools.lru_cache(maxsize=16)
+def _free_responses(by: Filter, spacing: float, count: int, masked: bytes) -> tuple[Array, Array]:
+    """Free responses (q, n), and what tells their sizes of the n samples they are in, (n, q)."""
+    known = np.frombuffer(masked, dtype=np.bool_)
+    poles, times = _poles(by.kind, by.order) * by.cutoff, spacing * np.arange(count)
     waves = [np.exp(pole * times) for pole in poles if pole.imag > -1e-9 * abs(pole)]
     # of a pair of poles the real and the imaginary part, of a real one the real part alone
     columns = np.array([each for wave in waves for each in (wave.real, wave.imag) if each.any()]).T
-    known = mask[part]
     seen = np.sum(columns[known] ** 2, axis=0) / np.sum(columns**2, axis=0)
     if np.min(seen) < _SEEN or np.sum(known) < 2 * by.order:
         known = np.ones(count, bool)
-    found = np.linalg.lstsq(columns[known], residual[part][known], rcond=1e-6)[0]
-    left = residual.copy()
-    left[part] -= columns @ found
-    return left
+    sizes = np.zeros_like(columns)
+    sizes[known] = np.linalg.pinv(columns[known], rcond=1e-6).T
+    return columns.T, sizes
 
 
 def _inverted(response: NDArray[np.complex128]) -> NDArray[np.complex128]:

@@ -11,8 +11,7 @@ a tone, whose phase is read off the residual, a column has what this phase does 
 from __future__ import annotations
 
 import functools
-import operator
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -27,12 +26,13 @@ from inerter.identify.channel_filter import Filter, slow_start, without_start
 from inerter.identify.in_proportion import (
     BY_SPEED,
     PLACES,
+    Rows,
     at_speeds,
-    column_key,
-    column_of,
+    column_keys,
     curve_of,
     entangling,
     factor_of,
+    first_shares,
     shown_by,
     through,
     times_inertance,
@@ -67,8 +67,8 @@ Tones = Sequence[tuple[Array, Array] | None]
 
 # difference of a search variable, and of the first force per its size
 _STEP = 1e-4
-# columns [bytes] that are kept of a problem, and of all runs in a process
-_MOST, _MOST_OF_RUNS = 2**25, 2**26
+# columns [bytes] that are kept of a problem
+_MOST = 2**25
 # coordinates that are solved for apart, at least; bases of such that are kept of a problem
 _WORTH_WHILE, _MOST_BASES = 5, 4
 # with one of these a column is no longer that of the motion as it is
@@ -77,10 +77,6 @@ _FILTER = "displacement_filter"
 _CHANNEL = (*LINEAR, *RELAXING)
 # share of an inertance that it may lose with the speed at most; its floor is 0.01
 _NEAR_FLOOR = 0.98
-
-
-# what the channels of runs show of coordinates: of use to every problem that has the run
-_OF_RUNS = Kept(_MOST_OF_RUNS)
 
 
 class Columns:
@@ -107,32 +103,51 @@ class Columns:
 
         `point` has the variables of the model's free coordinates.
         """
-        base: list[Array] = []
-        by_first_force: list[Array] = []
         tones = self._tones(model)
-        of_friction = self._of_friction(names, model, tones)
-        columns = []
-        for name in names:
-            if name in of_friction:
-                size = search_range(name, self.problem.scales).size
-                columns.append(of_friction[name] * size)
-            elif self._in_proportion(name, model):
-                unknown, parts = _Unknown.of(model), at_speeds(name, model)
-                column = functools.reduce(
-                    operator.add,
-                    (share * self._weighted(name, each, unknown, tones) for share, each in parts),
-                )
-                if model.device().nstate and COORDINATES[name].belongs_to == "device":
-                    base = base or residual(point)
-                    by_first_force = by_first_force or self._by_first_force(point, base, residual)
-                    for share, each in parts:
-                        column -= share * self._taken(name, each, by_first_force)
-                size = factor_of(name, model) * search_range(name, self.problem.scales).size
-                columns.append(column * size)
-            else:
-                base = base or residual(point)
-                columns.append(self._difference(name, model, point, base, residual))
-        return columns
+        known = self._of_friction(names, model, tones)
+        others = [name for name in names if name not in known]
+        base = functools.cache(lambda: residual(point))
+        known |= self._proportional(others, model, point, base, residual, tones)
+        return [
+            known[name] * search_range(name, self.problem.scales).size
+            if name in known
+            else self._difference(name, model, point, base(), residual)
+            for name in names
+        ]
+
+    def _proportional(
+        self,
+        names: Sequence[str],
+        model: Model,
+        point: Array,
+        base: Callable[[], list[Array]],
+        residual: ResidualAt,
+        tones: Tones,
+    ) -> dict[str, Array]:
+        """Derivatives by those of some coordinates that the force is in proportion to."""
+        names = [name for name in names if self._in_proportion(name, model)]
+        if not names:
+            return {}
+        speeds = at_speeds(model)
+        alike = [
+            (name, *each)
+            for name in names
+            for each in (speeds if times_inertance(name) else [(1.0, model)])
+        ]
+        rows = [(name, each) for name, _, each in alike]
+        columns = self._weighted(rows, _Unknown.of(model), tones)
+        if model.device().nstate:
+            taken = [first_shares(rows, run) for run in self.problem.runs]
+            if np.any(taken):
+                changes, begin = self._by_first_force(point, base(), residual), 0
+                for shares, change in zip(taken, changes, strict=True):
+                    columns[:, begin : begin + change.size] -= np.outer(shares, change)
+                    begin += change.size
+        found: dict[str, Array] = {}
+        for (name, share, _), column in zip(alike, columns, strict=True):
+            part = share * factor_of(name, model) * column
+            found[name] = found[name] + part if name in found else part
+        return found
 
     def apart(self, model: Model) -> Apart | None:
         """What the residual is linear in, where that is so much that it is worth while."""
@@ -144,13 +159,13 @@ class Columns:
             return None
         which = [model.free.index(name) for name in names]
         smooth = smoothness(model)[:, which]
-        key = (*(column_key(name, model, _CHANNEL) for name in names), len(smooth))
+        key = (*column_keys([(name, model) for name in names], _CHANNEL), len(smooth))
         basis = self._bases.get(key)
         if basis is None:
             if len(self._bases) == _MOST_BASES:
                 self._bases.clear()
             unknown = _Unknown.of(model)
-            weighted = np.column_stack([self._weighted(name, model, unknown) for name in names])
+            weighted = self._weighted([(name, model) for name in names], unknown).T
             sizes = self.problem.scales
             # by one of each, as the columns; of an inertance that of the first model
             units = [search_range(name, sizes).size * factor_of(name, model) for name in names]
@@ -205,19 +220,17 @@ class Columns:
             return {}
         channel = {each: model.values[each] for each in LINEAR if each in model.values}
         unknown = _Unknown.of(model)
-        shown: dict[str, list[Array]] = {name: [] for name in nodes}
+        columns = []
         every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
         for run, mask, tone in every:
             if np.isfinite(run.corner) and not mask.any():
-                for name in nodes:
-                    shown[name].append(np.zeros(run.force.size))
+                columns.append(np.zeros((len(nodes), run.force.size)))
                 continue
             response = along_friction.Response(model, run)
-            for name in nodes:
-                column = through(channel, response.of(name), run)
-                shown[name].append(-_settled(column, run, mask, unknown, tone))
-        weighted = self.problem.weighted
-        return {name: np.concatenate(weighted(columns)) for name, columns in shown.items()}
+            forces = np.array([response.of(name) for name in nodes])
+            columns.append(-_settled(through(channel, forces, run), run, mask, tone, unknown))
+        weighted = np.concatenate(self.problem.weighted(columns), axis=1)
+        return dict(zip(nodes, weighted, strict=True))
 
     def _difference(
         self,
@@ -235,42 +248,35 @@ class Columns:
         moved[index] += step
         return (np.concatenate(residual(moved)) - np.concatenate(base)) / step
 
-    def _weighted(
-        self, name: str, model: Model, unknown: _Unknown, tones: Tones | None = None
-    ) -> Array:
-        """Minus a column as it counts, the tones held where none are given."""
+    def _weighted(self, rows: Rows, unknown: _Unknown, tones: Tones | None = None) -> Array:
+        """Minus coordinates' columns as they count, (m, n); tones held where none are given."""
         tones = tones or [None] * len(self.problem.runs)
-
-        def column(unknown: _Unknown) -> Array:
-            every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
-            columns = [
-                -_settled(self._shown(name, model, run), run, mask, unknown, tone)
-                for run, mask, tone in every
-            ]
-            return np.concatenate(self.problem.weighted(columns))
-
-        if any(tones):
-            # what a tone does changes with the model
-            return column(unknown)
         apart = replace(unknown, reach=0.0)
-        if unknown.reach and apart != _NOTHING:
-            return column(unknown)
-        whole = column_key(name, model, _CHANNEL)
-        found = self._kept.found(whole, lambda: column(apart))
+        # what a tone does changes with the model, and what a bristle does
+        if any(tones) or (unknown.reach and apart != _NOTHING):
+            return self._settled(rows, unknown, tones)
+        found = self._kept.all_found(
+            column_keys(rows, _CHANNEL),
+            lambda missing: self._settled([rows[i] for i in missing], apart, tones),
+        )
         if not unknown.reach:
             return found
-        # what a bristle does changes with the model, but for one form in every run
-        found, begin = found.copy(), 0
+        # but for one form in every run
+        begin = 0
         for run, (share, form) in zip(self.problem.runs, self._bent(unknown.reach), strict=True):
             if share.size:
-                shown = self._shown(name, model, run)[: share.size]
-                found[begin : begin + form.size] += (share @ shown) * form
+                shown = shown_by(rows, run)[:, : share.size]
+                found[:, begin : begin + form.size] += np.outer(shown @ share, form)
             begin += run.force.size
         return found
 
-    def _shown(self, name: str, model: Model, run: BenchRun) -> Array:
-        key = (run.identity, *column_key(name, model, LINEAR))
-        return _OF_RUNS.found(key, functools.partial(shown_by, name, model, run))
+    def _settled(self, rows: Rows, unknown: _Unknown, tones: Tones) -> Array:
+        """The same, worked out."""
+        every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
+        columns = [
+            -_settled(shown_by(rows, run), run, mask, tone, unknown) for run, mask, tone in every
+        ]
+        return np.concatenate(self.problem.weighted(columns), axis=1)
 
     def _bent(self, reach: float) -> list[tuple[Array, Array]]:
         """What tells of every run how a bristle was bent, and what that leaves as it counts."""
@@ -295,17 +301,6 @@ class Columns:
         step = _STEP * self.problem.scales.force
         there = residual(point, step)
         return [(each - here) / step for each, here in zip(there, base, strict=True)]
-
-    def _taken(self, name: str, model: Model, by_first_force: Sequence[Array]) -> Array:
-        """What a coordinate does by the share of each run's first force that it takes."""
-        key, taken = column_key(name, model), []
-        for run, column in zip(self.problem.runs, by_first_force, strict=True):
-
-            def share(run: BenchRun = run) -> Array:
-                return column_of(name, model, run)[run.first : run.first + 1].copy()
-
-            taken.append(_OF_RUNS.found((run.identity, *key), share) * column)
-        return np.concatenate(taken)
 
 
 @dataclass(frozen=True)
@@ -332,10 +327,10 @@ def _settled(
     shown: Array,
     run: BenchRun,
     mask: NDArray[np.bool_],
-    unknown: _Unknown,
     tone: tuple[Array, Array] | None,
+    unknown: _Unknown,
 ) -> Array:
-    """A column without what is read off the record, as a residual is (`prediction.settled`)."""
+    """Columns (m, n) without what is read off the record, as a residual is there (`settled`)."""
     seen = mask if mask.any() else run.inner
     shown = without_bending(run.path, unknown.reach, shown, seen)
     shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first, run.cutoff)
@@ -343,5 +338,5 @@ def _settled(
         shown = without_start(shown, run.spacing, seen & run.inner, unknown.low_pass, run.first)
     if tone is not None:
         per_radian, phase = tone
-        shown = shown + (phase @ shown) * per_radian
+        shown = shown + np.outer(shown @ phase, per_radian)
     return shown

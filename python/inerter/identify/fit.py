@@ -62,6 +62,22 @@ class Fit:
         return rms(self.residual, masks)
 
 
+@dataclass(frozen=True)
+class Near:
+    """Derivatives of a residual near those at the start of a fit, over all samples, shape (n, p).
+
+    Those by the coordinates `bending` bend most on the way, and are the first to be worked out
+    anew; where it is not known by which, all of them are.
+    """
+
+    columns: Array
+    bending: tuple[str, ...] | None = None
+
+    def bending_in(self, free: Sequence[str]) -> list[str] | None:
+        """Which of some free coordinates these are."""
+        return None if self.bending is None else [name for name in free if name in self.bending]
+
+
 def rms(residual: Sequence[Array], masks: Masks) -> float:
     """Root mean square over the masked samples of all runs."""
     square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, masks, strict=True))
@@ -185,24 +201,24 @@ class Problem:
         tolerance: float = 1e-9,
         give_up: Callable[[int, float], bool] | None = None,
         rough: bool = False,
-        derivatives: Array | None = None,
+        near: Near | None = None,
     ) -> Fit:
         """Bounded least squares over the model's free coordinates, from its present values.
 
         A robust `loss` (see `scipy.optimize.least_squares`) lets samples far off count less. The
         search ends where a step lowers the cost by less than `tolerance` of it, or where `give_up`
         says so of the evaluations so far and the rms of the masked residual [N]. A `rough` one is
-        only compared: its derivatives where it ends are not worked out. `derivatives`, where given,
-        are near those at the start.
+        only compared: its derivatives where it ends are not worked out. Derivatives, where given,
+        are `near` those at the start.
         """
         if not model.free:
             return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
         size, selected = self.scales.force, np.concatenate(self.masks)
-        first = None if derivatives is None else derivatives[selected]
+        near = replace(near, columns=near.columns[selected]) if near else None
         spent = 0
         apart = self._derivatives.apart(model) if loss == "linear" else None
-        if apart and (near := self._near(apart, model, evaluations, tolerance, give_up, first)):
-            model, spent, first = near
+        if apart and (found := self._near(apart, model, evaluations, tolerance, give_up, near)):
+            model, spent, near = found
         variables, at, smooth = self.variables(model), self._remembered(model), smoothness(model)
         samples = int(selected.sum())
 
@@ -216,8 +232,16 @@ class Problem:
         def flat_at(point: Array) -> Array:
             return np.concatenate([self.masked(at(point)) / size, smooth @ point])
 
-        near_start = None if first is None else np.concatenate([first / size, smooth])
-        secants = Secants(flat_at, jacobian, tolerance, rough, near_start)
+        def bending(point: Array) -> tuple[list[int], Array]:
+            which = [model.free.index(name) for name in bent or ()]
+            columns = self._columns(self._decode(model, point), point, bent or (), at)[selected]
+            return which, np.concatenate([columns / size, smooth[:, which]])
+
+        first = np.concatenate([near.columns / size, smooth]) if near else None
+        bent = near.bending_in(model.free) if near else None
+        secants = Secants(
+            flat_at, jacobian, tolerance, rough, first, None if bent is None else bending
+        )
         solution = minimise(
             flat_at,
             variables.encode(model.values),
@@ -249,8 +273,8 @@ class Problem:
         evaluations: int,
         tolerance: float,
         give_up: Callable[[int, float], bool] | None,
-        derivatives: Array | None,
-    ) -> tuple[Model, int, Array] | None:
+        near: Near | None,
+    ) -> tuple[Model, int, Near] | None:
         """A search in which what the residual is linear in is solved for at every point.
 
         The model where it ends, evaluations, and derivatives there, masked and near. None where no
@@ -281,6 +305,12 @@ class Problem:
             last = columns[selected]
             return beside(last)
 
+        def bending(point: Array) -> tuple[list[int], Array]:
+            found = [inner.free.index(name) for name in bent or ()]
+            columns = self._columns(self._decode(inner, point), point, bent or (), at)
+            last[:, found] = columns[selected]
+            return found, beside(last)[:, found]
+
         def flat_at(point: Array) -> Array:
             return apart.rest(counted(point)) / size
 
@@ -290,14 +320,17 @@ class Problem:
         here, spent = begin, 0
         if inner.free:
             first = None
-            if derivatives is not None:
-                last = derivatives[:, which]
+            bent = near.bending_in(inner.free) if near else None
+            if near:
+                last = near.columns[:, which]
                 first = beside(last)
             found = minimise(
                 flat_at, begin, self.variables(inner).bounds, jacobian,
                 tolerances=Tolerances(1e-7, tolerance, 1e-10), evaluations=evaluations,
                 give_up=hopeless if give_up else None,
-                secants=Secants(flat_at, jacobian, tolerance, True, first),
+                secants=Secants(
+                    flat_at, jacobian, tolerance, True, first, None if bent is None else bending
+                ),
             )  # fmt: skip
             here, spent = found.variables, found.evaluations
         reached = replace(self._decode(inner, here), free=model.free)
@@ -314,7 +347,7 @@ class Problem:
         columns[:, which] = last
         others = [model.free.index(name) for name in apart.names]
         columns[:, others] = apart.columns(reached, self.scales)[: last.shape[0]]
-        return reached, spent, columns
+        return reached, spent, Near(columns, near.bending if near else None)
 
     def _remembered(self, model: Model) -> ResidualAt:
         """The residual at a point of a model's variables; the last one asked for is kept."""

@@ -6,7 +6,8 @@ gives of a device that has nothing else.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+import functools
+from collections.abc import Callable, Hashable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +16,17 @@ from inerter.catalogue.along_stroke import Quantity, node_of
 from inerter.catalogue.coordinates import BENDS, COORDINATES, ENTANGLED, device_values
 from inerter.core import Device
 from inerter.identify.channel import LINEAR, through_channel
+from inerter.identify.kept import Kept
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 
 Array = NDArray[np.float64]
+
+# arrays [bytes] that are kept of all runs in a process: of use to every problem that has the run
+_OF_RUNS = Kept(2**26)
+
+Rows = Sequence[tuple[str, Model]]
+"""Coordinates, each with the model that its column is of."""
 
 PLACES = ("rest_length", "curve_lower", "curve_upper")
 """What beside a node says what its curve adds to the force."""
@@ -26,12 +34,22 @@ BY_SPEED = "inertance_speed_gradient"
 """What every node of the inertance is multiplied by too."""
 
 
-def column_key(name: str, model: Model, channel: Sequence[str] = ()) -> tuple[Hashable, ...]:
-    """What of a model a coordinate's column depends on; `channel`: what the channel does to it."""
-    places = PLACES if curve_of(name) else PLACES[:1]
-    also = (BY_SPEED,) if times_inertance(name) else ()
-    values = (model.values.get(each, 0.0) for each in (*places, *also, *channel))
-    return name, _nodes(name, model), *values
+def column_keys(rows: Rows, channel: Sequence[str] = ()) -> list[tuple[Hashable, ...]]:
+    """What of models coordinates' columns depend on; `channel`: what the channel does to them."""
+    keys: list[tuple[Hashable, ...]] = []
+    last, told, names = None, ((), ()), frozenset()
+    for name, model in rows:
+        if model is not last:
+            last, names = model, frozenset(model.values)
+            shown = tuple(model.values.get(each, 0.0) for each in (*PLACES, *channel))
+            told = (model.values.get(PLACES[0], 0.0), *shown[len(PLACES) :]), shown
+        quantity = curve_of(name)
+        if quantity is None:
+            keys.append((name, *told[0]))
+            continue
+        by_speed = model.values.get(BY_SPEED, 0.0) if times_inertance(name) else 0.0
+        keys.append((name, *_nodes(quantity, names), by_speed, *told[1]))
+    return keys
 
 
 def curve_of(name: str) -> Quantity | None:
@@ -57,13 +75,13 @@ def factor_of(name: str, model: Model) -> float:
     return model.values["inertance"] if times_inertance(name) else 1.0
 
 
-def at_speeds(name: str, model: Model) -> list[tuple[float, Model]]:
-    """Models by whose columns, times a share each, the column of a coordinate is known.
+def at_speeds(model: Model) -> list[tuple[float, Model]]:
+    """Models by whose columns, times a share each, those of nodes of an inertance are known.
 
     What a node adds to the force is linear in the gradient of the inertance along the speed.
     """
     by_speed = model.values.get(BY_SPEED, 0.0)
-    if not by_speed or not times_inertance(name):
+    if not by_speed:
         return [(1.0, model)]
     pair = ((1.0 - by_speed, 0.0), (by_speed, 1.0))
     return [(share, model.holding(**{BY_SPEED: at})) for share, at in pair]
@@ -75,35 +93,73 @@ def times_inertance(name: str) -> bool:
     return quantity is not None and quantity.name == "inertance"
 
 
-def _nodes(name: str, model: Model) -> tuple[int, ...]:
-    """Numbers of nodes of the curve that a coordinate is a node of, and of that for v < 0."""
-    if (quantity := curve_of(name)) is None:
-        return ()
-    names = model.values.keys()
-    return tuple(len(names & set(each)) for each in (quantity.nodes, quantity.back_nodes))
+@functools.lru_cache(maxsize=64)
+def _nodes(quantity: Quantity, names: frozenset[str]) -> tuple[int, int]:
+    """How many nodes coordinates have of a curve, and of that for v < 0."""
+    return len(names & set(quantity.nodes)), len(names & set(quantity.back_nodes))
 
 
-def shown_by(name: str, model: Model, run: BenchRun) -> Array:
-    """What one of a coordinate adds to a run's force channel, shape (n,)."""
-    channel = {each: model.values[each] for each in LINEAR if each in model.values}
-    if (curve_of(name) or name in BENDS) and np.isfinite(run.cutoff):
-        # what bends more sharply than the motion passes the low-pass of the measured force
-        device, less = _alone(name, model)
-        fine = run.at_measured_rate(device, 0.0)["total"]
-        if less:
-            fine = fine - run.at_measured_rate(less, 0.0)["total"]
-        return through(channel, fine, run)
-    return through_channel(channel, column_of(name, model, run), run.elapsed, run.spacing)
+def shown_by(rows: Rows, run: BenchRun) -> Array:
+    """What a run's force channel shows of one of each coordinate, (m, n)."""
+    values = rows[0][1].values if rows else {}
+    channel = {each: values[each] for each in LINEAR if each in values}
+    plain = column_keys(rows)
+
+    def forces(of: Callable[[str, Model, BenchRun], Array], which: Sequence[int]) -> Array:
+        keys = [(run.identity, of.__name__, *plain[i]) for i in which]
+        return _OF_RUNS.all_found(keys, lambda new: [of(*rows[which[k]], run) for k in new])
+
+    def shown(missing: list[int]) -> list[Array]:
+        sharp = [i for i in missing if _bends(rows[i][0], run)]
+        smooth = [i for i in missing if i not in sharp]
+        found: dict[int, Array] = {}
+        if sharp:
+            columns = through(channel, forces(_force_of, sharp), run)
+            found |= zip(sharp, columns, strict=True)
+        if smooth:
+            columns = forces(_column_of, smooth)
+            columns = through_channel(channel, columns, run.elapsed, run.spacing)
+            found |= zip(smooth, columns, strict=True)
+        return [found[i] for i in missing]
+
+    return _OF_RUNS.all_found([(run.identity, *key) for key in column_keys(rows, LINEAR)], shown)
+
+
+def first_shares(rows: Rows, run: BenchRun) -> Array:
+    """What one of each coordinate is of a run's first force, (m,); 0 of one of the channel."""
+
+    def shares(missing: list[int]) -> list[Array]:
+        at = slice(run.first, run.first + 1)
+        return [_column_of(*rows[i], run)[at].copy() for i in missing]
+
+    keys = [(run.identity, "first", *key) for key in column_keys(rows)]
+    found = _OF_RUNS.all_found(keys, shares)[:, 0]
+    return np.where([COORDINATES[name].belongs_to == "device" for name, _ in rows], found, 0.0)
+
+
+def _bends(name: str, run: BenchRun) -> bool:
+    """Whether a coordinate's force bends more sharply than the motion.
+
+    Then it passes the low-pass of the measured force, and is asked for at the measured rate.
+    """
+    return bool((curve_of(name) or name in BENDS) and np.isfinite(run.cutoff))
+
+
+def _force_of(name: str, model: Model, run: BenchRun) -> Array:
+    """What one of a coordinate that bends adds to a device's force at the measured rate, (m,)."""
+    device, less = _alone(name, model)
+    fine = run.at_measured_rate(device, 0.0)["total"]
+    return fine - run.at_measured_rate(less, 0.0)["total"] if less else fine
 
 
 def through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
-    """A force that bends sharply, (m,), as the force channel shows it in the run's band, (n,)."""
+    """Forces that bend sharply, (..., m), as the channel shows them in a run's band, (..., n)."""
     if np.isinf(run.cutoff):
         return through_channel(channel, force, run.elapsed, run.spacing)
     return run.in_band(through_channel(channel, force, run.fine_elapsed, run.fine_spacing))
 
 
-def column_of(name: str, model: Model, run: BenchRun) -> Array:
+def _column_of(name: str, model: Model, run: BenchRun) -> Array:
     """What one of a coordinate adds to a device's force along a run, shape (n,)."""
     column = COORDINATES[name].column
     if column is None:

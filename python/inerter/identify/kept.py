@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +20,22 @@ class Kept:
     def found(self, key: Hashable, work_out: Callable[[], Array]) -> Array:
         """The array of a key."""
         known = self.arrays.get(key)
-        if known is None:
-            if self.size > self.most:
-                self.arrays.clear()
-                self.size = 0
-            known = self.arrays[key] = work_out()
-            self.size += known.nbytes
-        return known
+        return self._keep(key, work_out()) if known is None else known
+
+    def all_found(
+        self, keys: Sequence[Hashable], work_out: Callable[[list[int]], Iterable[Array]]
+    ) -> Array:
+        """The arrays of keys, one below another; those that are missing are worked out at once."""
+        known = [self.arrays.get(key) for key in keys]
+        missing = [i for i, each in enumerate(known) if each is None]
+        for i, array in zip(missing, work_out(missing) if missing else (), strict=True):
+            known[i] = self._keep(keys[i], array)
+        return np.array(known)
+
+    def _keep(self, key: Hashable, array: Array) -> Array:
+        if self.size > self.most:
+            self.arrays.clear()
+            self.size = 0
+        self.arrays[key] = array
+        self.size += array.nbytes
+        return array

@@ -74,7 +74,7 @@ def without_relaxing(
     first: int = 0,
     cutoff: float = np.inf,
 ) -> Array:
-    """A residual without what branches were bent by as a record began, shape (n,).
+    """A residual without what branches were bent by as a record began, shape (..., n).
 
     A branch that was bent before goes on to relax, exp(-t / time) from the sample `first` on; the
     share of the masked samples that has this form is taken out, as above. Not of branches so quick
@@ -84,12 +84,12 @@ def without_relaxing(
         return residual
     shortest = max(_PERIODS / cutoff, _FEWEST * spacing)
     times = [time for time in times if time > shortest]
-    count = min(residual.size - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
+    count = min(residual.shape[-1] - first, int(_DECAYED * max(times, default=0.0) / spacing) + 1)
     if not times or np.count_nonzero(mask) < 4 or count < 1:
         return residual
     basis, share = _relaxing(tuple(times), spacing, first, first + count, mask.tobytes())
     rest = residual.copy()
-    rest[: first + count] -= (share @ residual[: first + count]) @ basis
+    rest[..., : first + count] -= (residual[..., : first + count] @ share.T) @ basis
     return rest
 
 
@@ -121,7 +121,7 @@ def _with_beginning(mask: NDArray[np.bool_], first: int, count: int) -> NDArray[
 
 
 def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np.bool_]) -> Array:
-    """A residual without what a bristle was bent by as a record began, shape (n,).
+    """A residual without what a bristle was bent by as a record began, shape (..., n).
 
     The first force tells it within the noise of the motion alone. What is wrong of it dies away
     along the path slid since then [m], shape (n,), as exp(-path / reach).
@@ -130,7 +130,7 @@ def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np
     if not decay.size:
         return residual
     rest = residual.copy()
-    rest[: decay.size] -= (share @ residual[: decay.size]) * decay
+    rest[..., : decay.size] -= (residual[..., : decay.size] @ share)[..., None] * decay
     return rest
 
 

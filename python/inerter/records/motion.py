@@ -167,8 +167,8 @@ def _even(values: Array) -> Array:
 
 
 def lowpass(values: Array, spacing: float, cutoff: float) -> Array:
-    """The smoother's low-pass applied to any channel, shape (n,) to (n,)."""
-    return filtered(values, band_response(values.size, spacing, cutoff))
+    """The smoother's low-pass applied to any channels, shape (..., n) to (..., n)."""
+    return filtered(values, band_response(values.shape[-1], spacing, cutoff))
 
 
 def band_response(size: int, spacing: float, cutoff: float) -> Array:
@@ -177,32 +177,35 @@ def band_response(size: int, spacing: float, cutoff: float) -> Array:
 
 
 def filtered(values: Array, response: Array) -> Array:
-    """A channel through a real response at the frequencies of its odd continuation.
+    """Channels (..., n) through a real response at the frequencies of their odd continuation.
 
     Between the channel and its mirror image the line through its ends goes on for as long as the
     response's length asks.
     """
-    n = values.size
-    first, last = values[0], values[-1]
+    n, length = values.shape[-1], 2 * response.size - 2
+    first, last = values[..., :1], values[..., -1:]
     line = first + (last - first) / (n - 1) * np.arange(n)
-    wave = np.zeros(2 * response.size - 2)
-    np.subtract(values, line, out=wave[:n])
-    np.negative(wave[n - 2 : 0 : -1], out=wave[wave.size - n + 2 :])
-    return line + irfft(rfft(wave) * response, wave.size)[:n]
+    wave = np.zeros((*values.shape[:-1], length))
+    np.subtract(values, line, out=wave[..., :n])
+    np.negative(wave[..., n - 2 : 0 : -1], out=wave[..., length - n + 2 :])
+    return line + irfft(rfft(wave) * response, length)[..., :n]
 
 
 def filtered_and_thinned(values: Array, spacing: float, cutoff: float, step: int) -> Array:
-    """Every `step`th sample of `lowpass`, shape (1 + (n - 1) // step,), in a fraction of its time.
+    """Every `step`th sample of `lowpass`, (..., 1 + (n - 1) // step), in a fraction of its time.
 
     From two samples on: the nearer the cut-off is to the sample rate, the more it would differ.
     """
     if step < 2:
         return lowpass(values, spacing, cutoff)
     values = np.ascontiguousarray(values, dtype=np.float64)
-    found = np.empty(1 + (values.size - 1) // step)
+    channels = values.reshape(-1, values.shape[-1])
+    found = np.empty((len(channels), 1 + (values.shape[-1] - 1) // step))
     angle = 2.0 * np.pi * cutoff * spacing
-    library().inerter_low_pass(values.size, step, angle, values.ctypes.data, found.ctypes.data)
-    return found
+    for channel, low in zip(channels, found, strict=True):
+        size, data = channel.size, channel.ctypes.data
+        library().inerter_low_pass(size, step, angle, data, low.ctypes.data)
+    return found.reshape(*values.shape[:-1], -1)
 
 
 def weight_above(
