@@ -179,6 +179,15 @@ static int set_list(InerterDevice* device, int i, const char* text, char* messag
   return inerter_set_list(device, i, count, values, message);
 }
 
+int inerter_set_number(InerterDevice* device, int i, double value) {
+  if (!allowed(inerter_parameter(i), value)) {
+    return -1;
+  }
+  *value_of(device, i) = value;
+  inerter_mark_given(device, i);
+  return 0;
+}
+
 int inerter_set(InerterDevice* device, const char* key, const char* text,
                 char message[INERTER_MESSAGE_SIZE]) {
   char range[128];
@@ -227,13 +236,11 @@ int inerter_set(InerterDevice* device, const char* key, const char* text,
                text, range_text(p, range), p->meaning);
       return -1;
     }
-    if (!allowed(p, value)) {
+    if (inerter_set_number(device, i, value)) {
       snprintf(message, INERTER_MESSAGE_SIZE, "%s is \"%.60s\": out of range; give %s (%s)", key,
                text, range_text(p, range), p->meaning);
       return -1;
     }
-    *value_of(device, i) = value;
-    inerter_mark_given(device, i);
     return 0;
   }
   snprintf(message, INERTER_MESSAGE_SIZE, "\"%.60s\" is not a parameter of the device", key);

@@ -236,7 +236,10 @@ INERTER_API void inerter_default(InerterDevice* device);
 INERTER_API int inerter_set(InerterDevice* device, const char* key, const char* text,
                             char message[INERTER_MESSAGE_SIZE]);
 
-// The same for list i from numbers; 0 numbers take it away.
+// Set parameter i to a number. Return 0, or -1 where it is out of range.
+INERTER_API int inerter_set_number(InerterDevice* device, int i, double value);
+
+// The same as inerter_set for list i from numbers; 0 numbers take it away.
 INERTER_API int inerter_set_list(InerterDevice* device, int i, int count, const double* values,
                                  char message[INERTER_MESSAGE_SIZE]);
 

@@ -27,8 +27,10 @@ from inerter.core_library import (
     library,
     library_path,
     lists,
+    message_text,
     names,
     parameters,
+    set_as_number,
 )
 from inerter.parameter_text import value_text, with_suggestion
 
@@ -79,13 +81,15 @@ class Device:
         at, known = ctypes.byref(self._c), parameters()
         core.inerter_default(at)
         for name, value in values.items():
+            if set_as_number(self._c, name, value):
+                continue
             text, key = value_text(value), name if name in known else value_text(name)
             if text is None or key is None:
                 raise DeviceError(f"{name!a} is {value!a:.80}: give a number, or the name of a law")
             if core.inerter_set(at, key.encode(), text.encode(), message):
-                raise DeviceError(with_suggestion(name, _text(message), names()))
+                raise DeviceError(with_suggestion(name, message_text(message), names()))
         if core.inerter_finish(at, message):
-            raise DeviceError(_text(message))
+            raise DeviceError(message_text(message))
         self._stated = tuple(values)
 
     @property
@@ -321,7 +325,7 @@ class Device:
         states, message = self._states(z), ctypes.create_string_buffer(MESSAGE_SIZE)
         if library().inerter_valid(ctypes.byref(self._c), x, states.ctypes.data, message):
             return None
-        return _text(message)
+        return message_text(message)
 
     def along(
         self,
@@ -443,8 +447,3 @@ def along_many(
 
 def _pointer(array: NDArray[np.float64]) -> Any:
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
-
-
-def _text(message: ctypes.Array[ctypes.c_char]) -> str:
-    # a long value is cut, perhaps within a character
-    return message.value.decode(errors="replace")

@@ -6,6 +6,7 @@ import ctypes
 import functools
 import os
 import sys
+from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -108,6 +109,8 @@ def library() -> ctypes.CDLL:
         for what in ("name", "meaning"):
             getattr(found, f"inerter_{word}_{what}").restype = ctypes.c_char_p
     at, number = ctypes.c_void_p, ctypes.c_double
+    found.inerter_set_number.argtypes = [at, ctypes.c_int, number]
+    found.inerter_set_list.argtypes = [at, ctypes.c_int, ctypes.c_int, at, ctypes.c_char_p]
     found.inerter_state_step.argtypes = [at, *[number] * 3, at, number]
     found.inerter_state_of_force.argtypes = [at, *[number] * 4, at]
     found.inerter_valid.argtypes = [at, number, at, ctypes.c_char_p]
@@ -141,6 +144,12 @@ def lists() -> Mapping[str, NumberList]:
         numbers = (c.most, bool(c.periods))
         found[name] = NumberList(name, unit, *numbers, tuple(laws.split()), meaning)
     return found
+
+
+@functools.cache
+def places() -> Mapping[str, int]:
+    """Which parameter, or which list, the core calls by a name."""
+    return {name: i for known in (parameters(), lists()) for i, name in enumerate(known)}
 
 
 @functools.cache
@@ -197,3 +206,24 @@ def device_type() -> type[ctypes.Structure]:
     numbers = (library().inerter_device_size() - ctypes.sizeof(known)) // 8
     fields.append(("curves", ctypes.c_double * numbers))
     return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
+
+
+def set_as_number(c: ctypes.Structure, name: str, value: object) -> bool:
+    """Set a parameter or a list without a text in between; whether that did it."""
+    place = places().get(name, -1)
+    if place < 0:
+        return False
+    if isinstance(value, float):
+        return not library().inerter_set_number(ctypes.addressof(c), place, value)
+    if not isinstance(value, tuple) or not all(isinstance(each, float) for each in value):
+        return False
+    numbers, message = array("d", value), ctypes.create_string_buffer(MESSAGE_SIZE)
+    at, count = numbers.buffer_info()
+    return bool(count) and not library().inerter_set_list(
+        ctypes.addressof(c), place, count, at, message
+    )
+
+
+def message_text(message: ctypes.Array[ctypes.c_char]) -> str:
+    """What the core said; a long value is cut, perhaps within a character."""
+    return message.value.decode(errors="replace")

@@ -228,20 +228,20 @@ def told(values: Values) -> None:
                 values[f"{quantity.name}_phase_{i}"] = float(np.arctan2(c, s))
 
 
-def lists(values: Values) -> dict[str, str]:
+def lists(values: Values) -> dict[str, tuple[float, ...]]:
     """Lists of a device that told parameters stand for; these are taken out of the values."""
-    found: dict[str, str] = {}
+    found: dict[str, tuple[float, ...]] = {}
     present = values.keys() & _NAMES
     if not present:
         return found
     for quantity in QUANTITIES:
-        rows = []
+        rows: list[float] = []
         for names in quantity.told_periods:
             if not present.isdisjoint(names):
                 row = [values.pop(name, 0.0) for name in names]
                 rows += row if row[1] else []
         if rows:
-            found[f"{quantity.name}_periods"] = " ".join(map(repr, rows))
+            found[f"{quantity.name}_periods"] = tuple(rows)
         forth, back = f"{quantity.name}_curve", f"{quantity.name}_back_curve"
         for name, names in ((forth, quantity.nodes), (back, quantity.back_nodes)):
             known = [i for i, each in enumerate(names) if each in present]
@@ -252,5 +252,5 @@ def lists(values: Values) -> dict[str, str]:
                 curve[i] = float(values.pop(names[i]))
             # none for v < 0 would be that for v > 0
             if any(curve) or name == back:
-                found[name] = " ".join(map(repr, curve))
+                found[name] = tuple(curve)
     return found

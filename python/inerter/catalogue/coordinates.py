@@ -422,8 +422,8 @@ def parameters_of(coordinates: Mapping[str, float]) -> Values:
     return values
 
 
-def device_values(coordinates: Mapping[str, float]) -> dict[str, float | str]:
-    """What a device is made of: parameters, and lists as texts."""
+def device_values(coordinates: Mapping[str, float]) -> dict[str, float | tuple[float, ...]]:
+    """What a device is made of: parameters and lists."""
     values = {name: float(value) for name, value in parameters_of(coordinates).items()}
     return {**along_stroke.lists(values), **values}
 

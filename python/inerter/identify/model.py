@@ -14,12 +14,14 @@ from inerter.core import Device, DeviceError, lists, parameters
 from inerter.identify.channel import clips
 from inerter.records.motion import Shaft
 
+_Stated = float | str | tuple[float, ...]
+
 
 @dataclass(frozen=True)
 class Part:
     """Some of what a device is made of, by name, and the device of that alone."""
 
-    stated: tuple[tuple[str, float | str], ...]
+    stated: tuple[tuple[str, _Stated], ...]
 
     @cached_property
     def device(self) -> Device:
@@ -80,7 +82,7 @@ class Model:
         return Device(friction=self.friction, **self._stated)
 
     @cached_property
-    def _stated(self) -> dict[str, float | str]:
+    def _stated(self) -> dict[str, _Stated]:
         """What the device is made of beside its friction law."""
         return _with_ends({**self.texts, **device_values(self.values)})
 
@@ -197,7 +199,7 @@ def stated_values(device: Device) -> tuple[dict[str, float], dict[str, str]]:
     return {name: float(value) for name, value in given.items() if name not in words}, words
 
 
-def _with_ends(values: Mapping[str, float | str]) -> dict[str, float | str]:
+def _with_ends(values: Mapping[str, _Stated]) -> dict[str, _Stated]:
     """What a device is made of, with the ends of its curves where it has one."""
     ends = () if any(name.endswith("_curve") for name in values) else ("curve_lower", "curve_upper")
     return {name: value for name, value in values.items() if name not in ends}
