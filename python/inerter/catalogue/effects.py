@@ -53,6 +53,8 @@ class Effect:
         Whether no friction law can stand in for it.
     on_table
         Whether amplitudes at a list of frequencies can show it.
+    smooth
+        Whether its force ends where the band of the motion does, or nearly so.
     tells_law
         Whether a finding says by which law.
     plain
@@ -78,6 +80,7 @@ class Effect:
     stated_as: tuple[str, ...] = ()
     rank: int = 0
     local: bool = False
+    smooth: bool = False
     far: bool = False
     unlike_friction: bool = False
     on_table: bool = False
@@ -178,13 +181,15 @@ _ALL = (
         experiment="repeat the first run last", rivals=("load_dependent_friction",),
     ),
     Effect(
-        name="hardening_stiffness", rank=14, coordinates=("stiffness_cubic",), local=True,
+        name="hardening_stiffness", rank=14,
+        smooth=True, coordinates=("stiffness_cubic",), local=True,
         unlike_friction=True, plain="a stiffness that grows with the stroke", meaning="k3 x^3",
         cause="rubber, guides that bind, a spring that stacks", taken_for="an end stop",
         experiment="repeat with half the stroke, k3 x^3 falls to an eighth", rivals=("end_stop",),
     ),
     Effect(
-        name="gas_spring", rank=20, coordinates=("gas_push", "gas_reach", "gas_exponent"),
+        name="gas_spring", rank=20,
+        smooth=True, coordinates=("gas_push", "gas_reach", "gas_exponent"),
         telling=("gas_push",), stated_as=("gas_pressure", "gas_volume"), local=True,
         unlike_friction=True, plain="a gas spring", meaning="p0 A (1 - (1 + A x / V0)^-gamma)",
         cause="trapped air, an accumulator", taken_for="a parallel stiffness",
@@ -211,7 +216,8 @@ _ALL = (
         rivals=("hardening_stiffness", "position_dependent_friction"),
     ),
     Effect(
-        name="force_drift", rank=15, coordinates=("force_drift",), unlike_friction=True,
+        name="force_drift", rank=15,
+        smooth=True, coordinates=("force_drift",), unlike_friction=True,
         plain="a force offset that grows in time",
         meaning="an offset that grows steadily",
         cause="a load cell that warms up, a charge amplifier that leaks",
@@ -234,7 +240,7 @@ _ALL = (
         experiment="record with the device at rest",
     ),
     Effect(
-        name="viscous_friction", rank=3, coordinates=("viscous",), on_table=True,
+        name="viscous_friction", rank=3, smooth=True, coordinates=("viscous",), on_table=True,
         plain="viscous friction", meaning="c v",
         cause="lubricant shear in bearings, screw and seals", taken_for="sensor delay",
         experiment=(
@@ -244,14 +250,14 @@ _ALL = (
         rivals=("sensor_delay",),
     ),
     Effect(
-        name="viscous_drift", rank=16, kind="damper", coordinates=("viscous_drift",),
+        name="viscous_drift", rank=16, smooth=True, kind="damper", coordinates=("viscous_drift",),
         reported=("viscous", "viscous_drift"), plain="viscous damping that changes with time",
         meaning="c (1 + d t) v", cause="oil and grease that warm up and thin",
         taken_for="a friction level that changes with time",
         experiment="repeat the first run last", rivals=("friction_drift", "viscous_friction"),
     ),
     Effect(
-        name="viscoelasticity", rank=17,
+        name="viscoelasticity", rank=17, smooth=True,
         coordinates=(
             "branch_stiffness_1", "branch_time_1", "branch_stiffness_2", "branch_time_2",
         ),
@@ -270,14 +276,16 @@ _ALL = (
         rivals=("coulomb_friction",),
     ),
     Effect(
-        name="parallel_stiffness", rank=5, coordinates=("stiffness",), unlike_friction=True,
+        name="parallel_stiffness", rank=5,
+        smooth=True, coordinates=("stiffness",), unlike_friction=True,
         on_table=True, plain="a parallel stiffness", meaning="k x",
         cause="a centring spring, a rubber mount, trapped air",
         taken_for="a wrong inertance at one frequency", experiment="use at least two frequencies",
         rivals=("inertance_error",),
     ),
     Effect(
-        name="force_offset", rank=4, coordinates=("force_offset",), plain="a constant force",
+        name="force_offset", rank=4,
+        smooth=True, coordinates=("force_offset",), plain="a constant force",
         meaning="a constant force",
         cause="weight of the flywheel, preload, a load cell that was not zeroed",
         taken_for="asymmetric friction", experiment="a dwell shows the constant force alone",
@@ -306,13 +314,15 @@ _ALL = (
         rivals=("sensor_delay", "series_elasticity"),
     ),
     Effect(
-        name="quadratic_damping", rank=7, coordinates=("quadratic_damping",), on_table=True,
+        name="quadratic_damping", rank=7,
+        smooth=True, coordinates=("quadratic_damping",), on_table=True,
         plain="quadratic damping", meaning="c2 v |v|",
         cause="turbulent flow, windage of the flywheel", taken_for="viscous friction",
         experiment="repeat at twice the amplitude", rivals=("viscous_friction",),
     ),
     Effect(
-        name="asymmetric_damping", rank=10, kind="damper", coordinates=("damping_asymmetry",),
+        name="asymmetric_damping", rank=10,
+        smooth=True, kind="damper", coordinates=("damping_asymmetry",),
         reported=("viscous", "damping_asymmetry"),
         plain="damping that differs between the two directions",
         meaning="c v (1 + kappa sgn(v))",
@@ -364,7 +374,7 @@ _ALL = (
         rivals=("hysteretic_friction",),
     ),
     Effect(
-        name="series_elasticity", rank=21, kind="shaft",
+        name="series_elasticity", rank=21, smooth=True, kind="shaft",
         coordinates=("series_frequency", "series_loss"), telling=(),
         stated_as=("series_stiffness", "series_damping"), unlike_friction=True,
         plain="elasticity in series with the inertance",
@@ -376,7 +386,8 @@ _ALL = (
         rivals=("inertance_error", "sensor_delay"),
     ),
     Effect(
-        name="inertance_error", rank=1, coordinates=("inertance",), telling=(), on_table=True,
+        name="inertance_error", rank=1,
+        smooth=True, coordinates=("inertance",), telling=(), on_table=True,
         plain="an inertance other than stated", meaning="b differs from what is stated",
         cause="flywheel inertia, lead or gear ratio other than in the data sheet, or the mass of a "
         "grip behind the load cell",

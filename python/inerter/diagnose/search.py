@@ -82,7 +82,7 @@ def _silent(text: str) -> None:
 
 @dataclass
 class Search:
-    """A search over the fit data of a split; effects `excluded` are not added.
+    """A search over the fit data of a split; effects `excluded` are not added, those `kept` stay.
 
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
     """
@@ -93,6 +93,7 @@ class Search:
     progress: Progress = _silent
     found: list[str] = field(default_factory=list)
     excluded: frozenset[str] = frozenset()
+    kept: frozenset[str] = frozenset()
     witness: Witness | None = None
     one_tone: bool = False
 
@@ -361,7 +362,7 @@ class Search:
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 
     def may_be(self, model: Model) -> bool:
-        """Whether a model has none of the effects excluded, nor along one sine what that hides.
+        """Whether a model has no effect excluded, all kept, and along one sine none that it hides.
 
         There a shaft is an inertance of another size, and a low-pass with a delay is as late as the
         one that it takes back.
@@ -371,7 +372,7 @@ class Search:
             shaft = "series_elasticity" in names and "inertance" in model.free
             if shaft or {"sensor_filter", "sensor_delay"} <= names:
                 return False
-        return not self.excluded & names
+        return self.kept <= names and not self.excluded & names
 
     def better(self, simple: Scored, rich: Scored) -> bool:
         """Whether the richer of two models is needed."""

@@ -125,7 +125,7 @@ class Columns:
         tones: Tones,
     ) -> dict[str, Array]:
         """Derivatives by those of some coordinates that the force is in proportion to."""
-        names = [name for name in names if self._in_proportion(name, model)]
+        names = self._in_proportion(names, model)
         if not names:
             return {}
         speeds = at_speeds(model)
@@ -151,7 +151,7 @@ class Columns:
 
     def apart(self, model: Model) -> Apart | None:
         """What the residual is linear in, where that is so much that it is worth while."""
-        names = [name for name in model.free if self._in_proportion(name, model)]
+        names = self._in_proportion(model.free, model)
         if BY_SPEED in model.free:
             # what an inertance gains along the stroke is then no column that stays as it is
             names = [name for name in names if not times_inertance(name)]
@@ -174,18 +174,22 @@ class Columns:
             self._bases[key] = basis
         return Apart(names, basis, [times_inertance(name) for name in names])
 
-    def _in_proportion(self, name: str, model: Model) -> bool:
-        """Whether a coordinate enters the force times its column."""
-        device = model.device()
-        return bool(
-            (COORDINATES[name].column or curve_of(name))
-            # a flywheel on its spring is set going by whatever acts
-            and not (device.nstate and (device.series_stiffness or device.series_damping))
-            and not clips(model.values)
-            and not any(each in model.values for each in (_FILTER, *entangling(name)))
-            and all(np.isinf(run.far) for run in self.problem.runs)
-            and not (times_inertance(name) and self._is_floored(model.values.get(BY_SPEED, 0.0)))
-        )
+    def _in_proportion(self, names: Sequence[str], model: Model) -> list[str]:
+        """Those of some coordinates that enter the force times their columns."""
+        device, values = model.device(), model.values
+        # a flywheel on its spring is set going by whatever acts
+        swings = device.nstate and (device.series_stiffness or device.series_damping)
+        far = not all(np.isinf(run.far) for run in self.problem.runs)
+        if swings or far or _FILTER in values or clips(values):
+            return []
+        floored = self._is_floored(values.get(BY_SPEED, 0.0))
+        return [
+            name
+            for name in names
+            if (COORDINATES[name].column or curve_of(name))
+            and values.keys().isdisjoint(entangling(name))
+            and not (floored and times_inertance(name))
+        ]
 
     def _is_floored(self, by_speed: float) -> bool:
         """Whether an inertance that falls with the speed would reach its floor, or come near it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,6 +28,12 @@ class Part:
     def device(self) -> Device:
         """Made when it is first asked for."""
         return Device(**dict(self.stated))
+
+
+# a fit moves one coordinate after another, and most parts stay as they are
+@functools.lru_cache(maxsize=64)
+def _part_of(stated: tuple[tuple[str, _Stated], ...]) -> Part:
+    return Part(stated)
 
 
 @dataclass(frozen=True)
@@ -117,7 +124,7 @@ class Model:
 
     def _part(self, has: Callable[[str], bool], **also: str) -> Part:
         kept = {name: value for name, value in self._stated.items() if has(name)}
-        return Part((*also.items(), *_with_ends(kept).items()))
+        return _part_of((*also.items(), *_with_ends(kept).items()))
 
     @cached_property
     def has_jumps(self) -> bool:

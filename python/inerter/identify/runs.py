@@ -41,6 +41,9 @@ REST = 4
 # squared correlation of displacement and acceleration from which they count as proportional
 ONE_TONE = 0.98
 
+# times after a first sample whose mean force is kept
+_MOST_TIMES = 8
+
 _made = itertools.count()
 
 
@@ -122,9 +125,9 @@ class BenchRun:
         """Forces of a device at the measured rate [N], shape (m,) each.
 
         Friction jumps where the velocity changes sign. At the instants of the measured samples a
-        jump falls between the same two samples as in the record; elsewhere it would be misplaced,
-        and other effects would be found to make up for that. A jump that went through a low-pass
-        before it was sampled is in several samples, and when it was is told from between them.
+        jump falls between the same two samples as in the record; elsewhere other effects would be
+        found to make up for that. A jump that went through a low-pass before it was sampled is in
+        several samples, and when it was is told from between them.
         """
         if self.measured is None:
             raise ValueError(f"{self.name}: a run at the measured rate has no band")
@@ -186,10 +189,18 @@ class BenchRun:
 
     def force_later(self, late: float) -> float:
         """By how much the force is larger some time after the sample `first` [N]."""
-        window = np.linspace(-0.5, 0.5, max(1, round(FIRST / self.spacing)) + 1) * FIRST
-        places = self.first + np.array([[0.0], [late]]) / self.spacing + window / self.spacing
-        means = np.interp(places, np.arange(self.force.size), self.force).mean(axis=1)
-        return float(means[1] - means[0])
+        return self._force_about(late) - self._force_about(0.0)
+
+    def _force_about(self, late: float) -> float:
+        known: dict[float, float] = self.__dict__.setdefault("_forces_about", {})
+        if late not in known:
+            if len(known) > _MOST_TIMES:
+                known.clear()
+            width = FIRST / self.spacing
+            window = np.linspace(-0.5, 0.5, max(1, round(width)) + 1) * width
+            places = self.first + late / self.spacing + window
+            known[late] = float(np.interp(places, np.arange(self.force.size), self.force).mean())
+        return known[late]
 
     @property
     def sample_spacing(self) -> float:
@@ -341,7 +352,6 @@ def whole(motion: Motion) -> BenchRun:
     """A run at the record's own rate with the force as measured: what figures are reported on."""
     first = int(np.argmax(motion.inner))
     measured = (motion.displacement, motion.velocity, motion.acceleration)
-    often = motion.instants > 1
     return BenchRun(
         name=motion.name,
         start=motion.start,
@@ -353,7 +363,9 @@ def whole(motion: Motion) -> BenchRun:
         inner=motion.inner,
         first_force=_force_at(motion, first),
         cutoff=np.inf,
-        measured=between(motion.spacing, measured, motion.instants) if often else None,
+        measured=between(motion.spacing, measured, motion.instants)
+        if motion.instants > 1
+        else None,
         instants=motion.instants,
         first=first,
         clock=motion.clock,
@@ -433,5 +445,4 @@ def on_clocks(runs: Sequence[BenchRun]) -> list[BenchRun]:
         return list(runs)
     order = sorted(runs, key=lambda run: run.start)
     apart = all(a.time[-1] <= b.start for a, b in itertools.pairwise(order))
-    origin = order[0].start
-    return [replace(run, clock=origin if apart else run.start) for run in runs]
+    return [replace(run, clock=order[0].start if apart else run.start) for run in runs]
