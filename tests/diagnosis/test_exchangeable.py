@@ -12,7 +12,7 @@ from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import bristle_is_known, effects_of
 from inerter.diagnose.data import Data, divided
-from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange
+from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange, with_rate
 from inerter.diagnose.other_runs import badly_missed, missed_in_words
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import Finding, ParameterValue
@@ -366,3 +366,27 @@ def test_a_constant_force_beside_friction_is_told_from_uneven_one_by_rests_alone
     found = exchanges(search, fit, ["force_offset"])
     assert bool(found) is (law == "coulomb" and not rests)
     assert all(not each.is_told_apart for each in found.values())
+
+
+@pytest.mark.parametrize(("noise", "told"), [(0.05, True), (5.0, False)])
+def test_noise_hides_whether_a_friction_level_goes_with_the_speed(
+    noise: float, told: bool, effects_seed: int
+) -> None:
+    made = record((0.7, 2.0), viscous=0.0, noise=1e-7)
+    speed = 2 * np.pi * np.array([0.7, 2.0])
+    v = (0.01 * speed * (0.7 / np.array([0.7, 2.0])) ** 1.5) @ np.cos(np.outer(speed, TIME))
+    a = np.gradient(v, TIME)
+    error = noise * np.random.default_rng(effects_seed).standard_normal(TIME.size)
+    made = replace(made, force=60 * a + 8 * np.tanh(v / 1e-4) + error)
+    level = {"coulomb_force": 7.0, "transition_velocity": 1e-4}
+    search, fit = searched(made, IDEAL.adding("coulomb", **level))
+    known = {"coulomb_force": ParameterValue(8.0, 0.1, "N")}
+    named = replace(finding(8.0, 0.1), effect="coulomb_friction", parameters=known)
+    found = with_rate(named, search, fit)
+    if told:
+        assert found is named
+        return
+    assert found.members == ("coulomb_friction", "rate_state_friction")
+    assert found.confidence == named.confidence
+    assert found.parameters["rate_effect"].unit == ""
+    assert "cannot tell" in found.evidence

@@ -46,6 +46,13 @@ def test_butterworth_is_flat_and_bessel_evenly_late() -> None:
 
 
 @pytest.mark.parametrize(("kind", "order"), SHAPES)
+def test_as_late_as_a_delay(kind: str, order: int) -> None:
+    each = Filter.as_late_as(4e-3, kind, order)
+    assert (each.kind, each.order) == (kind, order)
+    assert each.lateness == pytest.approx(4e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize(("kind", "order"), SHAPES)
 def test_a_sine_is_smaller_and_later(kind: str, order: int) -> None:
     each = Filter(kind, order, 15.0)
     gain = complex(each.response(np.array([9.0]))[0])

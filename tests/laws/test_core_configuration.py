@@ -2,11 +2,13 @@
 
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from inerter.core import Device, DeviceError, friction_laws, gas_laws, parameters
 
@@ -326,6 +328,24 @@ def test_numbers_as_text(text: str) -> None:
 def test_numbers_arrive_unrounded() -> None:
     for value in (0.1, 1 / 3, 5e-324, 1.7976931348623157e308, 123456789.123456789):
         assert Device(inertance=value).inertance == value
+
+
+def test_lists_are_the_same_as_numbers_and_as_text() -> None:
+    numbers = (0.1, -1 / 3, 2.5e-7, 123456.789)
+    ends = {"curve_lower": -0.1, "curve_upper": 0.1}
+    text = " ".join(map(repr, numbers))
+    devices = [Device(force_curve=given, **ends) for given in (numbers, list(numbers), text)]
+    assert devices[0] == devices[1] == devices[2]
+    assert devices[0].force_curve == numbers
+    wrong = [
+        ((1.0,), "force_curve has 1 numbers"),
+        ((), "force_curve is empty"),
+        ((1.0, np.nan), "force_curve: number 2 is nan"),
+        ((1.0, 1e200), "force_curve: number 2 is 1e"),
+    ]
+    for given, words in wrong:
+        with pytest.raises(DeviceError, match=re.escape(words)):
+            Device(force_curve=given, **ends)
 
 
 def test_a_long_value_is_cut_in_the_message() -> None:

@@ -54,7 +54,7 @@ class Effect:
     on_table
         Whether amplitudes at a list of frequencies can show it.
     smooth
-        Whether its force ends where the band of the motion does, or nearly so.
+        Whether it is linear in the motion: its force ends where the motion's band does.
     tells_law
         Whether a finding says by which law.
     plain
@@ -182,14 +182,14 @@ _ALL = (
     ),
     Effect(
         name="hardening_stiffness", rank=14,
-        smooth=True, coordinates=("stiffness_cubic",), local=True,
+        coordinates=("stiffness_cubic",), local=True,
         unlike_friction=True, plain="a stiffness that grows with the stroke", meaning="k3 x^3",
         cause="rubber, guides that bind, a spring that stacks", taken_for="an end stop",
         experiment="repeat with half the stroke, k3 x^3 falls to an eighth", rivals=("end_stop",),
     ),
     Effect(
         name="gas_spring", rank=20,
-        smooth=True, coordinates=("gas_push", "gas_reach", "gas_exponent"),
+        coordinates=("gas_push", "gas_reach", "gas_exponent"),
         telling=("gas_push",), stated_as=("gas_pressure", "gas_volume"), local=True,
         unlike_friction=True, plain="a gas spring", meaning="p0 A (1 - (1 + A x / V0)^-gamma)",
         cause="trapped air, an accumulator", taken_for="a parallel stiffness",
@@ -315,14 +315,14 @@ _ALL = (
     ),
     Effect(
         name="quadratic_damping", rank=7,
-        smooth=True, coordinates=("quadratic_damping",), on_table=True,
+        coordinates=("quadratic_damping",), on_table=True,
         plain="quadratic damping", meaning="c2 v |v|",
         cause="turbulent flow, windage of the flywheel", taken_for="viscous friction",
         experiment="repeat at twice the amplitude", rivals=("viscous_friction",),
     ),
     Effect(
         name="asymmetric_damping", rank=10,
-        smooth=True, kind="damper", coordinates=("damping_asymmetry",),
+        kind="damper", coordinates=("damping_asymmetry",),
         reported=("viscous", "damping_asymmetry"),
         plain="damping that differs between the two directions",
         meaning="c v (1 + kappa sgn(v))",

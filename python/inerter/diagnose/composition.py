@@ -26,6 +26,8 @@ from inerter.identify.model import Model
 
 DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
 """Effects that take away the rigid drive of the flywheel."""
+SMOOTH = frozenset(name for name, effect in EFFECTS.items() if effect.smooth)
+"""Effects that are linear in the motion."""
 # how well a coordinate is known before any data: the exponent of a gas lies between 1 and 1.7.
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}

@@ -48,6 +48,11 @@ class Criteria:
         ERRORS,
         "by which its own parameter differs from none, correlation allowed for",
     )
+    rate_that_matters: float = _bound(
+        0.01,
+        RATIO,
+        "of a friction level that it changes by per e-fold of the speed: less is none",
+    )
     known: float = _bound(
         0.5,
         "standard error per value",

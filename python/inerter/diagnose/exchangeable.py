@@ -23,6 +23,7 @@ import numpy as np
 
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
+from inerter.diagnose.candidates import law_starts
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA, visible_delay
 from inerter.diagnose.low_passes import as_delay, filters, jumps_late, likeliest
@@ -47,6 +48,8 @@ _PAIRS = (
 COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 # those that do along one sine alone: where the inertance is free, and where it is stated
 _OF_ONE_SINE, _OF_STATED, _OF_FRICTION = _PAIRS[1:]
+# what a friction level changes by per e-fold of the speed where that is next to nothing
+_SLIGHT = 1e-3
 # share of rests that tell nothing
 _RARE = 0.02
 _COORDINATE = {
@@ -187,6 +190,18 @@ def _beside(model: Model, effect: str, spacing: float) -> Model:
     return model.adding(None, **{name: begin})
 
 
+def with_members(
+    finding: Finding,
+    exchange: Exchange | None,
+    search: Search,
+    fit: Fit,
+    covered: Callable[[Fit], Fit] = lambda found: found,
+) -> Finding:
+    """A finding with whatever else the data cannot tell from it."""
+    finding = with_delay(with_exchange(finding, exchange), search, fit, covered)
+    return with_rate(with_low_pass(finding, search, fit), search, fit, covered)
+
+
 def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     """A finding with what its counterpart leaves of it."""
     if exchange is None:
@@ -325,6 +340,46 @@ def with_low_pass(finding: Finding, search: Search, fit: Fit) -> Finding:
         parameters={**finding.parameters, name: ParameterValue(cutoffs[0], error, "Hz")},
         rivals=_others(finding.rivals, ("sensor_filter",)),
     )  # fmt: skip
+    return replace(told, evidence=wording.evidence(told))
+
+
+def with_rate(
+    finding: Finding,
+    search: Search,
+    fit: Fit,
+    covered: Callable[[Fit], Fit] = lambda found: found,
+) -> Finding:
+    """A friction level that is found, and whether it may go with the logarithm of the speed.
+
+    It may where rate-and-state friction does as well, and such as matters is within its error.
+    """
+    model, masks = fit.model, search.problem.masks
+    if finding.effect != "coulomb_friction" or finding.members or model.friction != "coulomb":
+        return finding
+    starts = law_starts(FRICTION["rate_state"], model, search.problem.scales)
+    # as far as it goes, and from next to none of it on
+    starts += tuple(start.holding(rate_effect=_SLIGHT, age_effect=_SLIGHT) for start in starts)
+    fits = parallel(search.problem.fit, [start for start in starts if search.may_be(start)])
+    best = min(fits, key=lambda each: each.rmse(masks), default=None)
+    if best is None or best.rmse(masks) > (1 + CRITERIA.tolerated_loss) * fit.rmse(masks):
+        return finding
+    known = parameter_errors(covered(best))
+    shares = {name: known[name] for name in ("rate_effect", "age_effect") if name in known}
+    most = max((abs(value) + 2 * error for value, error in shares.values()), default=0.0)
+    if most < CRITERIA.rate_that_matters:
+        return finding
+    level, moved = finding.parameters["coulomb_force"], known["coulomb_force"][0]
+    parameters = _with_error(
+        finding.parameters, "coulomb_force", max(level.stderr, abs(moved - level.value))
+    )
+    parameters |= {
+        name: ParameterValue(value, max(error, abs(value) / CRITERIA.distinction), "")
+        for name, (value, error) in shares.items()
+    }
+    members = (finding.effect, "rate_state_friction")
+    told = replace(
+        finding, members=members, parameters=parameters, rivals=_others(finding.rivals, members)
+    )
     return replace(told, evidence=wording.evidence(told))
 
 

@@ -21,7 +21,7 @@ from inerter.diagnose.doubt import doubted, of_one_sine, with_own_value
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
-from inerter.diagnose.exchangeable import exchanges, with_delay, with_exchange, with_low_pass
+from inerter.diagnose.exchangeable import exchanges, with_members
 from inerter.diagnose.other_runs import (
     badly_missed,
     badly_missed_stretches,
@@ -210,12 +210,8 @@ def diagnosis_of(
     findings = [
         doubted(
             with_own_value(
-                with_low_pass(
-                    with_delay(
-                        with_exchange(finding, same.get(finding.effect)),
-                        searched.search, stands.fit, searched.covered,
-                    ),
-                    searched.search, stands.fit,
+                with_members(
+                    finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
                 ),
                 finding.confidence,
                 is_distinct(

@@ -82,7 +82,9 @@ def _silent(text: str) -> None:
 
 @dataclass
 class Search:
-    """A search over the fit data of a split; effects `excluded` are not added, those `kept` stay.
+    """A search over the fit data of a split.
+
+    Effects `excluded` are not added, those `kept` stay.
 
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
     """
@@ -222,7 +224,10 @@ class Search:
         trials = [*candidates(current.model, self.problem.scales)]
         trials += tone_candidate(self.runs, self.problem, current.fit, self.witness)
         trials += along_stroke.candidates(self.problem, current.fit)
-        trials = [trial for trial in trials if self.may_be(trial.starts[0])]
+        trials = [
+            trial for trial in trials
+            if trial.effect not in self.excluded and self.may_be(trial.starts[0])
+        ]  # fmt: skip
         fitted = self.trials.fit_all(trials, current.fit)
         if not fitted:
             return None
@@ -230,7 +235,7 @@ class Search:
             [*fitted, *where_late(self, current, fitted)], key=lambda p: p[1].rmse(masks)
         )
         floor = fitted[0][1].rmse(masks)
-        worth = (1 - CRITERIA.gain) * current.fit.rmse(masks)
+        worth = (1 - self.trials.least) * current.fit.rmse(masks)
         worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
         if not worthy:
             return None
@@ -372,7 +377,7 @@ class Search:
             shaft = "series_elasticity" in names and "inertance" in model.free
             if shaft or {"sensor_filter", "sensor_delay"} <= names:
                 return False
-        return self.kept <= names and not self.excluded & names
+        return self.kept <= names and not (self.excluded - self.kept) & names
 
     def better(self, simple: Scored, rich: Scored) -> bool:
         """Whether the richer of two models is needed."""

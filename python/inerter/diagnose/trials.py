@@ -105,10 +105,13 @@ def _cost(candidate: Candidate) -> float:
 
 
 class Trials:
-    """The candidates of a search fitted to its data; what was fitted before is remembered."""
+    """The candidates of a search fitted to its data; what was fitted before is remembered.
+
+    One that is worth while takes the share `least` of the error away.
+    """
 
     def __init__(self, problem: Problem) -> None:
-        self.problem = problem
+        self.problem, self.least = problem, CRITERIA.gain
         self._part = problem.head(STARTING_SHARE)
         self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
 
@@ -197,7 +200,7 @@ class Trials:
         """
         masks = self.problem.masks
         limits = self._limits(current, 1 - HOPELESS)
-        likely = (1 - CRITERIA.likely * CRITERIA.gain) * current.rmse(masks)
+        likely = (1 - CRITERIA.likely * self.least) * current.rmse(masks)
         if aim:
             far = self._limits(aim, FAR)
             limits = min(limits[0], far[0]), min(limits[1], far[1])

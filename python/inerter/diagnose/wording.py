@@ -60,6 +60,8 @@ def effect_in_words(finding: Finding) -> str:
     """Such as "friction with memory (Dahl)", "viscous friction other than stated"."""
     law = _law(finding.law)
     other = finding.effect != "inertance_error" and _is_stated(finding)
+    if _is_level_at_least(finding):
+        return f"{EFFECTS[finding.effect].plain} (or rate-and-state friction)"
     if finding.members:
         between = ", with or without " if _is_filter_at_least(finding) else " or "
         return between.join(EFFECTS[member].plain for member in finding.members)
@@ -69,6 +71,11 @@ def effect_in_words(finding: Finding) -> str:
 def _is_filter_at_least(finding: Finding) -> bool:
     """Whether a low-pass is there in any case, and beside another one perhaps a delay."""
     return finding.effect == "sensor_filter" and finding.members[1:] == ("sensor_delay",)
+
+
+def _is_level_at_least(finding: Finding) -> bool:
+    """Whether a friction level is there in any case, which perhaps goes with the speed."""
+    return finding.members[1:] == ("rate_state_friction",)
 
 
 def _is_stated(finding: Finding) -> bool:
@@ -163,6 +170,14 @@ def either_in_words(finding: Finding) -> str:
             f"a low-pass of {finding.parameters[found].value:.3g} Hz ({finding.law}), or one of "
             f"another order with {delay} beside it"
         )
+    if _is_level_at_least(finding):
+        shares = (v for n, v in finding.parameters.items() if n in ("rate_effect", "age_effect"))
+        most = max(abs(each.value) + 2 * each.stderr for each in shares)
+        level = value_in_words(EFFECTS[finding.effect].plain, finding.parameters["coulomb_force"])
+        return (
+            f"{level}, which may change by up to {100 * most:.2g} % for each factor of e in the "
+            "speed (rate-and-state friction)"
+        )
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     if "displacement_filter" in finding.parameters:
         coordinates["sensor_filter"] = "displacement_filter"
@@ -176,6 +191,8 @@ def _teller(finding: Finding) -> str:
     """What would tell the members of a finding apart."""
     if "force_offset" in finding.members:
         return "the device turned round"
+    if _is_level_at_least(finding):
+        return "steady strokes at speeds a hundred times apart"
     late = finding.members == ("sensor_delay", "sensor_filter")
     if late or _is_filter_at_least(finding):
         return "quicker motion, up to the filter's cut-off,"
@@ -356,7 +373,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
         and finding.rivals[0].effect not in (finding.effect, *finding.members)
     ]
     for finding in diagnosis.findings:
-        if finding.members:
+        if finding.members and not _is_level_at_least(finding):
             text += (
                 f" It is {either_in_words(finding)}: this motion cannot tell; {_teller(finding)} "
                 f"would ({EFFECTS[finding.members[0]].experiment})."

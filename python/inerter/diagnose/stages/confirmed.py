@@ -19,7 +19,7 @@ from inerter.diagnose.play import jackknife
 from inerter.diagnose.rivals import Standing
 from inerter.diagnose.search import Scored
 from inerter.diagnose.stages.searched import Searched
-from inerter.diagnose.stages.settled import Settled, compared, identified
+from inerter.diagnose.stages.settled import Settled, compared, identified, run_beyond_motion
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.fit import Fit
 
@@ -49,7 +49,7 @@ def confirmed(start: Settled) -> Confirmed:
     before_held_out = final.fit
     final, chain, dropped = _standing_on_held_out(found, final)
     standings = dict(start.standings)
-    if dropped and chain and (further := _searched_on(found, final, dropped)):
+    if dropped and chain and (further := _searched_on(found, final, dropped, standings)):
         progress("measuring the gain of each effect")
         more, links, _ = _standing_on_held_out(found, further[0])
         new = {link.effect for link in links} - {link.effect for link in chain}
@@ -93,9 +93,9 @@ def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[
 
 
 def _searched_on(
-    found: Searched, final: Scored, dropped: set[str]
+    found: Searched, final: Scored, dropped: set[str], standings: Mapping[str, Standing]
 ) -> tuple[Scored, dict[str, Standing]] | None:
-    """A model with further effects in the place of those dropped, compared with their rivals.
+    """A model with further effects in the place of those dropped, which are compared with rivals.
 
     None where there are none. What has a shaft or a play was searched for with weights and data of
     its own, and is not taken further.
@@ -103,12 +103,19 @@ def _searched_on(
     baseline = found.prepared.baseline
     if has_series(final.model):
         return None
+    left = frozenset(name for name, _ in effects_of(final.model, baseline))
     search = replace(found.search, found=[], excluded=frozenset({*dropped, *DRIVE}))
     search.progress(f"searching on without {', '.join(sorted(dropped))}")
-    more = identified(search, baseline, search.run(final.model, most=len(dropped)))
-    if not dict(effects_of(more.model, baseline)).keys() - dict(effects_of(final.model, baseline)):
+    known: Mapping[str, Standing] = {}
+    if found.band.force_band:
+        more, known = run_beyond_motion(search, final.model, len(dropped)), standings
+    else:
+        more = search.run(final.model, most=len(dropped))
+    more = identified(search, baseline, more)
+    search.kept = frozenset()
+    if not dict(effects_of(more.model, baseline)).keys() - left:
         return None
-    return compared(search, baseline, more)
+    return compared(search, baseline, more, known=known)
 
 
 def _with_tone(found: Searched, fit: Fit) -> tuple[Fit, tuple[Link, float] | None]:

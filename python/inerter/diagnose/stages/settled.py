@@ -9,6 +9,7 @@ from types import MappingProxyType
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.band import force_band
 from inerter.diagnose.composition import (
+    SMOOTH,
     bristle_is_known,
     effects_of,
     is_distinct,
@@ -46,12 +47,25 @@ def settled(found: Searched) -> Settled:
     return _beyond_motion(settled) or settled
 
 
+def run_beyond_motion(search: Search, model: Model, most: int = CRITERIA.most_effects) -> Scored:
+    """A search with forces compared above the motion's band, on top of what was found in it.
+
+    That stays. What is linear in the motion ends with its band, and is not looked for; where a
+    model is right but for the noise of the motion, any other effect takes a little away.
+    """
+    excluded = search.excluded
+    search.kept = frozenset(name for name, _ in effects_of(model, search.baseline))
+    search.excluded, search.trials.least = excluded | SMOOTH, CRITERIA.band_gain
+    final = search.run(model, until="backlash", most=most)
+    search.excluded, search.trials.least = excluded, CRITERIA.gain
+    return final
+
+
 def _beyond_motion(start: Settled) -> Settled | None:
     """The search gone on with forces compared above the motion's band, where that tells more.
 
     It does where most of what is missed is there, and a fit to it takes enough of that away. What
-    was found where errors are smaller stays, and is not compared again; what is smooth in the
-    motion ends with its band, and is not looked for.
+    was found where errors are smaller is not compared again.
     """
     found, model, baseline = start.searched, start.final.model, start.searched.prepared.baseline
     wide = force_band(found.data.learnt, model, found.band)
@@ -62,11 +76,7 @@ def _beyond_motion(start: Settled) -> Settled | None:
     )
     band = replace(found.band, force_band=wide)
     search = search_in(found.prepared, band)
-    search.kept = frozenset(name for name, _ in effects_of(model, baseline))
-    smooth = {name for name, effect in EFFECTS.items() if effect.smooth}
-    search.excluded = frozenset(smooth - search.kept)
-    final = search.run(model, until="backlash")
-    search.excluded = frozenset()
+    final = run_beyond_motion(search, model)
     learnt = found.data.learnt
     before, after = (rms(learnt.errors(m), learnt.masks) for m in (model, final.model))
     if "backlash" in final.model.free or after > (1 - CRITERIA.band_gain) * before:
