@@ -7,6 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter.diagnose.band import force_band
+from inerter.diagnose.composition import effects_of
+from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.stages.searching import search_in
+from inerter.diagnose.stages.settling import run_beyond_motion
 from inerter.diagnose.start import Given, Prepared, prepared
 from inerter.records import Record
 from inerter.records.motion import motion_noise
@@ -88,3 +92,17 @@ def test_above_the_motions_cut_off_its_noise_is_none() -> None:
     quiet = motion_noise(frequency, 4.0, quiet=8.0)
     np.testing.assert_allclose(quiet[:1], everywhere[:1], rtol=1e-3)
     assert quiet[-1] == pytest.approx(1.0 + 15.0**4 / (1.0 + 7.5**6) ** 2)
+
+
+def test_above_the_motions_band_what_was_found_stays(effects_seed: int) -> None:
+    """Teeth are found beside a damper that these data do not need, and nothing linear is added."""
+    begun = start(np.random.default_rng(effects_seed), 8.0)
+    wide = force_band(begun.data.learnt, begun.baseline, begun.weighed)
+    search = search_in(begun, replace(begun.weighed, force_band=wide))
+    final = run_beyond_motion(search, begun.baseline.adding(None, viscous=3.0), most=2)
+    named = dict(effects_of(final.model, begun.baseline))
+    assert named.keys() == {"viscous_friction", "position_force"}
+    assert final.model.values["force_period_1"] == pytest.approx(6.4e-3, rel=0.01)
+    # afterwards rivals of every kind are asked again
+    assert not search.excluded
+    assert search.trials.least == CRITERIA.gain

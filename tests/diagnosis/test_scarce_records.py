@@ -7,12 +7,13 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from inerter.diagnose import diagnose_bench, stages
+from inerter.diagnose import diagnose_bench
 from inerter.diagnose.composition import is_distinct
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import ParameterValue
 from inerter.diagnose.rivals import Standing
 from inerter.diagnose.search import Search
+from inerter.diagnose.stages import settling as stages
 from inerter.diagnose.start import Given, prepared
 from inerter.diagnose.wording import quantity
 from inerter.identify.fit import Fit

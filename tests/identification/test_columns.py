@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from inerter.catalogue.along_stroke import QUANTITIES, Quantity
 from inerter.catalogue.coordinates import COORDINATES
+from inerter.identify import in_proportion
 from inerter.identify.channel import clips
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
@@ -168,6 +169,17 @@ def test_nodes_of_a_curve_are_differences_of_the_residual(
     stated = LAWS[law] | ({"bw_exponent": 1.0} if smooth else {})
     model = Model(law, also | stated | low_pass | ends | nodes, (*nodes, "viscous"))
     assert errors_of_columns(data, model).max() < 1e-4
+
+
+@pytest.mark.parametrize("band", [np.inf, 60.0])
+def test_columns_a_few_at_a_time_are_the_same(band: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of long records not all are worked out at once."""
+    nodes = {name: 0.1 * i for i, name in enumerate(QUANTITIES[0].nodes[:7])}
+    ends = dict(zip(("curve_lower", "curve_upper"), problem().scales.travel, strict=True))
+    model = Model("none", LINEAR | ends | nodes | {"delay": 1.3 * H}, (*LINEAR, *nodes))
+    at_once = problem_in(band).jacobian(model)
+    monkeypatch.setattr(in_proportion, "_AT_ONCE", 3 * N)
+    np.testing.assert_array_equal(problem_in(band).jacobian(model), at_once)
 
 
 def test_what_is_left_out_changes_no_fit() -> None:

@@ -34,7 +34,7 @@ from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.trials import FAR
 from inerter.diagnose.values import parameter_units
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of
-from inerter.identify.fit import Fit, parameter_errors
+from inerter.identify.fit import Fit, parameter_errors, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 
@@ -361,7 +361,9 @@ def with_rate(
     starts += tuple(start.holding(rate_effect=_SLIGHT, age_effect=_SLIGHT) for start in starts)
     fits = parallel(search.problem.fit, [start for start in starts if search.may_be(start)])
     best = min(fits, key=lambda each: each.rmse(masks), default=None)
-    if best is None or best.rmse(masks) > (1 + CRITERIA.tolerated_loss) * fit.rmse(masks):
+    # the fit may be to more than was searched
+    error = rms(search.problem.residual(model), masks)
+    if best is None or best.rmse(masks) > (1 + CRITERIA.tolerated_loss) * error:
         return finding
     known = parameter_errors(covered(best))
     shares = {name: known[name] for name in ("rate_effect", "age_effect") if name in known}

@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 # arrays [bytes] that are kept of all runs in a process: of use to every problem that has the run
 _OF_RUNS = Kept(2**26)
 
+# samples that are worked on at once, of all coordinates together
+_AT_ONCE = 2**20
+
 Rows = Sequence[tuple[str, Model]]
 """Coordinates, each with the model that its column is of."""
 
@@ -113,16 +116,21 @@ def shown_by(rows: Rows, run: BenchRun) -> Array:
         sharp = [i for i in missing if _bends(rows[i][0], run)]
         smooth = [i for i in missing if i not in sharp]
         found: dict[int, Array] = {}
-        if sharp:
-            columns = through(channel, forces(_force_of, sharp), run)
-            found |= zip(sharp, columns, strict=True)
-        if smooth:
-            columns = forces(_column_of, smooth)
+        for some in _few(sharp, run.fine_elapsed.size):
+            found |= zip(some, through(channel, forces(_force_of, some), run), strict=True)
+        for some in _few(smooth, run.force.size):
+            columns = forces(_column_of, some)
             columns = through_channel(channel, columns, run.elapsed, run.spacing)
-            found |= zip(smooth, columns, strict=True)
+            found |= zip(some, columns, strict=True)
         return [found[i] for i in missing]
 
     return _OF_RUNS.all_found([(run.identity, *key) for key in column_keys(rows, LINEAR)], shown)
+
+
+def _few(which: Sequence[int], size: int) -> list[Sequence[int]]:
+    """As many at a time as have columns of a size that do not take too much memory."""
+    count = max(1, _AT_ONCE // size)
+    return [which[i : i + count] for i in range(0, len(which), count)]
 
 
 def first_shares(rows: Rows, run: BenchRun) -> Array:

@@ -10,9 +10,9 @@ confirm    each effect on data that no fit has seen
 
 from __future__ import annotations
 
-from inerter.diagnose.stages.confirmed import Confirmed, confirmed
-from inerter.diagnose.stages.searched import Searched, judge_of, search_in, searched, weighed_runs
-from inerter.diagnose.stages.settled import Settled, compared, identified, settled
+from inerter.diagnose.stages.confirming import Confirmed, confirmed
+from inerter.diagnose.stages.searching import Searched, judge_of, search_in, searched, weighed_runs
+from inerter.diagnose.stages.settling import Settled, compared, identified, settled
 
 __all__ = [
     "Confirmed",

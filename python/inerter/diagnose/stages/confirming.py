@@ -18,8 +18,8 @@ from inerter.diagnose.judge import Judge
 from inerter.diagnose.play import jackknife
 from inerter.diagnose.rivals import Standing
 from inerter.diagnose.search import Scored
-from inerter.diagnose.stages.searched import Searched
-from inerter.diagnose.stages.settled import Settled, compared, identified, run_beyond_motion
+from inerter.diagnose.stages.searching import Searched
+from inerter.diagnose.stages.settling import Settled, compared, identified, run_beyond_motion
 from inerter.diagnose.tone import with_tone_above, with_tone_from_raw
 from inerter.identify.fit import Fit
 

@@ -19,7 +19,7 @@ from inerter.diagnose.composition import (
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.rivals import Standing, standing
 from inerter.diagnose.search import Scored, Search
-from inerter.diagnose.stages.searched import Searched, search_in
+from inerter.diagnose.stages.searching import Searched, search_in
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 
