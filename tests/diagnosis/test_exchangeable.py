@@ -12,8 +12,9 @@ from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import bristle_is_known, effects_of
 from inerter.diagnose.data import Data, divided
-from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange, with_rate
+from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange
 from inerter.diagnose.other_runs import badly_missed, missed_in_words
+from inerter.diagnose.rate_of_level import with_rate_of_level
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.search import Search
@@ -382,7 +383,7 @@ def test_noise_hides_whether_a_friction_level_goes_with_the_speed(
     search, fit = searched(made, IDEAL.adding("coulomb", **level))
     known = {"coulomb_force": ParameterValue(8.0, 0.1, "N")}
     named = replace(finding(8.0, 0.1), effect="coulomb_friction", parameters=known)
-    found = with_rate(named, search, fit)
+    found = with_rate_of_level(named, search, fit)
     if told:
         assert found is named
         return

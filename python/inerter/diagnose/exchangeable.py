@@ -23,18 +23,18 @@ import numpy as np
 
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
-from inerter.diagnose.candidates import law_starts
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA, visible_delay
 from inerter.diagnose.low_passes import as_delay, filters, jumps_late, likeliest
 from inerter.diagnose.parallel import parallel
+from inerter.diagnose.rate_of_level import with_rate_of_level
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
 from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.trials import FAR
 from inerter.diagnose.values import parameter_units
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of
-from inerter.identify.fit import Fit, parameter_errors, rms
+from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 
@@ -48,8 +48,6 @@ _PAIRS = (
 COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 # those that do along one sine alone: where the inertance is free, and where it is stated
 _OF_ONE_SINE, _OF_STATED, _OF_FRICTION = _PAIRS[1:]
-# what a friction level changes by per e-fold of the speed where that is next to nothing
-_SLIGHT = 1e-3
 # share of rests that tell nothing
 _RARE = 0.02
 _COORDINATE = {
@@ -199,7 +197,7 @@ def with_members(
 ) -> Finding:
     """A finding with whatever else the data cannot tell from it."""
     finding = with_delay(with_exchange(finding, exchange), search, fit, covered)
-    return with_rate(with_low_pass(finding, search, fit), search, fit, covered)
+    return with_rate_of_level(with_low_pass(finding, search, fit), search, fit, covered)
 
 
 def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
@@ -340,48 +338,6 @@ def with_low_pass(finding: Finding, search: Search, fit: Fit) -> Finding:
         parameters={**finding.parameters, name: ParameterValue(cutoffs[0], error, "Hz")},
         rivals=_others(finding.rivals, ("sensor_filter",)),
     )  # fmt: skip
-    return replace(told, evidence=wording.evidence(told))
-
-
-def with_rate(
-    finding: Finding,
-    search: Search,
-    fit: Fit,
-    covered: Callable[[Fit], Fit] = lambda found: found,
-) -> Finding:
-    """A friction level that is found, and whether it may go with the logarithm of the speed.
-
-    It may where rate-and-state friction does as well, and such as matters is within its error.
-    """
-    model, masks = fit.model, search.problem.masks
-    if finding.effect != "coulomb_friction" or finding.members or model.friction != "coulomb":
-        return finding
-    starts = law_starts(FRICTION["rate_state"], model, search.problem.scales)
-    # as far as it goes, and from next to none of it on
-    starts += tuple(start.holding(rate_effect=_SLIGHT, age_effect=_SLIGHT) for start in starts)
-    fits = parallel(search.problem.fit, [start for start in starts if search.may_be(start)])
-    best = min(fits, key=lambda each: each.rmse(masks), default=None)
-    # the fit may be to more than was searched
-    error = rms(search.problem.residual(model), masks)
-    if best is None or best.rmse(masks) > (1 + CRITERIA.tolerated_loss) * error:
-        return finding
-    known = parameter_errors(covered(best))
-    shares = {name: known[name] for name in ("rate_effect", "age_effect") if name in known}
-    most = max((abs(value) + 2 * error for value, error in shares.values()), default=0.0)
-    if most < CRITERIA.rate_that_matters:
-        return finding
-    level, moved = finding.parameters["coulomb_force"], known["coulomb_force"][0]
-    parameters = _with_error(
-        finding.parameters, "coulomb_force", max(level.stderr, abs(moved - level.value))
-    )
-    parameters |= {
-        name: ParameterValue(value, max(error, abs(value) / CRITERIA.distinction), "")
-        for name, (value, error) in shares.items()
-    }
-    members = (finding.effect, "rate_state_friction")
-    told = replace(
-        finding, members=members, parameters=parameters, rivals=_others(finding.rivals, members)
-    )
     return replace(told, evidence=wording.evidence(told))
 
 

@@ -171,13 +171,8 @@ def either_in_words(finding: Finding) -> str:
             f"another order with {delay} beside it"
         )
     if _is_level_at_least(finding):
-        shares = (v for n, v in finding.parameters.items() if n in ("rate_effect", "age_effect"))
-        most = max(abs(each.value) + 2 * each.stderr for each in shares)
         level = value_in_words(EFFECTS[finding.effect].plain, finding.parameters["coulomb_force"])
-        return (
-            f"{level}, which may change by up to {100 * most:.2g} % for each factor of e in the "
-            "speed (rate-and-state friction)"
-        )
+        return f"{level}, which may go with the speed (rate-and-state friction)"
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     if "displacement_filter" in finding.parameters:
         coordinates["sensor_filter"] = "displacement_filter"
