@@ -30,7 +30,7 @@ from inerter.core_library import (
     message_text,
     names,
     parameters,
-    set_as_number,
+    set_numbers,
 )
 from inerter.parameter_text import value_text, with_suggestion
 
@@ -81,7 +81,7 @@ class Device:
         at, known = ctypes.byref(self._c), parameters()
         core.inerter_default(at)
         for name, value in values.items():
-            if set_as_number(self._c, name, value):
+            if set_numbers(self._c, name, value):
                 continue
             text, key = value_text(value), name if name in known else value_text(name)
             if text is None or key is None:

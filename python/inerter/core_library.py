@@ -147,9 +147,10 @@ def lists() -> Mapping[str, NumberList]:
 
 
 @functools.cache
-def places() -> Mapping[str, int]:
-    """Which parameter, or which list, the core calls by a name."""
-    return {name: i for known in (parameters(), lists()) for i, name in enumerate(known)}
+def _places() -> tuple[Mapping[str, int], Mapping[str, int]]:
+    """Which parameter, and which list, the core has at a place."""
+    number, row = ({name: i for i, name in enumerate(each)} for each in (parameters(), lists()))
+    return number, row
 
 
 @functools.cache
@@ -208,20 +209,18 @@ def device_type() -> type[ctypes.Structure]:
     return type("_CDevice", (ctypes.Structure,), {"_fields_": fields})
 
 
-def set_as_number(c: ctypes.Structure, name: str, value: object) -> bool:
+def set_numbers(c: ctypes.Structure, name: str, value: object) -> bool:
     """Set a parameter or a list without a text in between; whether that did it."""
-    place = places().get(name, -1)
-    if place < 0:
+    parameter, row = (known.get(name) for known in _places())
+    if isinstance(value, float) and parameter is not None:
+        return not library().inerter_set_number(ctypes.addressof(c), parameter, value)
+    if row is None or not isinstance(value, tuple) or not value:
         return False
-    if isinstance(value, float):
-        return not library().inerter_set_number(ctypes.addressof(c), place, value)
-    if not isinstance(value, tuple) or not all(isinstance(each, float) for each in value):
+    if not all(isinstance(each, float) for each in value):
         return False
-    numbers, message = array("d", value), ctypes.create_string_buffer(MESSAGE_SIZE)
-    at, count = numbers.buffer_info()
-    return bool(count) and not library().inerter_set_list(
-        ctypes.addressof(c), place, count, at, message
-    )
+    values, message = array("d", value), ctypes.create_string_buffer(MESSAGE_SIZE)
+    at, count = values.buffer_info()
+    return not library().inerter_set_list(ctypes.addressof(c), row, count, at, message)
 
 
 def message_text(message: ctypes.Array[ctypes.c_char]) -> str:

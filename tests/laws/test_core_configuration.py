@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from inerter.core import Device, DeviceError, friction_laws, gas_laws, parameters
+from inerter.core import Device, DeviceError, friction_laws, gas_laws, lists, parameters
 
 # enough to make each law valid
 VALID: dict[str, dict[str, float]] = {
@@ -346,6 +346,19 @@ def test_lists_are_the_same_as_numbers_and_as_text() -> None:
     for given, words in wrong:
         with pytest.raises(DeviceError, match=re.escape(words)):
             Device(force_curve=given, **ends)
+
+
+@pytest.mark.parametrize("name", parameters())
+def test_a_parameter_is_no_list(name: str) -> None:
+    with pytest.raises(DeviceError, match=f"{name} is "):
+        Device(**{name: (1.0, 2.0, 3.0)})
+
+
+@pytest.mark.parametrize("name", lists())
+def test_a_list_is_no_number(name: str) -> None:
+    """Nor is it that of the parameter which the core has at the same place."""
+    with pytest.raises(DeviceError, match=f"{name} has 1 numbers"):
+        Device(**{name: 1.0})
 
 
 def test_a_long_value_is_cut_in_the_message() -> None:
