@@ -14,7 +14,7 @@ from inerter.diagnose.composition import bristle_is_known, effects_of
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange
 from inerter.diagnose.other_runs import badly_missed, missed_in_words
-from inerter.diagnose.rate_of_level import with_rate_of_level
+from inerter.diagnose.rate_of_level import steady_change, with_rate_of_level
 from inerter.diagnose.remainder.words import summary
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.search import Search
@@ -369,18 +369,33 @@ def test_a_constant_force_beside_friction_is_told_from_uneven_one_by_rests_alone
     assert all(not each.is_told_apart for each in found.values())
 
 
-@pytest.mark.parametrize(("noise", "told"), [(0.05, True), (5.0, False)])
+def test_a_steady_speed_shows_the_difference_of_two_effects_alone() -> None:
+    """Each may be anything, and what makes them up is known: 3 % with an error of 1 %."""
+    values = {"rate_effect": 0.05, "coulomb_force": 9.0, "age_effect": 0.02}
+    shared = np.array([1.0, 0.0, 1.0])
+    covariance = 0.5**2 * np.outer(shared, shared) + np.diag([3e-5, 4.0, 7e-5])
+    change, error = steady_change(
+        Fit(Model("rate_state", values, tuple(values)), [], covariance, 1)
+    )
+    assert change == pytest.approx(0.03)
+    assert error == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    ("rate", "noise", "told"), [(0.0, 0.05, True), (0.0, 5.0, False), (0.04, 0.05, False)]
+)
 def test_noise_hides_whether_a_friction_level_goes_with_the_speed(
-    noise: float, told: bool, effects_seed: int
+    rate: float, noise: float, told: bool, effects_seed: int
 ) -> None:
     made = record((0.7, 2.0), viscous=0.0, noise=1e-7)
     speed = 2 * np.pi * np.array([0.7, 2.0])
     v = (0.01 * speed * (0.7 / np.array([0.7, 2.0])) ** 1.5) @ np.cos(np.outer(speed, TIME))
     a = np.gradient(v, TIME)
     error = noise * np.random.default_rng(effects_seed).standard_normal(TIME.size)
-    made = replace(made, force=60 * a + 8 * np.tanh(v / 1e-4) + error)
-    level = {"coulomb_force": 7.0, "transition_velocity": 1e-4}
-    search, fit = searched(made, IDEAL.adding("coulomb", **level))
+    level = 8 * (1 + rate * np.log(np.maximum(np.abs(v), 1e-6) / 1e-2))
+    made = replace(made, force=60 * a + level * np.tanh(v / 1e-4) + error)
+    begin = {"coulomb_force": 7.0, "transition_velocity": 1e-4}
+    search, fit = searched(made, IDEAL.adding("coulomb", **begin))
     known = {"coulomb_force": ParameterValue(8.0, 0.1, "N")}
     named = replace(finding(8.0, 0.1), effect="coulomb_friction", parameters=known)
     found = with_rate_of_level(named, search, fit)
@@ -391,3 +406,6 @@ def test_noise_hides_whether_a_friction_level_goes_with_the_speed(
     assert found.confidence == named.confidence
     assert found.parameters["rate_effect"].unit == ""
     assert "cannot tell" in found.evidence
+    if rate:
+        told_by_text = float(found.evidence.split("up to ")[1].split(" %")[0])
+        assert 4.0 <= told_by_text < 6.0

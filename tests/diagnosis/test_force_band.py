@@ -105,4 +105,4 @@ def test_above_the_motions_band_what_was_found_stays(effects_seed: int) -> None:
     assert final.model.values["force_period_1"] == pytest.approx(6.4e-3, rel=0.01)
     # afterwards rivals of every kind are asked again
     assert not search.excluded
-    assert search.trials.least == CRITERIA.gain
+    assert search.least == CRITERIA.gain

@@ -46,8 +46,8 @@ def with_rate_of_level(
     fits = parallel(search.problem.fit, [start for start in starts if search.may_be(start)])
     best = min(fits, key=lambda each: each.rmse(masks), default=None)
     # the fit may be to more than was searched
-    error = rms(search.problem.residual(model), masks)
-    if best is None or best.rmse(masks) > (1 + CRITERIA.tolerated_loss) * error:
+    limit = (1 + CRITERIA.tolerated_loss) * rms(search.problem.residual(model), masks)
+    if best is None or best.rmse(masks) > limit:
         return finding
     best = covered(best)
     change, spread = steady_change(best)
@@ -55,8 +55,8 @@ def with_rate_of_level(
         return finding
     known = parameter_errors(best)
     level, moved = finding.parameters["coulomb_force"], known["coulomb_force"][0]
-    error = max(level.stderr, abs(moved - level.value))
-    parameters = {**finding.parameters, "coulomb_force": replace(level, stderr=error)}
+    wide = replace(level, stderr=max(level.stderr, abs(moved - level.value)))
+    parameters = {**finding.parameters, "coulomb_force": wide}
     for name in ("rate_effect", "age_effect"):
         value, error = known[name]
         parameters[name] = ParameterValue(value, max(error, abs(value) / CRITERIA.distinction), "")
@@ -72,10 +72,7 @@ def with_rate_of_level(
 
 
 def steady_change(fit: Fit) -> tuple[float, float]:
-    """What a rate-and-state level changes by per e-fold of a steady speed, a share, and its error.
-
-    It rises by the rate effect and falls by that of age, which hardly anything tells apart.
-    """
+    """Share by which a level changes per e-fold of a steady speed, and its standard error."""
     free, values = fit.model.free, fit.model.values
     sides = np.array([(name == "rate_effect") - float(name == "age_effect") for name in free])
     variance = float(sides @ fit.covariance @ sides)

@@ -84,7 +84,8 @@ def _silent(text: str) -> None:
 class Search:
     """A search over the fit data of a split.
 
-    Effects `excluded` are not added, those `kept` stay.
+    Effects `excluded` are not added, those `kept` stay; one that is added takes at least the share
+    `least` of the error away.
 
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
     """
@@ -96,6 +97,7 @@ class Search:
     found: list[str] = field(default_factory=list)
     excluded: frozenset[str] = frozenset()
     kept: frozenset[str] = frozenset()
+    least: float = CRITERIA.gain
     witness: Witness | None = None
     one_tone: bool = False
 
@@ -228,14 +230,14 @@ class Search:
             trial for trial in trials
             if trial.effect not in self.excluded and self.may_be(trial.starts[0])
         ]  # fmt: skip
-        fitted = self.trials.fit_all(trials, current.fit)
+        fitted = self.trials.fit_all(trials, current.fit, least=self.least)
         if not fitted:
             return None
         fitted = sorted(
             [*fitted, *where_late(self, current, fitted)], key=lambda p: p[1].rmse(masks)
         )
         floor = fitted[0][1].rmse(masks)
-        worth = (1 - self.trials.least) * current.fit.rmse(masks)
+        worth = (1 - self.least) * current.fit.rmse(masks)
         worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
         if not worthy:
             return None

@@ -105,13 +105,10 @@ def _cost(candidate: Candidate) -> float:
 
 
 class Trials:
-    """The candidates of a search fitted to its data; what was fitted before is remembered.
-
-    One that is worth while takes the share `least` of the error away.
-    """
+    """The candidates of a search fitted to its data; what was fitted before is remembered."""
 
     def __init__(self, problem: Problem) -> None:
-        self.problem, self.least = problem, CRITERIA.gain
+        self.problem = problem
         self._part = problem.head(STARTING_SHARE)
         self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
 
@@ -191,16 +188,21 @@ class Trials:
         return min(fits, key=lambda fit: fit.rmse(masks))
 
     def fit_all(
-        self, candidates: Sequence[Candidate], current: Fit, aim: Fit | None = None
+        self,
+        candidates: Sequence[Candidate],
+        current: Fit,
+        aim: Fit | None = None,
+        least: float = CRITERIA.gain,
     ) -> list[tuple[Candidate, Fit]]:
         """Fits of candidates, the best first; rough of what stays far above the best or the `aim`.
 
+        None of what will not take the share `least` of the error away.
         The laws with many parameters are tried where the simple law with memory, Dahl's, does
         better than friction without memory, or is in the model already.
         """
         masks = self.problem.masks
         limits = self._limits(current, 1 - HOPELESS)
-        likely = (1 - CRITERIA.likely * self.least) * current.rmse(masks)
+        likely = (1 - CRITERIA.likely * least) * current.rmse(masks)
         if aim:
             far = self._limits(aim, FAR)
             limits = min(limits[0], far[0]), min(limits[1], far[1])

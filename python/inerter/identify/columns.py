@@ -258,10 +258,10 @@ class Columns:
         apart = replace(unknown, reach=0.0)
         # what a tone does changes with the model, and what a bristle does
         if any(tones) or (unknown.reach and apart != _NOTHING):
-            return self._settled(rows, unknown, tones)
+            return self._worked_out(rows, unknown, tones)
         found = self._kept.all_found(
             column_keys(rows, _CHANNEL),
-            lambda missing: self._settled([rows[i] for i in missing], apart, tones),
+            lambda missing: self._worked_out([rows[i] for i in missing], apart, tones),
         )
         if not unknown.reach:
             return found
@@ -274,8 +274,8 @@ class Columns:
             begin += run.force.size
         return found
 
-    def _settled(self, rows: Rows, unknown: _Unknown, tones: Tones) -> Array:
-        """The same, worked out."""
+    def _worked_out(self, rows: Rows, unknown: _Unknown, tones: Tones) -> Array:
+        """The same, whatever is kept."""
         every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
         columns = [
             -_settled(shown_by(rows, run), run, mask, tone, unknown) for run, mask, tone in every

@@ -1,7 +1,8 @@
 """What one of a coordinate adds to the force, where that is in proportion to the coordinate.
 
 It is a function of the motion alone. Of a node of a curve along the stroke it is what the core
-gives of a device that has nothing else.
+gives of a device that has nothing else. What a run's channel shows of it is kept, for every problem
+that has the run.
 """
 
 from __future__ import annotations
@@ -109,7 +110,7 @@ def shown_by(rows: Rows, run: BenchRun) -> Array:
     plain = column_keys(rows)
 
     def forces(of: Callable[[str, Model, BenchRun], Array], which: Sequence[int]) -> Array:
-        keys = [(run.identity, of.__name__, *plain[i]) for i in which]
+        keys = [(run.identity, of, *plain[i]) for i in which]
         return _OF_RUNS.all_found(keys, lambda new: [of(*rows[which[k]], run) for k in new])
 
     def shown(missing: list[int]) -> list[Array]:

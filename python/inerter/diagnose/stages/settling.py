@@ -43,8 +43,8 @@ def settled(found: Searched) -> Settled:
     known = identified(search, baseline, final)
     if known is not final:
         final, standings = compared(search, baseline, known)
-    settled = Settled(searched=found, final=final, before=before, standings=standings)
-    return _beyond_motion(settled) or settled
+    within = Settled(searched=found, final=final, before=before, standings=standings)
+    return _beyond_motion(within) or within
 
 
 def run_beyond_motion(search: Search, model: Model, most: int = CRITERIA.most_effects) -> Scored:
@@ -55,9 +55,9 @@ def run_beyond_motion(search: Search, model: Model, most: int = CRITERIA.most_ef
     """
     excluded = search.excluded
     search.kept = frozenset(name for name, _ in effects_of(model, search.baseline))
-    search.excluded, search.trials.least = excluded | SMOOTH, CRITERIA.band_gain
+    search.excluded, search.least = excluded | SMOOTH, CRITERIA.band_gain
     final = search.run(model, until="backlash", most=most)
-    search.excluded, search.trials.least = excluded, CRITERIA.gain
+    search.excluded, search.least = excluded, CRITERIA.gain
     return final
 
 
