@@ -66,8 +66,8 @@ def with_rate_of_level(
     most = 100 * (abs(change) + 2 * spread)
     return replace(
         told,
-        evidence=f"{wording.evidence(told)} At steady speeds it may change by up to {most:.2g} % "
-        "for each factor of e in the speed.",
+        evidence=f"{wording.evidence(told)} At steady speeds the level may change by up to "
+        f"{most:.2g} % for each factor of e in the speed.",
     )
 
 
