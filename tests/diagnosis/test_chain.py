@@ -8,7 +8,13 @@ from typing import cast
 
 import numpy as np
 import pytest
-from inerter.diagnose.chain import Link, helping_most, weakest, with_what_was_dropped
+from inerter.diagnose.chain import (
+    Link,
+    Parts,
+    helping_most,
+    weakest,
+    with_what_was_dropped,
+)
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.search import Search
 from inerter.identify.fit import Fit
@@ -100,3 +106,37 @@ def test_the_main_cause_is_what_foretells_best(
     search = cast(Search, SimpleNamespace(problem=problem, scores=lambda _: scores))
     (effect, _), _ = helping_most(search, trials)
     assert effect == first
+
+
+def test_each_choice_of_effects_is_fitted_and_scored_once() -> None:
+    baseline = BARE
+    whole = BARE.adding(None, viscous=100.0, force_offset=3.0, stiffness=40.0)
+    asked: list[tuple[str, ...]] = []
+
+    def fit(model: Model) -> Fit:
+        asked.append(model.free[1:])
+        return Fit(model, [np.full(4, 1.0 + len(asked))], np.eye(len(model.free)), 1)
+
+    def scores(fits: list[tuple[str, str | None, Fit]]) -> list[SimpleNamespace]:
+        scored.append(len(fits))
+        return [SimpleNamespace(effect=effect, fit=fit) for effect, _, fit in fits]
+
+    scored: list[int] = []
+    problem = SimpleNamespace(fit=fit, masks=[np.full(4, True)])
+    search = cast(Search, SimpleNamespace(problem=problem, baseline=baseline, scores=scores))
+    fitted = Fit(whole, [np.ones(4)], np.eye(4), 1)
+    parts = Parts(search, fitted)
+    # the whole is known
+    names = ["viscous_friction", "force_offset", "parallel_stiffness"]
+    assert parts.of(whole, [names]) == [fitted]
+    assert not asked
+    first = parts.of(whole, [names[:1], names[1:2], names[:2]])
+    assert asked == [("viscous",), ("force_offset",), ("viscous", "force_offset")]
+    again = parts.of(whole, [names[1::-1], names[2:]])
+    assert again[0] is first[2]
+    assert len(asked) == 4
+    told = parts.scores([("a", None, first[0]), ("b", None, first[1])])
+    assert [each.fit for each in told] == first[:2]
+    more = parts.scores([("c", None, again[1]), ("b", None, first[1])])
+    assert [each.fit for each in more] == [again[1], first[1]]
+    assert scored == [2, 1]

@@ -97,6 +97,27 @@ def test_a_gas_is_told_though_its_exponent_is_not() -> None:
     assert not told(0.3)
 
 
+@pytest.mark.parametrize(("size", "told"), [(3.0, True), (0.2, False), (0.0, False)])
+@pytest.mark.parametrize("nodes", [7, 33])
+def test_a_curve_is_told_though_no_node_of_it_is(nodes: int, size: float, told: bool) -> None:
+    """A hysteresis beside it may take any constant force, and any spring."""
+    names = [f"force_node_{i + 1}" for i in range(nodes)]
+    place = np.linspace(-1.0, 1.0, nodes)
+    values = 5.0 * place**2 + 2.0
+    values = size * (values - values.mean()) + 2.0
+    model = BASELINE.adding(None, **dict(zip(names, values.tolist(), strict=True)))
+    covariance = np.eye(nodes + 1)
+    covariance[1:, 1:] = np.eye(nodes) + 900.0 * (1.0 + np.outer(place, place))
+    errors = np.sqrt(np.diag(covariance))[1:]
+    assert np.all(np.abs(values) < 3 * errors)
+    fit = Fit(model, [], covariance, 1, 1.0)
+    assert is_distinct("position_force", fit, BASELINE) is told
+    # a direction that rounding alone has made sure, or of no size, tells nothing
+    way = np.outer(place, place) / (place @ place)
+    covariance[1:, 1:] -= (900.0 * (place @ place) + 1.0 + 1e-7) * way
+    assert is_distinct("position_force", fit, BASELINE) is told
+
+
 @pytest.mark.parametrize(("beta", "told"), [(-0.2, False), (1.0, False), (5.0, True)])
 def test_hysteresis_without_loss_is_none(beta: float, told: bool) -> None:
     model = BASELINE.adding("bouc_wen", bw_stiffness=1e3, bw_beta=beta, bw_gamma=-20.0)

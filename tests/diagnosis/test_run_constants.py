@@ -53,6 +53,30 @@ def thinned(records: Sequence[Record]) -> list[BenchRun]:
     return [thin(motion) for motion in prepare(records).motions]
 
 
+def test_a_stop_that_some_runs_reach_is_no_constant() -> None:
+    """It pushes one way, and so moves the mean force of those that reach it."""
+    random = np.random.default_rng(5)
+
+    def stopped(number: int, reach: float, offset: float = 0.0) -> Record:
+        speed = 2 * np.pi * np.array([0.5, 1.3]) * (1 + 0.2 * number)
+        size = reach * np.array([0.7, 0.3])
+        phase = speed[:, None] * TIME + random.uniform(0, 6, 2)[:, None]
+        x, a = size @ np.sin(phase), -(size * speed**2) @ np.sin(phase)
+        force = 30 * a + 7e3 * np.maximum(x - 0.028, 0.0) + offset
+        return Record(
+            name=f"run {number}", time=TIME, displacement=x + random.normal(0, 1e-6, x.size),
+            force=force + random.normal(0, 0.3, x.size),
+        )  # fmt: skip
+
+    reaches = [0.06, 0.05, 0.015]
+    assert constants(thinned([stopped(i, reach) for i, reach in enumerate(reaches)])) == {}
+    # and those that there are, are found beside it
+    offsets = [-20.0, 5.0, 15.0]
+    pairs = enumerate(zip(reaches, offsets, strict=True))
+    found = constants(thinned([stopped(i, reach, offset) for i, (reach, offset) in pairs]))
+    assert list(found.values()) == pytest.approx(offsets, abs=0.5)
+
+
 def test_constants_are_found_and_taken_off() -> None:
     offsets = [-4.0, 6.0, -2.0]
     records = [record(i, offset=offset) for i, offset in enumerate(offsets)]

@@ -50,3 +50,20 @@ def test_a_run_of_nearly_all_data_is_not_held_out(lengths: list[float], held: in
     runs = [run(str(i), -0.02, 0.02, seconds=seconds) for i, seconds in enumerate(lengths)]
     found = split(runs)
     assert [found.role(i) for i in range(len(runs))].index("holdout") == held
+
+
+@pytest.mark.parametrize(("count", "whole"), [(3, False), (4, False), (5, True), (7, True)])
+def test_few_runs_are_left_out_in_blocks_and_many_as_they_are(count: int, whole: bool) -> None:
+    """What one of three or four runs tells alone is not taken away whole."""
+    runs = [run(str(i), -0.02, 0.02 + 0.001 * i) for i in range(count + 1)]
+    found = split(runs, [str(count)])
+    assert len(found.folds) == (5 if whole else 4)
+    left = np.array([[mask.sum() for mask in fold] for fold in found.folds])
+    all_of_it = np.array([mask.sum() for mask in found.fit])
+    assert left.sum(axis=0).tolist() == all_of_it.tolist()
+    assert not left[:, count].any()
+    shares = left[:, :count] / all_of_it[:count]
+    if whole:
+        assert set(np.unique(shares)) == {0.0, 1.0}
+    else:
+        assert shares == pytest.approx(0.25, abs=0.01)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from inerter.diagnose.composition import effects_of, is_local, submodel
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.parallel import parallel
-from inerter.diagnose.search import Search
+from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import (
     Interval,
     advantage,
@@ -21,7 +22,7 @@ from inerter.diagnose.statistics import (
     win_shares,
 )
 from inerter.identify.choices import TONE
-from inerter.identify.fit import Fit, rms
+from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 
 Trial = tuple[tuple[str, str | None], Fit]
@@ -59,7 +60,42 @@ class Link:
         return self.stands and self.rmse_after < self.rmse_before
 
 
-def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
+class Scores(Protocol):
+    """What tells how fits do on folds left out."""
+
+    problem: Problem
+
+    def scores(self, fits: Sequence[tuple[str, str | None, Fit]], /) -> list[Scored]:
+        """Of each effect, its law and the fit with it."""
+        ...
+
+
+class Parts:
+    """Fits of the effects of a model, some of them at a time; each is fitted and scored once."""
+
+    def __init__(self, search: Search, whole: Fit) -> None:
+        self.search, self.problem = search, search.problem
+        self.fits = {frozenset(name for name, _ in effects_of(whole.model, search.baseline)): whole}
+        # the fits are kept, so that no other is taken for one of them
+        self._scored: dict[int, tuple[Fit, Scored]] = {}
+
+    def of(self, model: Model, choices: Sequence[Collection[str]]) -> list[Fit]:
+        """A model with some of its effects, fitted; of each choice of them."""
+        wanted = [frozenset(names) for names in choices]
+        new = [names for names in dict.fromkeys(wanted) if names not in self.fits]
+        models = [submodel(model, sorted(names), self.search.baseline) for names in new]
+        self.fits |= zip(new, parallel(self.search.problem.fit, models), strict=True)
+        return [self.fits[names] for names in wanted]
+
+    def scores(self, fits: Sequence[tuple[str, str | None, Fit]], /) -> list[Scored]:
+        """`Search.scores`, of the same fit once."""
+        new = [each for each in fits if id(each[-1]) not in self._scored]
+        found = zip(new, self.search.scores(new), strict=True)
+        self._scored |= {id(fit): (fit, scored) for (*_, fit), scored in found}
+        return [self._scored[id(fit)][1] for *_, fit in fits]
+
+
+def chain_of(search: Search, judge: Judge, model: Model, parts: Parts) -> list[Link]:
     """The effects of a model, each time the one that helps most on the fit data.
 
     One that does not help by then may be needed together with a later one: of it the link says what
@@ -70,17 +106,16 @@ def chain_of(search: Search, judge: Judge, model: Model) -> list[Link]:
     taken: list[str] = []
     chain = []
     while left:
-        models = [submodel(model, [*taken, effect], search.baseline) for effect, _ in left]
-        fits = parallel(search.problem.fit, models)
-        (effect, law), after = helping_most(search, list(zip(left, fits, strict=True)))
+        fits = parts.of(model, [[*taken, effect] for effect, _ in left])
+        (effect, law), after = helping_most(parts, list(zip(left, fits, strict=True)))
         chain.append(_link(search, judge, effect, law, fit, after))
         left = [pair for pair in left if pair[0] != effect]
         taken.append(effect)
         fit = after
-    return [link if link.helps else _last(search, judge, link, taken, fit) for link in chain]
+    return [link if link.helps else _last(search, judge, link, taken, fit, parts) for link in chain]
 
 
-def helping_most(search: Search, trials: Sequence[Trial]) -> Trial:
+def helping_most(search: Scores, trials: Sequence[Trial]) -> Trial:
     """What helps most; of some that do about equally well, what foretells folds left out best."""
     masks = search.problem.masks
     least = min(fit.rmse(masks) for _, fit in trials)
@@ -91,12 +126,14 @@ def helping_most(search: Search, trials: Sequence[Trial]) -> Trial:
     return min(zip(near, scored, strict=True), key=lambda pair: pair[1].squares.sum())[0]
 
 
-def _last(search: Search, judge: Judge, link: Link, taken: list[str], whole: Fit) -> Link:
+def _last(
+    search: Search, judge: Judge, link: Link, taken: list[str], whole: Fit, parts: Parts
+) -> Link:
     """A link as the last of its chain, if it stands there."""
     rest = [effect for effect in taken if effect != link.effect]
     if not rest:
         return link
-    without = search.problem.fit(submodel(whole.model, rest, search.baseline))
+    (without,) = parts.of(whole.model, [rest])
     last = _link(search, judge, link.effect, link.law, without, whole)
     return last if last.stands else link
 

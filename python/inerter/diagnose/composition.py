@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from inerter.catalogue.along_stroke import PERIODS, QUANTITIES
+from inerter.catalogue.along_stroke import PERIODS, QUANTITIES, node_of
 from inerter.catalogue.coordinates import search_range
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import (
@@ -28,6 +28,8 @@ DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play"
 """Effects that take away the rigid drive of the flywheel."""
 SMOOTH = frozenset(name for name, effect in EFFECTS.items() if effect.smooth)
 """Effects that are linear in the motion."""
+# share of the largest eigenvalue of a correlation below which one is no more than rounding
+_ROUNDING = 1e-5
 # how well a coordinate is known before any data: the exponent of a gas lies between 1 and 1.7.
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
@@ -72,6 +74,8 @@ def is_distinct(
     known = [name for name in EFFECTS[effect].amplitudes if name in errors]
     if EFFECTS[effect].kind == "law" and len(known) > 1 and _together(fit, known) > required:
         return True
+    if (nodes := [name for name in known if node_of(name)]) and _curve(fit, nodes) > required:
+        return True
     return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
 
 
@@ -85,6 +89,25 @@ def _together(fit: Fit, names: Sequence[str]) -> float:
     values = np.array([fit.model.values[name] for name in names])
     inverse = np.linalg.pinv(fit.covariance[np.ix_(places, places)], hermitian=True)
     return float(np.sqrt(max(values @ inverse @ values, 0.0)))
+
+
+def _curve(fit: Fit, nodes: Sequence[str]) -> float:
+    """Standard errors by which a curve differs from none, as of one value that is as unlikely.
+
+    What lies beside it may take a share of every node, and leave none that is known alone. What
+    the rounding of their covariance may have made of it counts for nothing.
+    """
+    places = [fit.model.free.index(name) for name in nodes]
+    covariance = fit.covariance[np.ix_(places, places)]
+    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    sizes, ways = np.linalg.eigh(covariance / np.outer(errors, errors))
+    sure = sizes > _ROUNDING * sizes[-1]
+    along = ways.T @ (np.array([fit.model.values[name] for name in nodes]) / errors)
+    count = int(sure.sum())
+    # the cube root of a chi-squared value over its mean is nearly normal (Wilson and Hilferty)
+    spread = 2.0 / (9.0 * count)
+    ratio = float(np.sum(along[sure] ** 2 / sizes[sure])) / count
+    return float((np.cbrt(ratio) - (1.0 - spread)) / np.sqrt(spread))
 
 
 def bristle_is_known(fit: Fit) -> bool:

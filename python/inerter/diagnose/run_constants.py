@@ -29,6 +29,8 @@ FORCE_PART = 0.01
 LEFT_PART = 0.5
 # stretches of a run that count as independent
 STRETCHES = 12
+# places at which a force of the place may bend
+BENDS = 9
 # speed below which friction may be anything, per rms; width of sign(v)
 SLOW, WIDTH = 0.1, 0.02
 # what a run that contradicts the others is missed by more than by itself, per its force, and how
@@ -54,7 +56,8 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     """
     if len(runs) < 2 or any(run.part for run in runs):
         return {}
-    rows = [_rows(run, rich=True) for run in on_clocks(runs)]
+    runs = on_clocks(runs)
+    rows = [_rows(run, _bends(runs)) for run in runs]
     count = len(rows)
     if min(row.force.size for row in rows) < 10 * STRETCHES:
         return {}
@@ -106,7 +109,7 @@ def contradicting(runs: Sequence[BenchRun]) -> dict[str, str]:
     """Runs that contradict the others, by name with what they say; at most one."""
     if len(runs) < 3 or any(run.part for run in runs):
         return {}
-    rows = [_rows(run, rich=False) for run in runs]
+    rows = [_rows(run) for run in runs]
     if min(row.force.size for row in rows) < 100:
         return {}
     everything = range(len(rows))
@@ -159,14 +162,21 @@ def _solved(rows: Sequence[_Rows]) -> Array:
     return np.linalg.lstsq(matrix / scale, force, rcond=1e-6)[0] / scale
 
 
-def _rows(run: BenchRun, *, rich: bool) -> _Rows:
+def _bends(runs: Sequence[BenchRun]) -> Array:
+    """Places (m,) between which a force of the place is taken as straight: a stop is only there."""
+    x = [run.displacement[run.inner] for run in runs]
+    return np.linspace(min(map(np.min, x)), max(map(np.max, x)), BENDS + 2)[1:-1]
+
+
+def _rows(run: BenchRun, bends: Array | None = None) -> _Rows:
     x, v, a = run.displacement, run.velocity, run.acceleration
     size = _rms(v[run.inner]) or 1.0
     moving = run.inner & (np.abs(v) > SLOW * size)
     way = np.tanh(v / (WIDTH * size))
     columns = [a, v, way, x]
-    if rich:
+    if bends is not None:
         columns += [np.abs(v), v * np.abs(v), np.abs(a) * way, x * x, x**3, x * way, run.elapsed]
+        columns += list(np.maximum(x - bends[:, None], 0.0))
     return _Rows(np.column_stack(columns)[moving], run.force[moving])
 
 

@@ -19,6 +19,8 @@ HELD_OUT_BLOCKS = (3, 6, 8)
 # share of all data that a run held out by itself has at most, and at least
 MOST_HELD = 0.6
 LEAST_HELD = 0.02
+# folds of the runs learnt from, where these are so many
+FOLDS = 5
 
 
 @dataclass(frozen=True)
@@ -115,14 +117,17 @@ def _most_typical(runs: Sequence[BenchRun]) -> int:
 
 
 def _folds(runs: Sequence[BenchRun], fit: list[Mask]) -> list[list[Mask]]:
-    """Masks of what each fold leaves out: a run each, or spread blocks where there are few runs."""
+    """Masks of what each fold leaves out: runs, or spread blocks where there are few runs.
+
+    One of few runs takes away what only it can tell: how far the others' motion goes, say.
+    """
     used = [i for i, mask in enumerate(fit) if mask.any()]
-    if len(used) >= 3:
+    if len(used) >= FOLDS:
         names = list(dict.fromkeys(_run_of(runs[i]) for i in used))
-        # parts of one run or two are folds themselves
-        places = [names.index(_run_of(runs[i])) for i in used] if len(names) >= 3 else None
+        # parts of few runs are folds themselves
+        places = [names.index(_run_of(runs[i])) for i in used] if len(names) >= FOLDS else None
         numbered = list(zip(used, places or range(len(used)), strict=True))
-        groups = [[i for i, place in numbered if place % 5 == fold] for fold in range(5)]
+        groups = [[i for i, place in numbered if place % FOLDS == fold] for fold in range(FOLDS)]
         groups = [group for group in groups if group]
         return [
             [mask if i in group else np.zeros_like(mask) for i, mask in enumerate(fit)]

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from inerter.diagnose.chain import Link, chain_of, tone_link, weakest, with_what_was_dropped
+from inerter.diagnose.chain import Link, Parts, chain_of, tone_link, weakest, with_what_was_dropped
 from inerter.diagnose.composition import (
     DRIVE,
     effects_of,
     has_series,
-    submodel,
 )
 from inerter.diagnose.data import Data
 from inerter.diagnose.decision import CRITERIA
@@ -80,15 +79,16 @@ def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[
     What is left is fitted anew each time that one is dropped.
     """
     search, judge, baseline = found.search, found.judge, found.prepared.baseline
-    chain = chain_of(search, judge, final.model)
+    parts = Parts(search, final.fit)
+    chain = chain_of(search, judge, final.model, parts)
     dropped: set[str] = set()
     while weak := weakest(chain, judge, final.model):
         search.progress(f"{weak} is not confirmed on held-out data: dropped")
         dropped.add(weak)
         rest = [name for name, _ in effects_of(final.model, baseline) if name != weak]
-        fit = search.problem.fit(submodel(final.model, rest, baseline))
+        (fit,) = parts.of(final.model, [rest])
         final = search.score("", None, fit)
-        chain = chain_of(search, judge, final.model)
+        chain = chain_of(search, judge, final.model, parts)
     return final, chain, dropped
 
 
