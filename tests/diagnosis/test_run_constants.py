@@ -77,6 +77,26 @@ def test_a_stop_that_some_runs_reach_is_no_constant() -> None:
     assert list(found.values()) == pytest.approx(offsets, abs=0.5)
 
 
+def test_an_inertance_along_the_stroke_is_no_constant() -> None:
+    """b(x) a + b'(x) v^2 / 2 is the rate of b(x) v less b'(x) v^2 / 2, which has a mean."""
+    random = np.random.default_rng(6)
+
+    def uneven(number: int, size: float) -> Record:
+        speed = 2 * np.pi * np.array([0.5, 1.7]) * (1 + number)
+        sizes = size * np.array([0.7, 0.3])
+        phase = speed[:, None] * TIME + random.uniform(0, 6, 2)[:, None]
+        x, v = sizes @ np.sin(phase), (sizes * speed) @ np.cos(phase)
+        a = -(sizes * speed**2) @ np.sin(phase)
+        b, slope = 60 * (1 + 6 * x + 100 * x**2), 60 * (6 + 200 * x)
+        force = b * a + 0.5 * slope * v**2
+        return Record(
+            name=f"run {number}", time=TIME, displacement=x + random.normal(0, 1e-6, x.size),
+            force=force + random.normal(0, 0.3, x.size),
+        )  # fmt: skip
+
+    assert constants(thinned([uneven(i, size) for i, size in enumerate([0.05, 0.03, 0.01])])) == {}
+
+
 def test_constants_are_found_and_taken_off() -> None:
     offsets = [-4.0, 6.0, -2.0]
     records = [record(i, offset=offset) for i, offset in enumerate(offsets)]

@@ -177,6 +177,8 @@ def _rows(run: BenchRun, bends: Array | None = None) -> _Rows:
     if bends is not None:
         columns += [np.abs(v), v * np.abs(v), np.abs(a) * way, x * x, x**3, x * way, run.elapsed]
         columns += list(np.maximum(x - bends[:, None], 0.0))
+        # an inertance along the stroke: b(x) a + b'(x) v^2 / 2
+        columns += [0.5 * v * v + x * a, x * v * v + x * x * a]
     return _Rows(np.column_stack(columns)[moving], run.force[moving])
 
 
