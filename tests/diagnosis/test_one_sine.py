@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from inerter.core import Device
 from inerter.diagnose import diagnose_bench
+from inerter.diagnose.stages import searched
+from inerter.diagnose.start import Given, prepared
 from inerter.records import Record
 from inerter.reference.bench_channel import Channel, low_passed
 
@@ -86,3 +88,29 @@ def test_what_bends_shows_in_harmonics_near_the_cut_off(
     assert [each.effect for each in found.findings] == [effect]
     value = found.parameters[name]
     assert abs(value.value - device[name]) < max(3 * value.stderr, 0.03 * device[name])
+
+
+def test_a_law_is_told_by_the_harmonics_of_one_sine() -> None:
+    """In the motion's band most laws are the same; what they differ in lies above it."""
+    made = one_sine(
+        np.random.default_rng(5), noise=1.5e-5, inertance=54.0, friction="stribeck",
+        coulomb_force=80.0, static_force=120.0, stribeck_velocity=0.05,
+    )  # fmt: skip
+    found = diagnose_bench([made], carry="nothing")
+    assert [each.effect for each in found.findings] == ["stribeck_friction"]
+    assert found.findings[0].confidence > 0.9
+    assert found.parameters["coulomb_force"].value == pytest.approx(80.0, rel=0.05)
+
+
+@pytest.mark.parametrize("level", [40.0, None])
+def test_the_force_is_compared_in_its_harmonics_where_there_are_any(level: float | None) -> None:
+    law = {"friction": "coulomb", "coulomb_force": level} if level else {}
+    made = one_sine(np.random.default_rng(3), None, 3e-5, inertance=54.0, viscous=100.0, **law)
+    start = prepared(Given(records=[made]))
+    assert start.data.band.scales.one_tone
+    assert start.weighed.force_band == 0.0
+    band = searched(start).band.force_band
+    if level is None:
+        assert band == 0.0
+    else:
+        assert band > 3 * start.data.band.scales.frequency

@@ -7,7 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter.diagnose.composition import effects_of
+from inerter.diagnose.result import Rival
+from inerter.diagnose.rivals import Standing
 from inerter.diagnose.stages import Confirmed, Settled, compared, confirmed, searched
+from inerter.diagnose.stages.confirming import stands_in
 from inerter.diagnose.start import Given, prepared
 from inerter.records import Record
 
@@ -46,6 +49,25 @@ def confirmed_from(record: Record, **said: float) -> tuple[Confirmed, list[str]]
 def names(found: Confirmed) -> set[str]:
     """Effects that stand."""
     return {name for name, _ in effects_of(found.fit.model, found.searched.prepared.baseline)}
+
+
+@pytest.mark.parametrize(
+    ("confidence", "rivals", "told"),
+    [
+        (0.0, {"force_drift": 1.0}, True),
+        (0.3, {"force_offset": 0.4, "force_drift": 0.31}, True),
+        (0.4, {"force_offset": 0.5, "force_drift": 0.1}, False),
+        (0.9, {"force_drift": 0.1}, False),
+        (1.0, {}, False),
+    ],
+)
+def test_what_was_dropped_and_is_likelier_is_not_replaced(
+    confidence: float, rivals: dict[str, float], told: bool
+) -> None:
+    standing = Standing(confidence, [Rival(*each) for each in rivals.items()], None)
+    assert stands_in(standing, {"force_drift", "viscous_drift"}) is told
+    assert not stands_in(standing, set())
+    assert not stands_in(None, {"force_drift"})
 
 
 @pytest.mark.turns(4)

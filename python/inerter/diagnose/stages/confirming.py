@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from inerter.diagnose.chain import Link, Parts, chain_of, tone_link, weakest, with_what_was_dropped
@@ -52,6 +52,7 @@ def confirmed(start: Settled) -> Confirmed:
         progress("measuring the gain of each effect")
         more, links, _ = _standing_on_held_out(found, further[0])
         new = {link.effect for link in links} - {link.effect for link in chain}
+        new -= {effect for effect in new if stands_in(further[1].get(effect), dropped)}
         if new and judge.rmse(more.model) < judge.rmse(final.model):
             final, chain, standings = more, links, further[1]
     # where nothing stands the baseline is left, fitted as it was
@@ -71,6 +72,14 @@ def confirmed(start: Settled) -> Confirmed:
         searched=found, data=found.data, judge=found.judge, before=start.before, fit=fit,
         chain=tuple(chain), standings=standings,
     )  # fmt: skip
+
+
+def stands_in(standing: Standing | None, dropped: Collection[str]) -> bool:
+    """Whether one of the effects dropped is likelier than the one that took its place."""
+    return standing is not None and any(
+        rival.effect in dropped and rival.confidence > standing.confidence
+        for rival in standing.rivals
+    )
 
 
 def _standing_on_held_out(found: Searched, final: Scored) -> tuple[Scored, list[Link], set[str]]:
@@ -107,7 +116,7 @@ def _searched_on(
     search = replace(found.search, found=[], excluded=frozenset({*dropped, *DRIVE}))
     search.progress(f"searching on without {', '.join(sorted(dropped))}")
     known: Mapping[str, Standing] = {}
-    if found.band.force_band:
+    if found.band.force_band and not search.problem.scales.one_tone:
         more, known = run_beyond_motion(search, final.model, len(dropped)), standings
     else:
         more = search.run(final.model, most=len(dropped))

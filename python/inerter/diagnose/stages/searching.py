@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from inerter.diagnose.band import best_band, narrower_band, wider_band
+from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     DRIVE,
@@ -65,6 +65,9 @@ def searched(start: Prepared) -> Searched:
     Where the model found predicts the force better in a wider band, the search goes on there.
     """
     data, band = start.data, start.weighed
+    if wide := _harmonics(start):
+        band = replace(band, force_band=wide)
+        data = data.in_band(replace(data.preparation, force_band=wide))
     search = search_in(start, band)
     final = search.run(until="backlash")
     for _ in range(CRITERIA.more_bands):
@@ -87,6 +90,21 @@ def searched(start: Prepared) -> Searched:
     if play := _play(found):
         return _with_play(found, play)
     return _in_narrower_band(found)
+
+
+def _harmonics(start: Prepared) -> float:
+    """Band [Hz] of the force's harmonics along one sine, where most of them are above the motion's.
+
+    In them alone most friction laws and dampers differ; 0 where there are none.
+    """
+    scales, model = start.data.band.scales, start.baseline
+    if not scales.one_tone:
+        return 0.0
+    # what is linear in the motion, and takes all else along one sine
+    linear = ["viscous", "force_offset", "inertance"]
+    begin = {name: model.values.get(name, 0.0) for name in linear if name not in model.free}
+    fit = search_in(start, start.weighed).problem.fit(model.adding(None, **begin))
+    return force_band(start.data.learnt, fit.model, start.weighed)
 
 
 def search_in(start: Prepared, band: Preparation) -> Search:

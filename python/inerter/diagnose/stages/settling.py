@@ -68,8 +68,10 @@ def _beyond_motion(start: Settled) -> Settled | None:
     was found where errors are smaller is not compared again.
     """
     found, model, baseline = start.searched, start.final.model, start.searched.prepared.baseline
+    if "backlash" in model.free or found.band.force_band:
+        return None
     wide = force_band(found.data.learnt, model, found.band)
-    if "backlash" in model.free or not wide:
+    if not wide:
         return None
     found.prepared.given.progress(
         f"most of what is missed lies above {found.band.cutoff:.3g} Hz: searching there"
