@@ -142,6 +142,21 @@ def test_bounds_hold() -> None:
     assert 0 <= fit.model.values["viscous"] < 1e-3
 
 
+def test_a_fit_stays_within_limits_and_is_free_beside_them() -> None:
+    truth = {"inertance": 50.0, "viscous": 80.0, "stiffness": 700.0}
+    one = problem(run(Device(**truth), 0.0))
+    start = Model("none", {"inertance": 45.0, "viscous": 60.0, "stiffness": 500.0}, tuple(truth))
+    here, reach = one.variables(start).encode(start.values), np.array([np.inf, 0.01, np.inf])
+    limits = here - reach, here + reach
+    fit = one.fit(start, within=limits)
+    there = one.variables(fit.model).encode(fit.model.values)
+    assert there[1] == pytest.approx(here[1] + 0.01, abs=1e-6)
+    assert fit.model.values["inertance"] == pytest.approx(50.0, rel=0.01)
+    # limits that hold the truth change nothing
+    wide = one.fit(start, within=(here - 100.0, here + 100.0))
+    assert wide.model.values == pytest.approx(truth, rel=1e-6)
+
+
 def test_one_large_stroke_to_one_side_leaves_the_stops_where_they_can_be() -> None:
     """Stops at -5 and 7 mm; the last run goes from -19 to 35 mm, of which 8 mm is the middle."""
     wave, plain = np.sin(7 * TIME), run(Device(inertance=1.0), 0.0)

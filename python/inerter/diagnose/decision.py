@@ -70,6 +70,11 @@ class Criteria:
         "what an effect that shows in few places takes away there: peaks, where such effects lie, "
         "are where a slightly wrong model errs most",
     )
+    refit_reach: float = _bound(
+        10.0,
+        ERRORS,
+        "how far a refit without a fold may move what shows in few places: it may leave them all",
+    )
     foothold: float = _bound(
         0.1, SHARE, "what one that is not sure alone takes away to be tried with a second one"
     )

@@ -6,15 +6,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import Array
 from inerter.diagnose.trials import ROUGH
-from inerter.identify.fit import Fit, Near, Problem
+from inerter.identify.fit import Fit, Limits, Near, Problem
 from inerter.identify.split import Mask
 
 Folds = Sequence[tuple[Problem, list[Mask]]]
 """The data without a fold, and the fold; of each."""
 
+# coordinates of what shows in few places
+_LOCAL = {
+    name
+    for effect in EFFECTS.values()
+    if effect.local and effect.kind != "play"
+    for name in effect.coordinates
+}
 # evaluations of a refit at most
 _EVALUATIONS = 12
 
@@ -34,8 +43,9 @@ def left_out_errors(
         fit, derivatives, k = task
         without = folds[k][0]
         refit = without.fit(
-            fit.model, _EVALUATIONS, tolerance=ROUGH, rough=True, near=Near(derivatives, ())
-        )
+            fit.model, _EVALUATIONS, tolerance=ROUGH, rough=True, near=Near(derivatives, ()),
+            within=_around(problem, fit),
+        )  # fmt: skip
         return without.errors(refit.model)
 
     found = iter(parallel(errors, tasks))
@@ -58,3 +68,18 @@ def _with_derivatives(problem: Problem, fit: Fit) -> tuple[Fit, Array]:
         return fit, np.empty((0, 0))
     derivatives = problem.derivatives(fit.model)
     return problem.told(fit, derivatives) if fit.rough else fit, derivatives
+
+
+def _around(problem: Problem, fit: Fit) -> Limits | None:
+    """Limits of a refit's search variables, about a fit to everything.
+
+    What shows in few places is not known where a fold leaves these out, and what it touches besides
+    would lead it anywhere. None where there is nothing of the kind.
+    """
+    local = [name in _LOCAL for name in fit.model.free]
+    if not any(local):
+        return None
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)) / problem.units(fit.model)
+    reach = np.where(local, CRITERIA.refit_reach * errors, np.inf)
+    here = problem.variables(fit.model).encode(fit.model.values)
+    return here - reach, here + reach

@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 _LAST = 4
 
 Masks = Sequence[NDArray[np.bool_]]
+# lower and upper limits of search variables, (p,) each
+Limits = tuple[Array, Array]
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,13 @@ class Near:
     def bending_in(self, free: Sequence[str]) -> list[str] | None:
         """Which of some free coordinates these are."""
         return None if self.bending is None else [name for name in free if name in self.bending]
+
+
+def narrowed(bounds: Limits, within: Limits | None) -> Limits:
+    """Bounds, and the limits within them."""
+    if within is None:
+        return bounds
+    return np.maximum(bounds[0], within[0]), np.minimum(bounds[1], within[1])
 
 
 def rms(residual: Sequence[Array], masks: Masks) -> float:
@@ -202,6 +211,7 @@ class Problem:
         give_up: Callable[[int, float], bool] | None = None,
         rough: bool = False,
         near: Near | None = None,
+        within: Limits | None = None,
     ) -> Fit:
         """Bounded least squares over the model's free coordinates, from its present values.
 
@@ -209,7 +219,7 @@ class Problem:
         search ends where a step lowers the cost by less than `tolerance` of it, or where `give_up`
         says so of the evaluations so far and the rms of the masked residual [N]. A `rough` one is
         only compared: its derivatives where it ends are not worked out. Derivatives, where given,
-        are `near` those at the start.
+        are `near` those at the start. Search variables stay `within` limits (p,).
         """
         if not model.free:
             return Fit(model, self.residual(model), np.zeros((0, 0)), 1)
@@ -217,7 +227,9 @@ class Problem:
         near = replace(near, columns=near.columns[selected]) if near else None
         spent = 0
         apart = self._derivatives.apart(model) if loss == "linear" else None
-        if apart and (found := self._near(apart, model, evaluations, tolerance, give_up, near)):
+        if apart and (
+            found := self._near(apart, model, evaluations, tolerance, give_up, near, within)
+        ):
             model, spent, near = found
         variables, at, smooth = self.variables(model), self._remembered(model), smoothness(model)
         samples = int(selected.sum())
@@ -245,7 +257,7 @@ class Problem:
         solution = minimise(
             flat_at,
             variables.encode(model.values),
-            variables.bounds,
+            narrowed(variables.bounds, within),
             jacobian,
             tolerances=Tolerances(1e-7, tolerance, 1e-10),
             evaluations=max(evaluations - spent, _LAST) if spent else evaluations,
@@ -274,6 +286,7 @@ class Problem:
         tolerance: float,
         give_up: Callable[[int, float], bool] | None,
         near: Near | None,
+        within: Limits | None,
     ) -> tuple[Model, int, Near] | None:
         """A search in which what the residual is linear in is solved for at every point.
 
@@ -324,8 +337,9 @@ class Problem:
             if near:
                 last = near.columns[:, which]
                 first = beside(last)
+            limits = within and (within[0][which], within[1][which])
             found = minimise(
-                flat_at, begin, self.variables(inner).bounds, jacobian,
+                flat_at, begin, narrowed(self.variables(inner).bounds, limits), jacobian,
                 tolerances=Tolerances(1e-7, tolerance, 1e-10), evaluations=evaluations,
                 give_up=hopeless if give_up else None,
                 secants=Secants(
