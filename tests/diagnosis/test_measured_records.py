@@ -32,9 +32,13 @@ def constant_inertance(values: Mapping[str, float | str], motions: Sequence[Moti
     return force / square
 
 
-# asked for and not reached: the inertance is told at one place and at rest, and varies; at r16 a
-# spring that relaxes, which does what a damper does and more, takes more than friction with memory
-LOST = {"r0": {"inertance"}, "r16": {"main cause", "inertance"}, "emps": {"damping", "friction"}}
+# asked for and not reached: the inertance is told at one place and at rest, and varies; a spring
+# that relaxes, which does what a damper does and more, takes more than friction with memory
+LOST = {
+    "r0": {"main cause", "inertance"},
+    "r16": {"main cause", "inertance"},
+    "emps": {"damping", "friction"},
+}
 
 
 def settle(record: str, expected: Mapping[str, bool]) -> None:
