@@ -54,21 +54,8 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
 }
 
 
-# lost again: the run that is held out is chosen by what it tells of, and here it is another one;
-# the verdict says that an end stop would be added with run_1 held out
-LOST = ("a fold astray",)
-
-
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "case",
-    [
-        pytest.param(
-            case, marks=[pytest.mark.xfail(strict=True, reason="the split")] if case in LOST else []
-        )
-        for case in CASES
-    ],
-)
+@pytest.mark.parametrize("case", CASES)
 def test_it_is_named_alone(case: str) -> None:
     (effect, *more), seed = CASES[case]
     hidden = hide_effect(seed, effect, noise=NoiseLevels(0.0, 0.01, 1e-6), also=more)
