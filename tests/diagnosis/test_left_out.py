@@ -20,11 +20,10 @@ TRUTH = {"inertance": 50.0, "stop_upper": 0.021, "stop_stiffness": 2e4, "stop_da
 
 
 def run() -> BenchRun:
-    """A beat of two sines that reaches a stop at its height alone; a force at the start besides."""
+    """A beat of two sines that reaches a stop at its height alone."""
     speed = 2 * np.pi * np.array([[1.0], [1.045]])
     phase = speed * (TIME - 10.0)
     size = 0.011
-    x, v, a = np.zeros((3, TIME.size))
     x, v = size * np.cos(phase).sum(0), -size * (speed * np.sin(phase)).sum(0)
     a = -size * (speed**2 * np.cos(phase)).sum(0)
     force = Device(**TRUTH).evaluate(x, v, a, 0.0)["total"]
