@@ -11,6 +11,7 @@ from inerter.catalogue.along_stroke import QUANTITIES, Quantity
 from inerter.catalogue.coordinates import COORDINATES
 from inerter.identify import in_proportion
 from inerter.identify.channel import clips
+from inerter.identify.columns import Columns
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from three_sines import H, N, motion, run_of
@@ -169,6 +170,29 @@ def test_nodes_of_a_curve_are_differences_of_the_residual(
     stated = LAWS[law] | ({"bw_exponent": 1.0} if smooth else {})
     model = Model(law, also | stated | low_pass | ends | nodes, (*nodes, "viscous"))
     assert errors_of_columns(data, model).max() < 1e-4
+
+
+@pytest.mark.parametrize("band", [np.inf, 60.0])
+@pytest.mark.parametrize("quantity", QUANTITIES[:2], ids=["force", "inertance"])
+@pytest.mark.parametrize("beside", ["limits", "displacement filter", "backlash"])
+def test_nodes_are_no_differences_beside_what_was_one_of_each(
+    beside: str, quantity: Quantity, band: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data = problem_in(band)
+    size = 0.01 if quantity.name == "inertance" else 1.0
+    nodes = {name: size * (i % 3) for i, name in enumerate(quantity.nodes[:7])}
+    ends = dict(zip(("curve_lower", "curve_upper"), data.scales.travel, strict=True))
+    law, values = BESIDE[beside]
+    # what is behind a shaft has no column of its own
+    behind = beside == "backlash" and quantity.name == "inertance"
+    also = ("viscous",) if behind else (*nodes, "viscous")
+    # beside a play a delay is one of the motion, where forces are compared as measured
+    delay = {} if beside == "backlash" and np.isinf(band) else {"delay": 1.3 * H}
+    stated = LINEAR | LAWS[law] | values | ends | delay | nodes
+    model = Model(law, stated, also)
+    assert rms_errors_of_columns(data, model).max() < (0.1 if clips(values) else 1e-4)
+    monkeypatch.setattr(Columns, "_difference", None)
+    assert data.jacobian(model).shape[1] == len(also)
 
 
 @pytest.mark.parametrize("band", [np.inf, 60.0])

@@ -28,6 +28,7 @@ from inerter.identify.in_proportion import (
     PLACES,
     Rows,
     at_speeds,
+    clipped,
     column_keys,
     curve_of,
     entangling,
@@ -39,7 +40,7 @@ from inerter.identify.in_proportion import (
 )
 from inerter.identify.kept import Kept
 from inerter.identify.model import Model
-from inerter.identify.prediction import bristle_reach
+from inerter.identify.prediction import before_filter, beyond_limits, bristle_reach, moves_late
 from inerter.identify.runs import BenchRun
 from inerter.identify.smoothness import smoothness
 from inerter.identify.transient import (
@@ -64,6 +65,8 @@ class ResidualAt(Protocol):
 
 # of every run how a tone follows what is left, see `tone_follows`
 Tones = Sequence[tuple[Array, Array] | None]
+# of every run where its channel shows a limit, see `beyond_limits`
+Beyond = Sequence[NDArray[np.bool_]]
 
 # difference of a search variable, and of the first force per its size
 _STEP = 1e-4
@@ -71,10 +74,10 @@ _STEP = 1e-4
 _MOST = 2**25
 # coordinates that are solved for apart, at least; bases of such that are kept of a problem
 _WORTH_WHILE, _MOST_BASES = 5, 4
-# with one of these a column is no longer that of the motion as it is
-_FILTER = "displacement_filter"
+# a filter that is taken out of the motion that the columns are of
+_FILTER = ("displacement_filter", "displacement_filter_order", "displacement_filter_bessel")
 # what is a linear filter of the force, and what says how long the time before the record shows
-_CHANNEL = (*LINEAR, *RELAXING)
+_CHANNEL = (*LINEAR, *RELAXING, *_FILTER)
 # share of an inertance that it may lose with the speed at most; its floor is 0.01
 _NEAR_FLOOR = 0.98
 
@@ -135,9 +138,14 @@ class Columns:
             for each in (speeds if times_inertance(name) else [(1.0, model)])
         ]
         rows = [(name, each) for name, _, each in alike]
-        columns = self._weighted(rows, _Unknown.of(model), tones)
+        beyond = None
+        if clips(model.values):
+            beyond = [beyond_limits(model, run) for run in self.problem.runs]
+        columns = self._weighted(rows, _Unknown.of(model), tones, beyond)
         if model.device().nstate:
-            taken = [first_shares(rows, run) for run in self.problem.runs]
+            taken = [
+                first_shares(rows, before_filter(run, model.values)) for run in self.problem.runs
+            ]
             if np.any(taken):
                 changes, begin = self._by_first_force(point, base(), residual), 0
                 for shares, change in zip(taken, changes, strict=True):
@@ -155,7 +163,8 @@ class Columns:
         if BY_SPEED in model.free:
             # what an inertance gains along the stroke is then no column that stays as it is
             names = [name for name in names if not times_inertance(name)]
-        if len(names) < _WORTH_WHILE or not set(model.free).isdisjoint((*PLACES, *_CHANNEL)):
+        moving = not set(model.free).isdisjoint((*PLACES, *_CHANNEL))
+        if len(names) < _WORTH_WHILE or moving or clips(model.values):
             return None
         which = [model.free.index(name) for name in names]
         smooth = smoothness(model)[:, which]
@@ -178,9 +187,10 @@ class Columns:
         """Those of some coordinates that enter the force times their columns."""
         device, values = model.device(), model.values
         # a flywheel on its spring is set going by whatever acts
-        swings = device.nstate and (device.series_stiffness or device.series_damping)
+        swings = device.series_stiffness and not device.backlash
         far = not all(np.isinf(run.far) for run in self.problem.runs)
-        if swings or far or _FILTER in values or clips(values):
+        late = any(moves_late(values, run) for run in self.problem.runs)
+        if swings or far or late:
             return []
         floored = self._is_floored(values.get(BY_SPEED, 0.0))
         return [
@@ -252,13 +262,19 @@ class Columns:
         moved[index] += step
         return (np.concatenate(residual(moved)) - np.concatenate(base)) / step
 
-    def _weighted(self, rows: Rows, unknown: _Unknown, tones: Tones | None = None) -> Array:
+    def _weighted(
+        self,
+        rows: Rows,
+        unknown: _Unknown,
+        tones: Tones | None = None,
+        beyond: Beyond | None = None,
+    ) -> Array:
         """Minus coordinates' columns as they count, (m, n); tones held where none are given."""
         tones = tones or [None] * len(self.problem.runs)
         apart = replace(unknown, reach=0.0)
-        # what a tone does changes with the model, and what a bristle does
-        if any(tones) or (unknown.reach and apart != _NOTHING):
-            return self._worked_out(rows, unknown, tones)
+        # what a tone does changes with the model, and what a bristle or a limit does
+        if beyond or any(tones) or (unknown.reach and apart != _NOTHING):
+            return self._worked_out(rows, unknown, tones, beyond)
         found = self._kept.all_found(
             column_keys(rows, _CHANNEL),
             lambda missing: self._worked_out([rows[i] for i in missing], apart, tones),
@@ -269,16 +285,20 @@ class Columns:
         begin = 0
         for run, (share, form) in zip(self.problem.runs, self._bent(unknown.reach), strict=True):
             if share.size:
-                shown = shown_by(rows, run)[:, : share.size]
+                shown = _shown(rows, run)[:, : share.size]
                 found[:, begin : begin + form.size] += np.outer(shown @ share, form)
             begin += run.force.size
         return found
 
-    def _worked_out(self, rows: Rows, unknown: _Unknown, tones: Tones) -> Array:
+    def _worked_out(
+        self, rows: Rows, unknown: _Unknown, tones: Tones, beyond: Beyond | None = None
+    ) -> Array:
         """The same, whatever is kept."""
-        every = zip(self.problem.runs, self.problem.masks, tones, strict=True)
+        limits = beyond or [None] * len(self.problem.runs)
+        every = zip(self.problem.runs, self.problem.masks, tones, limits, strict=True)
         columns = [
-            -_settled(shown_by(rows, run), run, mask, tone, unknown) for run, mask, tone in every
+            -_settled(_shown(rows, run, limit), run, mask, tone, unknown)
+            for run, mask, tone, limit in every
         ]
         return np.concatenate(self.problem.weighted(columns), axis=1)
 
@@ -305,6 +325,16 @@ class Columns:
         step = _STEP * self.problem.scales.force
         there = residual(point, step)
         return [(each - here) / step for each, here in zip(there, base, strict=True)]
+
+
+def _shown(rows: Rows, run: BenchRun, beyond: NDArray[np.bool_] | None = None) -> Array:
+    """What a run's channel shows of one of each coordinate, (m, n); nothing `beyond` a limit."""
+    if rows:
+        run = before_filter(run, rows[0][1].values)
+    shown = shown_by(rows, run)
+    if beyond is not None and beyond.any():
+        shown = shown - clipped(rows, run, beyond)
+    return shown
 
 
 @dataclass(frozen=True)

@@ -128,6 +128,26 @@ def shown_by(rows: Rows, run: BenchRun) -> Array:
     return _OF_RUNS.all_found([(run.identity, *key) for key in column_keys(rows, LINEAR)], shown)
 
 
+def clipped(rows: Rows, run: BenchRun, beyond: NDArray[np.bool_]) -> Array:
+    """What of these it does not show where the channel has come to a limit, (m, n).
+
+    `beyond` is told at the rate at which the force passes the channel, see `beyond_limits`.
+    """
+    values = rows[0][1].values if rows else {}
+    channel = {each: values[each] for each in LINEAR if each in values}
+    keys, fine, found = column_keys(rows), np.isfinite(run.cutoff), []
+    elapsed, spacing = (run.fine_elapsed, run.fine_spacing) if fine else (run.elapsed, run.spacing)
+    of = _force_of if fine else _column_of
+    for some in _few(range(len(rows)), elapsed.size):
+        forces = _OF_RUNS.all_found(
+            [(run.identity, of, *keys[i]) for i in some],
+            lambda new, some=some: [of(*rows[some[k]], run) for k in new],
+        )
+        lost = np.where(beyond, through_channel(channel, forces, elapsed, spacing), 0.0)
+        found.append(run.in_band(lost) if fine else lost)
+    return np.concatenate(found)
+
+
 def _few(which: Sequence[int], size: int) -> list[Sequence[int]]:
     """As many at a time as have columns of a size that do not take too much memory."""
     count = max(1, _AT_ONCE // size)
@@ -155,7 +175,11 @@ def _bends(name: str, run: BenchRun) -> bool:
 
 
 def _force_of(name: str, model: Model, run: BenchRun) -> Array:
-    """What one of a coordinate that bends adds to a device's force at the measured rate, (m,)."""
+    """What one of a coordinate adds to a device's force at the measured rate, (m,)."""
+    column = COORDINATES[name].column
+    if column and name not in BENDS and run.measured is not None:
+        x, v, a = run.measured
+        return column(x - model.values.get("rest_length", 0.0), v, a, run.fine_elapsed)
     device, less = _alone(name, model)
     fine = run.at_measured_rate(device, 0.0)["total"]
     return fine - run.at_measured_rate(less, 0.0)["total"] if less else fine

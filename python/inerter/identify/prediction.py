@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.coordinates import COORDINATES
 from inerter.core import Device
-from inerter.identify.channel import clips, delayed, through_channel, without_limits, without_tone
+from inerter.identify.channel import (
+    LIMITS,
+    clips,
+    delayed,
+    through_channel,
+    without_limits,
+    without_tone,
+)
 from inerter.identify.channel_filter import (
     Filter,
     filter_of,
@@ -30,6 +37,8 @@ from inerter.identify.transient import (
 
 Array = NDArray[np.float64]
 
+# of a channel that does not clip, as `LIMITS` are
+_NO_LIMITS = (np.inf, -np.inf)
 # share of what the bristle holds from which on the first force tells the side of its free play
 _TELLING = 0.1
 # a twist at the start is at most this many strokes of the run: more of it would be an oscillation
@@ -163,10 +172,35 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(added)
 
 
+def beyond_limits(model: Model, run: BenchRun) -> NDArray[np.bool_]:
+    """Where a channel that clips shows a limit, at the rate at which the force passes it, (m,)."""
+    device, (run, values) = model.device(), with_late_motion(model, run)
+    state = first_state(device, run, values.get("friction_place", 0.0), late=lateness(values))
+    velocity, elapsed, spacing = run.velocity, run.elapsed, run.spacing
+    fine = run.measured if np.isfinite(run.cutoff) else None
+    if fine is not None:
+        velocity, elapsed, spacing = fine[1], run.fine_elapsed, run.fine_spacing
+
+    def along(each: Device) -> dict[str, Array]:
+        return run.along(each, state) if fine is None else run.at_measured_rate(each, state)
+
+    drift = values.get("friction_drift", 0.0)
+    total = with_friction_drift(device, drift, along, elapsed)
+    total = total + warming(device, values, velocity, elapsed)
+    shown = through_channel(without_limits(values), total, elapsed, spacing)
+    upper, lower = (values.get(name, limit) for name, limit in zip(LIMITS, _NO_LIMITS, strict=True))
+    return (shown > upper) | (shown < lower)
+
+
 def lateness(values: Mapping[str, float]) -> float:
     """Time by which a force channel with these coordinates shows what is slow late [s]."""
     low_pass = filter_of(values, "force")
     return values.get("delay", 0.0) + (low_pass.lateness if low_pass else 0.0)
+
+
+def moves_late(values: Mapping[str, float], run: BenchRun) -> bool:
+    """Whether a delay has to be in the motion, see `with_late_motion`."""
+    return bool(values.get("delay") and "backlash" in values and np.isinf(run.cutoff))
 
 
 def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, float]]:
@@ -178,8 +212,8 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     be read off those. The motion is smooth.
     """
     values = dict(model.values)
-    run = _before_filter(run, values)
-    if not (values.get("delay") and "backlash" in values and np.isinf(run.cutoff)):
+    run = before_filter(run, values)
+    if not moves_late(values, run):
         return run, values
     delay, h = values.pop("delay"), run.spacing
     more = int(abs(delay) / h) + 2
@@ -205,7 +239,7 @@ _BEFORE_FILTER: dict[tuple[tuple[int, int], Filter], BenchRun] = {}
 _MOST_RUNS, _MOST_SAMPLES = 32, 2**20
 
 
-def _before_filter(run: BenchRun, values: Mapping[str, float]) -> BenchRun:
+def before_filter(run: BenchRun, values: Mapping[str, float]) -> BenchRun:
     """A run with the motion before the filter of its displacement, where coordinates have one."""
     low_pass = filter_of(values, "displacement")
     if low_pass is None:
