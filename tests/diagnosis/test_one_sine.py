@@ -71,6 +71,19 @@ def test_friction_with_memory_has_no_spring_that_is_an_inertance(
 
 
 @pytest.mark.turns(3)
+def test_a_force_that_repeats_along_the_stroke_has_its_length(effects_seed: int) -> None:
+    """No other force has so many harmonics of one sine and no more."""
+    draw = np.random.default_rng(effects_seed)
+    length, size = 0.06 / float(draw.uniform(3.5, 9)), float(draw.uniform(10, 25))
+    periods = f"{length:.6g} {size:.6g} {draw.uniform(-3, 3):.6g}"
+    made = one_sine(draw, inertance=54.0, force_periods=periods)
+    found = diagnose_bench([made], carry="nothing")
+    assert [(each.effect, each.law) for each in found.findings] == [("position_force", "period")]
+    assert found.parameters["force_period_1"].value == pytest.approx(length, rel=0.01)
+    assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.02)
+
+
+@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("effect", "name", "device"),
     [

@@ -29,6 +29,8 @@ Effect = Callable[[Array, Array], Array]
 _FEWEST, _SAMPLES = 100, 20_000
 _LINES = 4
 _FINEST = 1 / 40
+# periods that one sine goes through at least, to be told from all else that has harmonics
+_OF_ONE_SINE = 3.0
 # nodes of the curves that are tried, the plainest first
 _CURVES = (7, 17, NODES)
 # lines that are tried, and how far from a better one
@@ -41,19 +43,25 @@ _WORTH = 1 - (1 - CRITERIA.likely * CRITERIA.gain) ** 2
 
 
 def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
-    """Periods and curves that may take a share of what a fitted model leaves."""
+    """Periods and curves that may take a share of what a fitted model leaves.
+
+    Along one sine a curve draws what any other effect does, and so does a long period.
+    """
     low, high = ends = problem.scales.travel
-    if problem.scales.one_tone or not np.isfinite([low, high]).all() or high <= low:
+    if not np.isfinite([low, high]).all() or high <= low:
         return
+    one_tone = problem.scales.one_tone
+    fewest = _OF_ONE_SINE if one_tone else 1.0
     x, v, a, residual = _samples(problem, fit)
     if residual.size < _FEWEST:
         return
     for quantity in QUANTITIES:
         effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
         if effect is not None:
-            shown = _Shown(x, v > 0, residual, effect, ends)
+            shown = _Shown(x, v > 0, residual, effect, ends, fewest)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
-            yield from _curved(quantity, fit.model, shown)
+            if not one_tone:
+                yield from _curved(quantity, fit.model, shown)
 
 
 def repeats(model: Model, sizes: Scales) -> bool:
@@ -79,13 +87,17 @@ def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -
 
 @dataclass(frozen=True)
 class _Shown:
-    """Where samples are, which way they go, what is left there, and what it is asked for."""
+    """Where samples are, which way they go, what is left there, and what it is asked for.
+
+    Of a period the travel has at least the `fewest`.
+    """
 
     x: Array
     forward: NDArray[np.bool_]
     residual: Array
     effect: Effect
     ends: tuple[float, float]
+    fewest: float
 
 
 def _periodic(
@@ -179,7 +191,7 @@ def _samples(problem: Problem, fit: Fit) -> tuple[Array, Array, Array, Array]:
 def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
     """Lengths [m] and amplitudes (2,) of the sines of the place that take most, the best first."""
     stroke = shown.ends[1] - shown.ends[0]
-    lines = np.arange(1 / stroke, 1 / (_FINEST * stroke), 1 / (_LINES * stroke))
+    lines = np.arange(shown.fewest / stroke, 1 / (_FINEST * stroke), 1 / (_LINES * stroke))
     gains, amplitudes = np.zeros(lines.size), np.zeros((lines.size, 2))
     for i, line in enumerate(lines):
         angle, rate = 2 * np.pi * line * shown.x, 2 * np.pi * line

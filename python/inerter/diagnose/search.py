@@ -171,7 +171,10 @@ class Search:
             self.found.append(chosen.effect)
             if chosen.effect == until:
                 return chosen
-            current = exchanged(self, chosen)
+            before, current = current.model, exchanged(self, chosen)
+            if (before.friction, {*before.free}) == (current.model.friction, {*current.model.free}):
+                # the exchange takes back what the step has brought, and would again
+                break
         return self._prune(current)
 
     def next_effect(self, model: Model) -> str | None:

@@ -19,7 +19,7 @@ class Secants:
     """A Jacobian that follows a search from point to point by what the residual did (Broyden 1965).
 
     It is worked out anew where too little of a step was foretold: the columns that bend most first,
-    where there are such, and all of them where that is not enough.
+    where there are such, and all of them where that is not enough, but in a rough search.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Secants:
             return old
         miss = change - old @ step
         is_poor = not np.linalg.norm(miss) < (1 - _FORETOLD) * np.linalg.norm(change)
-        if is_poor and (self._bending is None or self._was_poor):
+        if is_poor and (self._bending is None or (self._was_poor and not self.rough)):
             self._was_poor = False
             return None
         found = old + np.outer(miss / length, step)
