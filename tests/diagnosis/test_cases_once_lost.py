@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from inerter import Device
-from inerter.blind_test.case import records_of
+from inerter.blind_test.case import records_of, solve
+from inerter.blind_test.plan import Task
 from inerter.diagnose import diagnose_bench
 from inerter.reference import NoiseLevels, hide_effect
 
@@ -52,6 +53,30 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     # a spring that relaxes within milliseconds was found before friction, and stayed for a damper
     "damper with a lag": (("viscous_friction", "stribeck_friction"), 3239527201),
 }
+
+# on benches as they are; what the bench brings may be named beside it
+REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
+    # between two sizes of play that were tried, a fit went to a play that is too small
+    "a play between two sizes": (("backlash",), 2701013327),
+    "a play in a wide shaft": (("backlash",), 3030400267),
+    # along one sine nothing that changes with the place was looked for
+    "a force that repeats along one sine": (("position_force",), 2772664748),
+    "with another inertance than stated": (("inertance_error", "position_force"), 2838056252),
+    # Stribeck's law begins elsewhere than Coulomb's, and was given up on the way
+    "a law on its way": (("viscous_friction", "stribeck_friction"), 3719166098),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("case", REALISTIC)
+def test_it_is_named_on_a_real_bench(case: str) -> None:
+    effects, seed = REALISTIC[case]
+    group = "pairs" if effects[1:] else "single"
+    task = Task(group=group, seed=seed, noise=0.01, effects=effects, bench="realistic")
+    found = solve(task)
+    assert found.found, found.verdict
+    # of what is told with confidence nothing is wrong
+    assert all(found.is_right(each) for each in found.named if each.confidence > 0.5), found.verdict
 
 
 @pytest.mark.long

@@ -158,7 +158,7 @@ def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
         contacts = [{"series_frequency": ratio * slow, "series_loss": 0.3} for ratio in (5, 20)]
     starts = tuple(
         model.adding(None, backlash=ratio * x, **contact)
-        for ratio in (0.002, 0.01, 0.05, 0.2)
+        for ratio in (0.002, 0.005, 0.01, 0.02, 0.05, 0.2)
         for contact in contacts
     )
     yield Candidate(effect.name, None, starts)

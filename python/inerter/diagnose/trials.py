@@ -42,6 +42,8 @@ FORETOLD = 0.5
 AT_BEST = 3.0
 # errors this near belong to the same fit
 SAME = 1e-5
+# sizes of a play that are followed; between two that are five times apart a fit goes astray
+SIZES = 4
 # share of every run on which the starting points of a fit are compared
 STARTING_SHARE = 0.3
 
@@ -84,14 +86,14 @@ def _at_best(foretold: float, current: float) -> float:
 
 
 def of_each_size(starts: Sequence[Model], errors: Sequence[float]) -> list[Model]:
-    """Of each size of play the starting point with the least error, the best first.
+    """Of each size of play the starting point with the least error, the best few first.
 
     A play that does next to nothing is never far off, and need not be the nearest when fitted.
     """
     best: dict[float, Model] = {}
     for i in np.argsort(errors):
         best.setdefault(starts[i].values["backlash"], starts[i])
-    return list(best.values())
+    return list(best.values())[:SIZES]
 
 
 def _asked_for(candidate: Candidate, model: Model) -> bool:
