@@ -13,7 +13,7 @@ from inerter.blind_test.case import Named, Outcome, ParameterError
 from inerter.blind_test.output import write_blind_test
 from inerter.blind_test.picture import wilson
 from inerter.blind_test.plan import BENCHES, Plan
-from inerter.blind_test.score import calibration, score, trust
+from inerter.blind_test.score import calibration, is_failure, score, trust
 from inerter.blind_test.table import print_blind_test
 from made_up import outcome
 from rich.console import Console
@@ -188,6 +188,17 @@ def test_trust_counts_what_the_bench_brings_and_what_cannot_be_told_apart() -> N
     # as it is kept in a file
     again = Outcome.of_json(json.loads(json.dumps(alike.json())))
     assert again == alike
+
+
+def test_what_only_looks_like_what_is_there_is_no_claim() -> None:
+    sure = outcome("unknown", (), ((B, 0.97),))
+    describes = replace(sure, named=(Named(B, None, 0.97, looks_like=True),))
+    assert is_failure(replace(sure, unexplained=True))
+    assert not is_failure(replace(describes, unexplained=True))
+    found = trust([replace(sure, task=outcome("clean").task), describes])
+    assert (found["claims"], found["wrong_claims"]) == (1, 1.0)
+    assert (found["described"], found["wrong_described"]) == (1, 1.0)
+    assert Outcome.of_json(json.loads(json.dumps(describes.json()))) == describes
 
 
 def test_benches_are_named_and_have_files_of_their_own() -> None:

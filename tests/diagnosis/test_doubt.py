@@ -8,7 +8,9 @@ import pytest
 from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import (
+    descriptions,
     doubted,
+    note,
     of_one_sine,
     stand_ins,
     trust,
@@ -83,6 +85,22 @@ def test_warning_names_only_what_may_stand_in() -> None:
     assert warning([]) == ""
     assert "a, b and c explain," in warning(["a", "b", "c"])
     assert "a explains," in warning(["a"])
+
+
+def test_what_leaves_a_little_looks_like_what_is_there() -> None:
+    """Sure as it is, another cause may look the same."""
+    found = doubted(THREE, 0.3)
+    assert found.confidence > 0.9
+    assert found.looks_like
+    assert found.json()["looks_like"] is True
+    assert "may stand in" in found.evidence
+    assert descriptions([THREE], 0.3) == [THREE]
+    assert descriptions([THREE], 3.0) == descriptions([THREE], 0.0) == []
+    assert "looks like a and b, and they take less" in note(["a", "b"])
+    assert note([]) == ""
+    surely = doubted(THREE, 0.1)
+    assert not surely.looks_like
+    assert "looks_like" not in surely.json()
 
 
 def test_many_effects_along_one_sine_are_not_sure() -> None:

@@ -39,12 +39,16 @@ GAS = ("gas_pressure", "gas_area", "gas_volume")
 
 @dataclass(frozen=True)
 class Named:
-    """A finding: its effect, law and confidence; effects that these data cannot tell from it."""
+    """A finding: its effect, law and confidence; effects that these data cannot tell from it.
+
+    looks_like: it describes what is there, and is not claimed to be it.
+    """
 
     effect: str
     law: str | None
     confidence: float
     members: tuple[str, ...] = ()
+    looks_like: bool = False
 
 
 @dataclass(frozen=True)
@@ -221,7 +225,7 @@ def compare(task: Task, case: HiddenCase | HiddenVehicle, diagnosis: Diagnosis) 
         task=task,
         law=case.law,
         named=tuple(
-            Named(name, f.law, f.confidence, f.members)
+            Named(name, f.law, f.confidence, f.members, f.looks_like)
             for name, f in zip(names, diagnosis.findings, strict=True)
         ),
         brings=brings,

@@ -192,15 +192,18 @@ def trust(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """How far what is said can be relied on, over all cases with named effects or none.
 
     found: all that was hidden; nothing_false: every finding right, one that the bench brings and
-    one that the data cannot tell from a right one among them; claims: findings with 0.9 or more;
-    wrong_claims: of them; covered: share of the true values within 2 standard errors.
+    one that the data cannot tell from a right one among them; claims: findings with 0.9 or more
+    but for those that describe what is there (`looks_like`); wrong_claims: of them; described,
+    wrong_described: the same of those; covered: share of the true values within 2 standard errors.
     """
-    claims = [
-        one.is_right(named)
+    sure = [
+        (named.looks_like, one.is_right(named))
         for one in outcomes
         for named in one.named
         if named.confidence >= CLAIMED
     ]
+    claims = [right for describes, right in sure if not describes]
+    described = [right for describes, right in sure if describes]
     covered = [error.covered for one in outcomes for error in one.parameters]
     wrong = Counter(
         named.effect for one in outcomes for named in one.named if not one.is_right(named)
@@ -217,6 +220,8 @@ def trust(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "nothing_false": _share([one.nothing_false for one in outcomes]),
         "claims": len(claims),
         "wrong_claims": _share([not right for right in claims]),
+        "described": len(described),
+        "wrong_described": _share([not right for right in described]),
         "covered": _share([bool(each) for each in covered if each is not None]),
         "wrong": dict(wrong.most_common()),
         "missed": dict(missed.most_common()),
@@ -290,13 +295,14 @@ def failure(one: Outcome) -> dict[str, Any]:
 
 
 def _told(named: Named) -> dict[str, Any]:
-    """A finding; without members where it has none."""
-    return {name: value for name, value in vars(named).items() if value or name != "members"}
+    """A finding; without members where it has none, and without what it is not."""
+    optional = ("members", "looks_like")
+    return {name: value for name, value in vars(named).items() if value or name not in optional}
 
 
 def _claims(one: Outcome) -> bool:
-    """Whether a case without a named effect has a finding that claims to be sure."""
-    return any(named.confidence >= CLAIMED for named in one.named)
+    """Whether a case without a named effect has a finding that claims to be sure of its cause."""
+    return any(each.confidence >= CLAIMED and not each.looks_like for each in one.named)
 
 
 def _hidden(one: Outcome) -> str:

@@ -86,7 +86,8 @@ def _lines(result: dict[str, Any]) -> list[str]:
         lines.append(
             f"all {_cases(part['cases'])}: found {_percent(part['found'])}, nothing false "
             f"{_percent(part['nothing_false'])}; of {part['claims']} findings given 90 % or more "
-            f"{_percent(part['wrong_claims'])} wrong; 2 standard errors hold "
+            f"{_percent(part['wrong_claims'])} wrong, of {part['described']} that look like what "
+            f"is there {_percent(part['wrong_described'])}; 2 standard errors hold "
             f"{_percent(part['covered'])}"
             + _names(part["wrong"], "; wrong")
             + _names(part["missed"], "; missed")

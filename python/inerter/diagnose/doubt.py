@@ -40,9 +40,14 @@ def by_weight(findings: Sequence[Finding]) -> list[Finding]:
     return sorted(findings, key=explained, reverse=True)
 
 
+def looks_like(finding: Finding, structure: float) -> bool:
+    """Whether an effect describes what is there, and takes visibly less than all of it."""
+    return structure > 0.0 and explained(finding) < CRITERIA.looks_like * structure
+
+
 def reason(finding: Finding, structure: float) -> str:
     """Why an effect may stand in for something else, in a sentence; empty where it hardly may."""
-    if trust(finding, structure) >= CRITERIA.doubt_told:
+    if not looks_like(finding, structure):
         return ""
     share = explained(finding) / structure
     return (
@@ -55,7 +60,8 @@ def doubted(finding: Finding, structure: float) -> Finding:
     """A finding with what remains unexplained considered."""
     confidence = trust(finding, structure) * finding.confidence
     evidence = f"{finding.evidence} {reason(finding, structure)}".strip()
-    return replace(finding, confidence=confidence, evidence=evidence)
+    describes = looks_like(finding, structure)
+    return replace(finding, confidence=confidence, evidence=evidence, looks_like=describes)
 
 
 def with_own_value(finding: Finding, before: float, is_distinct: bool) -> Finding:
@@ -100,13 +106,33 @@ def stand_ins(findings: Sequence[Finding], structure: float) -> list[Finding]:
     return [finding for finding in findings if trust(finding, structure) < CRITERIA.doubt_told]
 
 
+def descriptions(findings: Sequence[Finding], structure: float) -> list[Finding]:
+    """Those that look like what is there, and leave little of it."""
+    doubtful = stand_ins(findings, structure)
+    return [each for each in findings if looks_like(each, structure) and each not in doubtful]
+
+
 def warning(names: Sequence[str]) -> str:
-    """A sentence for a verdict about those; empty without any."""
+    """A sentence for a verdict about stand-ins; empty without any."""
     if not names:
         return ""
-    several = len(names) > 1
-    listed = ", ".join(names[:-1]) + (" and " if several else "") + names[-1]
     return (
-        f" Beside what {listed} {'explain' if several else 'explains'}, what stays unexplained is "
-        f"large: {'they' if several else 'it'} may stand in for a cause that is not on the list."
+        f" Beside what {_listed(names)} {'explain' if names[1:] else 'explains'}, what stays "
+        f"unexplained is large: {'they' if names[1:] else 'it'} may stand in for a cause that is "
+        "not on the list."
     )
+
+
+def note(names: Sequence[str]) -> str:
+    """A sentence for a verdict about descriptions; empty without any."""
+    if not names:
+        return ""
+    take = "they take" if names[1:] else "that takes"
+    return (
+        f" What is there looks like {_listed(names)}, and {take} less than all of it: another "
+        "cause may look the same."
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names[:-1]) + (" and " if names[1:] else "") + names[-1]

@@ -69,6 +69,7 @@ class Finding:
     seen_in_blocks: bool = False
     gain_interval: tuple[float, float] | None = None
     members: tuple[str, ...] = ()
+    looks_like: bool = False
     motion: Kind = TRANSLATION
 
     @property
@@ -79,21 +80,26 @@ class Finding:
     def json(self) -> dict[str, Any]:
         """As in the contract."""
         members = {"members": list(self.members)} if self.members else {}
-        return members | {
-            "effect": self.effect,
-            "law": self.law,
-            "confidence": round(self.confidence, 4),
-            "parameters": {name: vars(value) for name, value in self.parameters.items()},
-            "rmse_before": self.rmse_before,
-            "rmse_after": self.rmse_after,
-            "gain": self.gain,
-            "gain_interval": self.gain_interval,
-            "evidence": self.evidence,
-            "rivals": [
-                {"effect": r.effect, "law": r.law, "confidence": round(r.confidence, 4)}
-                for r in self.rivals
-            ],
-        }
+        describes = {"looks_like": True} if self.looks_like else {}
+        return (
+            members
+            | describes
+            | {
+                "effect": self.effect,
+                "law": self.law,
+                "confidence": round(self.confidence, 4),
+                "parameters": {name: vars(value) for name, value in self.parameters.items()},
+                "rmse_before": self.rmse_before,
+                "rmse_after": self.rmse_after,
+                "gain": self.gain,
+                "gain_interval": self.gain_interval,
+                "evidence": self.evidence,
+                "rivals": [
+                    {"effect": r.effect, "law": r.law, "confidence": round(r.confidence, 4)}
+                    for r in self.rivals
+                ],
+            }
+        )
 
 
 @dataclass(frozen=True)

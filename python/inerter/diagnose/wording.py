@@ -10,7 +10,7 @@ from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import by_weight, stand_ins, warning
+from inerter.diagnose.doubt import by_weight, descriptions, note, stand_ins, warning
 from inerter.diagnose.result import (
     Diagnosis,
     Finding,
@@ -344,6 +344,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
         )
     doubtful = stand_ins(diagnosis.findings, diagnosis.unexplained.structure)
     text += warning([effect_in_words(finding) for finding in doubtful])
+    described = descriptions(diagnosis.findings, diagnosis.unexplained.structure)
+    text += note([effect_in_words(finding) for finding in described])
     contradicted = [
         value_in_words(PARAMETER_WORDS.get(name, name), value)
         for name, value in diagnosis.parameters.items()

@@ -161,6 +161,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
     return {
         "name": text.finding_name(finding),
         "key": finding.effect,
+        "looks_like": finding.looks_like,
         "both_ways": finding.law == "flanks",
         "confidence": text.confidence(finding.confidence),
         "parameters": [

@@ -55,6 +55,8 @@ def _findings(diagnosis: Diagnosis) -> Table:
     table.add_column("confidence", justify="right", no_wrap=True)
     for finding in diagnosis.findings:
         effect = Text(text.finding_name(finding), style="bold")
+        if finding.looks_like:
+            effect = Text("looks like ", style="dim").append(effect)
         likely = [rival for rival in finding.rivals if rival.confidence >= 0.05]
         if likely:
             names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
