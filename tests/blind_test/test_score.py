@@ -201,6 +201,15 @@ def test_what_only_looks_like_what_is_there_is_no_claim() -> None:
     assert Outcome.of_json(json.loads(json.dumps(describes.json()))) == describes
 
 
+def test_what_the_motion_cannot_tell_is_counted_apart() -> None:
+    missed = outcome("pairs", (A, "parallel_stiffness"), ((A, 0.95),))
+    said = replace(missed, cannot_tell=("parallel_stiffness", "series_elasticity"))
+    other = replace(said, named=())
+    assert [trust([one])["cannot_tell"] for one in (missed, said, other)] == [0, 1, 0]
+    assert [trust([one])["found"] for one in (missed, said, other)] == [0.0, 0.0, 0.0]
+    assert Outcome.of_json(json.loads(json.dumps(said.json()))) == said
+
+
 def test_benches_are_named_and_have_files_of_their_own() -> None:
     ideal, realistic = (Plan(effects=(A,), count=1, seed=5, bench=b).tasks()[0] for b in BENCHES)
     assert ideal.seed == realistic.seed

@@ -79,6 +79,8 @@ def test_a_force_that_repeats_along_the_stroke_has_its_length(effects_seed: int)
     made = one_sine(draw, inertance=54.0, force_periods=periods)
     found = diagnose_bench([made], carry="nothing")
     assert [(each.effect, each.law) for each in found.findings] == [("position_force", "period")]
+    untold = {name for each in found.json()["cannot_tell"] for name in each["effects"]}
+    assert {"parallel_stiffness", "series_elasticity", "viscoelasticity"} <= untold
     assert found.parameters["force_period_1"].value == pytest.approx(length, rel=0.01)
     assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.02)
 

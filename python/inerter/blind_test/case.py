@@ -90,7 +90,8 @@ class Outcome:
     noise-free force that is taken away on held-out data; seconds: of the diagnosis alone, on the
     wall and of the processor, which says more where others use the machine; brings: effects that
     the bench adds by itself, or that are a plainer form of what was hidden (`plainer_forms`), which
-    are right where they are named and need not be.
+    are right where they are named and need not be; cannot_tell: effects of which the diagnosis says
+    that the motion cannot tell them.
     """
 
     task: Task
@@ -105,6 +106,7 @@ class Outcome:
     share: float | None = None
     error: str | None = None
     brings: tuple[str, ...] = ()
+    cannot_tell: tuple[str, ...] = ()
 
     def json(self) -> dict[str, Any]:
         """As a JSON object."""
@@ -124,8 +126,8 @@ class Outcome:
             Named(**{**each, "members": tuple(each.get("members", ()))}) for each in data["named"]
         )
         errors = tuple(ParameterError(**each) for each in data["parameters"])
-        brings = tuple(data.get("brings", ()))
-        return cls(**{**data, "task": task, "named": named, "parameters": errors, "brings": brings})
+        also = {name: tuple(data.get(name, ())) for name in ("brings", "cannot_tell")}
+        return cls(**{**data, "task": task, "named": named, "parameters": errors, **also})
 
     truth: dict[str, float] = field(default_factory=dict)
 
@@ -144,6 +146,12 @@ class Outcome:
         """Whether everything hidden was named, or something that it cannot be told from."""
         said = {name for each in self.named for name in (each.effect, *each.members)}
         return self.error is None and set(self.task.effects) <= said
+
+    @property
+    def is_beyond_the_motion(self) -> bool:
+        """Whether all that was missed is what the motion cannot tell, and the diagnosis said so."""
+        said = {name for each in self.named for name in (each.effect, *each.members)}
+        return self.error is None and {*self.task.effects} - said <= {*self.cannot_tell}
 
     @property
     def nothing_false(self) -> bool:
@@ -229,6 +237,7 @@ def compare(task: Task, case: HiddenCase | HiddenVehicle, diagnosis: Diagnosis) 
             for name, f in zip(names, diagnosis.findings, strict=True)
         ),
         brings=brings,
+        cannot_tell=tuple(name for each in diagnosis.cannot_tell for name in each.effects),
         parameters=tuple(errors),
         unexplained=diagnosis.unexplained.significant,
         gain=gain,

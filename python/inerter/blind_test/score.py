@@ -194,7 +194,8 @@ def trust(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     found: all that was hidden; nothing_false: every finding right, one that the bench brings and
     one that the data cannot tell from a right one among them; claims: findings with 0.9 or more
     but for those that describe what is there (`looks_like`); wrong_claims: of them; described,
-    wrong_described: the same of those; covered: share of the true values within 2 standard errors.
+    wrong_described: the same of those; cannot_tell: cases that were not found for what their motion
+    cannot tell alone, as was said; covered: share of the true values within 2 standard errors.
     """
     sure = [
         (named.looks_like, one.is_right(named))
@@ -217,6 +218,7 @@ def trust(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     return {
         "cases": len(outcomes),
         "found": _share([one.found for one in outcomes]),
+        "cannot_tell": sum(one.is_beyond_the_motion and not one.found for one in outcomes),
         "nothing_false": _share([one.nothing_false for one in outcomes]),
         "claims": len(claims),
         "wrong_claims": _share([not right for right in claims]),

@@ -84,7 +84,8 @@ def _lines(result: dict[str, Any]) -> list[str]:
         )
     if (part := result["trust"])["cases"]:
         lines.append(
-            f"all {_cases(part['cases'])}: found {_percent(part['found'])}, nothing false "
+            f"all {_cases(part['cases'])}: found {_percent(part['found'])} (in "
+            f"{part['cannot_tell']} more the motion cannot tell, as was said), nothing false "
             f"{_percent(part['nothing_false'])}; of {part['claims']} findings given 90 % or more "
             f"{_percent(part['wrong_claims'])} wrong, of {part['described']} that look like what "
             f"is there {_percent(part['wrong_described'])}; 2 standard errors hold "

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
+from inerter.diagnose.cannot_tell import ONE_SINE, CannotTell
 from inerter.identify.channel_filter import filters_of
 from inerter.motion_units import TRANSLATION, Kind
 
@@ -264,6 +265,11 @@ class Diagnosis:
     """What differs between strokes that repeat, rms [N]; None where too few do."""
 
     @property
+    def cannot_tell(self) -> tuple[CannotTell, ...]:
+        """What the motion cannot tell, whatever is found."""
+        return ONE_SINE if self.method.get("one_tone") else ()
+
+    @property
     def budget(self) -> Budget | None:
         """The parts of the held-out error; None where no ceiling was looked for."""
         if self.unexplained.ceiling is None:
@@ -305,6 +311,7 @@ class Diagnosis:
                 "noise": {"rmse_floor": self.noise_floor, "repeatability": self.repeatability},
                 "unexplained": self.unexplained.json(),
                 "engines": {name: {"rmse": rmse} for name, rmse in self.engines.items()},
+                "cannot_tell": [each.json() for each in self.cannot_tell],
                 "method": self.method,
                 "verdict": self.verdict,
             }

@@ -9,6 +9,7 @@ from inerter.catalogue.along_stroke import FORMS, node_of
 from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
+from inerter.diagnose.cannot_tell import IN_WORDS
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import by_weight, descriptions, note, stand_ins, warning
 from inerter.diagnose.result import (
@@ -263,7 +264,7 @@ def is_right(diagnosis: Diagnosis) -> bool:
 
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
-    tone = _ONE_TONE if diagnosis.method.get("one_tone") else ""
+    tone = IN_WORDS if diagnosis.cannot_tell else ""
     notes = "".join(f" {note}" for note in diagnosis.notes)
     budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""
     said = tone + _verdict(diagnosis) + budget + notes
@@ -284,14 +285,6 @@ def doubts_of_records(records: Sequence[RecordSummary]) -> str:
     ]
     more = f" (and {len(doubts) - 1} more like it)" if len(doubts) > 1 else ""
     return f"Look at the records first: {doubts[0]}{more}. " if doubts else ""
-
-
-_ONE_TONE = (
-    "The motion is nearly one sine. Along it a parallel stiffness and a series elasticity are an "
-    "inertance of another size, a delay is viscous friction, and a spring that relaxes is both: "
-    "what is said of one of them holds for all together, and a record at a second frequency tells "
-    "them apart. "
-)
 
 
 def _less(before: float, after: float) -> str:
