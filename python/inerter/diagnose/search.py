@@ -287,17 +287,20 @@ class Search:
         """Fitted candidates on data left out, without those whose own values may be none."""
         sizes = self.problem.scales
         scored = self.scores([(each.effect, each.law, fit) for each, fit in pairs], folds)
-        return [
+        there = [
             s
             for s in scored
             if is_distinct(s.effect, s.fit, self.baseline)
-            and not self.is_blur(s.fit, current.fit, fitted)
             and not self._is_shaft_alone(s)
             and self.is_felt(s.model)
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
             and along_stroke.repeats(s.model, sizes)
             and not is_harmonic(s.model, sizes, self.longest)
         ]
+        # what is not there makes no peak of friction needless
+        gone = [s.fit for s in scored if s not in there]
+        others = [pair for pair in fitted if not any(pair[1] is fit for fit in gone)]
+        return [s for s in there if not self.is_blur(s.fit, current.fit, others)]
 
     @property
     def longest(self) -> float:
@@ -355,11 +358,19 @@ class Search:
         folds = self._folds
         if is_local(first.effect):
             self._folds = self._spread
-        second = self._best_step(replace(first, fit=self.problem.fit(first.model)))
-        if second and self.better(*(self.score_on_blocks(s.fit) for s in (current, second))):
+        first = replace(first, fit=self.problem.fit(first.model))
+        # what it has stood in for is given up with it, or another effect comes
+        plainer = exchanged(self, first)
+        if plainer is not first and self._is_better_on_blocks(current, plainer):
+            return plainer
+        second = self._best_step(first)
+        if second and self._is_better_on_blocks(current, second):
             return second
         self._folds = folds
         return None
+
+    def _is_better_on_blocks(self, simple: Scored, rich: Scored) -> bool:
+        return self.better(*(self.score_on_blocks(each.fit) for each in (simple, rich)))
 
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
         """Whether a fit's peak of friction does little more than the laws without it."""
