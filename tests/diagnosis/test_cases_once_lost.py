@@ -64,6 +64,10 @@ REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
     "with another inertance than stated": (("inertance_error", "position_force"), 2838056252),
     # Stribeck's law begins elsewhere than Coulomb's, and was given up on the way
     "a law on its way": (("viscous_friction", "stribeck_friction"), 3719166098),
+    # Coulomb friction with a shaft that is none took the peak for the blur of a reversal
+    "a peak and a shaft that is none": (("stribeck_friction", "end_stop"), 2877650176),
+    # beside a curve of the force that stood in for it no fold told the stop
+    "a stop behind its stand-in": (("series_elasticity", "end_stop"), 176303451),
 }
 
 
