@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter.core import Device
@@ -68,6 +70,16 @@ def test_friction_with_memory_has_no_spring_that_is_an_inertance(
     assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.01)
     stiffness = found.parameters["bristle_stiffness"]
     assert stiffness.value == pytest.approx(15e3, rel=0.02)
+
+
+@pytest.mark.turns(3)
+def test_a_tone_does_not_repeat_along_the_stroke(effects_seed: int) -> None:
+    draw = np.random.default_rng(effects_seed)
+    made = one_sine(draw, inertance=54.0)
+    frequency = float(draw.uniform(5, 9))
+    tone = 15.0 * np.sin(2 * np.pi * frequency * made.time + draw.uniform(0, 6))
+    found = diagnose_bench([replace(made, force=made.force + tone)], carry="nothing")
+    assert [each.effect for each in found.findings] == ["periodic_disturbance"]
 
 
 @pytest.mark.turns(3)

@@ -29,8 +29,9 @@ Effect = Callable[[Array, Array], Array]
 _FEWEST, _SAMPLES = 100, 20_000
 _LINES = 4
 _FINEST = 1 / 40
-# periods that one sine goes through at least, to be told from all else that has harmonics
-_OF_ONE_SINE = 3.0
+# periods that one sine goes through at least, and share of the square of a residual that they take,
+# to be told from all else that has harmonics: true ones take 0.95 and more, a tone's were 0.35
+_OF_ONE_SINE, _MOST_OF_IT = 3.0, 0.5
 # nodes of the curves that are tried, the plainest first
 _CURVES = (7, 17, NODES)
 # lines that are tried, and how far from a better one
@@ -51,14 +52,14 @@ def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
     if not np.isfinite([low, high]).all() or high <= low:
         return
     one_tone = problem.scales.one_tone
-    fewest = _OF_ONE_SINE if one_tone else 1.0
+    fewest, least = (_OF_ONE_SINE, _MOST_OF_IT) if one_tone else (1.0, _WORTH)
     x, v, a, residual = _samples(problem, fit)
     if residual.size < _FEWEST:
         return
     for quantity in QUANTITIES:
         effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
         if effect is not None:
-            shown = _Shown(x, v > 0, residual, effect, ends, fewest)
+            shown = _Shown(x, v > 0, residual, effect, ends, fewest, least)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
             if not one_tone:
                 yield from _curved(quantity, fit.model, shown)
@@ -89,7 +90,8 @@ def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -
 class _Shown:
     """Where samples are, which way they go, what is left there, and what it is asked for.
 
-    Of a period the travel has at least the `fewest`.
+    Of a period the travel has at least the `fewest`, and it takes at `least` that share of the
+    square.
     """
 
     x: Array
@@ -98,6 +100,7 @@ class _Shown:
     effect: Effect
     ends: tuple[float, float]
     fewest: float
+    least: float
 
 
 def _periodic(
@@ -200,7 +203,7 @@ def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
         gains[i], amplitudes[i] = _gain(columns, shown.residual)
     found: list[tuple[float, Array]] = []
     for i in np.argsort(-gains):
-        if gains[i] < _WORTH or len(found) == _TRIED:
+        if gains[i] < shown.least or len(found) == _TRIED:
             break
         if all(abs(lines[i] - 1 / length) > _APART / stroke for length, _ in found):
             found.append((float(1 / lines[i]), amplitudes[i]))

@@ -24,7 +24,7 @@ ROUGH = 1e-5
 # near the second best start must come to the best to be followed too
 HOPELESS = 0.002
 FEW = 8
-# the same of a start that is none of the model with a little more: another law begins elsewhere
+# the same under another friction law, which begins elsewhere
 FEW_ELSEWHERE = 16
 NEAR = 1.1
 # how far above what it has to reach, or the best, a candidate may be after these to be followed
@@ -145,7 +145,8 @@ class Trials:
         fits = []
         for start in starts:
             near = known.near(self.problem, start) if known else None
-            few = FEW if near or not known else FEW_ELSEWHERE
+            elsewhere = known and start.friction != known.model.friction
+            few = FEW_ELSEWHERE if elsewhere else FEW
             fits.append(self.problem.fit(start, few, tolerance=ROUGH, rough=True, near=near))
         return fits
 
