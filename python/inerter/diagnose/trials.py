@@ -24,9 +24,9 @@ ROUGH = 1e-5
 # near the second best start must come to the best to be followed too
 HOPELESS = 0.002
 FEW = 8
-# the same under another friction law, which begins elsewhere
-FEW_ELSEWHERE = 16
 NEAR = 1.1
+# how far above that limit another friction law, which begins elsewhere, is followed as long again
+ON_ITS_WAY = 1.5
 # how far above what it has to reach, or the best, a candidate may be after these to be followed
 FAR = 2.0
 # evaluations of a fit at most, and steps that tell its pace
@@ -145,9 +145,12 @@ class Trials:
         fits = []
         for start in starts:
             near = known.near(self.problem, start) if known else None
+            fit = self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, near=near)
             elsewhere = known and start.friction != known.model.friction
-            few = FEW_ELSEWHERE if elsewhere else FEW
-            fits.append(self.problem.fit(start, few, tolerance=ROUGH, rough=True, near=near))
+            on_its_way = limits[0] <= fit.rmse(self.problem.masks) < ON_ITS_WAY * limits[0]
+            if elsewhere and on_its_way and fit.evaluations >= FEW:
+                fit = self.problem.fit(fit.model, FEW, tolerance=ROUGH, rough=True)
+            fits.append(fit)
         return fits
 
     def _compared(

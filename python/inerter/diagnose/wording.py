@@ -319,8 +319,8 @@ def _verdict(diagnosis: Diagnosis) -> str:
     others = [effect_in_words(finding) for finding in rest]
     text = (
         f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
-        f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause is "
-        f"{effect_in_words(first)}"
+        f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause "
+        f"{'looks like' if first.looks_like else 'is'} {effect_in_words(first)}"
     )
     if others:
         text += "; it also lacks " + ", ".join(others[:-1])
