@@ -52,6 +52,7 @@ BESIDE = {
     ),
     "shaft": ("none", {**SHAFT, "series_hardening": 20.0, "flywheel_viscous": 30.0}),
     "backlash": ("none", {**SHAFT, "backlash": 1e-3}),
+    "a damper in series": ("none", {"series_damping": 900.0}),
     "branches": (
         "none",
         {"branch_stiffness_1": 2e3, "branch_time_1": 0.1, "branch_stiffness_2": 2e3,

@@ -142,16 +142,20 @@ class Outcome:
         return named.effect in there or any(name in there for name in named.members)
 
     @property
+    def missed(self) -> tuple[str, ...]:
+        """What was hidden and not named, nor anything that it cannot be told from."""
+        said = {name for each in self.named for name in (each.effect, *each.members)}
+        return tuple(name for name in self.task.effects if name not in said)
+
+    @property
     def found(self) -> bool:
         """Whether everything hidden was named, or something that it cannot be told from."""
-        said = {name for each in self.named for name in (each.effect, *each.members)}
-        return self.error is None and set(self.task.effects) <= said
+        return self.error is None and not self.missed
 
     @property
     def is_beyond_the_motion(self) -> bool:
-        """Whether all that was missed is what the motion cannot tell, and the diagnosis said so."""
-        said = {name for each in self.named for name in (each.effect, *each.members)}
-        return self.error is None and {*self.task.effects} - said <= {*self.cannot_tell}
+        """Whether something was missed, nothing but what the motion cannot tell, as was said."""
+        return self.error is None and not self.found and {*self.missed} <= {*self.cannot_tell}
 
     @property
     def nothing_false(self) -> bool:

@@ -209,16 +209,11 @@ def trust(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     wrong = Counter(
         named.effect for one in outcomes for named in one.named if not one.is_right(named)
     )
-    missed = Counter(
-        name
-        for one in outcomes
-        for name in one.task.effects
-        if name not in {n for each in one.named for n in (each.effect, *each.members)}
-    )
+    missed = Counter(name for one in outcomes for name in one.missed)
     return {
         "cases": len(outcomes),
         "found": _share([one.found for one in outcomes]),
-        "cannot_tell": sum(one.is_beyond_the_motion and not one.found for one in outcomes),
+        "cannot_tell": sum(one.is_beyond_the_motion for one in outcomes),
         "nothing_false": _share([one.nothing_false for one in outcomes]),
         "claims": len(claims),
         "wrong_claims": _share([not right for right in claims]),

@@ -13,7 +13,7 @@ class CannotTell:
     Attributes
     ----------
     effects : tuple of str
-        None of these is named for itself.
+        What is found of one of these holds for the other force as well.
     same_as : str
         What their force is along this motion, in words.
     experiment : str

@@ -136,14 +136,13 @@ def clipped(rows: Rows, run: BenchRun, beyond: NDArray[np.bool_]) -> Array:
     values = rows[0][1].values if rows else {}
     channel = {each: values[each] for each in LINEAR if each in values}
     keys, fine, found = column_keys(rows), np.isfinite(run.cutoff), []
-    elapsed, spacing = (run.fine_elapsed, run.fine_spacing) if fine else (run.elapsed, run.spacing)
     of = _force_of if fine else _column_of
-    for some in _few(range(len(rows)), elapsed.size):
+    for some in _few(range(len(rows)), beyond.size):
         forces = _OF_RUNS.all_found(
             [(run.identity, of, *keys[i]) for i in some],
             lambda new, some=some: [of(*rows[some[k]], run) for k in new],
         )
-        lost = np.where(beyond, through_channel(channel, forces, elapsed, spacing), 0.0)
+        lost = np.where(beyond, _passed(channel, forces, run), 0.0)
         found.append(run.in_band(lost) if fine else lost)
     return np.concatenate(found)
 
@@ -187,9 +186,15 @@ def _force_of(name: str, model: Model, run: BenchRun) -> Array:
 
 def through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
     """Forces that bend sharply, (..., m), as the channel shows them in a run's band, (..., n)."""
+    passed = _passed(channel, force, run)
+    return passed if np.isinf(run.cutoff) else run.in_band(passed)
+
+
+def _passed(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
+    """The same at the rate at which they pass the channel, (..., m)."""
     if np.isinf(run.cutoff):
         return through_channel(channel, force, run.elapsed, run.spacing)
-    return run.in_band(through_channel(channel, force, run.fine_elapsed, run.fine_spacing))
+    return through_channel(channel, force, run.fine_elapsed, run.fine_spacing)
 
 
 def _column_of(name: str, model: Model, run: BenchRun) -> Array:
