@@ -16,6 +16,9 @@
 
 #include "friction_block.h"
 
+// share of the limit of z that it may be off to slide: less than what the sub-steps leave
+#define SLIDING 1e-14
+
 double bouc_wen_level(const InerterDevice* p) {
   double bound = pow(p->bw_alpha / (p->bw_beta + p->bw_gamma), 1 / p->bw_exponent);
   return fabs(1 - p->bw_ratio) * p->bw_stiffness * bound;
@@ -95,6 +98,9 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   double part = 0.25 * bound / p->bw_alpha;
   int inside = s * z <= bound;
   for (int i = 0; i < 16 && path > part; i++) {
+    if (fabs(bound - s * z) < SLIDING * bound) {
+      return z;
+    }
     z = advance(p, narrow, s, z, part);
     path -= part;
   }

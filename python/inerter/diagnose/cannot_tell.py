@@ -45,3 +45,12 @@ IN_WORDS = (
     "them apart. "
 )
 """The same of one sine, as a verdict says it."""
+
+
+def of_a_tone(frequency: float) -> CannotTell:
+    """Of a tone in the force [Hz] above the band in which the motion is told from noise."""
+    return CannotTell(
+        ("periodic_disturbance",),
+        f"a ringing of the drive at {frequency:.3g} Hz that the displacement does not show",
+        "a record of the force while nothing is driven, or a displacement with less noise",
+    )

@@ -163,6 +163,13 @@ class Criteria:
         "without beta nothing is lost: it is a spring with any zero, and stands in for others",
     )
 
+    near_noise: float = _bound(
+        1.2,
+        "noise of the force in the band",
+        "an error below which nothing is left that other effects in the place of those found could "
+        "take away",
+    )
+
     # bands
     band_gain: float = _bound(0.1, SHARE, "what another band takes away to be taken")
     more_bands: int = _bound(2, COUNT, "of wider bands in which a search goes on")

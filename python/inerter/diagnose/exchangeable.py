@@ -196,7 +196,8 @@ def with_members(
     covered: Callable[[Fit], Fit] = lambda found: found,
 ) -> Finding:
     """A finding with whatever else the data cannot tell from it."""
-    finding = with_delay(with_exchange(finding, exchange), search, fit, covered)
+    finding = with_branch(with_exchange(finding, exchange), search, fit)
+    finding = with_delay(finding, search, fit, covered)
     return with_rate_of_level(with_low_pass(finding, search, fit), search, fit, covered)
 
 
@@ -257,6 +258,40 @@ def _with_low_pass(finding: Finding) -> Finding:
         members=(*finding.members, "sensor_filter"),
         parameters={**finding.parameters, f"{channel}_filter": known},
     )
+
+
+def with_branch(finding: Finding, search: Search, fit: Fit) -> Finding:
+    """A damper along one sine that is no delay: it may be a spring that relaxes.
+
+    With w the speed of the sine [rad/s] a branch k, c is a damper c / (1 + (w c / k)^2) and an
+    inertance of another size. The softest with a damper c has k = 2 w c and 2 c of its own.
+    """
+    sizes, model = search.problem.scales, fit.model
+    alone = not finding.members and model.friction == "none" and model.shaft is None
+    if finding.effect != "viscous_friction" or not (sizes.one_tone and alone):
+        return finding
+    branches = any(name.startswith("branch_") for name in model.values)
+    found = finding.parameters.get("viscous")
+    if found is None or branches or "delay" in model.values or "inertance" not in model.free:
+        return finding
+    share, size = finding.confidence / 2, abs(found.value)
+    units = parameter_units(finding.motion)
+    either = {
+        name: ParameterValue(value, value / CRITERIA.distinction, units[name])
+        for name, value in (
+            ("branch_stiffness_1", 4 * np.pi * sizes.frequency * size),
+            ("branch_damping_1", 2 * size),
+        )
+    }
+    error = max(found.stderr, size / CRITERIA.distinction)
+    told = replace(
+        finding,
+        confidence=share,
+        members=(finding.effect, "viscoelasticity"),
+        parameters={**_with_error(finding.parameters, "viscous", error), **either},
+        rivals=[Rival("viscoelasticity", share), *_others(finding.rivals, ("viscoelasticity",))],
+    )
+    return replace(told, evidence=wording.evidence(told))
 
 
 def _with_error(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
-from inerter.diagnose.cannot_tell import ONE_SINE, CannotTell
+from inerter.diagnose.cannot_tell import ONE_SINE, CannotTell, of_a_tone
 from inerter.identify.channel_filter import filters_of
 from inerter.motion_units import TRANSLATION, Kind
 
@@ -180,6 +180,8 @@ class Unexplained:
         nothing is.
     predicted : float
         Rms of what the tests predict of the residual on held-out data [N].
+    tone_above : float, optional
+        Frequency [Hz] of a tone that remains above the band of the motion.
     """
 
     significant: bool
@@ -193,10 +195,12 @@ class Unexplained:
     ceiling: dict[str, float] | None = None
     carried: dict[str, Any] | None = None
     predicted: float = 0.0
+    tone_above: float | None = None
 
     def json(self) -> dict[str, Any]:
         """As in the contract."""
-        return {name: value for name, value in vars(self).items() if name != "predicted"}
+        own = ("predicted", "tone_above")
+        return {name: value for name, value in vars(self).items() if name not in own}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -267,7 +271,9 @@ class Diagnosis:
     @property
     def cannot_tell(self) -> tuple[CannotTell, ...]:
         """What the motion cannot tell, whatever is found."""
-        return ONE_SINE if self.method.get("one_tone") else ()
+        sine = ONE_SINE if self.method.get("one_tone") else ()
+        tone = self.unexplained.tone_above
+        return sine if tone is None else (*sine, of_a_tone(tone))
 
     @property
     def budget(self) -> Budget | None:

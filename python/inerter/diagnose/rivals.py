@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.decision import CRITERIA, does_as_well, plainest
+from inerter.diagnose.instead import fitted_instead, others
 from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
@@ -33,28 +32,14 @@ class Standing:
 def standing(search: Search, final: Scored, effect: str) -> Standing:
     """Compare a model with what it would be with another effect in the place of one of its own."""
     baseline, problem = search.baseline, search.problem
-    present = [name for name, _ in effects_of(final.model, baseline)]
-    rest = [name for name in present if name != effect]
     without = search.score(effect, None, problem.fit(stripped(final.model, effect, baseline)))
 
     search.progress(f"comparing {effect} with what else could explain the data")
     law = dict(effects_of(final.model, baseline))[effect]
-    # along one sine the shaft of a play is a damper and an inertance of another size
-    blind = ("backlash",) if problem.scales.one_tone and "inertance" in final.model.free else ()
-
-    def others(model: Model) -> list[Candidate]:
-        return [
-            candidate
-            for candidate in candidates(model, problem.scales)
-            if (candidate.effect, candidate.law) != (effect, law)
-            and candidate.effect not in (*rest, *blind)
-            and (law is not None or not candidate.is_rich)
-        ]
-
     masks = problem.masks
     error = final.fit.rmse(masks)
-    fitted = search.trials.fit_all(others(without.model), without.fit, final.fit)
-    fitted = _from_where_it_stands(search, effect, final, others, fitted)
+    fitted = fitted_instead(search, final, effect, without.fit)
+    fitted = _from_where_it_stands(search, effect, final, fitted)
     known = [*fitted, (Candidate(effect, law, ()), final.fit)]
     trials = [
         (candidate, fit)
@@ -106,7 +91,6 @@ def _from_where_it_stands(
     search: Search,
     effect: str,
     final: Scored,
-    others: Callable[[Model], list[Candidate]],
     fitted: list[tuple[Candidate, Fit]],
 ) -> list[tuple[Candidate, Fit]]:
     """Fits of rivals, those that an effect is taken for also from where all else stands with it.
@@ -117,7 +101,11 @@ def _from_where_it_stands(
     reach = CRITERIA.beaten * final.fit.rmse(masks)
     near = {c.effect for c, fit in fitted if fit.rmse(masks) < reach}
     kept = stripped(final.model, effect, search.baseline)
-    usual = [c for c in others(kept) if c.effect in {*EFFECTS[effect].rivals} - near]
+    usual = [
+        candidate
+        for candidate in others(search, final, effect, kept)
+        if candidate.effect in {*EFFECTS[effect].rivals} - near
+    ]
     fits = parallel(lambda c: search.trials.fit(c, (FAR * reach, np.inf), reach), usual)
     return [*fitted, *zip(usual, fits, strict=True)]
 

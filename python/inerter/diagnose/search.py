@@ -27,6 +27,7 @@ from inerter.diagnose.composition import (
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
 from inerter.diagnose.exchange import exchanged, plain_part
+from inerter.diagnose.instead import instead
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.parallel import parallel
@@ -74,6 +75,11 @@ class Scored:
     def complexity(self) -> int:
         """Number of free coordinates that say something."""
         return self.model.complexity
+
+
+def _shape(model: Model) -> tuple[str, frozenset[str]]:
+    """What a model has, whatever the values."""
+    return model.friction, frozenset(model.free)
 
 
 def _silent(text: str) -> None:
@@ -164,6 +170,22 @@ class Search:
         # another band may tell that a part found before is a plain one
         while plainer := plain_part(self, current):
             current = plainer
+        pruned = self._stepped(current, until, most)
+        seen = [_shape(pruned.model)]
+        # what was needed on the way and is not any more, or stood in for another effect, is gone
+        while not until or until not in pruned.model.free:
+            other = instead(self, pruned)
+            if other is None or _shape(other.model) in seen:
+                break
+            self.found.append(other.effect)
+            pruned = self._stepped(other, until, most)
+            if _shape(pruned.model) in seen:
+                break
+            seen.append(_shape(pruned.model))
+        return pruned
+
+    def _stepped(self, current: Scored, until: str | None, most: int) -> Scored:
+        """Effects added one after another, and pruned."""
         while len(self.found) < most:
             chosen = self._best_step(current) or self._two_steps(current)
             if chosen is None:
@@ -172,7 +194,7 @@ class Search:
             if chosen.effect == until:
                 return chosen
             before, current = current.model, exchanged(self, chosen)
-            if (before.friction, {*before.free}) == (current.model.friction, {*current.model.free}):
+            if _shape(before) == _shape(current.model):
                 # the exchange takes back what the step has brought, and would again
                 break
         return self._prune(current)
@@ -301,6 +323,11 @@ class Search:
         gone = [s.fit for s in scored if s not in there]
         others = [pair for pair in fitted if not any(pair[1] is fit for fit in gone)]
         return [s for s in there if not self.is_blur(s.fit, current.fit, others)]
+
+    @property
+    def noise(self) -> float:
+        """Of the force in the band, rms over all runs [N]."""
+        return float(np.sqrt(np.mean([run.noise**2 for run in self.runs])))
 
     @property
     def longest(self) -> float:

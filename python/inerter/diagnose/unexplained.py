@@ -137,6 +137,7 @@ def unexplained(
         }
         proposal = propose(remainder, lengths)
     significant = bool(depends) or excess
+    above = _tone_above(remainder, whole, whole_residual) if raw > MORE * floor else None
     text = summary(
         depends,
         details,
@@ -148,7 +149,7 @@ def unexplained(
         proposal["text"] if proposal else None,
         _usual(whole, whole_residual, split, runs, raw),
         runs[0].motion,
-        _tone_above(remainder, whole, whole_residual) if raw > MORE * floor else None,
+        above,
     )
     return Unexplained(
         significant=significant,
@@ -160,6 +161,7 @@ def unexplained(
         false_alarm_rate=FALSE_ALARM,
         proposal=proposal,
         predicted=predicted,
+        tone_above=above[0] if above and not depends and not excess else None,
     )
 
 

@@ -264,7 +264,7 @@ def is_right(diagnosis: Diagnosis) -> bool:
 
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
-    tone = IN_WORDS if diagnosis.cannot_tell else ""
+    tone = IN_WORDS if diagnosis.method.get("one_tone") else ""
     notes = "".join(f" {note}" for note in diagnosis.notes)
     budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""
     said = tone + _verdict(diagnosis) + budget + notes

@@ -1,0 +1,65 @@
+"""Other effects in the place of one that was found.
+
+What was the best to add when less was known need not be the best beside what was found since.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.candidates import candidates
+from inerter.diagnose.composition import effects_of, stripped
+from inerter.diagnose.decision import CRITERIA, loss
+from inerter.identify.fit import Fit
+from inerter.identify.model import Model
+
+if TYPE_CHECKING:
+    from inerter.diagnose.search import Scored, Search
+
+
+def others(search: Search, found: Scored, effect: str, model: Model) -> list[Candidate]:
+    """What may stand beside a model in the place of an effect that was found."""
+    effects, sizes = dict(effects_of(found.model, search.baseline)), search.problem.scales
+    law = effects[effect]
+    # along one sine the shaft of a play is a damper and an inertance of another size
+    blind = ("backlash",) if sizes.one_tone and "inertance" in found.model.free else ()
+    rest = [name for name in effects if name != effect]
+    return [
+        candidate
+        for candidate in candidates(model, sizes)
+        if (candidate.effect, candidate.law) != (effect, law)
+        and candidate.effect not in (*rest, *blind)
+        and (law is not None or not candidate.is_rich)
+    ]
+
+
+def fitted_instead(
+    search: Search, found: Scored, effect: str, without: Fit
+) -> list[tuple[Candidate, Fit]]:
+    """Their fits beside a model `without` the effect, the best first."""
+    trials = others(search, found, effect, without.model)
+    return search.trials.fit_all(trials, without, found.fit)
+
+
+def instead(search: Search, found: Scored) -> Scored | None:
+    """A model with another effect in the place of one, where that predicts better; or None."""
+    masks, error = search.problem.masks, found.fit.rmse(search.problem.masks)
+    if error < CRITERIA.near_noise * search.noise:
+        return None
+    limit = (1 - search.least) * error
+    near: list[tuple[str, Fit]] = []
+    for effect, _ in effects_of(found.model, search.baseline):
+        search.progress(f"trying others in the place of {effect}")
+        without = search.problem.fit(stripped(found.model, effect, search.baseline))
+        near += [
+            (candidate.effect, fit)
+            for candidate, fit in fitted_instead(search, found, effect, without)
+            if fit.rmse(masks) < limit and search.may_be(fit.model)
+        ]
+    near.sort(key=lambda pair: pair[1].rmse(masks))
+    for scored in search.scores([(effect, None, fit) for effect, fit in near[:2]]):
+        plainer = scored.complexity < found.complexity
+        if search.better(found, scored) or (plainer and loss(scored, found) < 0.0):
+            return scored
+    return None
