@@ -27,6 +27,7 @@ from benchmarks import (
     many,
     memory,
     one_step,
+    step_instructions,
     work_precision,
 )
 
@@ -54,6 +55,10 @@ BENCHMARKS = {
     "one_step": Benchmark(
         "One step of a car, as a multiple of MuJoCo's own armature",
         one_step.run, tables, one_step.picture,
+    ),
+    "step_instructions": Benchmark(
+        "Whose instructions a step of a car is made of",
+        step_instructions.run, notes=step_instructions.notes,
     ),
     "work_precision": Benchmark(
         "Time for a given error, 10 s of a quarter-car",
@@ -116,7 +121,8 @@ def run(names: list[str], quick: bool, folder: Path, console: Console) -> dict[s
         console.rule(f"{benchmark.title} ({name}, {seconds:.0f} s)", align="left", style="dim")
         shown = benchmark.summary(rows) if benchmark.summary else {"": rows}
         for title, lines in shown.items():
-            console.print(table(title, lines))
+            if lines:
+                console.print(table(title, lines))
         result["benchmarks"][name] = {
             "title": benchmark.title, "seconds": seconds, "rows": rows,
         }  # fmt: skip

@@ -203,6 +203,53 @@ fn=(2)
     assert by_library(profile) == {"libcore.so": 15, "libm.so.6": 60}
 
 
+@pytest.mark.long
+@pytest.mark.skipif(
+    sys.platform != "linux" or shutil.which("valgrind") is None, reason="valgrind is not installed"
+)
+def test_instructions_of_a_step_have_an_owner() -> None:
+    from benchmarks.step_instructions import counted
+
+    native, plugin = (
+        counted("quarter-car", made, "Euler", branches=False)
+        for made in ("native lugre", "plugin lugre")
+    )
+    assert native.for_device == native.device == 0
+    # the engine does as much as with its own friction, and some for the plugin's slots
+    assert native.engine < plugin.engine < 1.2 * native.engine
+    assert 100 < plugin.device < 0.3 * plugin.engine
+    assert 0 < plugin.for_device < plugin.device
+
+
+def test_what_a_device_lets_the_engine_do_counts_for_it() -> None:
+    from benchmarks.step_instructions import by_owner
+
+    profile = """
+ob=(1) /lib/libmujoco.so
+fn=(1) mj_step
+0 100
+cob=(2) /lib/libinerter_mujoco.so
+cfn=(2) compute
+calls=1 0
+0 37
+calls=2 0
+0 50
+ob=(2)
+fn=(2) compute
+0 30
+cob=(1)
+cfn=(3) mj_solveM
+calls=1 0
+0 7
+ob=(1)
+fn=(3) mj_solveM
+0 7
+fn=(4) mj_kinematics
+0 50
+"""
+    assert by_owner(profile) == (150, 7, 30)
+
+
 def test_exudyn_cost() -> None:
     pytest.importorskip("exudyn")
     from benchmarks import exudyn_cost

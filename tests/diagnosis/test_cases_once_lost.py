@@ -68,6 +68,10 @@ REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
     "a peak and a shaft that is none": (("stribeck_friction", "end_stop"), 2877650176),
     # beside a curve of the force that stood in for it no fold told the stop
     "a stop behind its stand-in": (("series_elasticity", "end_stop"), 176303451),
+    # Coulomb friction with a delay was the end of a way that began with Dahl's law
+    "a peak in the place of a level": (("stribeck_friction",), 3030599654),
+    # along one sine it was called a damper and nothing else
+    "a branch along one sine": (("viscoelasticity",), 3548063067),
 }
 
 
@@ -81,6 +85,27 @@ def test_it_is_named_on_a_real_bench(case: str) -> None:
     assert found.found, found.verdict
     # of what is told with confidence nothing is wrong
     assert all(found.is_right(each) for each in found.named if each.confidence > 0.5), found.verdict
+
+
+@pytest.mark.long
+def test_a_gas_spring_takes_the_place_of_two_that_stood_in_for_it() -> None:
+    """End stops and a stiffness, found one after the other, predict less than a gas spring."""
+    effects = ("gas_spring", "rate_state_friction")
+    task = Task(group="pairs", seed=2792099549, noise=0.01, effects=effects, bench="realistic")
+    named = {each.effect for each in solve(task).named}
+    assert "gas_spring" in named
+    assert not {"end_stop", "parallel_stiffness"} & named
+
+
+@pytest.mark.long
+def test_a_tone_above_the_band_may_be_the_drive() -> None:
+    task = Task(
+        group="single", seed=2953911140, noise=0.01, effects=("periodic_disturbance",),
+        bench="realistic",
+    )  # fmt: skip
+    found = solve(task)
+    assert "periodic_disturbance" in found.cannot_tell
+    assert "a tone of 45 Hz, above the" in found.verdict
 
 
 @pytest.mark.long
