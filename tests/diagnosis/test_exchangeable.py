@@ -12,7 +12,7 @@ from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import bristle_is_known, effects_of
 from inerter.diagnose.data import Data, divided
-from inerter.diagnose.exchangeable import Exchange, exchanges, with_exchange
+from inerter.diagnose.exchangeable import Exchange, exchanges, with_branch, with_exchange
 from inerter.diagnose.other_runs import badly_missed, missed_in_words
 from inerter.diagnose.rate_of_level import steady_change, with_rate_of_level
 from inerter.diagnose.remainder.words import summary
@@ -160,6 +160,31 @@ def test_one_sine_tells_no_stiffness_from_a_wrong_inertance(asked: str, effects_
     off = abs(told.parameters["inertance"].value - 60)
     assert told.parameters["inertance"].stderr >= off / 3 * (1 - 1e-9)
     assert "an inertance of" in told.evidence
+
+
+def test_along_one_sine_a_damper_may_be_a_branch() -> None:
+    search, fit = searched(record((2.0,)), IDEAL.adding(None, viscous=0.0))
+    found = with_branch(finding(fit.model.values["viscous"], 0.1), search, fit)
+    assert found.members == ("viscous_friction", "viscoelasticity")
+    assert found.confidence == pytest.approx(0.49)
+    assert found.rivals[0].effect == "viscoelasticity"
+    assert "a spring that relaxes" in wording.effect_in_words(found)
+    # the branch that is told is a damper of this size at 2 Hz, and the softest
+    stiffness, damping = (found.parameters[f"branch_{n}_1"].value for n in ("stiffness", "damping"))
+    speed = 2 * np.pi * 2.0
+    complex_stiffness = 1 / (1 / stiffness + 1 / (1j * speed * damping))
+    assert complex_stiffness.imag == pytest.approx(speed * 100, rel=0.02)
+    for more in (0.9, 1.1):
+        # with another stiffness no damper makes as much of it
+        ratio = damping / stiffness
+        other = 1 / (1 / stiffness + 1 / (1j * speed * stiffness * ratio * more))
+        assert other.imag < complex_stiffness.imag
+    # what has a member is not given another, and other motion tells them apart
+    late, several = replace(finding(100.0, 0.1), members=("viscous_friction", "sensor_delay")), 0.5
+    assert with_branch(late, search, fit) is late
+    search, fit = searched(record((several, 2.0, 5.0)), IDEAL.adding(None, viscous=0.0))
+    alone = finding(100.0, 0.1)
+    assert with_branch(alone, search, fit) is alone
 
 
 def test_several_sines_tell_them_apart() -> None:

@@ -108,6 +108,24 @@ def test_dahl_loop_closed_form() -> None:
     np.testing.assert_allclose(force, 20.0 * np.where(v > 0.0, up, down), atol=2e-5)
 
 
+@pytest.mark.parametrize("exponent", [1.3, 2.0, 6.0])
+def test_bouc_wen_that_slides_stays_at_its_limit(exponent: float) -> None:
+    device = Device(
+        friction="bouc_wen", bw_stiffness=1e5, bw_exponent=exponent,
+        bw_beta=0.6 * 2e4**exponent, bw_gamma=0.4 * 2e4**exponent,
+    )  # fmt: skip
+    limit, state = 1 / 2e4, 0.0
+    for _ in range(40):
+        # twelve yield distances each, and what is left of the way to the limit becomes less
+        before, state = state, device.step(0.0, 0.6, state, 1e-3)
+        assert abs(limit - state) <= abs(limit - before)
+    assert state == pytest.approx(limit, rel=3e-14)
+    assert device.step(0.0, 0.6, state, 1e-3) == state
+    # and turns at once
+    back = device.step(0.0, -1e-3, state, 1e-3)
+    assert back == pytest.approx(state - 1e-6 * (1 + 0.2), rel=0.05)
+
+
 def test_bouc_wen_without_gamma_is_dahl() -> None:
     _, x, v, a = sampled(MOTION, 1e-3, 2.0)
     dahl = Device(friction="dahl", coulomb_force=20.0, bristle_stiffness=5e4)
