@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hidden_vehicles import Car, records
 from inerter.catalogue.scales import Range
+from inerter.diagnose.doubt import doubted
 from inerter.diagnose.result import Finding, StatedValue, Unexplained
 from inerter.diagnose.vehicle import wording
 from inerter.diagnose.vehicle.build import model_of_text
@@ -70,6 +71,27 @@ def test_a_finding_tells_its_members_with_their_values() -> None:
     text = wording.verdict(before, after, [told], [""], rest, [])
     assert f"The main cause is {finding_name(told)}." in text
     assert with_members(FINDING, []) is FINDING
+
+
+def test_what_takes_less_than_all_looks_like_what_is_there() -> None:
+    told = replace(FINDING, confidence=0.97)
+    channels = {"travel": ChannelError(0.1, "m", 0.1)}
+    before, after = (SystemAccuracy({}, e, e, channels=channels) for e in (0.2, 0.03))
+    summary = "What remains is not noise."
+    # it explains a fifth of the spread: ten times what is left
+    rest = Unexplained(
+        significant=True, fraction=0.9, depends_on=["velocity"], summary=summary, structure=0.02
+    )
+    (seen,) = [doubted(each, rest.structure) for each in [told]]
+    assert seen.looks_like
+    text = wording.verdict(before, after, [seen], [""], rest, [])
+    assert f"The main cause looks like {finding_name(seen)}." in text
+    assert "What is there looks like" in text
+    assert "may stand in" not in text
+    # of all that is there it is said as before
+    (sure,) = [doubted(each, 0.001) for each in [told]]
+    text = wording.verdict(before, after, [sure], [""], rest, [])
+    assert f"The main cause is {finding_name(sure)}." in text
 
 
 @pytest.mark.long

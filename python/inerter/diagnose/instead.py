@@ -50,6 +50,8 @@ def instead(search: Search, found: Scored) -> Scored | None:
     limit = (1 - search.least) * error
     near: list[tuple[str, Fit]] = []
     for effect, _ in effects_of(found.model, search.baseline):
+        if effect in search.kept:
+            continue
         search.progress(f"trying others in the place of {effect}")
         without = search.problem.fit(stripped(found.model, effect, search.baseline))
         near += [

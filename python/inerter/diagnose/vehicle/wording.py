@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from inerter.catalogue.vehicle import KNOWN
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import explained, stand_ins, warning
+from inerter.diagnose.doubt import descriptions, explained, note, stand_ins, warning
 from inerter.diagnose.result import Finding, Unexplained
 from inerter.diagnose.vehicle.outcome import SystemAccuracy
 from inerter.diagnose.wording import value_in_words
@@ -92,8 +92,10 @@ def verdict(
         )
         names = [finding_in_words(f) + (f" in {place}" if place else "") for f, place in weighed]
         others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
+        seems = "looks like" if weighed[0][0].looks_like else "is"
         text = (
-            f"The simulation misses the records by {error}. The main cause is {names[0]}{others}. "
+            f"The simulation misses the records by {error}. The main cause {seems} "
+            f"{names[0]}{others}. "
             f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
             f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains.summary}"
         )
@@ -105,6 +107,8 @@ def verdict(
             )
         doubtful = stand_ins(findings, remains.structure)
         text += warning([in_words(finding.effect, finding.law) for finding in doubtful])
+        described = descriptions(findings, remains.structure)
+        text += note([in_words(finding.effect, finding.law) for finding in described])
     if unknown:
         text += " Not tried: " + "; ".join(unknown) + "."
     return text
