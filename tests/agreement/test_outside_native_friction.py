@@ -170,6 +170,7 @@ def test_armature(telling: str) -> None:
 def test_motor_friction(telling: str) -> None:
     """With LuGre: the engine's bristle is held over a step, so that it goes there in first order.
 
+    @pytest.mark.turns(3)
     Extrapolated over two steps (2 y(h/2) - y(h)) it is there to the order that is left.
     """
     true = TELLINGS[telling]("lugre")

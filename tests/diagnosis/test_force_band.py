@@ -86,6 +86,7 @@ def test_harmonics_of_one_sine_are_no_tones(
     assert (band > begun.weighed.cutoff) == more
 
 
+@pytest.mark.turns(3)
 def test_above_the_motions_cut_off_its_noise_is_none() -> None:
     frequency = np.array([2.0, 5.0, 20.0, 60.0])
     everywhere = motion_noise(frequency, 4.0)

@@ -128,6 +128,7 @@ def test_a_law_is_told_by_the_harmonics_of_one_sine() -> None:
     assert found.parameters["coulomb_force"].value == pytest.approx(80.0, rel=0.05)
 
 
+@pytest.mark.turns(3)
 @pytest.mark.parametrize("level", [40.0, None])
 def test_the_force_is_compared_in_its_harmonics_where_there_are_any(level: float | None) -> None:
     law = {"friction": "coulomb", "coulomb_force": level} if level else {}

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from inerter.diagnose import diagnose_bench
 from inerter.records import Record
 
 TIME = np.arange(0, 8, 1 / 400)
 
 
+@pytest.mark.turns(3)
 def records(draw: np.random.Generator) -> list[Record]:
     """60 kg beside a cubic spring, which shows in the second of two runs alone."""
     found = []

@@ -33,6 +33,7 @@ def on_table(case: HiddenVehicle, name: str = "road") -> UserModel:
     return model_of_text(text.replace("<tendon>", f"<tendon>{spring}"), Path("table.xml"))
 
 
+@pytest.mark.turns(3)
 def columns_of(case: HiddenVehicle) -> list[str]:
     return [name for name in case.runs[0] if name not in ("time", "tyre_force")]
 

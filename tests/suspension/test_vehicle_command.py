@@ -44,6 +44,7 @@ def test_a_pair_of_stiffnesses_and_equal_struts() -> None:
     assert row["front"]["damping"] == row["rear"]["damping"]
 
 
+@pytest.mark.turns(3)
 def test_a_table_names_the_axles() -> None:
     done = command("--car", "half", "--layout", "S1,S3", "--index", "J1", "--stiffness", "60e3")
     assert done.exit_code == 0

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, stripped
@@ -45,7 +47,8 @@ def fitted_instead(
 def instead(search: Search, found: Scored) -> Scored | None:
     """A model with another effect in the place of one, where that predicts better; or None."""
     masks, error = search.problem.masks, found.fit.rmse(search.problem.masks)
-    if error < CRITERIA.near_noise * search.noise:
+    noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
+    if error < CRITERIA.near_noise * noise:
         return None
     limit = (1 - search.least) * error
     near: list[tuple[str, Fit]] = []

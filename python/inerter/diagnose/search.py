@@ -77,11 +77,6 @@ class Scored:
         return self.model.complexity
 
 
-def _shape(model: Model) -> tuple[str, frozenset[str]]:
-    """What a model has, whatever the values."""
-    return model.friction, frozenset(model.free)
-
-
 def _silent(text: str) -> None:
     """Tell nobody."""
 
@@ -171,17 +166,17 @@ class Search:
         while plainer := plain_part(self, current):
             current = plainer
         pruned = self._stepped(current, until, most)
-        seen = [_shape(pruned.model)]
+        seen = [pruned.model.shape]
         # what was needed on the way and is not any more, or stood in for another effect, is gone
         while not until or until not in pruned.model.free:
             other = instead(self, pruned)
-            if other is None or _shape(other.model) in seen:
+            if other is None or other.model.shape in seen:
                 break
             self.found.append(other.effect)
             pruned = self._stepped(other, until, most)
-            if _shape(pruned.model) in seen:
+            if pruned.model.shape in seen:
                 break
-            seen.append(_shape(pruned.model))
+            seen.append(pruned.model.shape)
         return pruned
 
     def _stepped(self, current: Scored, until: str | None, most: int) -> Scored:
@@ -194,7 +189,7 @@ class Search:
             if chosen.effect == until:
                 return chosen
             before, current = current.model, exchanged(self, chosen)
-            if _shape(before) == _shape(current.model):
+            if before.shape == current.model.shape:
                 # the exchange takes back what the step has brought, and would again
                 break
         return self._prune(current)
@@ -323,11 +318,6 @@ class Search:
         gone = [s.fit for s in scored if s not in there]
         others = [pair for pair in fitted if not any(pair[1] is fit for fit in gone)]
         return [s for s in there if not self.is_blur(s.fit, current.fit, others)]
-
-    @property
-    def noise(self) -> float:
-        """Of the force in the band, rms over all runs [N]."""
-        return float(np.sqrt(np.mean([run.noise**2 for run in self.runs])))
 
     @property
     def longest(self) -> float:

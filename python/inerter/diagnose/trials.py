@@ -207,7 +207,8 @@ class Trials:
 
         None of what will not take the share `least` of the error away.
         The laws with many parameters are tried where the simple law with memory, Dahl's, does
-        better than friction without memory, or is in the model already.
+        better than friction without memory and not far worse than what does best, or is in the
+        model already.
         """
         masks = self.problem.masks
         limits = self._limits(current, 1 - HOPELESS)
@@ -258,7 +259,8 @@ class Trials:
         error = {(t.effect, t.law): fit.rmse(masks) for t, fit in fitted}
         memory = error.get(("hysteretic_friction", "dahl"))
         others = [current.rmse(masks), *(e for key, e in error.items() if key[0] in MEMORYLESS)]
-        if memory is None or memory < (1 - CRITERIA.gain) * min(others):
+        near = FAR * min((fit.rmse(masks) for _, fit in fitted), default=np.inf)
+        if memory is None or memory < min((1 - CRITERIA.gain) * min(others), near):
             fitted += fits(rich)
         self._rounds.append((current, fitted))
         return sorted(fitted, key=lambda pair: pair[1].rmse(masks))
@@ -280,10 +282,7 @@ class Trials:
         """What was fitted on top of the same model before, by candidate."""
         masks = self.problem.masks
         for base, fitted in self._rounds:
-            same = (base.model.friction, set(base.model.free)) == (
-                current.model.friction,
-                set(current.model.free),
-            )
+            same = base.model.shape == current.model.shape
             if same and abs(base.rmse(masks) - current.rmse(masks)) < SAME * current.rmse(masks):
                 return {candidate.key: fit for candidate, fit in fitted}
         return {}

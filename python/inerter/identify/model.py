@@ -139,6 +139,11 @@ class Model:
         return any(self._stated.get(name, 0.0) for name in BENDS)
 
     @property
+    def shape(self) -> tuple[str, frozenset[str]]:
+        """What a fit decides, whatever the values."""
+        return self.friction, frozenset(self.free)
+
+    @property
     def delay(self) -> float:
         """Time by which the force channel is late [s]."""
         return self.values.get("delay", 0.0)
