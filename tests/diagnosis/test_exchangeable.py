@@ -12,7 +12,13 @@ from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import bristle_is_known, effects_of
 from inerter.diagnose.data import Data, divided
-from inerter.diagnose.exchangeable import Exchange, exchanges, with_branch, with_exchange
+from inerter.diagnose.exchangeable import (
+    Exchange,
+    exchanges,
+    with_branch,
+    with_exchange,
+    with_force_of_place,
+)
 from inerter.diagnose.other_runs import badly_missed, missed_in_words
 from inerter.diagnose.rate_of_level import steady_change, with_rate_of_level
 from inerter.diagnose.remainder.words import summary
@@ -169,6 +175,7 @@ def test_along_one_sine_a_damper_may_be_a_branch() -> None:
     assert found.confidence == pytest.approx(0.49)
     assert found.rivals[0].effect == "viscoelasticity"
     assert "a spring that relaxes" in wording.effect_in_words(found)
+    assert "a spring that relaxes, of 2510 N/m or more; this motion cannot" in found.evidence
     # the branch that is told is a damper of this size at 2 Hz, and the softest
     stiffness, damping = (found.parameters[f"branch_{n}_1"].value for n in ("stiffness", "damping"))
     speed = 2 * np.pi * 2.0
@@ -185,6 +192,30 @@ def test_along_one_sine_a_damper_may_be_a_branch() -> None:
     search, fit = searched(record((several, 2.0, 5.0)), IDEAL.adding(None, viscous=0.0))
     alone = finding(100.0, 0.1)
     assert with_branch(alone, search, fit) is alone
+
+
+def test_along_one_sine_an_inertance_that_varies_may_be_any_force_of_the_place() -> None:
+    baseline = replace(IDEAL, values={**IDEAL.values, "transition_velocity": 1e-3})
+    varying = baseline.adding(None, inertance_gradient=0.0, inertance_curvature=0.0)
+    search, fit = searched(record((2.0,), viscous=0.0), varying, baseline)
+    told = Finding(
+        effect="variable_inertance", law="polynomial", confidence=0.98,
+        parameters={"inertance_gradient": ParameterValue(3.0, 0.1, "1/m")},
+        rmse_before=9.0, rmse_after=0.5, evidence="It is there.", rivals=[],
+    )  # fmt: skip
+    found = with_force_of_place(told, search, fit)
+    assert found.members[:3] == ("variable_inertance", "position_force", "gas_spring")
+    assert found.confidence == pytest.approx(0.49)
+    assert "or a force of the place that is the same along this stroke" in found.evidence
+    # what goes with the speed is none, and other motion tells them apart
+    fast = fit.model.adding(None, inertance_speed_gradient=0.1)
+    assert with_force_of_place(told, search, replace(fit, model=fast)) is told
+    other, fit = searched(record((0.5, 2.0, 5.0), viscous=0.0), varying, baseline)
+    assert with_force_of_place(told, other, fit) is told
+    # strokes of different length do, too
+    runs = [replace(search.runs[0], displacement=0.5 * search.runs[0].displacement)]
+    search.runs = [*search.runs, *runs]
+    assert with_force_of_place(told, search, fit) is told
 
 
 def test_several_sines_tell_them_apart() -> None:

@@ -35,6 +35,7 @@ from inerter.diagnose.trials import FAR
 from inerter.diagnose.values import parameter_units
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of
 from inerter.identify.fit import Fit, parameter_errors
+from inerter.identify.in_proportion import BY_SPEED
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 
@@ -48,6 +49,8 @@ _PAIRS = (
 COUNTERPARTS = {one: other for pair in _PAIRS for one, other in (pair, pair[::-1])}
 # those that do along one sine alone: where the inertance is free, and where it is stated
 _OF_ONE_SINE, _OF_STATED, _OF_FRICTION = _PAIRS[1:]
+# share of the longest stroke from which on another is as long
+_SAME_STROKE = 0.95
 # share of rests that tell nothing
 _RARE = 0.02
 _COORDINATE = {
@@ -197,6 +200,7 @@ def with_members(
 ) -> Finding:
     """A finding with whatever else the data cannot tell from it."""
     finding = with_branch(with_exchange(finding, exchange), search, fit)
+    finding = with_force_of_place(finding, search, fit)
     finding = with_delay(finding, search, fit, covered)
     return with_rate_of_level(with_low_pass(finding, search, fit), search, fit, covered)
 
@@ -291,6 +295,24 @@ def with_branch(finding: Finding, search: Search, fit: Fit) -> Finding:
         parameters={**_with_error(finding.parameters, "viscous", error), **either},
         rivals=[Rival("viscoelasticity", share), *_others(finding.rivals, ("viscoelasticity",))],
     )
+    return replace(told, evidence=wording.evidence(told))
+
+
+def with_force_of_place(finding: Finding, search: Search, fit: Fit) -> Finding:
+    """An inertance that varies along the stroke of one sine: it is a force of the place.
+
+    With a = -w^2 x and v^2 = w^2 (A^2 - x^2) what it adds is a function of x, whatever its form.
+    """
+    free, one_tone = fit.model.free, search.problem.scales.one_tone
+    strokes = [float(np.ptp(run.displacement[run.inner])) for run in search.runs if run.inner.any()]
+    alike = min(strokes, default=0.0) > _SAME_STROKE * max(strokes, default=0.0)
+    asked = finding.effect == "variable_inertance" and not finding.members
+    if not (asked and one_tone and alike and "inertance" in free) or BY_SPEED in free:
+        return finding
+    share, others = finding.confidence / 2, ("position_force", "gas_spring", "hardening_stiffness")
+    rivals = [Rival(others[0], share), *_others(finding.rivals, others)]
+    members = (finding.effect, *others)
+    told = replace(finding, confidence=share, members=members, rivals=rivals)
     return replace(told, evidence=wording.evidence(told))
 
 

@@ -129,6 +129,8 @@ def amount_in_words(effect: str, value: float, motion: Kind) -> str:
         return f"a low-pass of one channel, such as one of order {USUAL_ORDER} at {value:.3g} Hz"
     if effect == "asymmetric_friction":
         return f"friction that is {100 * abs(value):.3g} % larger one way, and smaller the other"
+    if effect == "viscoelasticity":
+        return f"{EFFECTS[effect].plain}, of {value:.3g} {words(motion, 'N/m')} or more"
     if effect == "force_offset":
         return f"a constant force of {value:.3g} {words(motion, 'N')}"
     return f"{EFFECTS[effect].plain} of {value:.3g} {words(motion, 'N s/m')}"
@@ -174,6 +176,12 @@ def either_in_words(finding: Finding) -> str:
     if _is_level_at_least(finding):
         level = value_in_words(EFFECTS[finding.effect].plain, finding.parameters["coulomb_force"])
         return f"{level}, which may go with the speed (rate-and-state friction)"
+    if finding.members[:2] == ("variable_inertance", "position_force"):
+        others = " or ".join(EFFECTS[each].plain for each in finding.members[2:])
+        return (
+            f"{EFFECTS[finding.effect].plain}, or a force of the place that is the same along this "
+            f"stroke, such as {others}"
+        )
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     if "displacement_filter" in finding.parameters:
         coordinates["sensor_filter"] = "displacement_filter"
