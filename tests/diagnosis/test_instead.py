@@ -71,6 +71,19 @@ def test_nothing_is_tried_where_noise_alone_is_left(monkeypatch: pytest.MonkeyPa
         instead(search, found)
 
 
+def test_of_many_effects_none_is_exchanged(monkeypatch: pytest.MonkeyPatch) -> None:
+    device = Device(inertance=60.0, friction="stribeck", coulomb_force=20.0, **PEAK)
+    many = {"viscous": 1.0, "stiffness": 1.0, "force_offset": 0.1, "quadratic_damping": 1.0}
+    search, found = found_before(device, COULOMB.adding(None, **many))
+    tried: list[object] = []
+    monkeypatch.setattr(module, "fitted_instead", lambda *given: tried.append(given) or [])
+    assert instead(search, found) is None
+    assert not tried
+    few = COULOMB.adding(None, viscous=1.0, stiffness=1.0)
+    assert instead(search, search.score("few", None, search.problem.fit(few))) is None
+    assert len(tried) == CRITERIA.exchanged_of == 3
+
+
 def test_a_right_model_keeps_its_effects() -> None:
     device = Device(inertance=60.0, friction="coulomb", coulomb_force=20.0, viscous=100.0)
     search, found = found_before(device, COULOMB.adding(None, viscous=50.0))

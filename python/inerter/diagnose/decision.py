@@ -170,6 +170,13 @@ class Criteria:
         "take away",
     )
 
+    exchanged_of: int = _bound(
+        3,
+        COUNT,
+        "of effects up to which others are tried in the place of each: of more each takes what the "
+        "others leave, and a measured axis with four was foretold worse on held-out data after it",
+    )
+
     # bands
     band_gain: float = _bound(0.1, SHARE, "what another band takes away to be taken")
     more_bands: int = _bound(2, COUNT, "of wider bands in which a search goes on")

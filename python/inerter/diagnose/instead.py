@@ -48,11 +48,12 @@ def instead(search: Search, found: Scored) -> Scored | None:
     """A model with another effect in the place of one, where that predicts better; or None."""
     masks, error = search.problem.masks, found.fit.rmse(search.problem.masks)
     noise = float(np.sqrt(np.mean([run.noise**2 for run in search.runs])))
-    if error < CRITERIA.near_noise * noise:
+    effects = [effect for effect, _ in effects_of(found.model, search.baseline)]
+    if error < CRITERIA.near_noise * noise or len(effects) > CRITERIA.exchanged_of:
         return None
     limit = (1 - search.least) * error
     near: list[tuple[str, Fit]] = []
-    for effect, _ in effects_of(found.model, search.baseline):
+    for effect in effects:
         if effect in search.kept:
             continue
         search.progress(f"trying others in the place of {effect}")
