@@ -170,7 +170,6 @@ def test_armature(telling: str) -> None:
 def test_motor_friction(telling: str) -> None:
     """With LuGre: the engine's bristle is held over a step, so that it goes there in first order.
 
-    @pytest.mark.turns(3)
     Extrapolated over two steps (2 y(h/2) - y(h)) it is there to the order that is left.
     """
     true = TELLINGS[telling]("lugre")
@@ -184,6 +183,7 @@ def test_motor_friction(telling: str) -> None:
     assert error(2 * fine - middle, true) < 5e-6
 
 
+@pytest.mark.turns(3)
 def test_exudyn_and_reference_with_friction() -> None:
     """The two tellings that the engine was held against, against each other."""
     assert error(in_exudyn("lugre"), in_reference("lugre")) < 1e-7

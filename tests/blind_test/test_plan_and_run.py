@@ -188,13 +188,13 @@ def test_gas_is_compared_by_what_the_data_see() -> None:
     assert all(error.relative < 1e-12 for error in errors)
 
 
-@pytest.mark.turns(3)
 def realistic(effect: str, **chain: float) -> HiddenCase:
     """A case on a bench that does what is said to its records, and nothing else."""
     case = hide_effect(5, effect, realistic=True)
     return replace(case, chain=Chain(**chain))  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.turns(3)
 def test_a_bench_without_filters_shows_its_mass_and_drift_with_those_hidden() -> None:
     drifting = realistic("force_drift", drift=0.5)
     hidden, run = drifting.parameters["force_drift"], drifting.runs[0]
@@ -225,11 +225,11 @@ def test_what_has_no_value_of_its_own_on_a_bench_is_not_counted() -> None:
     assert "delay" in shown_parameters(realistic("sensor_delay", **both))
 
 
-@pytest.mark.turns(4)
 def with_device(case: HiddenCase, **changes: float | str) -> HiddenCase:
     return replace(case, device=replace(case.device, **changes))  # pyright: ignore[reportArgumentType]
 
 
+@pytest.mark.turns(4)
 def test_a_peak_that_noise_hides_may_be_called_coulomb_friction() -> None:
     case = realistic("coulomb_friction")
     level = case.parameters["coulomb_force"]

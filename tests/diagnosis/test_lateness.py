@@ -17,7 +17,6 @@ DAMPER = ReferenceDevice(inertance=170.0, branch_stiffness_1=15e3, branch_dampin
 FREQUENCIES = np.array([0.5, 0.9, 1.3, 1.9, 2.6, 3.3, 4.1, 4.9])
 
 
-@pytest.mark.turns(4)
 def late_record(ringing: float = 0.0) -> Record:
     """A damper with elasticity behind a low-pass that the displacement has not; 38.5 Hz [m/s^2]."""
     tones = [*FREQUENCIES, 38.5]
@@ -37,6 +36,7 @@ def late_record(ringing: float = 0.0) -> Record:
     )
 
 
+@pytest.mark.turns(4)
 def test_a_late_damper_with_elasticity_is_no_damper_beside_a_shaft() -> None:
     found = diagnose_bench([late_record(ringing=0.02)])
     names = {finding.effect for finding in found.findings}

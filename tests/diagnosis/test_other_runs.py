@@ -10,7 +10,6 @@ from inerter.records import Record
 TIME = np.arange(0, 8, 1 / 400)
 
 
-@pytest.mark.turns(3)
 def records(draw: np.random.Generator) -> list[Record]:
     """60 kg beside a cubic spring, which shows in the second of two runs alone."""
     found = []
@@ -31,6 +30,7 @@ def records(draw: np.random.Generator) -> list[Record]:
     return found
 
 
+@pytest.mark.turns(3)
 def test_another_run_is_held_out_where_the_usual_one_alone_tells(effects_seed: int) -> None:
     made = records(np.random.default_rng(effects_seed))
     told = diagnose_bench(made)

@@ -33,11 +33,11 @@ def on_table(case: HiddenVehicle, name: str = "road") -> UserModel:
     return model_of_text(text.replace("<tendon>", f"<tendon>{spring}"), Path("table.xml"))
 
 
-@pytest.mark.turns(3)
 def columns_of(case: HiddenVehicle) -> list[str]:
     return [name for name in case.runs[0] if name not in ("time", "tyre_force")]
 
 
+@pytest.mark.turns(3)
 def test_a_table_moves_the_model_as_a_road_actuator_does(effects_seed: int) -> None:
     case = hide_in_vehicle(effects_seed, (), vehicle="quarter", noise=0.0)
     record = vehicle_records(case)[0]

@@ -44,7 +44,6 @@ def test_a_pair_of_stiffnesses_and_equal_struts() -> None:
     assert row["front"]["damping"] == row["rear"]["damping"]
 
 
-@pytest.mark.turns(3)
 def test_a_table_names_the_axles() -> None:
     done = command("--car", "half", "--layout", "S1,S3", "--index", "J1", "--stiffness", "60e3")
     assert done.exit_code == 0
@@ -52,6 +51,7 @@ def test_a_table_names_the_axles() -> None:
     assert "rear" in done.stdout
 
 
+@pytest.mark.turns(3)
 def test_a_range_writes_figures(tmp_path: Path) -> None:
     done = command(
         "--car", "half", "--layout", "S1,S3", "--index", "J1,J3", "--stiffness", "40e3:60e3:2",
