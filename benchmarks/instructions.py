@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from inerter.benchmark.laws import LAWS, parameters_of
@@ -100,24 +100,34 @@ def _counted(law: str, count: int) -> Mapping[str, int]:
 def by_library(profile: str) -> Mapping[str, int]:
     """Instructions by library, from callgrind's output: own costs, not those of calls."""
     found: dict[str, int] = defaultdict(int)
+    for library, called, cost in costs(profile):
+        if called is None:
+            found[library] += cost
+    return found
+
+
+def costs(profile: str) -> Iterator[tuple[str, str | None, int]]:
+    """Costs in callgrind's output: library, the one that it calls if it is a call, instructions.
+
+    Those of a call are counted in its callee too.
+    """
     names: dict[str, str] = {}
-    library, called = "", False
+    library, callee, called = "", None, False
     for line in profile.splitlines():
-        if match := re.match(r"ob=\((\d+)\)(?: (.+))?", line):
-            number, name = match.groups()
+        if match := re.match(r"(c?)ob=\((\d+)\)(?: (.+))?", line):
+            of_call, number, name = match.groups()
             if name:
                 names[number] = Path(name).name
-            library = names[number]
+            if of_call:
+                callee = names[number]
+            else:
+                library = names[number]
         elif line.startswith("calls="):
-            # the line after it is the cost of the call, which its callee counts too
+            # the line after it is the cost of the call
             called = True
         elif re.match(r"[+\-*\d]", line):
-            if not called:
-                found[library] += int(line.split()[1])
-            called = False
-        elif match := re.match(r"cob=\((\d+)\) (.+)", line):
-            names[match[1]] = Path(match[2]).name
-    return found
+            yield library, (callee or library) if called else None, int(line.split()[1])
+            callee, called = None, False
 
 
 def counts(laws: tuple[str, ...] = tuple(LAWS)) -> dict[str, tuple[float, float, float]]:

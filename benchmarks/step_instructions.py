@@ -10,7 +10,6 @@ is that, and the instructions of the law itself counted by hand, over the step t
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 import tempfile
@@ -22,7 +21,7 @@ from inerter.benchmark.cars import PLUGIN
 from inerter.benchmark.rows import Row
 from inerter.benchmark.step import BRANCH_QUESTIONS, IDEAL, LUGRE, NESTED_QUESTIONS
 
-from benchmarks.instructions import LEAST, lacking
+from benchmarks.instructions import LEAST, costs, lacking
 
 CASES = (
     ("quarter-car", "Euler"),
@@ -92,10 +91,12 @@ def _rows(car: str, integrator: str) -> Iterator[Row]:
                 "topology": "branches" if branches else "nested",
                 "integrator": integrator,
                 "question": question,
+                "variant": variant,
+                "against": against,
                 "engine": mine.engine,
                 "for_device": mine.for_device,
                 "device": mine.device,
-                "against": other.total,
+                "other": other.total,
                 "over": mine.total / other.total,
                 "least": (mine.engine + law) / other.total,
                 "aim_of_time": aim,
@@ -133,28 +134,11 @@ def by_owner(profile: str, device: str = "inerter") -> tuple[int, int, int]:
     The device are libraries whose name has `device`; what it calls counts for it, in whatever
     library that is.
     """
-    names: dict[str, str] = {}
-    here = called = ""
-    is_call = False
     total = own = caused = 0
-    for line in profile.splitlines():
-        if match := re.match(r"(c?)ob=\((\d+)\)(?: (.+))?", line):
-            call, number, name = match.groups()
-            if name:
-                names[number] = Path(name).name
-            if call:
-                called = names[number]
-            else:
-                here = names[number]
-        elif line.startswith("calls="):
-            # the line after it is the cost of the call, which its callee counts too
-            is_call = True
-        elif re.match(r"[+\-*\d]", line):
-            cost = int(line.split()[1])
-            if not is_call:
-                total += cost
-                own += cost if device in here else 0
-            elif called and device in called and device not in here:
-                caused += cost
-            is_call, called = False, ""
+    for library, called, cost in costs(profile):
+        if called is None:
+            total += cost
+            own += cost if device in library else 0
+        elif device in called and device not in library:
+            caused += cost
     return total - caused, caused - own, own

@@ -210,6 +210,9 @@ def test_along_one_sine_an_inertance_that_varies_may_be_any_force_of_the_place()
     # what goes with the speed is none, and other motion tells them apart
     fast = fit.model.adding(None, inertance_speed_gradient=0.1)
     assert with_force_of_place(told, search, replace(fit, model=fast)) is told
+    # nor what differs between the directions
+    back = fit.model.adding(None, inertance_back_node_1=0.1)
+    assert with_force_of_place(told, search, replace(fit, model=back)) is told
     other, fit = searched(record((0.5, 2.0, 5.0), viscous=0.0), varying, baseline)
     assert with_force_of_place(told, other, fit) is told
     # strokes of different length do, too

@@ -55,6 +55,20 @@ def test_what_stands_in_for_a_spring_that_hardens_is_exchanged() -> None:
     assert "quadratic_damping" not in other.model.free
 
 
+def test_what_may_be_none_takes_no_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    device = Device(inertance=60.0, friction="stribeck", coulomb_force=20.0, **PEAK)
+    search, found = found_before(device, COULOMB)
+    asked: list[str] = []
+
+    def is_none(effect: str, *given: object) -> bool:
+        asked.append(effect)
+        return False
+
+    monkeypatch.setattr("inerter.diagnose.search.is_distinct", is_none)
+    assert instead(search, found) is None
+    assert "stribeck_friction" in asked or "hysteretic_friction" in asked
+
+
 def test_nothing_is_tried_where_noise_alone_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     device = Device(inertance=60.0, friction="coulomb", coulomb_force=20.0)
     search, found = found_before(device, COULOMB)

@@ -82,14 +82,14 @@ def test_what_takes_less_than_all_looks_like_what_is_there() -> None:
     rest = Unexplained(
         significant=True, fraction=0.9, depends_on=["velocity"], summary=summary, structure=0.02
     )
-    (seen,) = [doubted(each, rest.structure) for each in [told]]
+    seen = doubted(told, rest.structure)
     assert seen.looks_like
     text = wording.verdict(before, after, [seen], [""], rest, [])
     assert f"The main cause looks like {finding_name(seen)}." in text
     assert "What is there looks like" in text
     assert "may stand in" not in text
     # of all that is there it is said as before
-    (sure,) = [doubted(each, 0.001) for each in [told]]
+    sure = doubted(told, 0.001)
     text = wording.verdict(before, after, [sure], [""], rest, [])
     assert f"The main cause is {finding_name(sure)}." in text
 

@@ -166,8 +166,8 @@ class Criteria:
     near_noise: float = _bound(
         1.2,
         "noise of the force in the band",
-        "an error below which nothing is left that other effects in the place of those found could "
-        "take away",
+        "an error below which no other effects are tried in the place of those found: a choice, "
+        "which saves their time",
     )
 
     exchanged_of: int = _bound(

@@ -307,7 +307,9 @@ def with_force_of_place(finding: Finding, search: Search, fit: Fit) -> Finding:
     strokes = [float(np.ptp(run.displacement[run.inner])) for run in search.runs if run.inner.any()]
     alike = min(strokes, default=0.0) > _SAME_STROKE * max(strokes, default=0.0)
     asked = finding.effect == "variable_inertance" and not finding.members
-    if not (asked and one_tone and alike and "inertance" in free) or BY_SPEED in free:
+    # what differs between the directions, or goes with the speed, is none
+    more = BY_SPEED in free or any("_back_" in name for name in free)
+    if more or not (asked and one_tone and alike and "inertance" in free):
         return finding
     share, others = finding.confidence / 2, ("position_force", "gas_spring", "hardening_stiffness")
     rivals = [Rival(others[0], share), *_others(finding.rivals, others)]

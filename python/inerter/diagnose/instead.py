@@ -19,6 +19,11 @@ from inerter.identify.model import Model
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search
 
+Fitted = list[tuple[Candidate, Fit]]
+
+# of those that do better, the best, which are checked on data left out
+_CHECKED = 2
+
 
 def others(search: Search, found: Scored, effect: str, model: Model) -> list[Candidate]:
     """What may stand beside a model in the place of an effect that was found."""
@@ -36,9 +41,7 @@ def others(search: Search, found: Scored, effect: str, model: Model) -> list[Can
     ]
 
 
-def fitted_instead(
-    search: Search, found: Scored, effect: str, without: Fit
-) -> list[tuple[Candidate, Fit]]:
+def fitted_instead(search: Search, found: Scored, effect: str, without: Fit) -> Fitted:
     """Their fits beside a model `without` the effect, the best first."""
     trials = others(search, found, effect, without.model)
     return search.trials.fit_all(trials, without, found.fit)
@@ -52,20 +55,22 @@ def instead(search: Search, found: Scored) -> Scored | None:
     if error < CRITERIA.near_noise * noise or len(effects) > CRITERIA.exchanged_of:
         return None
     limit = (1 - search.least) * error
-    near: list[tuple[str, Fit]] = []
+    near: list[tuple[Candidate, Fit, Fit, Fitted]] = []
     for effect in effects:
         if effect in search.kept:
             continue
         search.progress(f"trying others in the place of {effect}")
         without = search.problem.fit(stripped(found.model, effect, search.baseline))
+        fitted = fitted_instead(search, found, effect, without)
         near += [
-            (candidate.effect, fit)
-            for candidate, fit in fitted_instead(search, found, effect, without)
+            (candidate, fit, without, fitted)
+            for candidate, fit in fitted
             if fit.rmse(masks) < limit and search.may_be(fit.model)
         ]
-    near.sort(key=lambda pair: pair[1].rmse(masks))
-    for scored in search.scores([(effect, None, fit) for effect, fit in near[:2]]):
-        plainer = scored.complexity < found.complexity
-        if search.better(found, scored) or (plainer and loss(scored, found) < 0.0):
-            return scored
+    near.sort(key=lambda each: each[1].rmse(masks))
+    for candidate, fit, without, fitted in near[:_CHECKED]:
+        for scored in search.that_are_there([(candidate, fit)], None, without, fitted):
+            plainer = scored.complexity < found.complexity
+            if search.better(found, scored) or (plainer and loss(scored, found) < 0.0):
+                return scored
     return None

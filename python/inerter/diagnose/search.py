@@ -165,19 +165,16 @@ class Search:
         # another band may tell that a part found before is a plain one
         while plainer := plain_part(self, current):
             current = plainer
-        pruned = self._stepped(current, until, most)
-        seen = [pruned.model.shape]
-        # what was needed on the way and is not any more, or stood in for another effect, is gone
-        while not until or until not in pruned.model.free:
-            other = instead(self, pruned)
+        current, seen = self._stepped(current, until, most), []
+        # where another effect does better in the place of one, the search goes on from there
+        while until not in current.model.free:
+            other = instead(self, current)
             if other is None or other.model.shape in seen:
                 break
             self.found.append(other.effect)
-            pruned = self._stepped(other, until, most)
-            if pruned.model.shape in seen:
-                break
-            seen.append(pruned.model.shape)
-        return pruned
+            seen.append(other.model.shape)
+            current = other if other.effect == until else self._stepped(other, until, most)
+        return current
 
     def _stepped(self, current: Scored, until: str | None, most: int) -> Scored:
         """Effects added one after another, and pruned."""
@@ -280,7 +277,7 @@ class Search:
         there: list[Scored] = []
         good: list[Scored] = []
         for pairs in (shortlist, level):
-            there += self._that_are_there(pairs, folds, current, fitted)
+            there += self.that_are_there(pairs, folds, current.fit, fitted)
             good = [s for s in there if self.better(*self._weighed_for(s, [current, s]))]
             if good:
                 break
@@ -298,10 +295,13 @@ class Search:
             chosen = self.score(chosen.effect, chosen.law, chosen.fit)
         return replace(chosen, fit=self.problem.fit(chosen.model))
 
-    def _that_are_there(
-        self, pairs: Sequence[Fitted], folds: Folds, current: Scored, fitted: Sequence[Fitted]
+    def that_are_there(
+        self, pairs: Sequence[Fitted], folds: Folds | None, without: Fit, fitted: Sequence[Fitted]
     ) -> list[Scored]:
-        """Fitted candidates on data left out, without those whose own values may be none."""
+        """Fitted candidates on data left out, but for those whose own values may be none.
+
+        without: what they were added to; fitted: all that were.
+        """
         sizes = self.problem.scales
         scored = self.scores([(each.effect, each.law, fit) for each, fit in pairs], folds)
         there = [
@@ -317,7 +317,7 @@ class Search:
         # what is not there makes no peak of friction needless
         gone = [s.fit for s in scored if s not in there]
         others = [pair for pair in fitted if not any(pair[1] is fit for fit in gone)]
-        return [s for s in there if not self.is_blur(s.fit, current.fit, others)]
+        return [s for s in there if not self.is_blur(s.fit, without, others)]
 
     @property
     def longest(self) -> float:
