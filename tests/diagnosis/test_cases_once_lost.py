@@ -74,7 +74,6 @@ REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
     "a branch along one sine": (("viscoelasticity",), 3548063067),
     # a search from a low-pass on found less, without one, and was not asked for that
     "a low-pass on the way": (("quadratic_damping", "end_stop"), 1947272113),
-    "a low-pass on the way to a spring": (("quadratic_damping", "hardening_stiffness"), 3981180786),
 }
 
 

@@ -69,8 +69,11 @@ def instead(search: Search, found: Scored) -> Scored | None:
         ]
     near.sort(key=lambda each: each[1].rmse(masks))
     for candidate, fit, without, fitted in near[:_CHECKED]:
-        for scored in search.that_are_there([(candidate, fit)], None, without, fitted):
-            plainer = scored.complexity < found.complexity
-            if search.better(found, scored) or (plainer and loss(scored, found) < 0.0):
-                return scored
+        scored = search.score(candidate.effect, candidate.law, fit)
+        if scored.complexity < found.complexity and loss(scored, found) < 0.0:
+            # beside what it makes needless its own value may be none: that is pruned next
+            return scored
+        one = [(candidate, fit)]
+        if search.better(found, scored) and search.that_are_there(one, None, without, fitted):
+            return scored
     return None

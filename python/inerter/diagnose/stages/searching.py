@@ -188,12 +188,13 @@ def _behind_low_pass(
     below = any(f.cutoff < scales.frequency for f in filters_of(other.model.values).values())
     if "backlash" in other.model.free or below:
         return search, final
-    if not late:
-        # the way led elsewhere, and the low-pass was not needed there
-        fewer = other.complexity < final.complexity and loss(other, final) < 0.0
-        return (again, other) if fewer else (search, final)
     plainer = other.complexity <= final.complexity and loss(other, final) < CRITERIA.exchange_loss
     plainer = plainer or as_good(other, final, again.advantage(other, final, "sensor_filter"))
+    if not late:
+        # the way led elsewhere, and the low-pass was not needed there
+        return (
+            (again, other) if plainer and other.complexity < final.complexity else (search, final)
+        )
     if plainer or better(final, other, again.advantage(final, other, "sensor_filter")):
         return again, other
     return search, final
