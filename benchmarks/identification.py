@@ -8,6 +8,9 @@ by default starts in 96 places and gives profile intervals. Time is what the pro
 
 A second device, without a state, has parameters that enter in proportion, whose derivatives need no
 evaluation.
+
+Last come whole identifications of the records that are diagnosed in `diagnosis.py`: with the usual
+laws and with every one. They work on all cores, and are timed by the clock on the wall.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ import io
 import logging
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +31,14 @@ from inerter.benchmark.rows import Row, aimed, spread_of
 from inerter.benchmark.timing import Spread, Work, interleaved
 from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem
+from inerter.identify.laws import LAWS
 from inerter.identify.model import Model
 from inerter.identify.runs import thin
-from inerter.records import Record
+from inerter.records import Record, read_records
 from inerter.records.preparation import prepare
 from scipy.optimize import least_squares
+
+from benchmarks.diagnosis import folder, made
 
 EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "fit_with_mujoco_sysid.py"
 SYSID, SCIPY = "mujoco.sysid", "SciPy, 2-point differences"
@@ -44,6 +50,10 @@ PLAIN = {
     "force_offset": 3.0, "friction": "coulomb", "coulomb_force": 12.0, "transition_velocity": 1e-3,
 }  # fmt: skip
 Values = Mapping[str, float]
+
+EVERY = (*LAWS, "bouc_wen_any", "rate_state", "fluid")
+AIM = "<= 10"
+MEASURED = ("rack_inerter/r16_*.csv", "friction_damper/*.csv")
 
 
 def has_sysid() -> bool:
@@ -99,7 +109,7 @@ def run(quick: bool = False, seconds: float | None = None, rounds: int | None = 
     list of dict
         `question`, `device`, `way`, `seconds` with quartiles, `evaluations` (None where they are
         not counted), `error` (largest relative error of a parameter), `against`, `ratio` (how many
-        times less time the way takes), `aim`, `met`.
+        times less time the way takes), `aim`, `met`; but in a quick one those of `whole`, too.
     """
     rounds = rounds or (1 if quick else 5)
     lugre = _lugre(seconds or 10.0)
@@ -114,7 +124,52 @@ def run(quick: bool = False, seconds: float | None = None, rounds: int | None = 
     rows += _rows("Coulomb", _plain(seconds or 10.0), truth, rounds, [
         ("a fit against SciPy's differences", ONE, SCIPY, None),
     ])  # fmt: skip
+    if quick:
+        return rows
+    return rows + [row for name, records in _benches().items() for row in whole(name, records)]
+
+
+def whole(name: str, records: Sequence[Record], choices: Sequence[Sequence[str]] = ()) -> list[Row]:
+    """Whole identifications of some records, with the usual laws and with every one.
+
+    Parameters
+    ----------
+    name
+        What the records are of.
+    records
+        What is identified.
+    choices
+        Laws, by default those two choices.
+
+    Returns
+    -------
+    list of dict
+        As of `run`, and the number of `samples`.
+    """
+    rows = []
+    for laws in choices or (LAWS, EVERY):
+        start = time.perf_counter()
+        identify(records, laws)
+        spent = time.perf_counter() - start
+        rows.append(
+            {
+                "question": "identify, seconds", "device": name, "way": f"{len(laws)} laws",
+                **spread_of("seconds", Spread(spent, spent, spent)), "evaluations": None,
+                "error": None, "against": None, **_NO_RATIO, **aimed(spent, AIM),
+                "samples": sum(record.samples for record in records),
+            }
+        )  # fmt: skip
     return rows
+
+
+def _benches() -> dict[str, Sequence[Record]]:
+    """Made and measured records by what they are of."""
+    found: dict[str, Sequence[Record]] = {"LuGre friction": made("LuGre friction")}
+    if where := folder():
+        for pattern in MEASURED:
+            read = read_records([where / pattern], "bench")
+            found[pattern] = [record for record in read if isinstance(record, Record)]
+    return found
 
 
 def _rows(

@@ -84,7 +84,7 @@ def test_lab_tasks_of_growth_run() -> None:
 
 
 def test_identification() -> None:
-    from benchmarks import identification
+    from benchmarks import diagnosis, identification
 
     rows = identification.run(quick=True, seconds=1.5, rounds=1)
     check_rows(rows)
@@ -96,6 +96,11 @@ def test_identification() -> None:
     asked = {row["question"] for row in rows}
     assert ("a fit against mujoco.sysid" in asked) == identification.has_sysid()
     assert bool(identification.notes()) != identification.has_sysid()
+    record = diagnosis.made("viscous friction", 1.5)
+    rows = identification.whole("viscous friction", record, [["ideal", "viscous"]])
+    check_rows(rows)
+    assert [(row["way"], row["samples"]) for row in rows] == [("2 laws", 6000)]
+    assert rows[0]["met"] == (rows[0]["seconds"] <= 10)
 
 
 @pytest.mark.turns(4)

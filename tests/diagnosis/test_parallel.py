@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bench_runs import measured
+from inerter import parallel_steps as module
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose import parallel as module
-from inerter.diagnose.parallel import helped, parallel, serial
+from inerter.parallel_steps import helped, parallel, serial
 from inerter.reference import ReferenceDevice, sine_motion
 
 

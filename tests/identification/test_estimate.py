@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inerter import Device
+from inerter import Device, parallel_steps
 from inerter.core import DeviceError
 from inerter.identify.estimate import identify
 from inerter.identify.fit import Problem, parameter_errors
@@ -271,3 +271,18 @@ def test_an_error_is_relative_to_the_force_it_was_made_in() -> None:
     best = identify([replace(record, force=force)], ["viscous"], intervals="normal").best
     # white noise has nothing to do with the motion: the error is all of the force
     assert best.nrmse == pytest.approx(1.0, abs=0.1)
+
+
+def test_the_same_on_one_processor_and_on_two(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Laws are shared with another process, which starts from what simpler ones found here."""
+    records = drawn("coulomb", 4).records
+    names = ["ideal", "viscous", "coulomb", "dahl"]
+    alone = identify(records, names)
+    monkeypatch.setattr(parallel_steps, "cpu_count", lambda: 2)
+    shared = identify(records, names)
+    assert [each.law for each in shared.results] == [each.law for each in alone.results]
+    for one, other in zip(alone.results, shared.results, strict=True):
+        assert other.parameters == one.parameters
+        assert other.rmse == one.rmse
+        assert np.array_equal(other.correlation, one.correlation)
+        assert other.judge(other.model) == one.judge(one.model)

@@ -144,7 +144,7 @@ def test_a_fit_that_has_not_converged_says_so(monkeypatch: pytest.MonkeyPatch) -
     true = Device(inertance=113, friction="dahl", coulomb_force=10, bristle_stiffness=1e4)
     for name in ("_ROUGH", "_THOROUGH"):
         monkeypatch.setattr(f"inerter.identify.multistart.{name}", 1)
-    monkeypatch.setattr("inerter.identify.estimate._EVALUATIONS", 1)
+    monkeypatch.setattr("inerter.identify.law_fit._EVALUATIONS", 1)
     result = identify([made(true)], ["bouc_wen"], intervals="normal", starts=2)
     assert not result.best.converged
     assert result.json()["results"][0]["converged"] is False

@@ -20,8 +20,8 @@ from inerter.blind_test.vehicle import (
 )
 from inerter.core import Device
 from inerter.diagnose import Diagnosis, diagnose_bench
-from inerter.diagnose.parallel import serial
 from inerter.identify.channel_filter import Filter
+from inerter.parallel_steps import serial
 from inerter.records import Record
 from inerter.reference import (
     HiddenCase,

@@ -12,7 +12,6 @@ from inerter.catalogue.along_stroke import node_of
 from inerter.diagnose.composition import effects_of, is_local, submodel
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import (
     Interval,
@@ -24,6 +23,7 @@ from inerter.diagnose.statistics import (
 from inerter.identify.choices import TONE
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
+from inerter.parallel_steps import parallel
 
 Trial = tuple[tuple[str, str | None], Fit]
 

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from inerter import rig
 from inerter.core import Device
-from inerter.diagnose.parallel import parallel
 from inerter.exudyn.engine import installed
 from inerter.identify.between import about_samples, between, quintics
 from inerter.identify.channel import through_channel
@@ -24,6 +23,7 @@ from inerter.identify.prediction import (
     with_late_motion,
 )
 from inerter.identify.runs import BenchRun, from_first, held
+from inerter.parallel_steps import parallel
 from inerter.reference import Motion, ReferenceDevice, response
 
 Array = NDArray[np.float64]

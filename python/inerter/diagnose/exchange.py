@@ -17,11 +17,11 @@ from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws, within_blur
 from inerter.diagnose.decision import CRITERIA, loss
 from inerter.diagnose.low_passes import other_filter
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
 from inerter.diagnose.trials import FAR
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
+from inerter.parallel_steps import parallel
 
 if TYPE_CHECKING:
     from inerter.diagnose.search import Scored, Search

@@ -26,7 +26,6 @@ from inerter.diagnose import wording
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA, visible_delay
 from inerter.diagnose.low_passes import as_delay, filters, jumps_late, likeliest
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.rate_of_level import with_rate_of_level
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
@@ -38,6 +37,7 @@ from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.in_proportion import BY_SPEED
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
+from inerter.parallel_steps import parallel
 
 # the effects that make up for each other, each by one coordinate
 _PAIRS = (

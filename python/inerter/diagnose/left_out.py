@@ -8,11 +8,11 @@ import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import Array
 from inerter.diagnose.trials import ROUGH
 from inerter.identify.fit import Fit, Limits, Near, Problem
 from inerter.identify.split import Mask
+from inerter.parallel_steps import parallel
 
 Folds = Sequence[tuple[Problem, list[Mask]]]
 """The data without a fold, and the fold; of each."""

@@ -17,7 +17,6 @@ from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA, loss, visible
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.trials import FEW, within_shortlist
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
@@ -25,6 +24,7 @@ from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 from inerter.identify.split import blocks
+from inerter.parallel_steps import parallel
 from inerter.records.motion import motion_noise, through_shaft
 
 if TYPE_CHECKING:

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from scipy.stats import kurtosis, qmc
 
 from inerter.catalogue.scales import Scales
-from inerter.diagnose.parallel import parallel
 from inerter.identify.fit import Fit, Problem, rms, typical
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
+from inerter.parallel_steps import parallel
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -18,10 +18,10 @@ from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
 from inerter.diagnose.candidates import law_starts
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.search import Search
 from inerter.identify.fit import Fit, parameter_errors, rms
+from inerter.parallel_steps import parallel
 
 # what a friction level changes by per e-fold of the speed where that is next to nothing
 _SLIGHT = 1e-3

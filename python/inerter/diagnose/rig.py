@@ -30,7 +30,6 @@ from inerter.diagnose.other_runs import (
     split_in_words,
     swapped_in_words,
 )
-from inerter.diagnose.parallel import helped
 from inerter.diagnose.quantisation import steps_in_words, steps_of
 from inerter.diagnose.result import (
     Accuracy,
@@ -53,6 +52,7 @@ from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.prediction import settled as without_nuisances
 from inerter.motion_units import force_word, one_motion, unit
+from inerter.parallel_steps import helped
 from inerter.records import Record
 from inerter.records.duplicates import repeats_another
 

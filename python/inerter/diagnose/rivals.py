@@ -11,13 +11,13 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.decision import CRITERIA, does_as_well, plainest
 from inerter.diagnose.instead import fitted_instead, others
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
 from inerter.diagnose.trials import FAR
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
+from inerter.parallel_steps import parallel
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,6 @@ from inerter.diagnose.exchange import exchanged, plain_part
 from inerter.diagnose.instead import instead
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.plainer import swings_on
 from inerter.diagnose.play import is_felt
 from inerter.diagnose.statistics import Array, block_squares
@@ -40,6 +39,7 @@ from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
 from inerter.identify.split import Mask, Split, blocks, spread_folds
+from inerter.parallel_steps import parallel
 
 Progress = Callable[[str], None]
 Fitted = tuple[Candidate, Fit]

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.promise import Known, Promise
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
+from inerter.parallel_steps import parallel
 
 Array = NDArray[np.float64]
 

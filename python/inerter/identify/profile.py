@@ -18,6 +18,7 @@ from scipy.stats import chi2
 
 from inerter.core import DeviceError
 from inerter.estimation.least_squares import Tolerances, minimise
+from inerter.estimation.secants import Secants
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 
@@ -35,7 +36,13 @@ _BADLY = 0.15
 _NOTHING = 50.0
 # a parameter that can be this many times larger or smaller has no end there
 _FAR = 10.0
-_EVALUATIONS = 12
+# evaluations of a fit at a held value at most, and of one that is only asked whether it may be there
+_EVALUATIONS, _ASKED = 30, 12
+# rise of the cost beyond its least at a held value, per that at the interval's end, that is let be
+_LEFT = 1e-3
+_LEAST = 1e-8
+# what takes the place of a residual that is none, per spread of the force
+_BAD = {"nan": 1e3, "posinf": 1e100, "neginf": -1e100}
 
 
 def profile_interval(
@@ -57,6 +64,8 @@ def profile_interval(
     best = _squares(problem, model)
     count = sum(int(mask.sum()) for mask in problem.masks)
     unit = best / max(count - len(model.free), 1) * max(inflation, 1e-12) + 1e-300
+    enough = float(np.clip(_LEFT * _LEVEL**2 * unit / (best + 1e-300), _LEAST, _LEFT))
+    derivatives = problem.jacobian(model)
 
     value = quantity(model)
     # one that is known badly, and is positive, is followed in its logarithm, if it is not all but 0
@@ -66,8 +75,12 @@ def profile_interval(
     def target(side: int, distance: float) -> float:
         return value * math.exp(side * distance) if wide else value + side * distance
 
-    def rise_at(side: int, distance: float, start: Model) -> tuple[Model, float]:
-        here = _tied(problem, start, quantity, target(side, distance))
+    def rise_at(
+        side: int, distance: float, start: Model, evaluations: int = _EVALUATIONS
+    ) -> tuple[Model, float]:
+        here = _tied(
+            problem, start, quantity, target(side, distance), enough, derivatives, evaluations
+        )
         return here, math.sqrt(max(_squares(problem, here) - best, 0.0) / unit)
 
     def end(side: int) -> float | None:
@@ -76,7 +89,7 @@ def profile_interval(
             # many errors away too, where the value is small beside its error
             far = max(_FAR, 1 + _OPEN * _LEVEL * unit_step) if side > 0 else _FAR
             try:
-                if rise_at(side, math.log(far), model)[1] < _LEVEL:
+                if rise_at(side, math.log(far), model, _ASKED)[1] < _LEVEL:
                     return None
             except (DeviceError, ValueError, np.linalg.LinAlgError):
                 pass
@@ -114,10 +127,31 @@ def _squares(problem: Problem, model: Model) -> float:
     return sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, problem.masks, strict=True))
 
 
-def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> Model:
+def _tied(
+    problem: Problem,
+    model: Model,
+    quantity: Quantity,
+    target: float,
+    enough: float,
+    derivatives: Array,
+    evaluations: int,
+) -> Model:
     """The best fit with the quantity held at a value.
 
     One search variable, the pivot, follows from the others, so that the value is met exactly.
+
+    Parameters
+    ----------
+    problem, model
+        The data, and where the search starts.
+    quantity, target
+        What is held, from a model, and at which value.
+    enough
+        Relative fall of the cost below which a step is the last one.
+    derivatives
+        Of the residual [N] by the search variables (n, p), near those at the start.
+    evaluations
+        Of the residual, at most.
 
     Raises
     ------
@@ -138,6 +172,9 @@ def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> 
         raise DeviceError(f"the quantity cannot be {target:g}")
     if len(how) == 1:
         return start
+    along = _along(problem, model, quantity, target, pivot, slope, derivatives)
+    if along and _squares(problem, along) < _squares(problem, start):
+        start = along
     others = np.array([i for i in range(len(how)) if i != pivot])
     base, size = search.encode(start.values), problem.scales.force
 
@@ -146,24 +183,54 @@ def _tied(problem: Problem, model: Model, quantity: Quantity, target: float) -> 
         step[others] = variables - base[others]
         return _solved(problem, problem.moved(start, step), quantity, target, pivot)
 
+    last: dict[bytes, Array] = {}
+
     def residual(variables: Array) -> Array:
-        here = at(variables)
-        if here is None:
-            return np.full(count, 1e3)
-        return np.nan_to_num(problem.masked(problem.residual(here)) / size, nan=1e3)
+        key = variables.tobytes()
+        if key not in last:
+            last.clear()
+            here = at(variables)
+            last[key] = (
+                np.full(count, _BAD["nan"])
+                if here is None
+                else np.nan_to_num(problem.masked(problem.residual(here)) / size, **_BAD)
+            )
+        return last[key]
+
+    def tied(whole: Array, here: Model) -> Array:
+        slope = _slope(problem, here, quantity)
+        along = -slope[others] / slope[pivot] if slope[pivot] else np.zeros(others.size)
+        return np.nan_to_num((whole[:, others] + np.outer(whole[:, pivot], along)) / size, **_BAD)
 
     def jacobian(variables: Array) -> Array:
         here = at(variables) or start
-        slope, whole = _slope(problem, here, quantity), problem.jacobian(here) / size
-        along = -slope[others] / slope[pivot] if slope[pivot] else np.zeros(others.size)
-        return np.nan_to_num(whole[:, others] + np.outer(whole[:, pivot], along))
+        return tied(problem.jacobian(here), here)
 
     count = sum(int(mask.sum()) for mask in problem.masks)
+    first = tied(derivatives, start)
     found = minimise(
         residual, base[others], (lower[others], upper[others]), jacobian,
-        tolerances=Tolerances(1e-8, 1e-8, 1e-10), evaluations=_EVALUATIONS,
+        tolerances=Tolerances(1e-8, enough, 1e-10), evaluations=evaluations,
+        secants=Secants(residual, jacobian, enough, first=first),
     )  # fmt: skip
     return at(found.variables) or start
+
+
+def _along(
+    problem: Problem,
+    model: Model,
+    quantity: Quantity,
+    target: float,
+    pivot: int,
+    slope: Array,
+    derivatives: Array,
+) -> Model | None:
+    """The model where the others make up as derivatives of residual and quantity say."""
+    turned = np.linalg.pinv(derivatives.T @ derivatives, rcond=1e-12, hermitian=True) @ slope
+    if not slope @ turned > 0:
+        return None
+    step = turned * (target - quantity(model)) / (slope @ turned)
+    return _solved(problem, problem.moved(model, step), quantity, target, pivot)
 
 
 def _slope(problem: Problem, model: Model, quantity: Quantity) -> Array:

@@ -21,7 +21,6 @@ from inerter.diagnose.decision import CRITERIA, as_good, better, loss
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.lateness import from_delay_on
 from inerter.diagnose.low_passes import filters, has_filter
-from inerter.diagnose.parallel import parallel
 from inerter.diagnose.play import fit_play, forgiving, play_of
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.start import Prepared
@@ -31,6 +30,7 @@ from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, on_clocks, thin
 from inerter.identify.split import split
+from inerter.parallel_steps import parallel
 from inerter.records.preparation import Preparation
 
 # share of a period that a low-pass along one sine begins with, and what it may smooth

@@ -1,4 +1,4 @@
-"""A step of a diagnosis on all processors, or on one where others are at work already.
+"""A step of a search on all processors, or on one where others are at work already.
 
 Long tasks that know nothing of each other are run by `inerter.parallel`; here it is closures over
 the data, for tenths of a second, many times in a row.
