@@ -52,6 +52,12 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     "start of a late record": (("sensor_delay",), 189397360),
     # a spring that relaxes within milliseconds was found before friction, and stayed for a damper
     "damper with a lag": (("viscous_friction", "stribeck_friction"), 3239527201),
+    # a stop at two thirds of the way, deeper than any that a fit began with
+    "deep stop": (("end_stop",), 1649928038),
+    # how long contacts had rested as a record began was read off a force at rest, which is silent
+    "rested contacts": (("rate_state_friction",), 1210742645),
+    # beside a fit of Bouc-Wen's law its force ran away, and the diagnosis ended with an error
+    "a law that runs away": (("inertance_error",), 2358423169),
 }
 
 # on benches as they are; what the bench brings may be named beside it

@@ -199,7 +199,7 @@ def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
     forms = {"upper": (False, True), "lower": (True, False), "both": (True, True)}
     for form, (below, above) in forms.items():
         starts = []
-        for depth in (0.03, 0.12, 0.3):
+        for depth in (0.03, 0.12, 0.3, 0.6):
             stops = {"stop_lower": low + depth * share} if below else {}
             stops |= {"stop_upper": high - depth * share} if above else {}
             starts.append(model.adding(None, **stops, **contact))

@@ -254,13 +254,21 @@ class Columns:
         base: Sequence[Array],
         residual: ResidualAt,
     ) -> Array:
-        index = model.free.index(name)
-        step = _STEP
-        if point[index] + step > search_range(name, self.problem.scales).bounds[1]:
-            step = -step
-        moved = point.copy()
-        moved[index] += step
-        return (np.concatenate(residual(moved)) - np.concatenate(base)) / step
+        index, (lower, upper) = (
+            model.free.index(name),
+            search_range(name, self.problem.scales).bounds,
+        )
+        here = np.concatenate(base)
+        for step in (_STEP, -_STEP):
+            if not lower <= point[index] + step <= upper:
+                continue
+            moved = point.copy()
+            moved[index] += step
+            slope = (np.concatenate(residual(moved)) - here) / step
+            if np.isfinite(slope[np.isfinite(here)]).all():
+                return slope
+        # beyond lies on both sides what no force can be: the variable stays where it is
+        return np.zeros(here.size)
 
     def _weighted(
         self,

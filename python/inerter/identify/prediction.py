@@ -41,6 +41,9 @@ Array = NDArray[np.float64]
 _NO_LIMITS = (np.inf, -np.inf)
 # share of what the bristle holds from which on the first force tells the side of its free play
 _TELLING = 0.1
+# ways that renew contacts, along which it is forgotten what a rest of some seconds had made of
+# them: the logarithm of their age falls evenly over the first few
+_AGES = 2.5
 # a twist at the start is at most this many strokes of the run: more of it would be an oscillation
 # that nothing in the run excites, by which a shaft without stiffness carries any slow force
 _MOST_TWIST = 10.0
@@ -97,8 +100,11 @@ def _held(device: Device) -> float:
 def bristle_reach(device: Device) -> float:
     """Path [m] along which a bristle forgets how it was bent; 0 without one bristle alone.
 
-    Behind a larger play it begins somewhere in that, which says how it was bent.
+    Behind a larger play it begins somewhere in that, which says how it was bent. Contacts that age
+    forget so how long they had been at rest, which no force at rest tells.
     """
+    if device.friction == "rate_state":
+        return _AGES * device.age_distance
     if device.friction not in ("dahl", "lugre", "bouc_wen"):
         return 0.0
     reach = _held(device)

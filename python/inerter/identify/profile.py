@@ -36,7 +36,7 @@ _BADLY = 0.15
 _NOTHING = 50.0
 # a parameter that can be this many times larger or smaller has no end there
 _FAR = 10.0
-# evaluations of a fit at a held value at most, and of one that is only asked whether it may be there
+# evaluations at most of a fit at a held value, and of one only asked whether it may be there
 _EVALUATIONS, _ASKED = 30, 12
 # rise of the cost beyond its least at a held value, per that at the interval's end, that is let be
 _LEFT = 1e-3
