@@ -207,8 +207,11 @@ def test_columns_a_few_at_a_time_are_the_same(band: float, monkeypatch: pytest.M
     np.testing.assert_array_equal(problem_in(band).jacobian(model), at_once)
 
 
+@pytest.mark.parametrize("force", [np.inf, 1e300])
 @pytest.mark.parametrize(("beyond", "slope"), [(np.inf, 2.0), (1e-9, 2.0), (-1.0, 0.0)])
-def test_a_difference_keeps_to_where_there_is_a_force(beyond: float, slope: float) -> None:
+def test_a_difference_keeps_to_where_there_is_a_force(
+    force: float, beyond: float, slope: float
+) -> None:
     """On the other side of a point whose force runs away; none where it does on both."""
     data = problem()
     model = Model("none", LINEAR, tuple(LINEAR))
@@ -218,7 +221,7 @@ def test_a_difference_keeps_to_where_there_is_a_force(beyond: float, slope: floa
     def residual(point: np.ndarray) -> list[np.ndarray]:
         moved = point[at] - here[at]
         runs_away = moved > beyond if beyond > 0 else moved != 0
-        return [np.full(N, np.inf if runs_away else 2.0 * moved)]
+        return [np.full(N, force if runs_away else 2.0 * moved)]
 
     found = Columns(data)._difference("viscous", model, here, residual(here), residual)
     assert found == pytest.approx(np.full(N, slope))

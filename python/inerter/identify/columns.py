@@ -23,6 +23,7 @@ from inerter.identify import along_friction
 from inerter.identify.apart import Apart, Basis
 from inerter.identify.channel import LINEAR, clips, tone_follows
 from inerter.identify.channel_filter import Filter, slow_start, without_start
+from inerter.identify.force_parts import RUNAWAY
 from inerter.identify.in_proportion import (
     BY_SPEED,
     PLACES,
@@ -264,9 +265,9 @@ class Columns:
                 continue
             moved = point.copy()
             moved[index] += step
-            slope = (np.concatenate(residual(moved)) - here) / step
-            if np.isfinite(slope[np.isfinite(here)]).all():
-                return slope
+            change = np.concatenate(residual(moved)) - here
+            if np.all(np.abs(change) < RUNAWAY, where=np.isfinite(here)):
+                return change / step
         # beyond lies on both sides what no force can be: the variable stays where it is
         return np.zeros(here.size)
 
