@@ -16,10 +16,11 @@
 // sign(v) and no thermally activated creep (Rice, Lapusta, Ranjith 2001).
 // Not modelled: pre-sliding displacement, effects of the normal force's changes (Linker-Dieterich).
 
-#include "friction.h"
+#include "friction_block.h"
 
 static const double kLeast = 1e-3;
 static const double kYoungest = -300;  // of z; its rate stays a number
+static const double kPlain = 600;      // of |z|, beyond which exp(z) comes near to no number
 
 // what the logarithms make of the level
 static double factor(const InerterDevice* p, double v, double z) {
@@ -83,8 +84,47 @@ static double stiffness(const InerterDevice* p) {
   return 0;
 }
 
-static void along(const InerterDevice* p, const FrictionPath* path, double* z, double* forces) {
-  friction_along(p, path, z, forces, step, force);
+// as step and force, in exp(z), of which every sample takes a share and to which it adds
+static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
+                                  double* forces) {
+  if (!(fabs(*z) < kPlain)) {
+    friction_along(p, path, z, forces, step, force);
+    return;
+  }
+  FrictionSamples to, at;
+  double left[FRICTION_BLOCK] = {0}, fresh[FRICTION_BLOCK] = {0}, level[FRICTION_BLOCK];
+  double aged = p->rate_velocity * path->h / p->age_distance;
+  samples_between(p, path, &to);
+  for (int i = 0; i < to.size; i++) {
+    double way = fabs(to.v[i]) * path->h / p->age_distance;
+    left[i] = elementary_exp(-way);
+    fresh[i] = way > 0 ? aged * (-elementary_expm1(-way) / way) : aged;
+  }
+  if (path->first == 0) {
+    left[0] = 1;
+    fresh[0] = 0;
+  }
+  double state[FRICTION_BLOCK] = {0}, now = exp(*z);
+  for (int i = 0; i < to.size; i++) {
+    now = now * left[i] + fresh[i];
+    state[i] = now;
+  }
+  samples_at(p, path, &at);
+  levels_at(p, &at, level);
+  double width = p->transition_velocity;
+  for (int i = 0; i < at.size; i++) {
+    double speed = sqrt(at.v[i] * at.v[i] + width * width);
+    state[i] = log(state[i]);
+    double raised = p->rate_effect * log(speed / p->rate_velocity) + p->age_effect * state[i];
+    forces[i] = p->coulomb_force * level[i] * larger(kLeast, 1 + raised);
+  }
+  for (int i = 0; i < at.size; i++) {
+    forces[i] *= friction_direction(p, at.v[i]);
+  }
+  if (path->first > 0 || to.size > 1) {
+    *z = state[to.size - 1];
+  }
+  keep_states(path, state);
 }
 
 const FrictionLaw inerter_rate_state = {
