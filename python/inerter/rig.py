@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from xml.etree import ElementTree
 
@@ -14,6 +14,12 @@ from inerter.core import Device
 from inerter.models import model_path
 from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.plugin import load_plugin
+
+# samples whose pieces are worked out at once
+_AT_ONCE = 4096
+# longest step in times of the series element, and share of it from which on one will do: the motion
+# within a piece is of an even acceleration
+_RESOLVED, _SHORT = 0.2, 0.1
 
 
 def device_mjcf(
@@ -102,6 +108,7 @@ def simulate_along(
     a: ArrayLike,
     state: ArrayLike = 0.0,
     motion: Kind = TRANSLATION,
+    every: int = 1,
 ) -> dict[str, NDArray[np.float64]]:
     """Run a device in MuJoCo along a sampled motion, on the test rig.
 
@@ -126,17 +133,20 @@ def simulate_along(
         States at the first sample; one number is the first of them, the others are 0.
     motion : str
         In rotation the rig turns: x is an angle [rad], forces are torques [N m].
+    every : int
+        Forces and states are given at every so many samples, which divide n - 1; reading them costs
+        more than a step.
 
     Returns
     -------
     dict of ndarray
-        total [N], friction [N], shape (n,); states (n, nstate); state (n,), the first of them (0
-        without states).
+        total [N], friction [N], shape (m,), m = 1 + (n - 1) / every; states (m, nstate); state
+        (m,), the first of them (0 without states).
 
     Raises
     ------
     ValueError
-        h is not positive, or x, v, a are not of one length.
+        h is not positive, x, v, a are not of one length, or `every` does not divide n - 1.
     """
     x, v, a = (np.asarray(channel, dtype=float) for channel in (x, v, a))
     if x.ndim != 1 or x.shape != v.shape or x.shape != a.shape:
@@ -144,6 +154,8 @@ def simulate_along(
         raise ValueError(f"x, v, a must be arrays of one length; their shapes are {shapes}")
     if not h > 0:
         raise ValueError(f"h is {h}: give a sample spacing > 0 s")
+    if every < 1 or (x.size - 1) % every:
+        raise ValueError(f"every is {every}: give a divisor of the {x.size - 1} sample spacings")
     load_plugin()
     model = mujoco.MjModel.from_xml_string(device_mjcf(device, timestep=h, motion=motion))
     data = mujoco.MjData(model)
@@ -155,64 +167,71 @@ def simulate_along(
     # views into the engine's memory, fetched once
     qpos, qvel, ctrl, act = data.qpos, data.qvel, data.ctrl, data.act
     sensor = data.sensor("device").data
-    total, friction = np.zeros((2, x.size))
-    states = np.zeros((x.size, device.nstate))
+    told = 1 + (x.size - 1) // every
+    total, friction = np.zeros((2, told))
+    states = np.zeros((told, device.nstate))
     between = np.append(np.diff(x) / h, 0.0)
     instant = mujoco.mjtIntegrator.mjINT_RK4
     pieces = _pieces(device, h)
-    gains = _gains(h, x, v, a, pieces)
-    moving = instant if pieces > 1 else mujoco.mjtIntegrator.mjINT_EULER
-    model.opt.timestep = h / pieces
-    for i in range(x.size):
+    moving = instant if pieces else mujoco.mjtIntegrator.mjINT_EULER
+    model.opt.timestep = h / max(pieces, 1)
+    for i, gains in enumerate(_gains(h, x, v, a, pieces)):
         # the sample: position, velocity and acceleration as recorded
         qpos[0], qvel[0], ctrl[0] = x[i], v[i], a[i]
-        model.opt.integrator = instant
-        mujoco.mj_forward(model, data)
-        total[i], friction[i] = sensor[0], sensor[2]
-        states[i] = act
+        if i % every == 0:
+            model.opt.integrator = instant
+            mujoco.mj_forward(model, data)
+            total[i // every], friction[i // every] = sensor[0], sensor[2]
+            states[i // every] = act
 
         # on to the next sample
         model.opt.integrator = moving
-        if pieces == 1:
+        if not pieces:
             qvel[0], ctrl[0] = between[i], 0.0
             mujoco.mj_step(model, data)
             continue
-        for gain in gains(i) if i + 1 < x.size else ():
+        for gain in gains:
             ctrl[0] = gain
             mujoco.mj_step(model, data)
-    first = states[:, 0] if device.nstate else np.zeros(x.size)
+    first = states[:, 0] if device.nstate else np.zeros(told)
     return {"total": total, "friction": friction, "state": first, "states": states}
 
 
-def _gains(
-    h: float, x: NDArray, v: NDArray, a: NDArray, pieces: int
-) -> Callable[[int], list[float]]:
-    """Mean accelerations in the pieces of a sample spacing, of the quintic through x, v and a."""
-    rest = np.diff(x) / h - v[:-1] - 0.5 * h * a[:-1]
-    turn, bend = np.diff(v) - h * a[:-1], 0.5 * h * np.diff(a)
-    # what the velocity gains up to a share of the spacing, by powers of that
-    terms = np.column_stack(
-        [
-            h * a[:-1],
-            3.0 * (10.0 * rest - 4.0 * turn + bend),
-            4.0 * (7.0 * turn - 15.0 * rest - 2.0 * bend),
-            5.0 * (6.0 * rest - 3.0 * turn + bend),
-        ]
-    )
-    share = np.arange(pieces + 1) / pieces
+def _gains(h: float, x: NDArray, v: NDArray, a: NDArray, pieces: int) -> Iterator[list[float]]:
+    """For every sample the mean accelerations in the pieces of the spacing behind it.
+
+    Of the quintic through x, v and a; none behind the last sample, or in no pieces.
+    """
+    share = np.arange(pieces + 1) / max(pieces, 1)
     powers = np.array([share, share**2, share**3, share**4])
-
-    def of(i: int) -> list[float]:
-        return (np.diff(terms[i] @ powers) * (pieces / h)).tolist()
-
-    return of
+    for begin in range(0, x.size - 1, _AT_ONCE):
+        near = slice(begin, begin + _AT_ONCE + 1)
+        here, speed, pull = x[near], v[near], a[near]
+        if not pieces:
+            yield from ([] for _ in here[1:])
+            continue
+        rest = np.diff(here) / h - speed[:-1] - 0.5 * h * pull[:-1]
+        turn, bend = np.diff(speed) - h * pull[:-1], 0.5 * h * np.diff(pull)
+        # what the velocity gains up to a share of the spacing, by powers of that
+        terms = np.column_stack(
+            [
+                h * pull[:-1],
+                3.0 * (10.0 * rest - 4.0 * turn + bend),
+                4.0 * (7.0 * turn - 15.0 * rest - 2.0 * bend),
+                5.0 * (6.0 * rest - 3.0 * turn + bend),
+            ]
+        )
+        yield from (np.diff(terms @ powers) * (pieces / h)).tolist()
+    if x.size:
+        yield []
 
 
 def _pieces(device: Device, h: float) -> int:
-    """Into how many steps a sample spacing is cut so that RK4 resolves the series element."""
+    """Into how many steps of RK4 a spacing is cut to resolve the series element; 0 without one."""
     if not (device.series_stiffness or device.series_damping):
-        return 1
+        return 0
     spring = np.sqrt(device.series_stiffness / device.inertance)
     damper = device.series_damping / device.inertance
     relaxation = device.series_stiffness / device.series_damping if device.backlash else 0.0
-    return max(2, int(np.ceil(h * max(spring, damper, relaxation) / 0.2)))
+    length = h * max(spring, damper, relaxation) / _RESOLVED
+    return 1 if length < _SHORT else max(2, int(np.ceil(length)))

@@ -55,6 +55,7 @@ def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> N
 DAHL = {"friction": "dahl", "coulomb_force": 30.0, "bristle_stiffness": 15e3}
 
 
+@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     "viscous", [0.0, pytest.param(80.0, marks=pytest.mark.long)], ids=["alone", "with a damper"]
 )
@@ -116,6 +117,7 @@ def test_what_bends_shows_in_harmonics_near_the_cut_off(
     assert abs(value.value - device[name]) < max(3 * value.stderr, 0.03 * device[name])
 
 
+@pytest.mark.turns(3)
 def test_a_law_is_told_by_the_harmonics_of_one_sine() -> None:
     """In the motion's band most laws are the same; what they differ in lies above it."""
     made = one_sine(

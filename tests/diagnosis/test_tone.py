@@ -173,6 +173,22 @@ def test_a_line_of_the_mains_beside_a_higher_one_may_be_of_what_rings(
         assert found.model.values["disturbance_frequency"] == pytest.approx(50.0, abs=0.02)
 
 
+@pytest.mark.parametrize(("size", "named"), [(0.3, True), (0.8, False)])
+def test_one_of_three_like_lines_is_not_of_the_mains(size: float, named: bool) -> None:
+    """Lines of a drive, one of them at 50 Hz by chance; the displacement's noise hides them."""
+    force = sum(
+        share * np.sin(2 * np.pi * f * TIME + i)
+        for i, (share, f) in enumerate([(size, 49.0), (1.0, 50.0), (size, 51.5)])
+    )
+    shaken = [replace(run, force=run.force + force) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    random = np.random.default_rng(5)
+    seen = [run.displacement + random.normal(0, 1e-5, TIME.size) for run in RUNS]
+    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    assert (found is not None) is named
+
+
 @pytest.mark.parametrize(
     ("delay", "one_sine", "clear"),
     [(0.0, True, True), (0.015, True, True), (-0.015, False, True), (-0.015, True, False)],

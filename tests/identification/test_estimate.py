@@ -276,7 +276,7 @@ def test_an_error_is_relative_to_the_force_it_was_made_in() -> None:
 def test_the_same_on_one_processor_and_on_two(monkeypatch: pytest.MonkeyPatch) -> None:
     """Laws are shared with another process, which starts from what simpler ones found here."""
     records = drawn("coulomb", 4).records
-    names = ["ideal", "viscous", "coulomb", "dahl"]
+    names = ["ideal", "coulomb", "dahl"]
     alone = identify(records, names)
     monkeypatch.setattr(parallel_steps, "cpu_count", lambda: 2)
     shared = identify(records, names)

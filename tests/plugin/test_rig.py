@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from inerter import Device
+from inerter.reference import ReferenceDevice, response, sine_motion
 from inerter.rig import device_mjcf, simulate_along
 from plugin_models import FRICTION
 
@@ -41,6 +42,39 @@ def test_the_rig_and_the_core_agree(law: str) -> None:
         assert np.abs(rig[channel] - core[channel]).max() < 1e-8 * scale, channel
 
 
+@pytest.mark.parametrize("series", [{}, {"series_stiffness": 4e5, "series_damping": 3e3}])
+def test_every_so_many_samples_are_the_same(series: dict[str, float]) -> None:
+    given = Device(
+        inertance=113, friction="dahl", coulomb_force=20, bristle_stiffness=1e5, **series
+    )
+    count = 2801
+    all_of_them = simulate_along(given, H, X[:count], V[:count], A[:count])
+    some = simulate_along(given, H, X[:count], V[:count], A[:count], every=7)
+    assert {name: len(values) for name, values in some.items()} == dict.fromkeys(some, 401)
+    for name, values in some.items():
+        assert np.array_equal(values, all_of_them[name][::7]), name
+
+
+def test_a_short_step_behind_a_play_is_one() -> None:
+    """A flywheel that flies, between samples 20 us apart, against the reference."""
+    given = {
+        "inertance": 30.0, "series_stiffness": 5e5, "series_damping": 6e3, "backlash": 3e-4,
+    }  # fmt: skip
+    times = 2e-5 * np.arange(10_001)
+    w = 2 * np.pi * 9
+    motion = sine_motion(2e-3, 9.0)
+    x, v, a = (
+        2e-3 * np.sin(w * times),
+        2e-3 * w * np.cos(w * times),
+        -2e-3 * w**2 * np.sin(w * times),
+    )
+    state = np.zeros(Device(**given).nstate)
+    truth = response(ReferenceDevice(**given), motion, times, initial_state=state, rtol=1e-10).force
+    found = simulate_along(Device(**given), 2e-5, x, v, a, state, every=10)["total"]
+    error = np.sqrt(np.mean((found - truth[::10]) ** 2)) / np.std(truth)
+    assert error < 1e-3
+
+
 @pytest.mark.parametrize("law", FRICTION)
 def test_the_written_model_is_the_device(law: str) -> None:
     text = device_mjcf(device(law), "bench")
@@ -61,5 +95,7 @@ def test_the_written_model_is_the_device(law: str) -> None:
 def test_wrong_input_is_named() -> None:
     with pytest.raises(ValueError, match="one length"):
         simulate_along(device("none"), H, X, V[:-1], A)
+    with pytest.raises(ValueError, match="every is 7: give a divisor of the 2999 sample spacings"):
+        simulate_along(Device(inertance=1), H, X, V, A, every=7)
     with pytest.raises(ValueError, match="h is 0"):
         simulate_along(device("none"), 0, X, V, A)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -29,9 +30,9 @@ from inerter.reference import Motion, ReferenceDevice, response
 Array = NDArray[np.float64]
 Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 
-# steps per sample of a device with free play: from so many on twice as many change nothing where an
-# impact hardly comes, in either engine
-PLAY_PARTS = 32
+# shortest step [s] of a device with free play, and steps per sample at most: half as long changes
+# nothing where an impact hardly comes, in either engine
+PLAY_STEP, PLAY_PARTS = 3e-5, 32
 # steps from which on the engines run at the same time
 _LONG = 100_000
 
@@ -102,8 +103,9 @@ def _error(
 
 def _mujoco(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     parts, channels = _steps(device, run)
-    found = rig.simulate_along(device, run.spacing / parts, *channels, state, run.motion)
-    return _at_samples(run, found, parts)
+    step, every = run.spacing / parts, parts if run.instants == 1 else 1
+    found = rig.simulate_along(device, step, *channels, state, run.motion, every)
+    return _at_samples(run, found, parts // every)
 
 
 def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
@@ -118,7 +120,9 @@ def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
 def _steps(device: Device, run: BenchRun) -> tuple[int, tuple[Any, Any, Any]]:
     """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands."""
     channels = run.displacement, run.velocity, run.acceleration
-    parts = PLAY_PARTS if device.backlash else run.instants
+    parts = run.instants
+    if device.backlash:
+        parts = min(PLAY_PARTS, math.ceil(run.spacing / PLAY_STEP))
     return parts, between(run.spacing, channels, parts) if parts > 1 else channels
 
 

@@ -43,8 +43,9 @@ _WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
 # share of a frequency about it where a drive that rings has its lines, and of the power of the
 # highest of them that another one has
 _ABOUT, _AS_HIGH = 0.05, 0.25
-# the same about a line of the mains that is to be the highest there
-_NEAR = 0.1
+# the same about a line of the mains, and power of it per that of the highest beside it from which on
+# it is none of what rings there: such lines are of like size, and one may be at the mains by chance
+_NEAR, _HIGHER = 0.1, 4.0
 # lines that are asked about, one after another; the highest harmonic of one sine that is no tone
 _ASKED, _HARMONICS = 8, 9
 
@@ -185,7 +186,7 @@ class Witness:
         return bool(told) or (hum and self._stands_out(frequency, errors))
 
     def _stands_out(self, frequency: float, errors: Sequence[Array]) -> bool:
-        """Whether no higher line is near a frequency: beside one it may be of what rings there."""
+        """Whether a line is far higher than those near it: else it may be of what rings there."""
         high = beside = 0.0
         for run, mask, error in zip(self.raw.runs, self.raw.masks, errors, strict=True):
             if mask.sum() <= _FEWEST:
@@ -196,7 +197,7 @@ class Witness:
             own = off <= _WIDTH * bin_
             high += np.max(power[own], initial=0.0)
             beside += np.max(power[(off < _NEAR * frequency) & ~own], initial=0.0)
-        return high > beside
+        return high > _HIGHER * beside
 
     def _rings(self, model: Model, frequency: float, errors: Sequence[Array]) -> bool:
         """Whether lines about a frequency are, all together, those of the displacement.
