@@ -43,8 +43,8 @@ _WIDTH, _BESIDE = 3, (-8, -7, -6, -5, -4, 4, 5, 6, 7, 8)
 # share of a frequency about it where a drive that rings has its lines, and of the power of the
 # highest of them that another one has
 _ABOUT, _AS_HIGH = 0.05, 0.25
-# the same about a line of the mains, and power of it per that of the highest beside it from which on
-# it is none of what rings there: such lines are of like size, and one may be at the mains by chance
+# the same about a line of the mains, and power of it per that of the highest beside it from which
+# on it is none of what rings there: such lines are of like size, and one may be there by chance
 _NEAR, _HIGHER = 0.1, 4.0
 # lines that are asked about, one after another; the highest harmonic of one sine that is no tone
 _ASKED, _HARMONICS = 8, 9
