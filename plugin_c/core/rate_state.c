@@ -122,7 +122,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     forces[i] *= friction_direction(p, at.v[i]);
   }
   if (path->first > 0 || to.size > 1) {
-    *z = state[to.size - 1];
+    *z = log(now);
   }
   keep_states(path, state);
 }

@@ -218,8 +218,8 @@ def test_a_difference_keeps_to_where_there_is_a_force(
     here = data.variables(model).encode(model.values)
     at = model.free.index("viscous")
 
-    def residual(point: np.ndarray) -> list[np.ndarray]:
-        moved = point[at] - here[at]
+    def residual(point: np.ndarray, pressed: float = 0.0) -> list[np.ndarray]:
+        moved = pressed + point[at] - here[at]
         runs_away = moved > beyond if beyond > 0 else moved != 0
         return [np.full(N, force if runs_away else 2.0 * moved)]
 

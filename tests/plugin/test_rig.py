@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mujoco
 import numpy as np
 import pytest
@@ -43,7 +45,7 @@ def test_the_rig_and_the_core_agree(law: str) -> None:
 
 
 @pytest.mark.parametrize("series", [{}, {"series_stiffness": 4e5, "series_damping": 3e3}])
-def test_every_so_many_samples_are_the_same(series: dict[str, float]) -> None:
+def test_every_so_many_samples_are_the_same(series: dict[str, Any]) -> None:
     given = Device(
         inertance=113, friction="dahl", coulomb_force=20, bristle_stiffness=1e5, **series
     )
@@ -57,7 +59,7 @@ def test_every_so_many_samples_are_the_same(series: dict[str, float]) -> None:
 
 def test_a_short_step_behind_a_play_is_one() -> None:
     """A flywheel that flies, between samples 20 us apart, against the reference."""
-    given = {
+    given: dict[str, Any] = {
         "inertance": 30.0, "series_stiffness": 5e5, "series_damping": 6e3, "backlash": 3e-4,
     }  # fmt: skip
     times = 2e-5 * np.arange(10_001)

@@ -42,7 +42,7 @@ _EVALUATIONS, _ASKED = 30, 12
 _LEFT = 1e-3
 _LEAST = 1e-8
 # what takes the place of a residual that is none, per spread of the force
-_BAD = {"nan": 1e3, "posinf": 1e100, "neginf": -1e100}
+_BAD, _HUGE = 1e3, 1e100
 
 
 def profile_interval(
@@ -191,16 +191,16 @@ def _tied(
             last.clear()
             here = at(variables)
             last[key] = (
-                np.full(count, _BAD["nan"])
+                np.full(count, _BAD)
                 if here is None
-                else np.nan_to_num(problem.masked(problem.residual(here)) / size, **_BAD)
+                else _finite(problem.masked(problem.residual(here)) / size)
             )
         return last[key]
 
     def tied(whole: Array, here: Model) -> Array:
         slope = _slope(problem, here, quantity)
         along = -slope[others] / slope[pivot] if slope[pivot] else np.zeros(others.size)
-        return np.nan_to_num((whole[:, others] + np.outer(whole[:, pivot], along)) / size, **_BAD)
+        return _finite((whole[:, others] + np.outer(whole[:, pivot], along)) / size)
 
     def jacobian(variables: Array) -> Array:
         here = at(variables) or start
@@ -231,6 +231,10 @@ def _along(
         return None
     step = turned * (target - quantity(model)) / (slope @ turned)
     return _solved(problem, problem.moved(model, step), quantity, target, pivot)
+
+
+def _finite(values: Array) -> Array:
+    return np.nan_to_num(values, nan=_BAD, posinf=_HUGE, neginf=-_HUGE)
 
 
 def _slope(problem: Problem, model: Model, quantity: Quantity) -> Array:
