@@ -101,6 +101,8 @@ def test_identification() -> None:
     check_rows(rows)
     assert [(row["way"], row["samples"]) for row in rows] == [("2 laws", 6000)]
     assert rows[0]["met"] == (rows[0]["seconds"] <= 10)
+    (told,) = aims({"identification": rows})
+    assert told["least"] == told["most"] == rows[0]["seconds"]
 
 
 @pytest.mark.turns(4)

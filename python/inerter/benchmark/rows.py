@@ -90,7 +90,7 @@ def aims(results: Mapping[str, Sequence[Row]]) -> list[Row]:
 
 def _measured(row: Row) -> float:
     """What the aim of a row is about."""
-    return next(row[key] for key in ("ratio", "exponent", "seconds") if key in row)
+    return next(row[key] for key in ("ratio", "exponent", "seconds") if row.get(key) is not None)
 
 
 def _text(row: Row, key: str) -> str:
