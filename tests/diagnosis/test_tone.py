@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inerter.diagnose.tone import Witness, strongest_line, with_tone_above
-from inerter.identify.fit import Problem
+from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
 from inerter.identify.runs import BenchRun, whole
@@ -155,6 +155,16 @@ def test_a_line_among_those_of_a_drive_that_rings_is_none(alone: bool) -> None:
     assert (found is not None) is alone
 
 
+def behind_noise(force: np.ndarray) -> Fit | None:
+    """What is told of lines in the force that the displacement's noise would hide."""
+    shaken = [replace(run, force=run.force + force) for run in RUNS]
+    problem = Problem(shaken, EVERYTHING)
+    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
+    random = np.random.default_rng(5)
+    seen = [run.displacement + random.normal(0, 1e-5, TIME.size) for run in RUNS]
+    return with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+
+
 @pytest.mark.parametrize(("ringing", "named"), [(0.0, True), (47.4, False), (83.0, True)])
 def test_a_line_of_the_mains_beside_a_higher_one_may_be_of_what_rings(
     ringing: float, named: bool
@@ -162,12 +172,7 @@ def test_a_line_of_the_mains_beside_a_higher_one_may_be_of_what_rings(
     """The displacement's noise hides both: only a frequency can tell hum, and not beside a ring."""
     hum = 0.4 * np.sin(2 * np.pi * 50.0 * TIME)
     ring = 1.2 * np.sin(2 * np.pi * ringing * TIME)
-    shaken = [replace(run, force=run.force + hum + ring) for run in RUNS]
-    problem = Problem(shaken, EVERYTHING)
-    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
-    random = np.random.default_rng(5)
-    seen = [run.displacement + random.normal(0, 1e-5, TIME.size) for run in RUNS]
-    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    found = behind_noise(hum + ring)
     assert (found is not None) is named
     if found:
         assert found.model.values["disturbance_frequency"] == pytest.approx(50.0, abs=0.02)
@@ -176,16 +181,10 @@ def test_a_line_of_the_mains_beside_a_higher_one_may_be_of_what_rings(
 @pytest.mark.parametrize(("size", "named"), [(0.3, True), (0.8, False)])
 def test_one_of_three_like_lines_is_not_of_the_mains(size: float, named: bool) -> None:
     """Lines of a drive, one of them at 50 Hz by chance; the displacement's noise hides them."""
-    force = sum(
-        share * np.sin(2 * np.pi * f * TIME + i)
-        for i, (share, f) in enumerate([(size, 49.0), (1.0, 50.0), (size, 51.5)])
-    )
-    shaken = [replace(run, force=run.force + force) for run in RUNS]
-    problem = Problem(shaken, EVERYTHING)
-    fit = problem.fit(Model("none", {"inertance": 40.0}, ("inertance",)))
-    random = np.random.default_rng(5)
-    seen = [run.displacement + random.normal(0, 1e-5, TIME.size) for run in RUNS]
-    found = with_tone_above(Witness(problem, seen), fit, lowest=30.0)
+    lines = [(size, 49.0), (1.0, 50.0), (size, 51.5)]
+    waves = [share * np.sin(2 * np.pi * f * TIME + i) for i, (share, f) in enumerate(lines)]
+    force = np.sum(waves, axis=0)
+    found = behind_noise(force)
     assert (found is not None) is named
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from inerter.identify.kept import Array, Kept
+from inerter.identify.kept import Array, Kept, last_kept
 
 
 def test_what_is_missing_of_several_is_worked_out_at_once() -> None:
@@ -27,3 +27,16 @@ def test_what_takes_too_much_memory_is_worked_out_anew() -> None:
         assert found.shape == (2, 8)
         assert found[0, 0] == value
         assert kept.size <= 100 + 2 * 64
+
+
+def test_the_last_point_is_worked_out_once() -> None:
+    asked: list[float] = []
+
+    @last_kept
+    def square(point: np.ndarray) -> float:
+        asked.append(float(point[0]))
+        return float(point @ point)
+
+    points = [np.array([x, 1.0]) for x in (2.0, 2.0, 3.0, 2.0, 2.0)]
+    assert [square(point) for point in points] == [5.0, 5.0, 10.0, 5.0, 5.0]
+    assert asked == [2.0, 3.0, 2.0]

@@ -19,6 +19,7 @@ from inerter.estimation.secants import Secants
 from inerter.estimation.variables import Variables
 from inerter.identify.apart import Apart
 from inerter.identify.columns import Columns, ResidualAt
+from inerter.identify.kept import last_kept
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along, settled
 from inerter.identify.runs import BenchRun, head, head_size, scales
@@ -365,16 +366,15 @@ class Problem:
 
     def _remembered(self, model: Model) -> ResidualAt:
         """The residual at a point of a model's variables; the last one asked for is kept."""
-        cache: dict[bytes, list[Array]] = {}
+
+        @last_kept
+        def last(point: Array) -> list[Array]:
+            return self.residual(self._decode(model, point), counted=True)
 
         def at(point: Array, pressed: float = 0.0) -> list[Array]:
             if pressed:
                 return self.residual(self._decode(model, point), pressed, counted=True)
-            key = point.tobytes()
-            if key not in cache:
-                cache.clear()
-                cache[key] = self.residual(self._decode(model, point), counted=True)
-            return cache[key]
+            return last(point)
 
         return at
 

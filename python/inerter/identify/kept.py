@@ -1,13 +1,30 @@
-"""Arrays that are worked out once, and kept while they do not take too much memory."""
+"""Arrays that are worked out once: all while they do not take too much memory, or the last one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Result = TypeVar("Result")
+
+
+def last_kept(function: Callable[[Array], Result]) -> Callable[[Array], Result]:
+    """A function of a point (p,) that at the point where it was asked last is not worked out."""
+    known: dict[bytes, Result] = {}
+
+    def kept(point: Array) -> Result:
+        key = point.tobytes()
+        if key not in known:
+            found = function(point)
+            known.clear()
+            known[key] = found
+        return known[key]
+
+    return kept
 
 
 class Kept:

@@ -20,6 +20,7 @@ from inerter.core import DeviceError
 from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.estimation.secants import Secants
 from inerter.identify.fit import Problem
+from inerter.identify.kept import last_kept
 from inerter.identify.model import Model
 
 Array = NDArray[np.float64]
@@ -172,9 +173,6 @@ def _tied(
         raise DeviceError(f"the quantity cannot be {target:g}")
     if len(how) == 1:
         return start
-    along = _along(problem, model, quantity, target, pivot, slope, derivatives)
-    if along and _squares(problem, along) < _squares(problem, start):
-        start = along
     others = np.array([i for i in range(len(how)) if i != pivot])
     base, size = search.encode(start.values), problem.scales.force
 
@@ -183,19 +181,12 @@ def _tied(
         step[others] = variables - base[others]
         return _solved(problem, problem.moved(start, step), quantity, target, pivot)
 
-    last: dict[bytes, Array] = {}
-
+    @last_kept
     def residual(variables: Array) -> Array:
-        key = variables.tobytes()
-        if key not in last:
-            last.clear()
-            here = at(variables)
-            last[key] = (
-                np.full(count, _BAD)
-                if here is None
-                else _finite(problem.masked(problem.residual(here)) / size)
-            )
-        return last[key]
+        here = at(variables)
+        if here is None:
+            return np.full(count, _BAD)
+        return _finite(problem.masked(problem.residual(here)) / size)
 
     def tied(whole: Array, here: Model) -> Array:
         slope = _slope(problem, here, quantity)
@@ -214,23 +205,6 @@ def _tied(
         secants=Secants(residual, jacobian, enough, first=first),
     )  # fmt: skip
     return at(found.variables) or start
-
-
-def _along(
-    problem: Problem,
-    model: Model,
-    quantity: Quantity,
-    target: float,
-    pivot: int,
-    slope: Array,
-    derivatives: Array,
-) -> Model | None:
-    """The model where the others make up as derivatives of residual and quantity say."""
-    turned = np.linalg.pinv(derivatives.T @ derivatives, rcond=1e-12, hermitian=True) @ slope
-    if not slope @ turned > 0:
-        return None
-    step = turned * (target - quantity(model)) / (slope @ turned)
-    return _solved(problem, problem.moved(model, step), quantity, target, pivot)
 
 
 def _finite(values: Array) -> Array:
