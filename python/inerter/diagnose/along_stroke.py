@@ -43,8 +43,8 @@ _BLUR = 0.02
 _WORTH = 1 - (1 - CRITERIA.likely * CRITERIA.gain) ** 2
 
 
-def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
-    """Periods and curves that may take a share of what a fitted model leaves.
+def candidates(problem: Problem, fit: Fit, curves: bool = True) -> Iterator[Candidate]:
+    """Periods, and curves if asked for, that may take a share of what a fitted model leaves.
 
     Along one sine a curve draws what any other effect does, and so does a long period.
     """
@@ -61,8 +61,14 @@ def candidates(problem: Problem, fit: Fit) -> Iterator[Candidate]:
         if effect is not None:
             shown = _Shown(x, v > 0, residual, effect, ends, fewest, least)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
-            if not one_tone:
+            if curves and not one_tone:
                 yield from _curved(quantity, fit.model, shown)
+
+
+def is_drawn(model: Model) -> bool:
+    """Whether a curve along the stroke is searched for."""
+    nodes = (name for each in QUANTITIES for name in (*each.nodes, *each.back_nodes))
+    return not set(model.free).isdisjoint(nodes)
 
 
 def repeats(model: Model, sizes: Scales) -> bool:

@@ -89,6 +89,7 @@ class Search:
     `least` of the error away.
 
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
+    It `draws` curves along the stroke, or adds none.
     """
 
     runs: Sequence[BenchRun]
@@ -101,6 +102,7 @@ class Search:
     least: float = CRITERIA.gain
     witness: Witness | None = None
     one_tone: bool = False
+    draws: bool = True
 
     def __post_init__(self) -> None:
         self._divide()
@@ -240,13 +242,12 @@ class Search:
         masks = self.problem.masks
         self._refused = []
         self.progress(f"effect {len(self.found) + 1}: trying every candidate")
-        trials = [*candidates(current.model, self.problem.scales)]
-        trials += tone_candidate(self.runs, self.problem, current.fit, self.witness)
-        trials += along_stroke.candidates(self.problem, current.fit)
         trials = [
-            trial for trial in trials
-            if trial.effect not in self.excluded and self.may_be(trial.starts[0])
-        ]  # fmt: skip
+            *candidates(current.model, self.problem.scales),
+            *tone_candidate(self.runs, self.problem, current.fit, self.witness),
+            *along_stroke.candidates(self.problem, current.fit, self.draws),
+        ]
+        trials = [t for t in trials if t.effect not in self.excluded and self.may_be(t.starts[0])]
         fitted = self.trials.fit_all(trials, current.fit, least=self.least)
         if not fitted:
             return None

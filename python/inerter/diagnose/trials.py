@@ -12,6 +12,7 @@ from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.promise import Known, Promise
+from inerter.diagnose.sized import Sized
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
@@ -221,12 +222,12 @@ class Trials:
             likely = min(likely, far[0], error - FORETOLD * max(error - reach, 0.0))
         known = self._fitted_before(current)
         at_current = Known(self.problem, current.model)
-        promise = Promise(self.problem, at_current)
+        promise, sized = Promise(self.problem, at_current), Sized(self.problem, at_current)
         rich = [t for t in candidates if t.is_rich]
         plain = [t for t in candidates if not t.is_rich]
 
         def fits(some: list[Candidate]) -> list[tuple[Candidate, Fit]]:
-            new = [t for t in some if t.key not in known]
+            new = [sized.of(t) for t in some if t.key not in known]
             found = [(t, known[t.key]) for t in some if t.key in known]
             foretold = {t.key: promise.foretold(t) for t in new}
             new = sorted(

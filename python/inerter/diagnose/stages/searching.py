@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from inerter.diagnose.along_stroke import is_drawn
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
@@ -79,6 +80,7 @@ def searched(start: Prepared) -> Searched:
     if calmer := _calmer(start, band, final.model):
         band, search, plainer = calmer
         final = search.run(plainer, until="backlash")
+    search, final = _without_curves(start, band, search, final)
     search, final = _behind_low_pass(start, band, search, final)
     final = from_delay_on(search, final) or final
     if "backlash" in final.model.free:
@@ -158,6 +160,29 @@ def _calmer(
     if best.rmse(masks) > (1 - CRITERIA.band_gain) * search.problem.fit(model).rmse(masks):
         return None
     return band, search, best.model
+
+
+def _without_curves(
+    start: Prepared, band: Preparation, search: Search, final: Scored
+) -> tuple[Search, Scored]:
+    """The search once more without curves along the stroke, if that says as much with less.
+
+    A curve is near to many causes at once: it is the best to add where each of them alone leaves
+    far more, though two or three of them together leave less.
+    """
+    few = len(effects_of(final.model, start.baseline)) <= CRITERIA.exchanged_of
+    if not (few and is_drawn(final.model)):
+        return search, final
+    start.given.progress("searching once more, without curves along the stroke")
+    again = search_in(start, band)
+    again.draws = False
+    other = again.run(until="backlash")
+    again.draws = True
+    # on the same blocks, and as errors count for whichever has a shaft
+    judge = again if other.model.shaft else search
+    told, drawn = (judge.score_on_blocks(each.fit) for each in (other, final))
+    less = other.complexity < final.complexity
+    return (again, other) if less and loss(told, drawn) < CRITERIA.gain else (search, final)
 
 
 def _behind_low_pass(
