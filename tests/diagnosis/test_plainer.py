@@ -163,3 +163,16 @@ def test_damping_that_bends_at_once_is_friction() -> None:
     np.testing.assert_allclose(one, two, rtol=1e-3)
     # beside a law there is a level already
     assert as_plain_part(model.adding("coulomb", coulomb_force=3.0), 20.0, 3.0) == []
+
+
+def test_damping_that_bends_upwards_may_be_quadratic() -> None:
+    bends = {"viscous": 40.0, "damping_knee": 0.1, "damping_beyond": 3.0}
+    model = BASELINE.adding(None, **bends)
+    quadratic, both = as_plain_part(model, 20.0, 3.0)
+    assert quadratic.free == ("inertance", "quadratic_damping")
+    assert both.free == ("inertance", "quadratic_damping", "viscous")
+    # at twice the knee it has the slope of the damping beyond
+    assert quadratic.values["quadratic_damping"] == pytest.approx(40.0 * 3.0 / (2 * 0.1))
+    # beside friction, too, and beside quadratic damping not once more
+    assert len(as_plain_part(model.adding("coulomb", coulomb_force=5.0), 20.0, 3.0)) == 2
+    assert as_plain_part(model.adding(None, quadratic_damping=3.0), 20.0, 3.0) == []

@@ -67,9 +67,9 @@ def as_spring(model: Model) -> list[Model]:
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
-    That is damping that bends with the speed, a branch that hardly relaxes in the longest run [s],
-    or so soon that it follows a motion of this frequency [Hz], a curve of the force, and a shaft on
-    which little turns or so softly that it does not follow the motion.
+    That is damping that bends with the speed either way, a branch that hardly relaxes in the
+    longest run [s], or so soon that it follows a motion of this frequency [Hz], a curve of the
+    force, and a shaft on which little turns or so softly that it does not follow the motion.
     """
     found = []
     if "inertance" in model.free and _has_plain_shaft(model):
@@ -89,18 +89,25 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         elif 2 * np.pi * frequency * lasts < 1.0:
             damping = model.values.get("viscous", 0.0) + size * lasts
             found.append(bare.adding(None, viscous=damping))
-    return [*found, *_as_friction(model), *_as_law_of_the_place(model)]
+    return [*found, *_as_one_that_bends_less(model), *_as_law_of_the_place(model)]
 
 
-def _as_friction(model: Model) -> list[Model]:
-    """Coulomb friction, and with a damper, for damping that bends at a low speed."""
+def _as_one_that_bends_less(model: Model) -> list[Model]:
+    """For damping that bends: quadratic damping, Coulomb friction, each with a damper, too."""
     bends = EFFECTS["digressive_damping"].coordinates
-    if model.friction != "none" or not set(bends) <= set(model.free):
+    if not set(bends) <= set(model.free):
         return []
     damping, knee, beyond = (
         model.values[name] for name in ("viscous", "damping_knee", "damping_beyond")
     )
     bare = model.without((*bends, "viscous"))
+    if beyond > 1.0:
+        if "quadratic_damping" in model.values:
+            return []
+        quadratic = bare.adding(None, quadratic_damping=0.5 * damping * beyond / knee)
+        return [quadratic, quadratic.adding(None, viscous=damping)]
+    if model.friction != "none":
+        return []
     level = damping * knee * max(1.0 - beyond, 0.1)
     friction = bare.adding("coulomb", coulomb_force=level, transition_velocity=0.1 * knee)
     return [friction, friction.adding(None, viscous=damping * beyond)]

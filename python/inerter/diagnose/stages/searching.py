@@ -80,7 +80,7 @@ def searched(start: Prepared) -> Searched:
     if calmer := _calmer(start, band, final.model):
         band, search, plainer = calmer
         final = search.run(plainer, until="backlash")
-    search, final = _without_curves(start, band, search, final)
+    search, final = without_curves(start, band, search, final)
     search, final = _behind_low_pass(start, band, search, final)
     final = from_delay_on(search, final) or final
     if "backlash" in final.model.free:
@@ -162,7 +162,7 @@ def _calmer(
     return band, search, best.model
 
 
-def _without_curves(
+def without_curves(
     start: Prepared, band: Preparation, search: Search, final: Scored
 ) -> tuple[Search, Scored]:
     """The search once more without curves along the stroke, if that says as much with less.
