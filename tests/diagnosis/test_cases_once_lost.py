@@ -58,6 +58,9 @@ CASES: dict[str, tuple[tuple[str, ...], int]] = {
     "rested contacts": (("rate_state_friction",), 1210742645),
     # beside a fit of Bouc-Wen's law its force ran away, and the diagnosis ended with an error
     "a law that runs away": (("inertance_error",), 2358423169),
+    # a curve along the stroke left less than a gas or a branch alone, and more than it with others
+    "gas and stop behind a curve": (("gas_spring", "end_stop"), 328046162),
+    "a branch behind a curve": (("force_offset", "viscoelasticity", "position_force"), 547618446),
 }
 
 # on benches as they are; what the bench brings may be named beside it
@@ -80,6 +83,9 @@ REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
     "a branch along one sine": (("viscoelasticity",), 3548063067),
     # a search from a low-pass on found less, without one, and was not asked for that
     "a low-pass on the way": (("quadratic_damping", "end_stop"), 1947272113),
+    # with a drift of the force that a curve along the stroke drew, too
+    "a gas behind a curve": (("gas_spring",), 1852777756),
+    "a gas behind a curve and a delay": (("gas_spring", "position_force"), 3817478790),
 }
 
 

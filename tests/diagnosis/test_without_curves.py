@@ -63,12 +63,13 @@ def test_a_spring_takes_the_place_of_a_curve_that_draws_one() -> None:
     assert any("without curves" in each for each in told)
 
 
-def test_a_force_that_nothing_else_draws_stays_a_curve() -> None:
-    def bumps(x: Array) -> Array:
-        places = (-0.014, -0.003, 0.004, 0.017)
-        return sum((s * 12.0 * np.exp(-(((x - at) / 1.5e-3) ** 2)) for s, at in
-                    zip((1, -1, 1, 1), places, strict=True)), 0 * x)  # fmt: skip
+def bumps(x: Array) -> Array:
+    """A force that nothing but a curve draws."""
+    places = ((1, -0.014), (-1, -0.003), (1, 0.004), (1, 0.017))
+    return sum((s * 12.0 * np.exp(-(((x - at) / 1.5e-3) ** 2)) for s, at in places), 0 * x)
 
+
+def test_a_force_that_nothing_else_draws_stays_a_curve() -> None:
     final, taken, _ = again(bumps)
     assert taken is final
 
@@ -80,10 +81,17 @@ def test_beside_many_effects_a_curve_is_not_asked_for() -> None:
     assert not any("without curves" in each for each in told)
 
 
-def test_a_search_may_draw_none() -> None:
-    start = start_of(lambda x: 12 * np.sin(x / 1e-3 + 40 * x), [])
-    search = replace(search_in(start, start.weighed), draws=False)
-    assert not is_drawn(search.run().model)
+def test_a_search_may_draw_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    start = start_of(bumps, [])
+    tried: list[str | None] = []
+    for draws in (True, False):
+        search = replace(search_in(start, start.weighed), draws=draws)
+        monkeypatch.setattr(
+            search.trials, "fit_all", lambda each, *_, **__: tried.extend(c.law for c in each) or []
+        )
+        search.run()
+        assert ("curve" in tried) is draws
+        tried.clear()
 
 
 @pytest.mark.parametrize("name", ["force_node_3", "inertance_back_node_2", "friction_node_1"])
