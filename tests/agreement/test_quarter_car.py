@@ -87,7 +87,7 @@ def test_layouts(layout: str) -> None:
     assert errors[0] / errors[1] > 3.5
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 @pytest.mark.often("dahl")
 @pytest.mark.parametrize("law", [law for law in FRICTION if law != "none"])
 def test_laws(law: str) -> None:

@@ -334,7 +334,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path]:
     return done, out
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_json_alone_on_stdout_and_two_files(finished: tuple[Any, Path]) -> None:
     done, out = finished
     assert (done.returncode, done.stderr) == (0, ""), done.stdout[:2000]

@@ -90,7 +90,7 @@ def test_summary_for_people(folder: Path, tmp_path: Path) -> None:
     assert (tmp_path / "deep" / "out" / "report.html").exists()
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_quick_writes_nothing(folder: Path, tmp_path: Path) -> None:
     done = inerter("diagnose", folder / "run_0.csv", "--quick", "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr

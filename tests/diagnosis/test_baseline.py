@@ -125,7 +125,7 @@ def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
     assert told["gain"]["interval"] == pytest.approx([low, high], rel=1e-6)
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 @pytest.mark.parametrize(
     ("stated", "told"),
     [
@@ -145,7 +145,7 @@ def test_a_contradiction_is_more_than_the_error_of_the_fit(
     assert told is None or told in words
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_missing_friction_is_named_beside_stated_values(records) -> None:
     stated = Device(inertance=80.0, viscous=40.0)
     diagnosis = diagnose_bench(records, stated)

@@ -41,7 +41,7 @@ def solved(request: pytest.FixtureRequest, effects_seed: int):
     return solve(effects_seed + CASES.index(request.param), effect, law)
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_effect_is_named_alone(solved) -> None:
     case, diagnosis = solved
     assert [finding.effect for finding in diagnosis.findings] == [case.effect], (
@@ -97,6 +97,7 @@ def _size(case: HiddenCase, name: str) -> float | None:
             "friction_asymmetry": 1.0}.get(name)  # fmt: skip
 
 
+@pytest.mark.turns(3)
 def test_gain_is_real(solved) -> None:
     """On data that neither the fit nor the search saw, against the truth without noise."""
     case, diagnosis = solved

@@ -39,7 +39,7 @@ def one_sine(
     )
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> None:
     draw = np.random.default_rng(effects_seed)
     low_pass = Channel(force_filter=5.0, force_filter_order=2.0)

@@ -163,7 +163,7 @@ def test_helpers_end_with_the_work(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
         os.kill(helper, 0)
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_a_diagnosis_is_the_same_to_the_last_digit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "cpu_count", lambda: 2)
     device = ReferenceDevice(inertance=80.0, friction="coulomb", coulomb_force=20.0)

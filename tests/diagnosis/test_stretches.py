@@ -146,7 +146,7 @@ def test_what_is_held_out_has_no_say(random: np.random.Generator) -> None:
         assert (block in {3, 6, 8}) == (record.name in given.holdout)
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_runs_are_held_out_whole(random: np.random.Generator) -> None:
     runs = []
     for i in range(4):

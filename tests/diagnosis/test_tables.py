@@ -181,7 +181,7 @@ def test_a_soft_bristle_swings_steadily_from_the_start() -> None:
     assert found == pytest.approx(points.force_amplitude, rel=1e-6)
 
 
-@pytest.mark.turns(3)
+@pytest.mark.turns(7)
 def test_a_stated_law_is_contradicted_as_a_whole() -> None:
     """The level is right; the bristle, left to its default, is ten times as stiff as there."""
     points = dahl_table(12.0, 9e3, 0.003)

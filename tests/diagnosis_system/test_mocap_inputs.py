@@ -70,6 +70,7 @@ def test_what_a_table_cannot_show_is_said_and_its_spring_is_tried(effects_seed: 
     assert "springlength" in (found.model_xml or "")
 
 
+@pytest.mark.turns(3)
 def test_inputs_that_are_not_there_are_named(effects_seed: int) -> None:
     case = hide_in_vehicle(effects_seed, (), vehicle="quarter")
     user = on_table(case, "shaker")

@@ -83,7 +83,7 @@ def test_tyre_cannot_pull_more_than_its_static_load() -> None:
         assert data.sensor("tyre_force").data[0] == pytest.approx(force)
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_native_spring_and_damper_in_a_model_with_gravity(tmp_path: Path) -> None:
     # the same car: spring and damper are the tendon's, it stands on its tyre under gravity
     model = tmp_path / "car.xml"

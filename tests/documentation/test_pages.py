@@ -113,7 +113,7 @@ def steps(page: Path) -> list[tuple[str, object]]:
     return found
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 @pytest.mark.rarely("bench.md")
 @pytest.mark.parametrize("page", [page for page in HOW_TO if steps(page)], ids=lambda p: p.name)
 def test_a_how_to_works_as_it_stands(page: Path, tmp_path: Path) -> None:
@@ -172,7 +172,7 @@ def serves(words: object) -> bool:
     return words[0] == "view" and "--picture" not in words
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 @pytest.mark.parametrize("path", sorted(DOCS.rglob("*.ipynb")), ids=lambda path: path.name)
 def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
     """Its cells as one program; the page builder runs it in a kernel."""

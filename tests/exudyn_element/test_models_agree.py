@@ -154,7 +154,7 @@ def states_of(model: Model, name: str, step: float) -> tuple[Run, Array]:
     return found, np.array(model.mbs.GetSensorStoredData(sensor)[:, 1:])
 
 
-@pytest.mark.turns(3)
+@pytest.mark.turns(7)
 @pytest.mark.often("S3")
 @pytest.mark.parametrize(
     ("layout", "extra"), [("S2", {}), ("S2", ELASTIC), ("S3", {})], ids=["S2", "S2 elastic", "S3"]

@@ -273,6 +273,7 @@ def test_an_error_is_relative_to_the_force_it_was_made_in() -> None:
     assert best.nrmse == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.turns(3)
 def test_the_same_on_one_processor_and_on_two(monkeypatch: pytest.MonkeyPatch) -> None:
     """Laws are shared with another process, which starts from what simpler ones found here."""
     records = drawn("coulomb", 4).records

@@ -165,7 +165,7 @@ TWICE = {
 }  # fmt: skip
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 @pytest.mark.parametrize("command", TWICE)
 def test_a_command_run_twice_writes_the_same(command: str, tmp_path: Path) -> None:
     first = results(tmp_path / "a", *TWICE[command])

@@ -89,7 +89,7 @@ def test_a_number_of_processors_that_is_none_is_named(tmp_path: Path) -> None:
     assert done.stderr.count("\n") == 1
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 @pytest.mark.parametrize("command", [["identify", "--law", "ideal", "--intervals", "normal"],
                                      ["prepare"], ["diagnose", "--quick"]])  # fmt: skip
 def test_a_name_that_is_not_utf8(command: list[str], tmp_path: Path) -> None:

@@ -106,6 +106,7 @@ def test_nothing_but_units_differs(both: dict[str, tuple[Diagnosis, Path]]) -> N
     assert viscous.unit == "N*m*s/rad"
 
 
+@pytest.mark.turns(3)
 def test_no_text_speaks_of_newtons_or_metres(both: dict[str, tuple[Diagnosis, Path]]) -> None:
     diagnosis, folder = both["rotation"]
     texts = [

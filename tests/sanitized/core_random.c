@@ -199,7 +199,9 @@ static void awkward_texts(void) {
   free(endless);
 }
 
-int main(void) {
+// asks for so many devices of every number of states, 100 by default
+int main(int argc, char** argv) {
+  const long wanted = argc > 1 ? atol(argv[1]) : 100;
   enum { N = 64, DEVICES = 3, WIDE = INERTER_MAXSTATE };
   long calls = 0, by_states[WIDE + 1] = {0};
   static double x[N], v[N], a[N], z[WIDE * N], rates[WIDE * N], result[6 * N], many[DEVICES * N];
@@ -221,12 +223,12 @@ int main(void) {
   }
 
   // devices with many states are seldom: after the first rounds only such as
-  // are still missing
-  for (int round = 0; round < 400000; round++) {
+  // are still missing, until none is
+  for (int round = 0, missing = 1; round < 20000 || (missing && round < 400000); round++) {
     InerterDevice device;
     int tame = below(&source, 2);
     if (!random_device(&device, tame) ||
-        (round > 20000 && by_states[inerter_nstate(&device)] >= 100)) {
+        (round > 20000 && by_states[inerter_nstate(&device)] >= wanted)) {
       continue;
     }
     for (int i = 0; i < N; i++) {
@@ -241,6 +243,8 @@ int main(void) {
     int nstate = inerter_nstate(&device);
     calls++;
     by_states[nstate]++;
+    missing = 0;
+    for (int i = 0; i <= WIDE; i++) missing |= by_states[i] < wanted;
     for (int i = -1; i <= WIDE; i++) {
       if ((i >= 0 && i < nstate) != (inerter_state_name(&device, i) != NULL)) abort();
     }
@@ -309,11 +313,11 @@ int main(void) {
     }
   }
   for (int i = 0; i <= WIDE; i++) {
-    if (by_states[i] < 100) {
+    if (by_states[i] < wanted) {
       fprintf(stderr, "%ld devices with %d states\n", by_states[i], i);
       return 5;
     }
   }
   printf("%ld devices\n", calls);
-  return calls > 1000 ? 0 : 3;
+  return calls > 10 * wanted ? 0 : 3;
 }

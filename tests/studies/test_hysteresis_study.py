@@ -43,7 +43,7 @@ def test_files(small: Study, tmp_path: Path) -> None:
             assert (tmp_path / "out" / name).read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_tables_are_full(small: Study) -> None:
     made = tables(small)
     assert all(len(row) == len(table.heads) for table in made for row in table.rows)

@@ -54,7 +54,7 @@ def test_a_refusal_of_the_command_line() -> None:
     assert done.stderr.startswith("inerter: layout 'S9' is not known")
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_a_range_writes_figures(tmp_path: Path) -> None:
     folder = tmp_path / "results"
     done = command(

@@ -103,7 +103,7 @@ def test_static_load_is_shared_by_the_axles() -> None:
     assert slow == pytest.approx(by_hand, rel=1e-3)
 
 
-@pytest.mark.turns(3)
+@pytest.mark.turns(7)
 @pytest.mark.rarely("S2-friction100")
 @pytest.mark.parametrize(("layout", "case"), [("S2", "friction100"), ("S3", "dahl")])
 def test_road_indices_are_those_of_the_reference(layout: str, case: str) -> None:

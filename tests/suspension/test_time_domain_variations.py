@@ -53,7 +53,7 @@ def test_a_variation_is_that_car_with_those_parts_at_that_speed() -> None:
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-12)
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(7)
 def test_two_axles_and_inner_springs_vary() -> None:
     """Linear, so every value has its transfer function; by hand the payload turns, too."""
     car = half_car()
