@@ -83,6 +83,11 @@ REALISTIC: dict[str, tuple[tuple[str, ...], int]] = {
     "a branch along one sine": (("viscoelasticity",), 3548063067),
     # a search from a low-pass on found less, without one, and was not asked for that
     "a low-pass on the way": (("quadratic_damping", "end_stop"), 1947272113),
+    # a fold without the beginning of a run made up how the bristle was bent there
+    "a bristle at a beginning left out": (
+        ("hysteretic_friction", "load_dependent_friction"),
+        624758634,
+    ),
     # with a drift of the force that a curve along the stroke drew, too
     "a gas behind a curve": (("gas_spring",), 1852777756),
     "a gas behind a curve and a delay": (("gas_spring", "position_force"), 3817478790),

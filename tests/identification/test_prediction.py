@@ -8,7 +8,12 @@ from inerter.core import Device
 from inerter.identify.model import Model
 from inerter.identify.prediction import first_state, force_along, settled
 from inerter.identify.runs import BenchRun, thin
-from inerter.identify.transient import MOST_SPEEDS, without_relaxing, without_transient
+from inerter.identify.transient import (
+    MOST_SPEEDS,
+    without_bending,
+    without_relaxing,
+    without_transient,
+)
 from inerter.records import Record
 from inerter.records.motion import smooth
 from inerter.records.record import Part
@@ -203,6 +208,27 @@ def test_a_beginning_that_is_left_out_is_read_off_it(time: float) -> None:
     wave = 40.0 * np.exp(-TIME / time)
     left = without_relaxing((time,), wave, 1e-3, TIME > 3.0, cutoff=30.0)
     assert np.max(np.abs(left)) < 0.1
+
+
+@pytest.mark.parametrize("first", [0, 40])
+@pytest.mark.parametrize("later", [0.6, 2.0, 5.0])
+def test_so_is_what_a_bristle_was_bent_by(first: int, later: float) -> None:
+    """Where the samples that count lie a few lengths on, their errors say nothing of it."""
+    path, reach = np.maximum(0.05 * (TIME - TIME[first]), 0.0), 0.01
+    wave = 40.0 * np.exp(-path / reach)
+    left = without_bending(path, reach, wave, later < TIME, first)
+    assert np.max(np.abs(left)) < 0.1
+    noise = np.random.default_rng(3).standard_normal(TIME.size)
+    left = without_bending(path, reach, noise, later < TIME, first)
+    assert np.max(np.abs(left - noise)) < 1.0
+
+
+def test_what_is_seen_of_a_beginning_alone_tells_how_a_bristle_was_bent() -> None:
+    path, reach = 0.05 * TIME, 0.01
+    residual = 40.0 * np.exp(-path / reach)
+    residual[TIME < 0.1] += 300.0
+    left = without_bending(path, reach, residual, TIME >= 0.1)
+    assert np.max(np.abs(left[TIME >= 0.1])) < 0.1
 
 
 def test_the_first_force_is_read_as_late_as_it_is_shown(run: BenchRun) -> None:

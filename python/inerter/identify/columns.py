@@ -318,7 +318,7 @@ class Columns:
             return found
         forms, shares = [], []
         for run, mask in zip(self.problem.runs, self.problem.masks, strict=True):
-            decay, share = bending(run.path, reach, mask if mask.any() else run.inner)
+            decay, share = bending(run.path, reach, mask if mask.any() else run.inner, run.first)
             form = np.zeros(run.force.size)
             form[: decay.size] = decay
             forms.append(form)
@@ -375,7 +375,7 @@ def _settled(
 ) -> Array:
     """Columns (m, n) without what is read off the record, as a residual is there (`settled`)."""
     seen = mask if mask.any() else run.inner
-    shown = without_bending(run.path, unknown.reach, shown, seen)
+    shown = without_bending(run.path, unknown.reach, shown, seen, run.first)
     shown = without_relaxing(unknown.times, shown, run.spacing, seen, run.first, run.cutoff)
     if unknown.low_pass is not None:
         shown = without_start(shown, run.spacing, seen & run.inner, unknown.low_pass, run.first)

@@ -322,7 +322,7 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
     if device.series_stiffness and not device.backlash:
         speed = float(np.max(np.abs(run.velocity)))
         residual = without_transient(device, residual, run.spacing, mask, speed)
-    residual = without_bending(run.path, bristle_reach(device), residual, mask)
+    residual = without_bending(run.path, bristle_reach(device), residual, mask, run.first)
     residual = without_relaxing(
         relaxing(values), residual, run.spacing, mask, run.first, run.cutoff
     )

@@ -120,13 +120,15 @@ def _with_beginning(mask: NDArray[np.bool_], first: int, count: int) -> NDArray[
     return mask
 
 
-def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np.bool_]) -> Array:
+def without_bending(
+    path: Array, reach: float, residual: Array, mask: NDArray[np.bool_], first: int = 0
+) -> Array:
     """A residual without what a bristle was bent by as a record began, shape (..., n).
 
     The first force tells it within the noise of the motion alone. What is wrong of it dies away
-    along the path slid since then [m], shape (n,), as exp(-path / reach).
+    along the path slid since the sample `first` [m], shape (n,), as exp(-path / reach).
     """
-    decay, share = bending(path, reach, mask)
+    decay, share = bending(path, reach, mask, first)
     if not decay.size:
         return residual
     rest = residual.copy()
@@ -134,12 +136,16 @@ def without_bending(path: Array, reach: float, residual: Array, mask: NDArray[np
     return rest
 
 
-def bending(path: Array, reach: float, mask: NDArray[np.bool_]) -> tuple[Array, Array]:
+def bending(
+    path: Array, reach: float, mask: NDArray[np.bool_], first: int = 0
+) -> tuple[Array, Array]:
     """That decay, as long as it is something, and what tells its size of a residual's beginning.
 
     Both (k,) with k = 0 where there is none.
     """
     count = int(np.searchsorted(path, _FORGOTTEN * reach)) if reach > 0 else 0
+    if count:
+        mask = _with_beginning(mask, first, int(np.searchsorted(path, reach)) - first)
     if np.count_nonzero(mask[:count]) < 4:
         return np.zeros(0), np.zeros(0)
     with np.errstate(under="ignore"):
