@@ -83,6 +83,15 @@ def test_what_has_the_other_sign_begins_small_and_not_at_none() -> None:
     assert 0 < after.values[name] < 0.05 * before.values[name]
 
 
+@pytest.mark.parametrize("effect", ["digressive_damping", "asymmetric_damping", "viscous_drift"])
+def test_a_damper_that_comes_with_its_damping_begins_as_large(effect: str) -> None:
+    run = problem(viscous=8.0)
+    for before, after in sized(run, effect):
+        errors = [float(np.sum(run.residual(each)[0] ** 2)) for each in (before, after)]
+        assert errors[1] < 0.3 * errors[0]
+        assert {n for n, v in after.values.items() if v != before.values[n]} == {"viscous"}
+
+
 def test_what_begins_at_none_stays_there() -> None:
     _, hidden = HIDDEN["gas_spring"]
     for effect in ("viscous_friction", "backlash", "parallel_stiffness"):

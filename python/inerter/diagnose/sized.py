@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.promise import Known
@@ -24,7 +25,8 @@ Array = NDArray[np.float64]
 
 # what the force of an added effect is in proportion to; of a friction law its level is, too
 _SIZES = ("gas_push", "stop_stiffness", "branch_stiffness_1", "branch_stiffness_2")
-_BENT = ("damping_knee", "damping_asymmetry")
+# what comes with a damping of its own
+_OF_DAMPERS = {n for each in EFFECTS.values() if each.kind == "damper" for n in each.coordinates}
 # share of the size given that a start has at least and at most
 _LEAST, _MOST = 0.02, 2.0
 
@@ -55,7 +57,7 @@ class Sized:
         model = self.known.model
         new = [name for name in start.free if name not in model.values]
         names = [name for name in _SIZES if name in new]
-        if "viscous" in new and not set(_BENT).isdisjoint(new):
+        if "viscous" in new and not _OF_DAMPERS.isdisjoint(new):
             names.append("viscous")
         if model.friction == "none" and start.friction != "none":
             level = FRICTION[start.friction].level
