@@ -41,7 +41,7 @@ def solved(request: pytest.FixtureRequest, effects_seed: int):
     return solve(effects_seed + CASES.index(request.param), effect, law)
 
 
-@pytest.mark.turns(7)
+@pytest.mark.turns(3)
 def test_effect_is_named_alone(solved) -> None:
     case, diagnosis = solved
     assert [finding.effect for finding in diagnosis.findings] == [case.effect], (
@@ -51,7 +51,7 @@ def test_effect_is_named_alone(solved) -> None:
         assert diagnosis.findings[0].law == case.law, f"seed {case.seed}"
 
 
-@pytest.mark.turns(4)
+@pytest.mark.turns(3)
 def test_parameters_are_near(solved) -> None:
     case, diagnosis = solved
     if case.law == "bouc_wen":
@@ -111,6 +111,7 @@ def test_gain_is_real(solved) -> None:
             assert after < 0.5 * before, f"seed {case.seed}"
 
 
+@pytest.mark.turns(3)
 def test_engines_agree_with_the_diagnosis(solved) -> None:
     """Each engine, along the held-out motion, misses the measured force by as much as was said.
 

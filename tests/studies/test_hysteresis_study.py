@@ -53,6 +53,7 @@ def test_tables_are_full(small: Study) -> None:
     assert made[0].markdown().count("\n") == len(made[0].rows) + 1
 
 
+@pytest.mark.turns(7)
 def test_verdicts_are_words(small: Study) -> None:
     assert {each.verdict for each in small.conclusions} <= {"holds", "in part", "does not hold"}
 
