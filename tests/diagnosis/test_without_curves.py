@@ -75,7 +75,7 @@ def test_a_force_that_nothing_else_draws_stays_a_curve() -> None:
 
 
 def test_beside_many_effects_a_curve_is_not_asked_for() -> None:
-    more = {"viscous": 0.0, "quadratic_damping": 0.0, "force_offset": 0.0}
+    more = {"viscous": 0.0, "quadratic_damping": 0.0, "force_offset": 0.0, "force_drift": 0.0}
     final, taken, told = again(lambda x: 400 * x, **more)
     assert taken is final
     assert not any("without curves" in each for each in told)

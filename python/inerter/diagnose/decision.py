@@ -177,6 +177,13 @@ class Criteria:
         "others leave, and a measured axis with four was foretold worse on held-out data after it",
     )
 
+    drawn_beside: int = _bound(
+        3,
+        COUNT,
+        "of effects beside a curve along the stroke up to which the search is done once more "
+        "without curves: a choice, which saves time where real machines have more",
+    )
+
     # bands
     band_gain: float = _bound(0.1, SHARE, "what another band takes away to be taken")
     more_bands: int = _bound(2, COUNT, "of wider bands in which a search goes on")

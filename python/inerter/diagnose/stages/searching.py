@@ -170,7 +170,7 @@ def without_curves(
     A curve is near to many causes at once: it is the best to add where each of them alone leaves
     far more, though two or three of them together leave less.
     """
-    few = len(effects_of(final.model, start.baseline)) <= CRITERIA.exchanged_of
+    few = len(effects_of(final.model, start.baseline)) <= 1 + CRITERIA.drawn_beside
     if not (few and is_drawn(final.model)):
         return search, final
     start.given.progress("searching once more, without curves along the stroke")
