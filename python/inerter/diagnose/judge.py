@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.composition import is_shaft
 from inerter.diagnose.decision import visible, visible_delay
-from inerter.diagnose.statistics import advantage, block_squares, where_apart
+from inerter.diagnose.statistics import block_squares, where_apart
 from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.split import blocks
@@ -71,12 +71,10 @@ class Judge:
             problem = self.weighed if is_shaft(effect) else self.band
         masks = problem.masks
         before, after = (problem.residual(model) for model in (simple, rich))
-        if is_shaft(effect):
-            # a motion may go through its resonance in few places
-            apart = where_apart(before, after, masks)
-            return advantage(*(block_squares(each, apart) for each in (before, after)))
+        # a motion may go through the resonance of a shaft in few places
+        stretches = where_apart(before, after, masks) if is_shaft(effect) else blocks(masks)
         # what took away its share where it was found only has to help here
-        return advantage_of(before, after, masks, blocks(masks), effect, least=0.0)
+        return advantage_of(before, after, masks, stretches, effect, least=0.0)
 
     def raw_squares(self, model: Model) -> Array:
         """Squared errors at the measured rate over blocks, shape (blocks,)."""
