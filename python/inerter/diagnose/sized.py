@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 _SIZES = ("gas_push", "stop_stiffness", "branch_stiffness_1", "branch_stiffness_2")
 # what comes with a damping of its own
 _OF_DAMPERS = {n for each in EFFECTS.values() if each.kind == "damper" for n in each.coordinates}
-# share of the size given that a start has at least and at most
+# share of the size given that a start has at least and at most; choices: what has the other sign
+# begins small, and not at none, where its shape has no derivative
 _LEAST, _MOST = 0.02, 2.0
 
 
