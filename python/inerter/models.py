@@ -62,6 +62,12 @@ def model_file(given: str | Path) -> Path:
     return scene if scene.exists() else model_path(str(path))
 
 
+def title_of(path: Path) -> str:
+    """What a model is called: a shipped one by its name, any other by its file."""
+    folder = path.resolve().parent
+    return folder.name if folder.parent == models_folder() else path.name
+
+
 def model_list() -> list[dict[str, Any]]:
     """Name, file, keyframes and devices of each shipped model."""
     import mujoco

@@ -153,7 +153,7 @@ def curves_in_words(
         least, most = (each([v.value for v in values]) for each in (min, max))
         unit = "" if values[0].unit == "1" else f" {values[0].unit}"
         error = max(v.stderr for v in values)
-        curves[name] = (
+        curves[name] = in_digits(
             f"a curve through {len(values)} places from {least:.3g} to {most:.3g}{unit} "
             f"(each ± {error:.1g}{unit} at most)"
         )

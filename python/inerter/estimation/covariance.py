@@ -29,7 +29,7 @@ def robust_weight(residual: Array, typical: float, loss: str) -> Array:
     }[loss]
 
 
-def sandwich(jacobian: Array, residual: Array, weight: Array) -> Array:
+def sandwich(jacobian: Array, residual: Array, weight: Array, held: Array | None = None) -> Array:
     """Covariance of a least-squares estimate, robust against correlated residuals, shape (p, p).
 
     Residuals of neighbouring samples are correlated, so the scores are summed over blocks before
@@ -39,10 +39,20 @@ def sandwich(jacobian: Array, residual: Array, weight: Array) -> Array:
     ----------
     jacobian, residual, weight : ndarray (n, p), (n,), (n,)
         Derivatives of the residual, the residual, and what each sample counts.
+    held : ndarray (k, p), optional
+        Rows, in the residual's unit, whose squares the fit counted besides: what it was held to.
+        The bias by that counts as large as the fit takes it to be, which is what a smoothing
+        spline's intervals cover with (Nychka 1988).
     """
     blocks = np.array_split(np.arange(residual.size), min(60, max(residual.size // 20, 2)))
     weighted = weight * residual
     scores = np.array([jacobian[block].T @ weighted[block] for block in blocks])
-    bread = np.linalg.pinv(jacobian.T @ (weight[:, None] * jacobian))
+    information = jacobian.T @ (weight[:, None] * jacobian)
     count = len(blocks)
-    return bread @ (scores.T @ scores) @ bread * count / max(count - 1, 1)
+    spread = scores.T @ scores * count / max(count - 1, 1)
+    if held is not None:
+        prior = held.T @ held
+        information = information + prior
+        spread = spread + np.mean(weighted**2) * prior
+    bread = np.linalg.pinv(information)
+    return bread @ spread @ bread

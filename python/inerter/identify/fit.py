@@ -387,7 +387,8 @@ class Problem:
 
     def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
         """Covariance of the free coordinates, see `sandwich`."""
-        covariance = sandwich(jacobian, flat, weight)
+        held = self.scales.force * smoothness(model)
+        covariance = sandwich(jacobian, flat, weight, held if len(held) else None)
 
         # a coordinate without effect on the force is not known at all, whatever the sandwich says
         effect = np.sum(jacobian**2, axis=0)

@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from inerter.diagnose.doubt import reason
+from inerter.diagnose.doubt import by_weight, reason
 from inerter.diagnose.remainder.words import WORDS
 from inerter.diagnose.result import (
     Diagnosis,
@@ -77,7 +77,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         split_figure=lambda value, digits=3: about.figure(value, digits).rsplit(" ", 1),
         headline=headline(diagnosis),
         budget=_budget(diagnosis),
-        findings=[_finding(finding, diagnosis) for finding in diagnosis.findings],
+        findings=[_finding(finding, diagnosis) for finding in by_weight(diagnosis.findings)],
         strokes=[place for place, plot in strokes.items() if plot is not None],
         runs=[_run_label(run) for run in runs],
         unpictured=len(diagnosis.curves) - len(runs),
@@ -122,7 +122,7 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"The simulation misses the {force}, and no known effect explains it"
     if not diagnosis.findings:
         return "No lack of the simulation is to be seen in these data"
-    names = [text.finding_name(finding) for finding in diagnosis.findings]
+    names = [text.finding_name(finding) for finding in by_weight(diagnosis.findings)]
     return f"The simulation lacks {text.listed(names)}"
 
 
@@ -231,8 +231,10 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     before: dict[str, Any] = {"delay": diagnosis.baseline.delay, **diagnosis.baseline.device}
     after: dict[str, Any] = {"delay": diagnosis.extended.delay, **diagnosis.extended.device}
     rows = []
-    for name in dict.fromkeys([*diagnosis.parameters, *after, *before]):
-        new, found = after.get(name), diagnosis.parameters.get(name)
+    # of a curve what it is as a whole: its places are in diagnosis.json
+    curves, single = curves_in_words(diagnosis.parameters)
+    for name in dict.fromkeys([*single, *curves, *after, *before]):
+        new, found = after.get(name), single.get(name)
         old = before.get(name, getattr(found, "stated", None))
         if name == "friction" or (name == "delay" and not (old or new or found)):
             continue
@@ -242,9 +244,15 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 "name": name,
                 "meaning": text.parameter_meaning(name),
                 "before": _value(old, suffix),
-                "after": text.with_error(found) if found else _value(new, suffix),
+                "after": curves.get(name)
+                or (text.with_error(found) if found else _value(new, suffix)),
+                "words": name in curves,
                 "off": departure(found) if found else "",
-                "how": "identified" if found else "as set" if new is not None else "left out",
+                "how": "identified"
+                if found or name in curves
+                else "as set"
+                if new is not None
+                else "left out",
                 "vague": found is not None and _vague(found),
             }
         )
@@ -252,6 +260,8 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _value(value: float | str | None, suffix: str) -> str:
+    if isinstance(value, str) and len(numbers := value.split()) > 1:
+        return f"{len(numbers)} values"
     if value is None or isinstance(value, str):
         return value or text.UNKNOWN
     return f"{text.number(value)} {suffix}".rstrip()

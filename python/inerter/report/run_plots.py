@@ -42,9 +42,9 @@ def run_plots(run: RunCurves, crowd: int = 1) -> dict[str, go.Figure]:
 def _over_time(run: RunCurves, limit: int) -> go.Figure:
     """Force above, residual below, one time axis."""
     plot = two_over_time(f"{run.quantity} [{shown(run.unit)}]", f"error [{shown(run.unit)}]")
-    # until the motion is known nothing is simulated
-    begun = np.arange(len(run.time)) >= np.argmax(run.inner)
-    before, after = (np.where(begun, f, np.nan) for f in (run.baseline, run.extended))
+    # where the motion is not known, near the ends, nothing is simulated
+    known = slice(np.argmax(run.inner), len(run.inner) - np.argmax(run.inner[::-1]))
+    before, after = (_within(known, f) for f in (run.baseline, run.extended))
     lines: list[tuple[str, np.ndarray, str, float, str]] = [
         ("measured", run.force, "measured", 3.0, "y"),
         (BEFORE, before, "before", 1.4, "y"),
@@ -77,6 +77,13 @@ def _over_time(run: RunCurves, limit: int) -> go.Figure:
             ]
         )
     return plot
+
+
+def _within(known: slice, values: np.ndarray) -> np.ndarray:
+    """Values of a part, NaN elsewhere."""
+    kept = np.full(len(values), np.nan)
+    kept[known] = values[known]
+    return kept
 
 
 def _loops(run: RunCurves, mask: Mask, limit: int) -> dict[str, go.Figure]:

@@ -7,6 +7,7 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from inerter.diagnose.doubt import by_weight
 from inerter.diagnose.result import Diagnosis, ParameterValue
 from inerter.diagnose.wording import curves_in_words, departure
 from inerter.printable import printable
@@ -53,7 +54,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
     table.add_column(f"error [{unit}]", justify="right", no_wrap=True)
     table.add_column("gain", justify="right", no_wrap=True)
     table.add_column("confidence", justify="right", no_wrap=True)
-    for finding in diagnosis.findings:
+    for finding in by_weight(diagnosis.findings):
         effect = Text(text.finding_name(finding), style="bold")
         if finding.looks_like:
             effect = Text("looks like ", style="dim").append(effect)

@@ -16,6 +16,7 @@ from inerter.motion_units import parameter_unit as unit_in
 
 _SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ")
 UNKNOWN = "–"
+_POWER_OF_TEN = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e([+-]?\d+)(?!\w)")
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -83,6 +84,9 @@ def with_error(value: ParameterValue) -> str:
     power = top if top < -3 or top > 6 else 0
     scaled, scaled_error = value.value / 10.0**power, error / 10.0**power
     decimals = decimals_told(scaled, scaled_error, digits=2)
+    if value.value and not round(scaled, decimals):
+        # so uncertain that no digit of the value counts: not shown as 0, which it may not be
+        return f"{number(value.value, 2)} ± {number(error, 2)}{suffix}"
     pair = f"{_plain(scaled, decimals)} ± {_plain(scaled_error, decimals)}"
     if power:
         return f"({pair}) × 10{str(power).translate(_SUPERSCRIPT)}{suffix}"
@@ -90,8 +94,13 @@ def with_error(value: ParameterValue) -> str:
 
 
 def tidy(sentence: str) -> str:
-    """A text whose numbers stay on one line with their units."""
+    """A text whose numbers stay on one line with their units, powers of ten written out."""
+    sentence = _POWER_OF_TEN.sub(_written_out, sentence)
     return re.sub(r"(?<=\d) (?=(?:%|[A-Za-z]{1,3})(?:[^A-Za-z]|$))", "\u00a0", sentence)
+
+
+def _written_out(found: re.Match[str]) -> str:
+    return f"{found[1]} × 10{str(int(found[2])).translate(_SUPERSCRIPT)}"
 
 
 def effect_name(effect: str) -> str:

@@ -10,6 +10,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import inerter.report
+from inerter.models import title_of
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import figure, to_script
 from inerter.printable import upright
@@ -23,7 +24,7 @@ from inerter.simulate.plots import (
     parameter_rows,
 )
 from inerter.simulate.run import SimulatedRun
-from inerter.simulate.summary import summary
+from inerter.simulate.summary import in_units, summary
 
 
 def render_page(run: SimulatedRun) -> str:
@@ -35,6 +36,10 @@ def render_page(run: SimulatedRun) -> str:
     plots = {"runs": devices, "single": model_plots(run)}
     return _template().render(
         s=summary(run),
+        title=title_of(run.path),
+        newton=in_units(run, "N"),
+        metre=in_units(run, "m"),
+        speed=in_units(run, "m/s"),
         states=states,
         vehicle=[name for name in run.vehicle if name != "time"],
         joints=len(run.joints),

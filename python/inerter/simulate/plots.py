@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
+import mujoco
 import numpy as np
 import plotly.graph_objects as go
 
 from inerter.core import parameters
+from inerter.motion_units import force_word, parameter_unit, unit
 from inerter.pictures import thinning
 from inerter.pictures.plotting import figure, line, two_over_time
+from inerter.report.text import unit as shown
+from inerter.simulate.load import scalar_joints
 from inerter.simulate.run import SimulatedRun
 from inerter.simulate.sample import DeviceRun
+from inerter.simulate.vehicle import column_unit
 
 TIME_SAMPLES = 3000
 LOOP_SAMPLES = 4000
@@ -33,19 +38,17 @@ STATE_UNITS = {
 
 def device_plots(run: SimulatedRun, device: DeviceRun) -> dict[str, go.Figure]:
     """Every plot of a device, by the name of its place in the page."""
-    columns = device.columns
     plots = {
         "time": _forces_and_motion(run, device),
-        "loop-displacement": _loop(columns, "displacement", "displacement [m]"),
-        "loop-velocity": _loop(columns, "velocity", "velocity [m/s]"),
+        "loop-displacement": _loop(device, "displacement", "m"),
+        "loop-velocity": _loop(device, "velocity", "m/s"),
         "energy": _energy(run, device),
     }
     for name in device.place.act:
         # an age, as its logarithm
         aging = name == "friction_state" and device.place.device.friction == "rate_state"
-        unit = "1" if aging else STATE_UNITS[name]
-        plot = figure("time [s]", f"{name.replace('_', ' ')} [{unit}]")
-        _over_time(plot, run.time, columns[name], "after", name)
+        plot = figure("time [s]", _title(device, name, "1" if aging else STATE_UNITS[name]))
+        _over_time(plot, run.time, device.columns[name], "after", name)
         plots[f"state-{name}"] = plot
     return plots
 
@@ -53,14 +56,13 @@ def device_plots(run: SimulatedRun, device: DeviceRun) -> dict[str, go.Figure]:
 def model_plots(run: SimulatedRun) -> dict[str, go.Figure]:
     """Plots of what is not a device: the vehicle's columns and the joints."""
     plots = {}
-    units = {"body_acceleration": "m/s²", "wheel_acceleration": "m/s²", "tyre_force": "N"}
     for name in run.vehicle:
         if name != "time":
-            plot = figure("time [s]", f"{name.replace('_', ' ')} [{units.get(name, 'm')}]")
+            plot = figure("time [s]", f"{name.replace('_', ' ')} [{shown(column_unit(name))}]")
             _over_time(plot, run.time, run.vehicle[name], "after", name)
             plots[f"vehicle-{name}"] = plot
     if run.joints:
-        plot = figure("time [s]", "position [m or rad]", showlegend=len(run.joints) > 1)
+        plot = figure("time [s]", _positions(run), showlegend=len(run.joints) > 1)
         plot.update_layout(legend={"orientation": "h", "y": 1.02, "yanchor": "bottom"})
         moving = sorted(run.joints, key=lambda name: -float(np.ptp(run.joints[name])))
         for color, name in zip(_COLORS, moving[:MOST_JOINTS], strict=False):
@@ -71,7 +73,7 @@ def model_plots(run: SimulatedRun) -> dict[str, go.Figure]:
 
 def _forces_and_motion(run: SimulatedRun, device: DeviceRun) -> go.Figure:
     """Forces above, displacement below, one time axis."""
-    plot = two_over_time("force [N]", "displacement [m]")
+    plot = two_over_time(_force(device), _title(device, "displacement", "m"))
     columns = device.columns
     _over_time(plot, run.time, columns["inertance_force"], INERTANCE, "inertance", width=3.0)
     if has_friction(device):
@@ -86,9 +88,26 @@ def has_friction(device: DeviceRun) -> bool:
     return bool(np.any(device.columns["friction_force"]))
 
 
-def _loop(columns: dict[str, np.ndarray], name: str, title: str) -> go.Figure:
+def _title(device: DeviceRun, name: str, translation: str) -> str:
+    """A column with its unit, of which that in translation is given."""
+    return f"{name.replace('_', ' ')} [{shown(unit(device.motion, translation))}]"
+
+
+def _force(device: DeviceRun) -> str:
+    return _title(device, force_word(device.motion), "N")
+
+
+def _positions(run: SimulatedRun) -> str:
+    """The joints' positions with their unit or units."""
+    hinge = [run.model.jnt_type[i] == mujoco.mjtJoint.mjJNT_HINGE for i in scalar_joints(run.model)]
+    units = "rad" if all(hinge) else "m or rad" if any(hinge) else "m"
+    return f"position [{units}]"
+
+
+def _loop(device: DeviceRun, name: str, translation: str) -> go.Figure:
     """Force against a column: the whole, and what of it is not the inertance's."""
-    plot = figure(title, "force [N]")
+    plot = figure(_title(device, name, translation), _force(device))
+    columns = device.columns
     keep = thinning.evenly(len(columns[name]), LOOP_SAMPLES)
     x, total = columns[name][keep], columns["force"][keep]
     rest = total - columns["inertance_force"][keep]
@@ -126,6 +145,6 @@ def parameter_rows(run: SimulatedRun, device: DeviceRun) -> list[tuple[str, str,
             rows.append((name, value, ""))
         else:
             known = parameters()[name]
-            unit = "" if known.unit == "1" else f" {known.unit}"
-            rows.append((name, f"{value:.6g}{unit}", known.meaning))
+            its = shown(parameter_unit(device.motion, name, known.unit))
+            rows.append((name, f"{value:.6g} {its}".rstrip(), known.meaning))
     return rows

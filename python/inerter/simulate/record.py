@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 import inerter
 from inerter.core import parameters
 from inerter.folder import file_names
+from inerter.motion_units import ROTATION
 from inerter.printable import printable
 from inerter.records.turning import UNITS
 from inerter.simulate.run import SimulatedRun
@@ -41,7 +42,7 @@ def device_csv(run: SimulatedRun, device: DeviceRun) -> str:
         "without control_force, which acts beside the device; SI units",
         "acceleration: the engine's at the row's instant, along the device: J qacc + dJ/dt qvel",
     ]
-    if _is_hinge(run.model, place.actuator):
+    if device.motion == ROTATION:
         notes.insert(-1, "on a hinge: read rad for m, N*m for N, kg*m^2 for kg")
         return _csv(notes, {_turning(name): each for name, each in device.columns.items()})
     return _csv(notes, device.columns)
@@ -50,12 +51,6 @@ def device_csv(run: SimulatedRun, device: DeviceRun) -> str:
 def _turning(name: str) -> str:
     """The header of a column of a device on a hinge, with which it is read as one that turns."""
     return f"{name}[{UNITS[name]}]" if name in UNITS else name
-
-
-def _is_hinge(model: mujoco.MjModel, actuator: int) -> bool:
-    if model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_TENDON:
-        return False
-    return model.jnt_type[model.actuator_trnid[actuator, 0]] == mujoco.mjtJoint.mjJNT_HINGE
 
 
 def vehicle_csv(run: SimulatedRun) -> str:

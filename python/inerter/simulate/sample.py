@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.device_in_model import DeviceInModel, devices_of, evaluate
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.simulate.load import scalar_joints
 from inerter.simulate.vehicle import VehicleSensors
 
@@ -39,10 +40,22 @@ _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 @dataclass(frozen=True)
 class DeviceRun:
-    """What a device did: columns by name, arrays (samples,), SI units; see `record.py`."""
+    """What a device did: columns by name, arrays (samples,), SI units; see `record.py`.
+
+    motion: "rotation" of a device on a hinge; read rad for m, N*m for N there.
+    """
 
     place: DeviceInModel
     columns: dict[str, Array]
+    motion: Kind = TRANSLATION
+
+
+def motion_of(model: mujoco.MjModel, actuator: int) -> Kind:
+    """Whether an actuator turns a joint or moves along a line."""
+    if model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_TENDON:
+        return TRANSLATION
+    joint = model.jnt_type[model.actuator_trnid[actuator, 0]]
+    return ROTATION if joint == mujoco.mjtJoint.mjJNT_HINGE else TRANSLATION
 
 
 class Sampler:
@@ -157,7 +170,8 @@ class Sampler:
                 columns["control_command"] = control
             elif np.nan_to_num(control).any():
                 columns["control_force"] = control
-            runs.append(DeviceRun(place, {name: np.array(v) for name, v in columns.items()}))
+            columns = {name: np.array(v) for name, v in columns.items()}
+            runs.append(DeviceRun(place, columns, motion_of(self.model, place.actuator)))
         return runs
 
     def joints(self) -> dict[str, Array]:

@@ -10,6 +10,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from inerter.models import title_of
+from inerter.motion_units import unit
 from inerter.printable import printable
 from inerter.report import text
 from inerter.simulate.record import device_names
@@ -43,6 +45,12 @@ def summary(run: SimulatedRun) -> dict[str, Any]:
     }
 
 
+def in_units(run: SimulatedRun, translation: str) -> str:
+    """A unit of the devices, of which that in translation is given; both where both are there."""
+    motions = dict.fromkeys(device.motion for device in run.devices)
+    return " or ".join(text.unit(unit(motion, translation)) for motion in motions)
+
+
 def at_rest(run: SimulatedRun, keyframe: str | None) -> str | None:
     """Where no device moved: what would make them move; None where one did."""
     if any(np.ptp(device.columns["displacement"]) > STILL for device in run.devices):
@@ -63,6 +71,7 @@ def _device(name: str, device: DeviceRun, model: mujoco.MjModel) -> dict[str, An
     return {
         "name": device.place.name,
         "file": f"{name}.csv",
+        "motion": device.motion,
         "parameters": device.place.stated(model),
         **{key: _spread(columns[key]) for key in ("displacement", "velocity", "force")},
         "stored_energy": float(columns["stored_energy"][-1]),
@@ -83,12 +92,15 @@ def print_run(run: SimulatedRun, console: Console) -> None:
     found = summary(run)
     seconds = f"{found['duration']:.6g} s simulated in {run.wall:.2g} s"
     how = f"{run.integrator}, time step {found['timestep']:g} s, {found['samples']} samples"
-    console.print(_plain(f"{found['model']}: {seconds} ({how})"))
+    console.print(_plain(f"{title_of(run.path)}: {seconds} ({how})"))
     if found["devices"]:
         table = Table(box=None, padding=(0, 1), header_style="dim")
         table.add_column("device", no_wrap=True)
-        for title in ("force rms [N]", "max [N]", "stroke [m]", "speed [m/s]", "heat [J]"):
-            table.add_column(Text(title), justify="right", no_wrap=True)
+        for title, translation in (
+            ("force rms", "N"), ("max", "N"), ("stroke", "m"), ("speed", "m/s"), ("heat", "J"),
+        ):  # fmt: skip
+            units = in_units(run, translation)
+            table.add_column(Text(f"{title} [{units}]"), justify="right", no_wrap=True)
         for device in found["devices"]:
             stroke = device["displacement"]["max"] - device["displacement"]["min"]
             values = (

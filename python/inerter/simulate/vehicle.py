@@ -27,6 +27,17 @@ _BODY = ("heave", "pitch", "roll", "strut_length")
 _TURNING = "body_angular_acceleration"
 
 
+def column_unit(name: str) -> str:
+    """The unit of a vehicle's column, by its name."""
+    if name in ("pitch", "roll"):
+        return "rad"
+    if name in ("pitch_acceleration", "roll_acceleration"):
+        return "rad/s^2"
+    if "acceleration" in name:
+        return "m/s^2"
+    return "N" if name.startswith("tyre_force") else "m"
+
+
 class VehicleSensors:
     """Samples those columns; nothing where there is no road or none of the others."""
 

@@ -8,6 +8,8 @@ from inerter.motion_units import TRANSLATION, Kind, words
 
 # share of the error below which a part is not worth a word
 LEAST = 0.005
+# share of an error that sums in another order make
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +93,8 @@ def budget_of(
     carried: that of the extended device with what it carries; None where it carries nothing.
     """
     kept = extended if carried is None else carried
-    least = min(ceiling, kept)
+    # a ceiling that is the extended model's own error differs from it by rounding
+    least = kept if ceiling > (1 - ROUNDING) * kept else ceiling
     return Budget(
         baseline=baseline,
         named=baseline - extended,
