@@ -22,6 +22,7 @@ from inerter.report import text
 from inerter.report.figures import loop_figure
 from inerter.report.output import write_outputs
 from inerter.report.page import render_report
+from inerter.report.run_plots import run_plots
 from inerter.report.terminal import print_summary
 from made_reports import CASES, HOSTILE, TOML, XML, diagnosis, run, table_only, two_runs
 from rich.console import Console
@@ -247,6 +248,8 @@ def test_picture_is_a_wide_png(tmp_path: Path) -> None:
         (ParameterValue(2.0, float("nan"), "N*s^2/m^2"), "2.00 N·s²/m² (error not known)"),
         (ParameterValue(float("nan"), 1.0, "N"), "–"),
         (ParameterValue(0.0, 0.5, "N"), "0.00 ± 0.50 N"),
+        (ParameterValue(1.2e7, 6e11, "Pa"), "1.2 × 10⁷ ± 6.0 × 10¹¹ Pa"),
+        (ParameterValue(0.0031, 4.9, "m^3"), "0.0031 ± 4.9 m³"),
     ],
 )
 def test_values_to_the_last_digit_that_counts(value: ParameterValue, shown: str) -> None:
@@ -268,6 +271,59 @@ def test_values_to_the_last_digit_that_counts(value: ParameterValue, shown: str)
 )
 def test_numbers(value: float | None, shown: str) -> None:
     assert text.number(value) == shown
+
+
+@pytest.mark.parametrize(
+    ("sentence", "shown"),
+    [
+        ("misses by 7.55e-05 N rms", "misses by 7.55 × 10⁻⁵\u00a0N rms"),
+        ("stiffness 3e+08 N/m", "stiffness 3 × 10⁸\u00a0N/m"),
+        ("run 1e5a of test_2e-3x stays", "run 1e5a of test_2e-3x stays"),
+    ],
+)
+def test_sentences_have_powers_of_ten(sentence: str, shown: str) -> None:
+    assert text.tidy(sentence) == shown
+
+
+def test_what_explains_most_is_named_first() -> None:
+    made = two_runs()
+    (small,) = made.findings
+    small = replace(small, rmse_before=4.0, rmse_after=0.5)
+    large = replace(small, effect="viscous_friction", rmse_before=40.0, rmse_after=4.1)
+    shown = Reader(render_report(replace(made, findings=[small, large]), TOML, XML)).text
+    assert "The simulation lacks viscous friction and Coulomb friction" in shown
+    assert shown.index("1. Viscous friction") < shown.index("2. Coulomb friction")
+
+
+def test_a_curve_is_one_row_of_the_parameters() -> None:
+    made = two_runs()
+    nodes = {f"force_node_{i}": ParameterValue(i - 3.0, 0.5, "N") for i in range(1, 18)}
+    curve = {"force_curve": " ".join(f"{v.value!r}" for v in nodes.values()), "curve_lower": -0.1}
+    device = {**made.extended.device, **curve}
+    made = replace(
+        made,
+        parameters={**made.parameters, **nodes},
+        extended=replace(made.extended, device=device),
+        baseline=replace(made.baseline, device={"friction_curve": "1.0 1.1 1.2"}),
+    )
+    shown = Reader(render_report(made, TOML, XML)).text
+    assert "force_node" not in shown
+    assert "a curve through 17 places from -2 to 14 N (each ± 0.5 N at most)" in shown
+    assert "3 values" in shown
+    assert "1.0 1.1 1.2" not in shown
+
+
+def test_the_ends_where_the_motion_is_not_known_are_not_drawn() -> None:
+    made = run("a")
+    inner = np.zeros(len(made.time), bool)
+    inner[100:-50] = True
+    wild = np.where(inner, made.extended, 1e6)
+    plot = run_plots(replace(made, inner=inner, extended=wild))["time"]
+    for trace in plot.data:
+        if trace.name != "measured":
+            assert np.abs(np.asarray(trace.y, float)).max() < 1e3
+            assert min(trace.x) >= made.time[100]
+            assert max(trace.x) <= made.time[-51]
 
 
 def test_an_interval_stands_behind_its_gain() -> None:

@@ -1,4 +1,4 @@
-"""The units of a control table: what drives a length takes no force, and the other way about."""
+"""Units of a control table, where what drives a length takes no force, and of a run's pictures."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ import mujoco
 import pytest
 from inerter import Device
 from inerter.engine_errors import SimulationError
+from inerter.models import model_file
 from inerter.plugin import load_plugin
 from inerter.rig import device_mjcf
+from inerter.simulate.page import render_page
+from inerter.simulate.plots import device_plots, model_plots, parameter_rows
 from inerter.simulate.quantities import quantity_of_control
 from inerter.simulate.run import run_model
+from inerter.simulate.summary import summary
 from simulate_models import device, oscillator, written
 
 
@@ -58,3 +62,39 @@ def test_what_a_control_is(actuator: str) -> None:
     model = mujoco.MjModel.from_xml_string(xml)
     found = quantity_of_control(model, model.actuator("a").id)
     assert (found and found.unit) == CONTROLS[actuator]
+
+
+def test_what_turns_is_pictured_in_its_units(tmp_path: Path) -> None:
+    turning = oscillator(
+        device('joint="turn"', states=1, inertance=0.1, friction="dahl", coulomb_force=0.2,
+               bristle_stiffness=50.0),
+        extra='<keyframe><key name="turned" qpos="0 0.3" qvel="0 1"/></keyframe>',
+    ).replace("<geom ", '<joint name="turn" axis="1 0 0" stiffness="2"/><geom ')  # fmt: skip
+    run = run_model(written(tmp_path, turning), 0.2, keyframe="turned")
+    (strut,) = run.devices
+    plots = device_plots(run, strut)
+    assert plots["loop-displacement"].layout.xaxis.title.text == "displacement [rad]"
+    assert plots["loop-velocity"].layout.xaxis.title.text == "velocity [rad/s]"
+    assert plots["loop-velocity"].layout.yaxis.title.text == "torque [N·m]"
+    assert plots["state-friction_state"].layout.yaxis.title.text == "friction state [rad]"
+    rows = {name: value for name, value, _ in parameter_rows(run, strut)}
+    assert rows["inertance"] == "0.1 kg·m²"
+    assert rows["coulomb_force"] == "0.2 N·m"
+    assert summary(run)["devices"][0]["motion"] == "rotation"
+    page = render_page(run)
+    assert "Force rms [N·m]" in page
+    assert "Displacement min … max [rad]" in page
+
+
+def test_a_vehicle_is_pictured_in_its_units() -> None:
+    run = run_model(model_file("half_car"), 0.1, keyframe="kerb")
+    units = {
+        name: plot.layout.yaxis.title.text.rpartition(" ")[2]
+        for name, plot in model_plots(run).items()
+    }
+    assert units["vehicle-tyre_force_front"] == "[N]"
+    assert units["vehicle-pitch"] == "[rad]"
+    assert units["vehicle-pitch_acceleration"] == "[rad/s²]"
+    assert units["vehicle-body_acceleration"] == "[m/s²]"
+    assert units["vehicle-strut_length_rear"] == "[m]"
+    assert "<h1>half_car</h1>" in render_page(run)

@@ -88,6 +88,16 @@ def test_its_band_is_that_of_the_nodes() -> None:
     assert upper[at] - middle[at] == pytest.approx(BAND * 0.5, rel=0.02)
 
 
+def test_a_wide_band_leaves_the_curve_to_be_seen() -> None:
+    finding, made = of_curve()
+    wide = {name: replace(v, stderr=100.0) for name, v in finding.parameters.items()}
+    low, high = stroke_plot(replace(finding, parameters=wide), made).layout.yaxis.range
+    assert low < min(NODES)
+    assert max(NODES) < high
+    assert high - low < 6 * np.ptp(NODES)
+    assert stroke_plot(finding, made).layout.yaxis.range is None
+
+
 def test_periods_are_the_ratio_of_the_device() -> None:
     x, y = drawn(stroke_plot(*of_period()), 1)
     device = Device(inertance=1.0, inertance_periods=list(PERIOD.values()))

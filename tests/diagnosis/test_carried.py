@@ -126,6 +126,12 @@ def test_the_parts_of_the_budget_are_the_whole() -> None:
     assert "carried" not in dict.fromkeys(key for key, *_ in budget_of(10, 4, 1, None).parts())
 
 
+def test_rounding_is_no_part_of_the_budget() -> None:
+    budget = budget_of(9.95, 0.1 + 0.2, 0.3, None)
+    assert budget.predictable == 0.0
+    assert budget.named + budget.rest == pytest.approx(9.95)
+
+
 @pytest.mark.long
 def test_a_diagnosis_writes_what_it_carries_and_says_so(tmp_path: Path) -> None:
     diagnosis = diagnose_bench(records(surface))

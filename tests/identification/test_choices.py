@@ -52,6 +52,26 @@ def test_errors_of_a_right_model_hardly_grow() -> None:
         assert before[name][1] <= after[name][1] < 3 * before[name][1]
 
 
+def test_forces_compared_above_the_motion_are_so_with_less_smoothing() -> None:
+    """It is the motion that is smoothed less: its noise is not let in with the wider band."""
+    case = drawn(11, "no filter")
+    assert case.law == "coulomb"
+    random = np.random.default_rng(1)
+    records = [
+        replace(r, displacement=r.displacement + random.normal(0, 3e-5, r.displacement.size))
+        for r in case.records
+    ]
+    start = prepared(Given(records=records))
+    search = search_in(start, replace(start.weighed, force_band=8 * start.weighed.cutoff))
+    assert all(run.cutoff == pytest.approx(8 * run.quiet) for run in search.problem.runs)
+    terms = {name: v for name, v in case.parameters.items() if name != "inertance"}
+    fit = search.problem.fit(start.baseline.adding(case.law, **terms))
+    before = parameter_errors(fit)
+    after = parameter_errors(covered(search.problem, fit, start.data.records))
+    for name in case.parameters:
+        assert before[name][1] <= after[name][1] < 3 * before[name][1]
+
+
 def test_a_tone_does_not_hang_on_the_smoothing() -> None:
     """It is fitted to the force as measured: above the band a step would say nothing."""
     case = drawn(23, "no filter")

@@ -138,18 +138,21 @@ def _less_smoothed(
 ) -> Iterator[Problem]:
     """The problem at other cut-offs, none where the force is taken as measured."""
     tried = set()
+    # forces may be compared above the band of the motion, and are so with less smoothing, too
+    bands = [min(run.cutoff, run.quiet) for run in problem.runs]
+    above = [run.cutoff if run.quiet < run.cutoff else 0.0 for run in problem.runs]
     for factor in LESS_SMOOTHING:
         cutoffs = [
-            min(factor * run.cutoff, max(HIGHEST * record.sample_rate, run.cutoff))
-            for run, record in zip(problem.runs, records, strict=True)
+            min(factor * band, max(HIGHEST * record.sample_rate, band))
+            for band, record in zip(bands, records, strict=True)
         ]
-        same = all(f == run.cutoff for f, run in zip(cutoffs, problem.runs, strict=True))
+        same = cutoffs == bands
         if not np.isfinite(cutoffs).all() or same or tuple(cutoffs) in tried:
             continue
         tried.add(tuple(cutoffs))
         smoothed = [
-            thin(smooth(record, cutoff, channels))
-            for record, cutoff in zip(records, cutoffs, strict=True)
+            thin(smooth(record, cutoff, channels), force_band=wide)
+            for record, cutoff, wide in zip(records, cutoffs, above, strict=True)
         ]
         runs = [
             changed(replace(new, clock=old.clock, corner=old.corner, shaft=old.shaft, far=old.far))

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 _PLACES, _PER_PERIOD = 241, 12
 _MOST_PLACES = 2000
 BAND = 2.0
+# room for the band above and below, per height of the curve
+_MOST_ROOM = 1.5
 
 
 def stroke_plot(finding: Finding, diagnosis: Diagnosis) -> go.Figure | None:
@@ -48,6 +50,12 @@ def stroke_plot(finding: Finding, diagnosis: Diagnosis) -> go.Figure | None:
         low, high = scale * (values - error), scale * (values + error)
         band(plot, x, low, high, color, "2 standard errors")
         line(plot, x, scale * values, color, words, 1.8)
+    # a band that is far wider than the curve goes beyond the picture, and the curve is seen
+    drawn = np.concatenate([scale * values for _, _, values, _ in sides])
+    wide = max(float(np.max(scale * BAND * np.sqrt(variance))) for *_, variance in sides)
+    room = _MOST_ROOM * float(np.ptp(drawn))
+    if wide > room > 0.0:
+        plot.update_layout(yaxis={"range": [float(drawn.min()) - room, float(drawn.max()) + room]})
     return plot
 
 

@@ -95,8 +95,8 @@ def with_error(value: ParameterValue) -> str:
 
 def tidy(sentence: str) -> str:
     """A text whose numbers stay on one line with their units, powers of ten written out."""
-    sentence = _POWER_OF_TEN.sub(_written_out, sentence)
-    return re.sub(r"(?<=\d) (?=(?:%|[A-Za-z]{1,3})(?:[^A-Za-z]|$))", "\u00a0", sentence)
+    units = r"(?<=\d) (?=(?:%|[A-Za-z]{1,3})(?:[^A-Za-z]|$))"
+    return _POWER_OF_TEN.sub(_written_out, re.sub(units, "\u00a0", sentence))
 
 
 def _written_out(found: re.Match[str]) -> str:
