@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.core import Device, DeviceError, lists, parameters
+from inerter.motion_units import ROTATION, TRANSLATION, Kind
 from inerter.parameter_text import value_text
 from inerter.plugin import plugin_path
 
@@ -164,6 +165,14 @@ def sensor_names(device: Device) -> tuple[str, ...]:
     """Names of what a device's sensor shows, in order."""
     forces = ("total", "inertance", "friction")
     return (*forces, *device.state_names, "stored_energy", "dissipated_energy")
+
+
+def motion_of(model: mujoco.MjModel, actuator: int) -> Kind:
+    """Whether an actuator turns a joint or moves along a line."""
+    if model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_TENDON:
+        return TRANSLATION
+    joint = model.jnt_type[model.actuator_trnid[actuator, 0]]
+    return ROTATION if joint == mujoco.mjtJoint.mjJNT_HINGE else TRANSLATION
 
 
 def devices_of(model: mujoco.MjModel) -> list[DeviceInModel]:

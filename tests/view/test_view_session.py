@@ -11,7 +11,7 @@ from inerter import Device, DeviceError
 from inerter.core import friction_laws, parameters
 from inerter.engine_errors import SimulationError
 from inerter.models import model_names, model_path
-from inerter.view.loop import Loop
+from inerter.view.loop import Axes, Loop
 from inerter.view.session import Session
 from inerter.view.shake import Shake, read_shake, usual_shake
 from inerter.view.sliders import keys_of, slider, value_of
@@ -126,6 +126,18 @@ def test_a_moved_slider_is_the_device_of_that_value(tmp_path: Path, key: str, va
     assert getattr(session.device("strut"), key) == value
     assert session.changes() == {"strut": {key: value}}
     assert {each.key: each.value for each in session.sliders("strut")}[key] == value
+
+
+def test_what_turns_is_shown_in_its_units(tmp_path: Path) -> None:
+    path = box(tmp_path, inertance=0.1, viscous=2.0)
+    path.write_text(path.read_text().replace('type="slide"', 'type="hinge"'))
+    session = Session(path)
+    units = {each.key: each.unit for each in session.sliders("strut")}
+    assert units["inertance"] == "kg*m^2"
+    assert units["viscous"] == "N*m*s/rad"
+    turning = Axes.of(session.motion("strut"))
+    assert (turning.length, turning.speed, turning.force) == ("rad", "rad/s", "torque")
+    assert Axes.of("translation").newton == "N"
 
 
 @pytest.mark.parametrize(

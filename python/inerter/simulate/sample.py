@@ -27,8 +27,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.device_in_model import DeviceInModel, devices_of, evaluate
-from inerter.motion_units import ROTATION, TRANSLATION, Kind
+from inerter.device_in_model import DeviceInModel, devices_of, evaluate, motion_of
+from inerter.motion_units import TRANSLATION, Kind
 from inerter.simulate.load import scalar_joints
 from inerter.simulate.vehicle import VehicleSensors
 
@@ -48,14 +48,6 @@ class DeviceRun:
     place: DeviceInModel
     columns: dict[str, Array]
     motion: Kind = TRANSLATION
-
-
-def motion_of(model: mujoco.MjModel, actuator: int) -> Kind:
-    """Whether an actuator turns a joint or moves along a line."""
-    if model.actuator_trntype[actuator] == mujoco.mjtTrn.mjTRN_TENDON:
-        return TRANSLATION
-    joint = model.jnt_type[model.actuator_trnid[actuator, 0]]
-    return ROTATION if joint == mujoco.mjtJoint.mjJNT_HINGE else TRANSLATION
 
 
 class Sampler:

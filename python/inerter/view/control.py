@@ -15,7 +15,7 @@ from mujoco.studio import (
 )
 
 from inerter.core import DeviceError, friction_laws
-from inerter.view.loop import Array, Loop, instant
+from inerter.view.loop import Array, Axes, Loop, instant
 from inerter.view.session import Session
 from inerter.view.shake import Shake, controls_of, usual_shake
 from inerter.view.sliders import Slider
@@ -60,8 +60,8 @@ class Watch(messages.Event):
 class PanelSnapshot(messages.Snapshot):
     """Everything that the panel shows.
 
-    loop: time, displacement, velocity, force of the last seconds, (4, n). refusal: why the last
-    change could not be, or empty.
+    loop: time, displacement, velocity, force of the last seconds, (4, n); axes: their units.
+    refusal: why the last change could not be, or empty.
     """
 
     device: str
@@ -70,6 +70,7 @@ class PanelSnapshot(messages.Snapshot):
     laws: list[str]
     sliders: list[Slider]
     loop: Array
+    axes: Axes
     seconds: float
     shake: Shake | None
     controls: list[str]
@@ -201,6 +202,7 @@ class DeviceControl(plugin.SimPlugin):
             laws=list(friction_laws()),
             sliders=self.session.sliders(self.device),
             loop=self.loop.last(self.seconds),
+            axes=Axes.of(self.session.motion(self.device)),
             seconds=self.seconds,
             shake=self.shake,
             controls=controls_of(self.session.model),

@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.device_in_model import DeviceInModel
+from inerter.motion_units import TRANSLATION, Kind, force_word, unit, words
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Units in which a loop is shown; `per_length` of them in an SI unit of displacement."""
+
+    length: str
+    per_length: float
+    speed: str
+    force: str
+    newton: str
+
+    @classmethod
+    def of(cls, motion: Kind) -> Axes:
+        """Those of a device that moves along a line, or turns."""
+        length, per_length = ("mm", 1e3) if motion == TRANSLATION else ("rad", 1.0)
+        return cls(length, per_length, unit(motion, "m/s"), force_word(motion), words(motion, "N"))
 
 
 class Loop:

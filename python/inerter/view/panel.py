@@ -81,17 +81,18 @@ class DevicePanel(plugin.ViewerPlugin):
 
     def _loops(self, shown: PanelSnapshot) -> None:
         x, v, force = thinned(shown.loop)
+        axes = shown.axes
         if imgui.Button("keep this loop to compare"):
             self.frozen = (shown.device, x, np.vstack([v, force]))
         for name, axis, across, kept in (
-            ("force over displacement", "x [mm]", 1e3 * x, 0),
-            ("force over velocity", "v [m/s]", v, 1),
+            (f"{axes.force} over displacement", f"x [{axes.length}]", axes.per_length * x, 0),
+            (f"{axes.force} over velocity", f"v [{axes.speed}]", v, 1),
         ):
             implot.SetNextAxesToFit()
             if implot.BeginPlot(name, imgui.Vec2(-1, 190)):
-                implot.SetupAxes(axis, "F [N]")
+                implot.SetupAxes(axis, f"F [{axes.newton}]")
                 if self.frozen and self.frozen[0] == shown.device:
-                    before = 1e3 * self.frozen[1] if kept == 0 else self.frozen[2][0]
+                    before = axes.per_length * self.frozen[1] if kept == 0 else self.frozen[2][0]
                     implot.PlotLine("kept", before, self.frozen[2][1])
                 implot.PlotLine("now", across, force)
                 implot.EndPlot()

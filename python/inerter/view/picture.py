@@ -13,7 +13,7 @@ from inerter.engine_errors import SimulationError
 from inerter.folder import write_files
 from inerter.simulate.checks import engine_warnings
 from inerter.simulate.video import renderer
-from inerter.view.loop import Loop, instant
+from inerter.view.loop import Axes, Loop, instant
 from inerter.view.session import Session
 from inerter.view.shake import Shake
 
@@ -98,10 +98,11 @@ def write_picture(
         axes[0].imshow(scene)
         axes[0].set_axis_off()
     _, x, v, force = loop.last(shown)
-    labels = ("displacement [mm]", "velocity [m/s]")
-    for axis, across, label in zip(axes[-2:], (1e3 * x, v), labels, strict=True):
+    units = Axes.of(session.motion(device))
+    labels = (f"displacement [{units.length}]", f"velocity [{units.speed}]")
+    for axis, across, label in zip(axes[-2:], (units.per_length * x, v), labels, strict=True):
         axis.plot(across, force, linewidth=1)
-        axis.set(xlabel=label, ylabel="force [N]")
+        axis.set(xlabel=label, ylabel=f"{units.force} [{units.newton}]")
         axis.grid(alpha=0.3)
     figure.suptitle(f"{session.path}: {device}", fontsize=10)
     buffer = BytesIO()

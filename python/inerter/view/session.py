@@ -15,8 +15,9 @@ import mujoco
 import numpy as np
 
 from inerter.core import Device, DeviceError, friction_laws, parameters
-from inerter.device_in_model import DeviceInModel
+from inerter.device_in_model import DeviceInModel, motion_of
 from inerter.engine_errors import SimulationError
+from inerter.motion_units import Kind
 from inerter.simulate.load import start
 from inerter.view.compiled import Compiled, compiled
 from inerter.view.sliders import Slider, slider
@@ -76,8 +77,12 @@ class Session:
 
     def sliders(self, name: str) -> list[Slider]:
         """The sliders of a device: present values, ends after the values as stated."""
-        stated = self._compiled.first[name]
-        return [slider(key, value, self._value(name, key)) for key, value in stated.items()]
+        stated, motion = self._compiled.first[name], self.motion(name)
+        return [slider(key, value, self._value(name, key), motion) for key, value in stated.items()]
+
+    def motion(self, name: str) -> Kind:
+        """Whether a device turns or moves along a line."""
+        return motion_of(self.model, self.devices[name].actuator)
 
     def changes(self) -> dict[str, dict[str, float | str]]:
         """What differs from the model file, by device and key."""

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from inerter.core import Device, parameters
+from inerter.motion_units import TRANSLATION, Kind, parameter_unit
 
 # always there, whatever the device states
 USUAL = ("inertance", "viscous", "stiffness")
@@ -61,11 +62,12 @@ def value_of(device: Device, key: str) -> float:
     return device.coulomb_force if key == "static_force" and not math.isfinite(value) else value
 
 
-def slider(key: str, stated: float, value: float) -> Slider:
+def slider(key: str, stated: float, value: float, motion: Kind = TRANSLATION) -> Slider:
     """The slider of a parameter. Its ends lie within what the parameter may be."""
     parameter = parameters()[key]
     reach = TIMES * abs(stated) or TYPICAL.get(key, 1.0)
     low, high = max(parameter.lower, -reach), min(parameter.upper, reach)
     if (parameter.lower_open or _is_numbered(key)) and low == parameter.lower:
         low += 1e-3 * reach
-    return Slider(key, parameter.unit, parameter.meaning, value, low, high)
+    unit = parameter_unit(motion, key, parameter.unit)
+    return Slider(key, unit, parameter.meaning, value, low, high)
