@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from inerter.models import title_of
-from inerter.motion_units import unit
+from inerter.motion_units import Kind, unit
 from inerter.printable import printable
 from inerter.report import text
 from inerter.simulate.record import device_names
@@ -47,8 +47,8 @@ def summary(run: SimulatedRun) -> dict[str, Any]:
 
 def in_units(run: SimulatedRun, translation: str) -> str:
     """A unit of the devices, of which that in translation is given; both where both are there."""
-    motions = dict.fromkeys(device.motion for device in run.devices)
-    return " or ".join(text.unit(unit(motion, translation)) for motion in motions)
+    motions: list[Kind] = [device.motion for device in run.devices]
+    return " or ".join(text.unit(unit(motion, translation)) for motion in dict.fromkeys(motions))
 
 
 def at_rest(run: SimulatedRun, keyframe: str | None) -> str | None:
