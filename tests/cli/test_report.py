@@ -318,7 +318,7 @@ def test_the_ends_where_the_motion_is_not_known_are_not_drawn() -> None:
     inner = np.zeros(len(made.time), bool)
     inner[100:-50] = True
     wild = np.where(inner, made.extended, 1e6)
-    plot = run_plots(replace(made, inner=inner, extended=wild))["time"]
+    plot: Any = run_plots(replace(made, inner=inner, extended=wild))["time"]
     for trace in plot.data:
         if trace.name != "measured":
             assert np.abs(np.asarray(trace.y, float)).max() < 1e3
