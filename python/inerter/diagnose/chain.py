@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from inerter.catalogue.along_stroke import node_of
-from inerter.diagnose.composition import effects_of, is_local, submodel
+from inerter.diagnose.composition import effects_of, is_local, stripped, submodel
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.judge import Judge
 from inerter.diagnose.search import Scored, Search
@@ -143,11 +143,7 @@ def _link(
 ) -> Link:
     errors = judge.rmse(before.model), judge.rmse(after.model)
     counted = judge.counted(before.model), judge.counted(after.model)
-    silent = is_local(effect) and not judge.visible(
-        float(np.hypot(errors[1], judge.difference(before.model, after.model))),
-        errors[1],
-        after.model,
-    )
+    silent = is_local(effect) and _is_silent(search, judge, effect, before.model, after.model)
     masks = search.problem.masks
     if silent:
         # nothing held out goes there: blocks of the other runs, left out in turn, have to tell
@@ -177,6 +173,17 @@ def _link(
         seen_in_blocks=silent,
         stands=stands,
     )
+
+
+def _is_silent(search: Search, judge: Judge, effect: str, before: Model, after: Model) -> bool:
+    """Whether what is held out hardly reaches an effect.
+
+    What it adds to all else as found tells: without it all else may be found wrong, as an inertance
+    that makes up for a stop.
+    """
+    error = judge.rmse(after)
+    apart = [judge.difference(m, after) for m in (before, stripped(after, effect, search.baseline))]
+    return not judge.visible(float(np.hypot(error, min(apart))), error, after)
 
 
 def weakest(chain: Sequence[Link], judge: Judge, model: Model) -> str | None:

@@ -65,7 +65,7 @@ class Data:
 
     def in_band(self, preparation: Preparation) -> Data:
         """The same records, smoothed otherwise."""
-        return divided(self.records, preparation, self.held)
+        return divided(self.records, preparation, self.held, self.split.in_blocks)
 
     def with_play(self, play: Model) -> Data:
         """Runs followed from contacts on, where what is far off behind a play counts little."""
@@ -74,14 +74,19 @@ class Data:
         return replace(self, whole=followed, raw=forgiving(raw, play))
 
 
-def divided(records: Sequence[Record], preparation: Preparation, holdout: Sequence[str]) -> Data:
-    """Runs and splits of smoothed records; `holdout` as in `identify.split.split`."""
+def divided(
+    records: Sequence[Record],
+    preparation: Preparation,
+    holdout: Sequence[str],
+    in_blocks: bool | None = None,
+) -> Data:
+    """Runs and splits of smoothed records; the last two as in `identify.split.split`."""
     force_band = preparation.force_band
     runs = on_clocks([thin(motion, force_band=force_band) for motion in preparation.motions])
     raw = on_clocks([whole(motion) for motion in preparation.motions])
-    parted = split(runs, holdout)
+    parted = split(runs, holdout, in_blocks)
     held = [run.name for i, run in enumerate(runs) if parted.role(i) == "holdout"]
-    full = split(raw, held)
+    full = split(raw, held, parted.in_blocks)
     sizes = scales(runs)
     # noise of a wide band may hide that there is one line
     sizes = replace(sizes, one_tone=sizes.one_tone or preparation.one_line)

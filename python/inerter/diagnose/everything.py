@@ -76,7 +76,9 @@ def _problem(stands: Confirmed, data: Data, found: Excerpts) -> Problem:
     band = replace(band, corner=searched.band.corner)
     shaft = searched.search.runs[0].shaft
     runs = [replace(run, shaft=shaft) for run in weighed_runs(band)]
-    return Problem(runs, split(runs, data.held).fit, searched.search.problem.scales)
+    return Problem(
+        runs, split(runs, data.held, data.split.in_blocks).fit, searched.search.problem.scales
+    )
 
 
 def _refitted(stands: Confirmed, fit: Fit, problem: Problem | None, data: Data) -> Fit:

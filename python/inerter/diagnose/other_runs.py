@@ -80,7 +80,7 @@ def missed_in_words(found: dict[str, float], held: float, motion: Kind = TRANSLA
 
 def tells_alone(data: Data) -> float:
     """Largest share that the held-out runs have in what all runs tell of any combination."""
-    if len(data.runs) < 2:
+    if len(data.runs) < 2 or data.split.in_blocks:
         return 0.0
     known = leverage(data.runs)
     return float(max(known[i] for i in range(len(known)) if data.split.role(i) == "holdout"))
@@ -93,7 +93,7 @@ def other_split(search: Search, data: Data, final: Model, doubt: bool) -> tuple[
     where what is held out alone tells something.
     """
     held = [i for i in range(len(data.runs)) if data.split.role(i) == "holdout"]
-    if len(data.runs) < 2 or not (doubt or tells_alone(data) > TOO_MUCH):
+    if len(data.runs) < 2 or data.split.in_blocks or not (doubt or tells_alone(data) > TOO_MUCH):
         return None
     known = leverage(data.runs)
     sizes = [int(run.inner.sum()) for run in data.runs]

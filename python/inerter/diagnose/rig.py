@@ -41,6 +41,7 @@ from inerter.diagnose.result import (
 )
 from inerter.diagnose.run_constants import constants_in_words, explained
 from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
+from inerter.diagnose.standstill import without_standstill
 from inerter.diagnose.start import Given, prepared
 from inerter.diagnose.statistics import gain_interval
 from inerter.diagnose.unexplained import unexplained
@@ -99,9 +100,10 @@ def diagnose_bench(
     channel = {"delay": delay}
     for name, known in (filters or {}).items():
         channel |= named(name, known)
+    moving, left_out = without_standstill(records)
     given = Given(
-        records=list(records), device=device, holdout=holdout, progress=progress, channel=channel,
-        carry=carry,
+        records=moving, left_out=left_out, device=device, holdout=holdout, progress=progress,
+        channel=channel, carry=carry,
     )  # fmt: skip
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
@@ -251,6 +253,7 @@ def diagnosis_of(
                 missed_in_words(missed, extended.rmse, motion),
                 about_split,
                 steps_in_words(steps, motion),
+                given.left_out,
                 long.in_words() if long else "",
             )
             if note

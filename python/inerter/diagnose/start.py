@@ -39,6 +39,8 @@ class Given:
         `identify.channel_filter`).
     carry
         What the extended device may carry without a name.
+    left_out
+        What of the records was left out before, in a sentence.
     """
 
     records: Sequence[Record]
@@ -47,6 +49,7 @@ class Given:
     progress: Progress = lambda text: None
     channel: Mapping[str, float] = field(default_factory=dict)
     carry: Carrying = "any"
+    left_out: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +107,8 @@ def prepared(given: Given) -> Prepared:
     followed = with_instants(records, plain.motions, baseline, data.full.fit)
     if followed is not records:
         records, plain = followed, at_instants(followed, plain)
-        data = divided(records, at_instants(followed, smoothed), given.holdout)
+        in_blocks = data.split.in_blocks
+        data = divided(records, at_instants(followed, smoothed), given.holdout, in_blocks)
     return Prepared(
         given=given, data=data, plain=plain, baseline=baseline,
         weighed=weighed(records, plain, data.full.fit),

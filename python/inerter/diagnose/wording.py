@@ -262,10 +262,11 @@ def _of_the_mains(finding: Finding) -> str:
 
 
 def is_right(diagnosis: Diagnosis) -> bool:
-    """Whether nothing speaks against the simulation, noise apart."""
+    """Whether nothing speaks against the simulation, noise apart; no run that it misses either."""
     # the floor of a table is its own scatter, which says nothing for the model
     noise = 0.0 if diagnosis.points else 2 * diagnosis.noise_floor
-    return not diagnosis.unexplained.significant and (
+    missed = diagnosis.unexplained.significant or diagnosis.method.get("missed_runs")
+    return not missed and (
         diagnosis.baseline.nrmse < CRITERIA.right or diagnosis.baseline.rmse < noise
     )
 

@@ -62,7 +62,7 @@ def prepared(
         records=records,
         preparation=preparation,
         runs=runs,
-        parted=split(runs, holdout),
+        parted=split(runs, holdout, in_blocks=False),
         raw=raw,
         fixed=fixed,
         holdout=holdout,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identify.information import least_missed
-from inerter.identify.runs import BenchRun
+from inerter.identify.runs import BenchRun, scales
 
 Mask = NDArray[np.bool_]
 
@@ -25,19 +25,25 @@ FOLDS = 5
 
 @dataclass(frozen=True)
 class Split:
-    """Masks per run: samples to learn from, samples held out, and folds within the former."""
+    """Masks per run: samples to learn from, samples held out, and folds within the former.
+
+    in_blocks: whether blocks of every run are held out, no run as a whole.
+    """
 
     fit: list[Mask]
     holdout: list[Mask]
     folds: list[list[Mask]]
     description: str
+    in_blocks: bool = False
 
     def role(self, i: int) -> str:
         """Role of run i: "fit" or "holdout"."""
         return "fit" if self.fit[i].any() else "holdout"
 
 
-def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
+def split(
+    runs: Sequence[BenchRun], holdout: Sequence[str] = (), in_blocks: bool | None = None
+) -> Split:
     """Hold out whole runs where there are several, else blocks of the one.
 
     Parameters
@@ -48,6 +54,9 @@ def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
         Names of runs to hold out, or of runs whose parts are all held out; by default the run
         whose motion is nearest to the others', so that it is judged on what can be learnt from
         them, and another where that one alone tells something (`information`).
+    in_blocks : bool, optional
+        Whether blocks of every run are held out instead; by default where all others have one
+        frequency, and it has another.
 
     Raises
     ------
@@ -58,16 +67,37 @@ def split(runs: Sequence[BenchRun], holdout: Sequence[str] = ()) -> Split:
     named = [name for run in runs for name in holdout if run.part and run.part.run == name]
     chosen = held_runs(names, [name for name in holdout if name not in named])
     chosen |= {i for i, run in enumerate(runs) if run.part and run.part.run in named}
-    if chosen or len(runs) > 1:
-        held = chosen or {_most_typical(runs)}
+    if not chosen and len(runs) > 1:
+        usual = _most_typical(runs)
+        if in_blocks or (in_blocks is None and _has_the_other_frequency(runs, usual)):
+            return _in_blocks(runs)
+        chosen = {usual}
+    if held := chosen:
         everything = [np.ones(run.force.size, bool) for run in runs]
         fit = [m if i not in held else ~m for i, m in enumerate(everything)]
         out = [m if i in held else ~m for i, m in enumerate(everything)]
         text = "held out: " + ", ".join(names[i] for i in sorted(held))
         return Split(fit, out, _folds(runs, fit), text)
 
-    out, text = held_blocks(runs[0].inner, names[0])
-    return Split([~out], [out], _folds(runs, [~out]), text)
+    return _in_blocks(runs)
+
+
+def _in_blocks(runs: Sequence[BenchRun]) -> Split:
+    """Blocks of every run held out."""
+    name = runs[0].name if len(runs) == 1 else "every run"
+    out = [held_blocks(run.inner, name)[0] for run in runs]
+    fit = [~mask for mask in out]
+    return Split(fit, out, _folds(runs, fit), held_blocks(runs[0].inner, name)[1], in_blocks=True)
+
+
+def _has_the_other_frequency(runs: Sequence[BenchRun], held: int) -> bool:
+    """Whether the runs without one have one frequency, though all of them have more.
+
+    Along one frequency a stiffness and a shaft are an inertance of another size.
+    """
+    if any(run.part for run in runs) or scales(runs).one_tone:
+        return False
+    return scales([run for i, run in enumerate(runs) if i != held]).one_tone
 
 
 def held_runs(names: Sequence[str], holdout: Sequence[str]) -> set[int]:

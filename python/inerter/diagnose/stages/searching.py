@@ -112,9 +112,9 @@ def _harmonics(start: Prepared) -> float:
 def search_in(start: Prepared, band: Preparation) -> Search:
     """A search in which errors count by the noise of the motion."""
     runs = weighed_runs(band)
-    parted, progress = split(runs, start.data.held), start.given.progress
+    parted = split(runs, start.data.held, start.data.split.in_blocks)
     return Search(
-        runs, parted, start.baseline, progress, witness=start.data.witness,
+        runs, parted, start.baseline, start.given.progress, witness=start.data.witness,
         one_tone=start.data.band.scales.one_tone,
     )  # fmt: skip
 
