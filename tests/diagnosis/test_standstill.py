@@ -70,3 +70,12 @@ def test_friction_is_found_in_swings_that_come_to_rest() -> None:
     assert levels.value == pytest.approx(FRICTION, rel=0.02)
     assert diagnosis.extended.rmse < 0.15 * diagnosis.baseline.rmse
     assert "Most of the time nothing moves" in diagnosis.verdict
+
+
+@pytest.mark.turns(3)
+def test_of_one_free_swing_no_stiffness_takes_the_place_of_inertance() -> None:
+    """Its motion follows from its force: b a + f is -(k/m) b x + f (1 - b/m) for any share of b."""
+    diagnosis = diagnose_bench([swing(8.0, 0.02)])
+    assert "parallel_stiffness" not in [finding.effect for finding in diagnosis.findings]
+    assert diagnosis.parameters["coulomb_force"].value == pytest.approx(FRICTION, rel=0.02)
+    assert diagnosis.parameters["inertance"].value == pytest.approx(INERTANCE, rel=0.02)

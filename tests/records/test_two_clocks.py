@@ -124,3 +124,23 @@ def test_a_displacement_is_integrated(kind: str, tmp_path: Path) -> None:
 
     smooth = [gaussian_filter1d(values, 20)[200:-200] for values in (again, a)]
     assert np.std(smooth[0] - smooth[1]) < 0.02 * np.std(smooth[1])
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02])
+def test_slow_motions_stay_in_the_integral_of_a_quiet_velocity(
+    offset: float, tmp_path: Path
+) -> None:
+    """Noise that walks some 50 um takes no 40 mm of slow motion away; an offset is seen, too."""
+    time = np.arange(0, 40, 2e-3)
+    slow, fast = 2 * np.pi * 0.1, 2 * np.pi * 3.0
+    x = 0.02 * np.sin(slow * time) + 0.004 * np.sin(fast * time)
+    v = 0.02 * slow * np.cos(slow * time) + 0.004 * fast * np.cos(fast * time)
+    v += offset + 2e-4 * np.random.default_rng(5).standard_normal(time.size)
+    path = tmp_path / "a.csv"
+    np.savetxt(
+        path, np.column_stack([time, v, np.sin(time)]), delimiter=",", header="t,v [m/s],F [N]",
+        comments="", fmt="%.9g",
+    )  # fmt: skip
+    (record,) = read_records(path, "bench")
+    assert ("constant offset" in record.reading) == bool(offset)
+    assert np.std(record.displacement - x) < (0.25 if offset else 0.01) * np.std(x)

@@ -30,6 +30,8 @@ SMOOTH = frozenset(name for name, effect in EFFECTS.items() if effect.smooth)
 """Effects that are linear in the motion."""
 # share of the largest eigenvalue of a correlation below which one is no more than rounding
 _ROUNDING = 1e-5
+# inertance [kg or kg m^2] below which a fit has come to none
+_NO_INERTANCE = 1e-6
 # how well a coordinate is known before any data: the exponent of a gas lies between 1 and 1.7.
 # A shallow compression does not tell exponent, force and height of a gas apart
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
@@ -44,6 +46,15 @@ def has_series(model: Model) -> bool:
 def is_local(effect: str) -> bool:
     """Whether an effect may show in few stretches, or in one run alone."""
     return effect in EFFECTS and EFFECTS[effect].local
+
+
+def is_turned(model: Model) -> bool:
+    """Whether a negative stiffness stands in the place of all inertance.
+
+    Along one sine that is the same, and along a free swing too: its motion follows from its force.
+    """
+    inertance, stiffness = (model.values.get(name, 0.0) for name in ("inertance", "stiffness"))
+    return stiffness < 0.0 and "inertance" in model.free and inertance < _NO_INERTANCE
 
 
 def is_shaft(effect: str) -> bool:

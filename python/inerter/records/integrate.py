@@ -1,9 +1,10 @@
 """A displacement from what was measured in its place: velocity, acceleration, two accelerometers.
 
-What is integrated drifts: an offset of the sensor grows into a ramp, its slow noise into a walk.
-Taken out of the integral is whatever is slower than a quarter of the slowest motion: a polynomial
-and the cosines below that frequency, fitted by least squares. Slow changes of place that were real
-go with it; the highest of what was taken out is told.
+What is integrated drifts: an offset of the sensor grows into a ramp, its noise into a walk. Taken
+out of the integral is a polynomial, and of an acceleration whatever is slower than a quarter of the
+slowest motion: the cosines below that frequency, fitted by least squares. Slow changes of place
+that were real go with it; the highest of what was taken out is told. A velocity whose noise walks
+nowhere keeps them: an offset is taken out of it alone, where its integral has a trend.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from .runs import Part
 SLOWEST = 0.01  # share of a channel's power below its slowest motion
 SHARE = 0.25  # of the slowest frequency: below it is drift
 MOST_COSINES = 200
+TREND = 2.0  # times what chance makes of a line through a motion, from which it is an offset
+WALK = 0.02  # of the way that is moved: what noise may walk where slow motions are kept
 
 
 def with_displacement(
@@ -48,11 +51,15 @@ def with_displacement(
     columns["displacement"] = made
     small = unit(motion, "mm")
     times = "once" if order == 1 else "twice"
-    notes.append(
-        f"displacement = {source}, integrated {times}; a drift of up to "
-        f"{1e3 * np.max(np.abs(drift)):.3g} {small} was taken out, and with it whatever moves "
-        f"slower than {SHARE * slowest:.2g} Hz (the motion spans {1e3 * np.ptp(made):.3g} {small})"
-    )
+    most, spans = (f"{1e3 * size:.3g} {small}" for size in (np.max(np.abs(drift)), np.ptp(made)))
+    said = f"a drift of up to {most} was taken out"
+    if slowest:
+        said += f", and with it whatever moves slower than {SHARE * slowest:.2g} Hz"
+    elif drift.any():
+        said += ", as of a constant offset"
+    else:
+        said = "no drift is to be seen, and none was taken out"
+    notes.append(f"displacement = {source}, integrated {times}; {said} (the motion spans {spans})")
     ordered = {"time": columns["time"], "displacement": made}
     return ordered | columns, notes
 
@@ -60,7 +67,7 @@ def with_displacement(
 def integrated(time: Array, values: Array, order: int) -> tuple[Array, Array, float]:
     """Integral of values (n,) at times (n,), once or twice, the drift taken out of it [SI].
 
-    Also the drift (n,) and the frequency [Hz] of the slowest motion.
+    Also the drift (n,) and the frequency [Hz] of the slowest motion, 0 where slow motions stay.
     """
     slowest = slowest_motion(time, values)
     start = time - time[0]
@@ -68,6 +75,11 @@ def integrated(time: Array, values: Array, order: int) -> tuple[Array, Array, fl
         make_interp_spline(start, values - values.mean(), k=3).antiderivative(order)(start)
     )
     span = start[-1]
+    if order == 1 and _walk(values, span) < WALK * np.ptp(raw):
+        slowest = 0.0
+        plain = raw + values.mean() * start
+        if not _has_trend(start, plain):
+            return plain, np.zeros_like(plain), slowest
     count = min(MOST_COSINES, int(2 * span * SHARE * slowest))
     u = start / span
     basis = [u**k for k in range(order + 1)] + [np.cos(np.pi * k * u) for k in range(1, count + 1)]
@@ -77,6 +89,26 @@ def integrated(time: Array, values: Array, order: int) -> tuple[Array, Array, fl
     made = raw - drift
     # from the start on, as displacements are often told
     return made, drift - drift[0], slowest
+
+
+def _walk(velocity: Array, span: float) -> float:
+    """How far the noise of a velocity (n,), taken as white, walks in a time [s]: rms [m]."""
+    noise = 1.4826 * float(np.median(np.abs(np.diff(velocity, 2)))) / np.sqrt(6.0)
+    return noise * span / np.sqrt(velocity.size)
+
+
+def _has_trend(time: Array, x: Array) -> bool:
+    """Whether a displacement (n,) grows in time by more than a motion without a trend may do.
+
+    Each way of it counts as one value: a line through so many is off by that much.
+    """
+    slope, middle = np.polyfit(time, x, 1)
+    rest = x - (slope * time + middle)
+    size = float(np.std(rest))
+    sides = np.sign(rest[np.abs(rest) > 0.5 * size])
+    ways = 1 + np.count_nonzero(np.diff(sides))
+    chance = np.sqrt(12.0 / ways) * size
+    return bool(abs(slope) * time[-1] > TREND * chance)
 
 
 def slowest_motion(time: Array, values: Array) -> float:

@@ -13,6 +13,7 @@ from inerter.diagnose.composition import (
     bristle_is_known,
     effects_of,
     is_distinct,
+    is_turned,
     simpler_laws,
     stripped,
 )
@@ -97,8 +98,12 @@ def identified(search: Search, baseline: Model, final: Scored) -> Scored:
     """A model without the effects whose own parameters may be none: these are not named.
 
     An effect may have been sure when it was found, and lose its value to one found later. What
-    varies along the stroke leaves the level that it varies about.
+    varies along the stroke leaves the level that it varies about. A stiffness in the place of all
+    inertance is that inertance.
     """
+    if is_turned(final.model):
+        turned = search.problem.fit(stripped(final.model, "parallel_stiffness", baseline))
+        return identified(search, baseline, search.score("", None, turned))
     for effect, _ in effects_of(final.model, baseline):
         if effect == "backlash" and not search.is_felt(final.model):
             shaft = final.model.without(("backlash",))
