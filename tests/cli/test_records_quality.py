@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from inerter.records import Record, VehicleRecord, check_records, read_records
-from inerter.records.quality import outlier_rows
+from inerter.records.quality import find_inconsistent_motion, outlier_rows
 
 RATE = 1000.0
 INERTANCE = 60.0
@@ -330,3 +330,18 @@ def test_reading_warns(tmp_path: Path) -> None:
     found = [[w.code for w in r.warnings] for r in read_records(tmp_path)]
     assert found == [["sign_flip"], ["sign_flip", "duplicate_record"]]
     assert all(r.warnings == () for r in read_records(tmp_path, check=False))
+
+
+@pytest.mark.parametrize("rate", [500.0, 1370.0, 10000.0])
+def test_a_right_acceleration_is_not_doubted_at_any_rate(rate: float) -> None:
+    """A slow motion sampled fast: 40 mm in steps of 3 um, noise of 2.4 um."""
+    time = np.arange(0, 10, 1 / rate)
+    turn = 2 * np.pi * 1.18
+    random = np.random.default_rng(1)
+    x = 0.04 * np.sin(turn * time) + random.normal(0, 2.4e-6, time.size)
+    x = np.round(x / 3.05e-6) * 3.05e-6
+    a = -(turn**2) * 0.04 * np.sin(turn * time) + random.normal(0, 0.02, time.size)
+    record = Record(name="a", time=time, displacement=x, force=400 * a, acceleration=a)
+    assert not find_inconsistent_motion(record).warnings
+    wrong = dataclasses.replace(record, acceleration=a / 9.81)
+    assert [w.code for w in find_inconsistent_motion(wrong).warnings] == ["unit_suspect"]
