@@ -57,6 +57,15 @@ def test_a_tone_above_the_band_is_told_before_what_is_not_there() -> None:
     assert "Else it shows no dependence" in text
 
 
+def test_what_lies_above_the_band_is_told_from_what_is_left_below() -> None:
+    text = summary([], {}, {}, 14.5, 2.9, 0.0, False, None, beyond=(3.0, 40.0))
+    assert "most of it lies above the 40 Hz up to which the motion is told from noise" in text
+    assert "Below, 3 N rms are left, and that shows no dependence" in text
+    # of noise nothing is said
+    quiet = summary([], {}, {}, 1.0, 0.9, 0.0, False, None, beyond=(0.5, 40.0))
+    assert "above" not in quiet
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("effect", "seed"), [("viscoelasticity", 2844657545), ("friction_drift", 89049161)]

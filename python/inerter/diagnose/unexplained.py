@@ -54,6 +54,8 @@ MOST = 3
 # more than this many times the noise, and this share of the force, is no noise whatever it is
 EXCESS = 2.0
 EXCESS_PART = 0.05
+# share of what remains up to which its part in the band is so small that the rest is told of
+BELOW = 0.7
 # an rms this many times what the median tells of a normal distribution is made by few large errors
 BLOWS = 5.0
 
@@ -150,6 +152,7 @@ def unexplained(
         _usual(whole, whole_residual, split, runs, raw),
         runs[0].motion,
         above,
+        (left, min(run.cutoff for run in runs)) if left < BELOW * raw else None,
     )
     return Unexplained(
         significant=significant,

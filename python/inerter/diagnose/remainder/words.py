@@ -41,6 +41,7 @@ def summary(
     usual: float | None = None,
     motion: Kind = TRANSLATION,
     above: tuple[float, float, float] | None = None,
+    beyond: tuple[float, float] | None = None,
 ) -> str:
     """One paragraph.
 
@@ -63,6 +64,9 @@ def summary(
     above
         Frequency [Hz] and rms [N] of a tone in what remains, and the end of the motion's band [Hz],
         above which it lies.
+    beyond
+        Rms of what remains up to the end of the motion's band [N], and that end [Hz], where most
+        lies above it.
     """
     newton, force = words(motion, "N"), force_word(motion)
     blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} {newton}"
@@ -81,6 +85,13 @@ def summary(
                 f"is more than this noise: {size:.3g} {newton} rms of it is a tone of "
                 f"{frequency:.3g} Hz, above the {end:.3g} Hz up to which the motion is told from "
                 "noise, a ringing of the drive for example. Else it "
+            )
+        elif more and beyond:
+            size, end = beyond
+            more = (
+                f"is more than this noise: most of it lies above the {end:.3g} Hz up to which "
+                "the motion is told from noise, where nothing can be told of it. Below, "
+                f"{size:.3g} {newton} rms are left, and that "
             )
         return (
             f"{start} {more}shows no dependence on position, velocity, acceleration, time, "
