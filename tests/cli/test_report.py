@@ -313,6 +313,12 @@ def test_a_curve_is_one_row_of_the_parameters() -> None:
     assert "1.0 1.1 1.2" not in shown
 
 
+def test_an_engine_that_strays_is_named() -> None:
+    made = replace(two_runs(), engines={"mujoco": 1.1, "exudyn": 8.8, "reference": 1.11})
+    assert "Exudyn cannot follow this device" in Reader(render_report(made, TOML, XML)).text
+    assert "cannot follow" not in Reader(render_report(two_runs(), TOML, XML)).text
+
+
 def test_the_ends_where_the_motion_is_not_known_are_not_drawn() -> None:
     made = run("a")
     inner = np.zeros(len(made.time), bool)

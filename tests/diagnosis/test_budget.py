@@ -196,6 +196,12 @@ def test_a_predictor_that_does_worse_predicts_nothing_more() -> None:
     assert "Strokes" not in budget.sentence
 
 
+def test_what_tests_foretell_is_not_said_to_be_unpredictable() -> None:
+    budget = budget_of(10.0, 1.0, 1.0, None, foretold=0.8)
+    assert "a flexible predictor took nothing more away on data left out" in budget.sentence
+    assert "nothing more was predictable" not in budget.sentence
+
+
 def test_what_can_be_predicted_together_is_said_to_remain() -> None:
     """Where no test alone found it, the text does not say that there is nothing."""
     quiet = Unexplained(

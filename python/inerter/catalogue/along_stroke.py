@@ -24,6 +24,8 @@ from inerter.catalogue.coordinate import Coordinate, OfScales
 
 PERIODS, NODES = 3, 33
 """Largest numbers of periods and of nodes that a fit has."""
+TURN = 2 * np.pi
+"""The period about an axis of a weight out of balance [rad]."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,8 @@ class Quantity:
             return "flanks"
         if any(name.startswith(f"{self.name}_node_") for name in names):
             return "curve"
-        return "period" if self.period(1)[0] in names else None
+        periods = {name for i in range(1, PERIODS + 1) for name in self.period(i)}
+        return None if names.isdisjoint(periods) else "period"
 
 
 QUANTITIES = (

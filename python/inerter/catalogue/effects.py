@@ -210,7 +210,8 @@ _ALL = (
         telling=_FORCE.amplitudes, reported=_FORCE.reported, tells_law=True, unlike_friction=True,
         plain="a force of the place along the stroke",
         meaning="a curve F(x), or a sum of sines of x",
-        cause="magnets and teeth that lock at places, detents, cams, a misaligned guide",
+        cause="magnets and teeth that lock at places, detents, cams, a misaligned guide; about an "
+        "axis a weight out of balance",
         taken_for="a spring that is not straight, or friction that changes along the stroke",
         experiment="move slowly both ways, this force does not change sign with the direction",
         rivals=("hardening_stiffness", "position_dependent_friction"),

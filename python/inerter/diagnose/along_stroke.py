@@ -13,13 +13,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.catalogue.along_stroke import NODES, PERIODS, QUANTITIES, Quantity, curves_of_nodes
+from inerter.catalogue.along_stroke import (
+    NODES,
+    PERIODS,
+    QUANTITIES,
+    TURN,
+    Quantity,
+    curves_of_nodes,
+)
 from inerter.catalogue.friction import FRICTION
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
+from inerter.motion_units import ROTATION
 
 Array = NDArray[np.float64]
 # of a function of the place and its derivative by it: what it adds to the force
@@ -61,6 +69,8 @@ def candidates(problem: Problem, fit: Fit, curves: bool = True) -> Iterator[Cand
         if effect is not None:
             shown = _Shown(x, v > 0, residual, effect, ends, fewest, least)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
+            if quantity.name == "force" and problem.runs[0].motion == ROTATION and not one_tone:
+                yield from _weight(quantity, fit.model, shown)
             if curves and not one_tone:
                 yield from _curved(quantity, fit.model, shown)
 
@@ -135,6 +145,20 @@ def _periodic(
     ]
     if starts:
         yield Candidate(quantity.effect, "period", tuple(starts))
+
+
+def _weight(quantity: Quantity, model: Model, shown: _Shown) -> Iterator[Candidate]:
+    """One period a turn, as of a weight out of balance, however little of a turn is moved."""
+    periods = [quantity.period(i) for i in range(1, PERIODS + 1)]
+    lengths = [model.values.get(length) for length, *_ in periods]
+    if TURN in lengths or None not in lengths:
+        return
+    length, *amplitudes = periods[lengths.index(None)]
+    gain, found = _gain(np.column_stack([np.cos(shown.x), np.sin(shown.x)]), shown.residual)
+    if gain > _WORTH:
+        begin = dict(zip(amplitudes, map(float, found), strict=True))
+        start = model.holding(**{length: TURN}).adding(None, **begin)
+        yield Candidate(quantity.effect, "period", (start,))
 
 
 def _curved(quantity: Quantity, model: Model, shown: _Shown) -> Iterator[Candidate]:

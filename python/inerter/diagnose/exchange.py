@@ -21,6 +21,7 @@ from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on
 from inerter.diagnose.trials import FAR
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
+from inerter.motion_units import ROTATION
 from inerter.parallel_steps import parallel
 
 if TYPE_CHECKING:
@@ -98,7 +99,9 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
     """A plain part in the place of a rich one, or of a shaft that stands for any slow sine."""
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)
-    for model in filter(search.may_be, as_plain_part(current.model, search.longest, frequency)):
+    turns = search.runs[0].motion == ROTATION
+    plain = as_plain_part(current.model, search.longest, frequency, turns)
+    for model in filter(search.may_be, plain):
         fit = search.problem.fit(model)
         if none or fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
             scored = search.score("exchange", None, fit)

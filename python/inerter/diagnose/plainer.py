@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from inerter.catalogue.along_stroke import QUANTITIES
+from inerter.catalogue.along_stroke import PERIODS, QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES
 from inerter.diagnose.composition import level_and_distance
@@ -64,14 +64,17 @@ def as_spring(model: Model) -> list[Model]:
     return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
 
 
-def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
+def as_plain_part(
+    model: Model, longest: float, frequency: float, turns: bool = False
+) -> list[Model]:
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
-    That is damping that bends with the speed either way, a branch that hardly relaxes in the
-    longest run [s], or so soon that it follows a motion of this frequency [Hz], a curve of the
-    force, and a shaft on which little turns or so softly that it does not follow the motion.
+    About an axis a weight comes before all of these. That is damping that bends with the speed
+    either way, a branch that hardly relaxes in the longest run [s], or so soon that it follows a
+    motion of this frequency [Hz], a curve of the force, and a shaft on which little turns or so
+    softly that it does not follow the motion.
     """
-    found = []
+    found = _as_weight(model) if turns else []
     if "inertance" in model.free and _has_plain_shaft(model):
         rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
         found.append(rigid)
@@ -90,6 +93,23 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
             damping = model.values.get("viscous", 0.0) + size * lasts
             found.append(bare.adding(None, viscous=damping))
     return [*found, *_as_one_that_bends_less(model), *_as_law_of_the_place(model)]
+
+
+def _as_weight(model: Model) -> list[Model]:
+    """A weight out of balance for a torque that bends with the angle: a period of one turn."""
+    periods = [_FORCE.period(i) for i in range(1, PERIODS + 1)]
+    lengths = [model.values.get(length) for length, *_ in periods]
+    bends = {"stiffness_cubic", *_FORCE.nodes} & set(model.free)
+    if not bends or TURN in lengths or None not in lengths:
+        return []
+    springs = ("stiffness", "stiffness_cubic", "force_offset", *_FORCE.nodes)
+    bare = model.without([name for name in springs if name in model.free])
+    length, cosine, sine = periods[lengths.index(None)]
+    begin = {
+        cosine: model.values.get("force_offset", 0.0),
+        sine: model.values.get("stiffness", 0.0),
+    }
+    return [bare.holding(**{length: TURN}).adding(None, **begin)]
 
 
 def _as_one_that_bends_less(model: Model) -> list[Model]:

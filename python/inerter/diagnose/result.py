@@ -288,6 +288,7 @@ class Diagnosis:
             self.repeatability,
             self.motion,
             carried=kept["rmse_after"] if kept else None,
+            foretold=self.unexplained.structure,
         )
 
     @property

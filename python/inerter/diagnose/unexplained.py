@@ -146,7 +146,7 @@ def unexplained(
         shares,
         raw,
         floor,
-        structure,
+        min(structure, raw),
         excess,
         proposal["text"] if proposal else None,
         _usual(whole, whole_residual, split, runs, raw),
@@ -159,7 +159,8 @@ def unexplained(
         fraction=fraction,
         depends_on=depends,
         summary=text,
-        structure=max(structure, no_noise) if significant else 0.0,
+        # of the fitted data's errors it may be more than the held-out ones are
+        structure=min(max(structure, no_noise), raw) if significant else 0.0,
         tests=tests,
         false_alarm_rate=FALSE_ALARM,
         proposal=proposal,

@@ -235,7 +235,8 @@ def evidence(finding: Finding) -> str:
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
-    return in_digits(text + f"{_of_the_mains(finding)}{_of_a_gear(finding)}.")
+    guess = f"{_of_the_mains(finding)}{_of_a_gear(finding)}{_of_a_weight(finding)}"
+    return in_digits(f"{text}{guess}.")
 
 
 def _of_a_gear(finding: Finding) -> str:
@@ -248,6 +249,13 @@ def _of_a_gear(finding: Finding) -> str:
         f"; {millimetres:.3g} mm is one turn of a gear of {millimetres / (2 * math.pi):.3g} mm "
         "radius or of a screw of that lead, or the pitch of its teeth"
     )
+
+
+def _of_a_weight(finding: Finding) -> str:
+    """What a torque that is told to repeat with every turn could be."""
+    if "force_amplitude_1" in finding.parameters and "force_period_1" not in finding.parameters:
+        return "; once a turn: a weight that is out of balance about the axis"
+    return ""
 
 
 def _of_the_mains(finding: Finding) -> str:

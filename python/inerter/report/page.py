@@ -36,6 +36,8 @@ from inerter.report.subject import subject
 
 # share of what remains below which a quantity it goes with is not shown
 LEAST_SHOWN = 0.05
+# times the extended model's error from which an engine's is another
+STRAYS = 1.1
 # entries of `method` that have a place of their own on the page
 _PLACED = ("cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants")
 _METHOD_WORDS = {
@@ -96,6 +98,7 @@ def render_report(diagnosis: Diagnosis, device_toml: str, model_xml: str) -> str
         carried=kept,
         proposed=_proposed(diagnosis),
         engines=_engines(diagnosis),
+        strays=_strays(diagnosis),
         method=_method(diagnosis.method),
         device_toml=device_toml,
         model_xml=model_xml,
@@ -311,6 +314,16 @@ def _proposed(diagnosis: Diagnosis) -> list[dict[str, str]]:
 def _engines(diagnosis: Diagnosis) -> list[tuple[str, float | None]]:
     names = dict.fromkeys([*ENGINES, *diagnosis.engines])
     return [(ENGINES.get(name, name), diagnosis.engines.get(name)) for name in names]
+
+
+def _strays(diagnosis: Diagnosis) -> list[str]:
+    """Engines whose figure is another one than that of the extended model."""
+    own = diagnosis.extended.rmse
+    return [
+        name
+        for name, value in _engines(diagnosis)
+        if value is not None and not 1 / STRAYS < value / max(own, 1e-300) < STRAYS
+    ]
 
 
 def _method(method: dict[str, Any]) -> list[tuple[str, str]]:

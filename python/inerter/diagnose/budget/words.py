@@ -32,6 +32,8 @@ class Budget:
         What differs between strokes that repeat, over all runs; None where too few repeat.
     motion : str
         What the device does; in rotation read N m for N.
+    foretold : float
+        What tests, one by one, foretell of the rest.
     """
 
     baseline: float
@@ -41,6 +43,7 @@ class Budget:
     rest: float
     repeatability: float | None = None
     motion: Kind = TRANSLATION
+    foretold: float = 0.0
 
     def parts(self) -> list[tuple[str, str, float]]:
         """Key, words and size [N] of each part."""
@@ -70,6 +73,8 @@ class Budget:
             "name"
             if self.predictable > LEAST * whole
             else "nothing more was predictable"
+            if self.foretold <= LEAST * whole
+            else "a flexible predictor took nothing more away on data left out"
         )
         text = (
             f"Of {self.baseline:.3g} {newton} rms, {named}, {more}, and {self.rest:.3g} {newton} "
@@ -87,10 +92,12 @@ def budget_of(
     repeatability: float | None,
     motion: Kind = TRANSLATION,
     carried: float | None = None,
+    foretold: float = 0.0,
 ) -> Budget:
     """The budget of a held-out error [N] of the baseline, the extended model and the predictor.
 
     carried: that of the extended device with what it carries; None where it carries nothing.
+    foretold: what tests, one by one, foretell of what is left [N].
     """
     kept = extended if carried is None else carried
     # a ceiling that is the extended model's own error differs from it by rounding
@@ -103,4 +110,5 @@ def budget_of(
         rest=least,
         repeatability=repeatability,
         motion=motion,
+        foretold=foretold,
     )
