@@ -134,3 +134,18 @@ def test_friction_at_a_low_rate_is_no_noise(
     assert found.noise_floor < 0.25
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize(("lower", "slack"), [(-0.0007, True), (-55.0, False)])
+def test_a_limit_at_no_force_is_called_slack(lower: float, slack: bool) -> None:
+    finding = Finding(
+        effect="sensor_saturation",
+        law="lower",
+        confidence=1.0,
+        parameters={"force_minimum": ParameterValue(lower, 0.0012, "N")},
+        rmse_before=2.0,
+        rmse_after=1.0,
+        evidence="",
+        rivals=[],
+    )
+    assert ("goes slack" in evidence(finding)) == slack

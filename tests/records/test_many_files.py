@@ -139,6 +139,12 @@ def test_no_advice_drops_a_unit(tmp_path: Path) -> None:
     assert "'F [V]' is in V" in said
 
 
+def test_of_a_current_the_motors_constant_is_asked_for(tmp_path: Path) -> None:
+    said = refusal(written(tmp_path / "a.csv", "t;x [rad];i6 [A]", ROW), "force='i6 [A]'")
+    assert "is a current; state the motor's constant" in said
+    assert "--column force='0.5 N*m/A * i6'" in said
+
+
 def test_two_columns_that_may_be_meant_are_both_shown(tmp_path: Path) -> None:
     rows = [f"{row};1.5" for row in ROW]
     path = written(tmp_path / "a.csv", "t;Position [mm];Extension [mm];F [N]", rows)
@@ -177,6 +183,7 @@ def test_a_calibration_is_stated_and_remembered(tmp_path: Path) -> None:
     [
         ("u", 2.0), ("'u [kN]'", 2000.0), ("-1 * u", -2.0), ("-u", -2.0), ("u / 4", 0.5),
         ("3 N/V * u", 6.0), ("3 kN/V * (u - 1 V)", 3000.0), ("2 lbf/V * u", 17.792886461042),
+        ("u * 3 N/V", 6.0), ("u * 2", 4.0), ("'u' * 1 N*m", 2.0),
     ],
 )  # fmt: skip
 def test_formulas(text: str, value: float, tmp_path: Path) -> None:

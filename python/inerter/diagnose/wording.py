@@ -235,8 +235,8 @@ def evidence(finding: Finding) -> str:
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
-    guess = f"{_of_the_mains(finding)}{_of_a_gear(finding)}{_of_a_weight(finding)}"
-    return in_digits(f"{text}{guess}.")
+    guesses = (_of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack)
+    return in_digits(f"{text}{''.join(guess(finding) for guess in guesses)}.")
 
 
 def _of_a_gear(finding: Finding) -> str:
@@ -255,6 +255,17 @@ def _of_a_weight(finding: Finding) -> str:
     """What a torque that is told to repeat with every turn could be."""
     if "force_amplitude_1" in finding.parameters and "force_period_1" not in finding.parameters:
         return "; once a turn: a weight that is out of balance about the axis"
+    return ""
+
+
+def _of_what_goes_slack(finding: Finding) -> str:
+    """That a force with a limit at 0 is no end of a channel's range."""
+    limits = [finding.parameters.get(name) for name in ("force_minimum", "force_maximum")]
+    if any(limit is not None and abs(limit.value) < 3 * limit.stderr for limit in limits):
+        return (
+            "; a limit at no force is no end of a channel's range: the device goes slack, or a "
+            "contact opens"
+        )
     return ""
 
 

@@ -30,6 +30,7 @@ _LEFT = re.compile(
     rf"({_NUMBER})((?:\s+|(?<=\d))[A-Za-zµ%°](?:[^()*]|(?<=\S)\*(?=\S))*?)?\s+\*\s+(.+)|({_NUMBER})\s*\*\s*(.+)"
 )
 _RIGHT = re.compile(rf"(.+?)\s+/\s+({_NUMBER})\s*([A-Za-zµ%°][^()]*)?")
+_AFTER = re.compile(rf"(.+?)\s+\*\s+({_NUMBER})\s*([A-Za-zµ%°][^()]*)?")
 _INNER = re.compile(rf"\(\s*(.+?)\s+([+-])\s+(start|{_NUMBER}\s*[A-Za-zµ%°/^*0-9]*)\s*\)")
 _OUTER = re.compile(rf"(.+?)\s+([+-])\s+(start|{_NUMBER}\s*[A-Za-zµ%°][A-Za-zµ%°/^*0-9]*)")
 _EVERY = re.compile(rf"every\s+({_NUMBER})\s*([a-zµ]+)")
@@ -134,6 +135,8 @@ def _formula(text: str, where: str) -> Statement:
             (match[1], match[2], match[3]) if match[1] else (match[4], "", match[5])
         )
         gain = (float(number), (unit or "").strip())
+    elif match := _AFTER.fullmatch(rest):
+        rest, gain = match[1], (float(match[2]), (match[3] or "").strip())
     elif match := _RIGHT.fullmatch(rest):
         if float(match[2]) == 0:
             raise RecordError(f"{where}: {text!r} divides by 0; correct it")
@@ -269,7 +272,8 @@ def _factor(
 ) -> tuple[float, Kind | None]:
     value, own = stated.gain or (1.0, "")
     if not own:
-        return value * si_factor(name, unit, where), motion_of_unit(name, unit)
+        column = bare_name(stated.column) if stated.column else "NAME"
+        return value * si_factor(name, unit, where, column), motion_of_unit(name, unit)
     registry, target = unit_registry(), parse_unit(QUANTITIES[name].unit)
     gain = registry.Quantity(value, parse_unit(own))
     if unit is None:

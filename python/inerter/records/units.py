@@ -111,6 +111,11 @@ def si_factor(name: str, unit: str | None, where: str, column: str = "NAME") -> 
             f"{where}: {name} is in {unit}; state its calibration, such as --column "
             f"{name}='200 {quantity.unit}/{unit} * {column}'"
         )
+    if quantity is FORCE and parsed.dimensionality == parse_unit("A").dimensionality:
+        raise RecordError(
+            f"{where}: {name} is a current; state the motor's constant, such as --column "
+            f"{name}='0.5 N*m/{unit} * {column}' for a torque, or N/{unit} for a force"
+        )
     if turns(name, parsed):
         return float((1 * parsed).to_base_units().magnitude)
     if parsed.dimensionality != parse_unit(quantity.unit).dimensionality:
