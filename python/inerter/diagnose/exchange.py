@@ -17,7 +17,14 @@ from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws, within_blur
 from inerter.diagnose.decision import CRITERIA, loss
 from inerter.diagnose.low_passes import other_filter
-from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
+from inerter.diagnose.plainer import (
+    as_one,
+    as_plain_part,
+    as_spring,
+    as_weight,
+    swings_on,
+    with_own_spring,
+)
 from inerter.diagnose.trials import FAR
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
@@ -30,7 +37,7 @@ if TYPE_CHECKING:
 
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
-    for other in (other_filter, _plainer_law, _spring_beside, plain_part, _one_cause):
+    for other in (other_filter, _plainer_law, _spring_beside, plain_part, _weight, _one_cause):
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
     return current
@@ -99,13 +106,25 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
     """A plain part in the place of a rich one, or of a shaft that stands for any slow sine."""
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)
-    turns = search.runs[0].motion == ROTATION
-    plain = as_plain_part(current.model, search.longest, frequency, turns)
-    for model in filter(search.may_be, plain):
+    for model in filter(search.may_be, as_plain_part(current.model, search.longest, frequency)):
         fit = search.problem.fit(model)
         if none or fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
             scored = search.score("exchange", None, fit)
             if none or loss(scored, current) < CRITERIA.gain:
+                return scored
+    return None
+
+
+def _weight(search: Search, current: Scored) -> Scored | None:
+    """A weight out of balance in the place of a torque that bends with the angle."""
+    if search.runs[0].motion != ROTATION:
+        return None
+    masks = search.problem.masks
+    for model in filter(search.may_be, as_weight(current.model)):
+        fit = search.problem.fit(model)
+        if fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
+            scored = search.score("exchange", None, fit)
+            if loss(scored, current) < CRITERIA.gain:
                 return scored
     return None
 

@@ -64,17 +64,14 @@ def as_spring(model: Model) -> list[Model]:
     return [model.without(EFFECTS["end_stop"].coordinates).adding(None, **spring)]
 
 
-def as_plain_part(
-    model: Model, longest: float, frequency: float, turns: bool = False
-) -> list[Model]:
+def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
-    About an axis a weight comes before all of these. That is damping that bends with the speed
-    either way, a branch that hardly relaxes in the longest run [s], or so soon that it follows a
-    motion of this frequency [Hz], a curve of the force, and a shaft on which little turns or so
-    softly that it does not follow the motion.
+    That is damping that bends with the speed either way, a branch that hardly relaxes in the
+    longest run [s], or so soon that it follows a motion of this frequency [Hz], a curve of the
+    force, and a shaft on which little turns or so softly that it does not follow the motion.
     """
-    found = _as_weight(model) if turns else []
+    found = []
     if "inertance" in model.free and _has_plain_shaft(model):
         rigid, swings = model.without(_SHAFT), model.values["series_frequency"]
         found.append(rigid)
@@ -95,7 +92,7 @@ def as_plain_part(
     return [*found, *_as_one_that_bends_less(model), *_as_law_of_the_place(model)]
 
 
-def _as_weight(model: Model) -> list[Model]:
+def as_weight(model: Model) -> list[Model]:
     """A weight out of balance for a torque that bends with the angle: a period of one turn."""
     periods = [_FORCE.period(i) for i in range(1, PERIODS + 1)]
     lengths = [model.values.get(length) for length, *_ in periods]

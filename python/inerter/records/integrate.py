@@ -55,10 +55,8 @@ def with_displacement(
     said = f"a drift of up to {most} was taken out"
     if slowest:
         said += f", and with it whatever moves slower than {SHARE * slowest:.2g} Hz"
-    elif drift.any():
-        said += ", as of a constant offset"
     else:
-        said = "no drift is to be seen, and none was taken out"
+        said += ", as of a constant offset" if drift.any() else ", as none is to be seen"
     notes.append(f"displacement = {source}, integrated {times}; {said} (the motion spans {spans})")
     ordered = {"time": columns["time"], "displacement": made}
     return ordered | columns, notes
