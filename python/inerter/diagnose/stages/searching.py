@@ -181,7 +181,11 @@ def without_curves(
     # on the same blocks, and as errors count for whichever has a shaft
     judge = again if other.model.shaft else search
     told, drawn = (judge.score_on_blocks(each.fit) for each in (other, final))
-    less = other.complexity < final.complexity
+    plain, curved = (dict(effects_of(each.model, start.baseline)) for each in (other, final))
+    # a curve may have drawn two causes, beside which all others stay
+    beside = {name for name, law in curved.items() if law not in ("curve", "flanks")}
+    most = len(curved) + (beside <= plain.keys())
+    less = other.complexity < final.complexity and len(plain) <= most
     return (again, other) if less and loss(told, drawn) < CRITERIA.gain else (search, final)
 
 
