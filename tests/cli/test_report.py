@@ -21,7 +21,7 @@ from inerter.pictures.plotting import to_script
 from inerter.report import text
 from inerter.report.figures import loop_figure
 from inerter.report.output import write_outputs
-from inerter.report.page import render_report
+from inerter.report.page import headline, render_report
 from inerter.report.run_plots import run_plots
 from inerter.report.terminal import print_summary
 from made_reports import CASES, HOSTILE, TOML, XML, diagnosis, run, table_only, two_runs
@@ -311,6 +311,14 @@ def test_a_curve_is_one_row_of_the_parameters() -> None:
     assert "a curve through 17 places from -2 to 14 N (each ± 0.5 N at most)" in shown
     assert "3 values" in shown
     assert "1.0 1.1 1.2" not in shown
+
+
+def test_what_misses_a_fitted_run_is_not_called_right() -> None:
+    made = two_runs()
+    right = replace(made, findings=[], baseline=replace(made.baseline, rmse=1.0, nrmse=0.001))
+    assert headline(right) == "No lack of the simulation is to be seen in these data"
+    missed = replace(right, method={**right.method, "missed_runs": {"a": 40.0}})
+    assert headline(missed) == "The simulation misses the force, and no known effect explains it"
 
 
 def test_an_engine_that_strays_is_named() -> None:

@@ -67,3 +67,22 @@ def test_few_runs_are_left_out_in_blocks_and_many_as_they_are(count: int, whole:
         assert set(np.unique(shares)) == {0.0, 1.0}
     else:
         assert shares == pytest.approx(0.25, abs=0.01)
+
+
+def test_of_two_runs_of_one_frequency_each_blocks_of_both_are_held_out() -> None:
+    """With one of them held out a shaft and a stiffness would be an inertance of another size."""
+    slow, quick = run("slow", -0.02, 0.02, seconds=30.0), run("quick", -0.01, 0.01, 4.0, 30.0)
+    found = split([slow, quick])
+    assert found.in_blocks
+    assert found.description == "held out: blocks 4, 7, 9 of 10 of every run"
+    assert [found.role(i) for i in (0, 1)] == ["fit", "fit"]
+    assert all(0.25 < mask.mean() < 0.35 for mask in found.holdout)
+    # of one and the same frequency, of three, and where the user or a command says so, a whole run
+    again, third = run("again", -0.01, 0.01, seconds=30.0), run("third", -0.015, 0.015, 5.0, 30.0)
+    for runs, holdout, in_blocks in (
+        ([slow, again], (), None),
+        ([slow, quick, third], (), None),
+        ([slow, quick], ("quick",), None),
+        ([slow, quick], (), False),
+    ):
+        assert not split(runs, holdout, in_blocks).in_blocks

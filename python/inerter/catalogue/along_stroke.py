@@ -66,6 +66,13 @@ class Quantity:
         name = self.name
         return f"{name}_period_{number}", f"{name}_cosine_{number}", f"{name}_sine_{number}"
 
+    def period_of_a_turn(self, values: Mapping[str, float]) -> tuple[str, str, str] | None:
+        """Coordinates that a period of one turn may have; None where it is there, or no place."""
+        periods = [self.period(i) for i in range(1, PERIODS + 1)]
+        if any(values.get(length) == TURN for length, *_ in periods):
+            return None
+        return next((each for each in periods if each[0] not in values), None)
+
     def node(self, number: int) -> str:
         """Coordinate of a curve's node, from 1 on."""
         return self.nodes[number - 1]

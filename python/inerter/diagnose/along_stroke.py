@@ -149,11 +149,10 @@ def _periodic(
 
 def _weight(quantity: Quantity, model: Model, shown: _Shown) -> Iterator[Candidate]:
     """One period a turn, as of a weight out of balance, however little of a turn is moved."""
-    periods = [quantity.period(i) for i in range(1, PERIODS + 1)]
-    lengths = [model.values.get(length) for length, *_ in periods]
-    if TURN in lengths or None not in lengths:
+    names = quantity.period_of_a_turn(model.values)
+    if names is None:
         return
-    length, *amplitudes = periods[lengths.index(None)]
+    length, *amplitudes = names
     gain, found = _gain(np.column_stack([np.cos(shown.x), np.sin(shown.x)]), shown.residual)
     if gain > _WORTH:
         begin = dict(zip(amplitudes, map(float, found), strict=True))

@@ -30,7 +30,7 @@ SMOOTH = frozenset(name for name, effect in EFFECTS.items() if effect.smooth)
 """Effects that are linear in the motion."""
 # share of the largest eigenvalue of a correlation below which one is no more than rounding
 _ROUNDING = 1e-5
-# inertance [kg or kg m^2] below which a fit has come to none
+# share of the force below which what an inertance makes of it is none
 _NO_INERTANCE = 1e-6
 # how well a coordinate is known before any data: the exponent of a gas lies between 1 and 1.7.
 # A shallow compression does not tell exponent, force and height of a gas apart
@@ -48,13 +48,14 @@ def is_local(effect: str) -> bool:
     return effect in EFFECTS and EFFECTS[effect].local
 
 
-def is_turned(model: Model) -> bool:
+def is_turned(model: Model, sizes: Scales) -> bool:
     """Whether a negative stiffness stands in the place of all inertance.
 
     Along one sine that is the same, and along a free swing too: its motion follows from its force.
     """
     inertance, stiffness = (model.values.get(name, 0.0) for name in ("inertance", "stiffness"))
-    return stiffness < 0.0 and "inertance" in model.free and inertance < _NO_INERTANCE
+    none = inertance * sizes.acceleration < _NO_INERTANCE * sizes.force
+    return stiffness < 0.0 and "inertance" in model.free and none
 
 
 def is_shaft(effect: str) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from inerter.catalogue.along_stroke import PERIODS, QUANTITIES, TURN
+from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES
 from inerter.diagnose.composition import level_and_distance
@@ -94,14 +94,12 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
 
 def as_weight(model: Model) -> list[Model]:
     """A weight out of balance for a torque that bends with the angle: a period of one turn."""
-    periods = [_FORCE.period(i) for i in range(1, PERIODS + 1)]
-    lengths = [model.values.get(length) for length, *_ in periods]
-    bends = {"stiffness_cubic", *_FORCE.nodes} & set(model.free)
-    if not bends or TURN in lengths or None not in lengths:
+    names = _FORCE.period_of_a_turn(model.values)
+    if names is None or {"stiffness_cubic", *_FORCE.nodes}.isdisjoint(model.free):
         return []
     springs = ("stiffness", "stiffness_cubic", "force_offset", *_FORCE.nodes)
     bare = model.without([name for name in springs if name in model.free])
-    length, cosine, sine = periods[lengths.index(None)]
+    length, cosine, sine = names
     begin = {
         cosine: model.values.get("force_offset", 0.0),
         sine: model.values.get("stiffness", 0.0),

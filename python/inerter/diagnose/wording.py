@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from inerter.catalogue.along_stroke import FORMS, node_of
+from inerter.catalogue.along_stroke import FORMS, PERIODS, node_of
 from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
@@ -253,7 +253,12 @@ def _of_a_gear(finding: Finding) -> str:
 
 def _of_a_weight(finding: Finding) -> str:
     """What a torque that is told to repeat with every turn could be."""
-    if "force_amplitude_1" in finding.parameters and "force_period_1" not in finding.parameters:
+    told = finding.parameters.keys()
+    turns = (
+        f"force_amplitude_{i}" in told and f"force_period_{i}" not in told
+        for i in range(1, PERIODS + 1)
+    )
+    if any(turns):
         return "; once a turn: a weight that is out of balance about the axis"
     return ""
 

@@ -101,7 +101,7 @@ def identified(search: Search, baseline: Model, final: Scored) -> Scored:
     varies along the stroke leaves the level that it varies about. A stiffness in the place of all
     inertance is that inertance.
     """
-    if is_turned(final.model):
+    if is_turned(final.model, search.problem.scales):
         turned = search.problem.fit(stripped(final.model, "parallel_stiffness", baseline))
         return identified(search, baseline, search.score("", None, turned))
     for effect, _ in effects_of(final.model, baseline):
