@@ -224,7 +224,7 @@ static int check_gas(InerterDevice* device, char* message) {
   }
   if (device->gas_area == 0) {
     return refuse(message,
-                  "gas_area is %s, but gas_pressure is %g Pa; give gas_area > 0 m^2 (or "
+                  "gas_area is %s, but gas_pressure is %g Pa; give a gas_area other than 0 m^2 (or "
                   "piston_area) or remove gas_pressure",
                   inerter_is_given(device, INERTER_INDEX_gas_area) ? "0 m^2" : "unset",
                   device->gas_pressure);

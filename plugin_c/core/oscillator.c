@@ -20,13 +20,18 @@
 
 enum { S, W };  // places in z
 
-static const double kFactorial[] = {1, 1, 2, 6, 24, 120, 720};
-
 // turns [rad] of a step from which on it is not resolved
 static const double kUnresolved = 16.0;
 // turns of a step below which powers are summed, and how many at most
 static const double kShort = 2.0;
 enum { MOST_POWERS = 40 };
+// 1 / (n + 5)
+static const double kShare[] = {1. / 5,  1. / 6,  1. / 7,  1. / 8,  1. / 9,  1. / 10, 1. / 11,
+                                1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17, 1. / 18,
+                                1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25,
+                                1. / 26, 1. / 27, 1. / 28, 1. / 29, 1. / 30, 1. / 31, 1. / 32,
+                                1. / 33, 1. / 34, 1. / 35, 1. / 36, 1. / 37, 1. / 38, 1. / 39,
+                                1. / 40, 1. / 41, 1. / 42, 1. / 43, 1. / 44};
 
 void decay_driven(double rate, double t, double* driven) {
   double power[RESPONSES];  // t^k / k!
@@ -52,28 +57,34 @@ void decay_driven(double rate, double t, double* driven) {
   }
 }
 
-static void find_driven(const Oscillator* o, Swing* swing) {
-  double t = swing->time, damping = o->damping / o->mass, stiffness = o->stiffness / o->mass;
+// where little turns in a step: powers of the answer to a blow, 0, 1, and what the equation makes of
+// them
+static Swing short_swing(double damping, double stiffness, double turns, double t) {
+  double before = 0, now = 1, bound = 1, square = t * t / 2, cube = square * t / 3;
+  double fourth = cube * t / 4, power = fourth * t / 5;
+  Swing swing = {.time = t, .decay = 0.5 * damping, .scale = 1, .driven = {0}};
+  double* driven = swing.driven;
+  for (int n = 1; n < MOST_POWERS && bound > 1e-17; n++) {
+    double next = -damping * now - stiffness * before, share = kShare[n];
+    driven[3] += now * power;
+    power *= t * share;
+    driven[4] += now * power;
+    before = now;
+    now = next;
+    bound *= turns * share;
+  }
+  driven[2] = fourth - damping * driven[3] - stiffness * driven[4];
+  driven[1] = cube - damping * driven[2] - stiffness * driven[3];
+  driven[0] = square - damping * driven[1] - stiffness * driven[2];
+  swing.odd = t - damping * driven[0] - stiffness * driven[1];
+  swing.even = 1 - damping * swing.odd - stiffness * driven[0] + swing.decay * swing.odd;
+  return swing;
+}
+
+static void find_driven(double damping, double stiffness, Swing* swing) {
+  double t = swing->time, decay = swing->decay;
   double* driven = swing->driven;
-  double turns = damping * t + sqrt(stiffness) * t, decay = swing->decay;
-  if (turns < kShort) {
-    // powers of an answer to a blow: 0, 1, and what the equation makes of them
-    double before = 0, now = 1, bound = 1, power = t * t * t * t * t / 120;
-    driven[3] = driven[4] = 0;
-    for (int n = 1; n < MOST_POWERS && bound > 1e-17; n++) {
-      driven[3] += now * power;
-      driven[4] += now * power * t / (n + 5);
-      double next = -damping * now - stiffness * before;
-      before = now;
-      now = next;
-      power *= t / (n + 5);
-      bound *= turns / (n + 5);
-    }
-    for (int k = 4; k > 1; k--) {
-      double force = pow(t, k) / kFactorial[k];
-      driven[k - 2] = force - damping * driven[k - 1] - stiffness * driven[k];
-    }
-  } else if (decay * decay > 1.5 * stiffness) {
+  if (decay * decay > 1.5 * stiffness) {
     double rate = sqrt(decay * decay - stiffness), quick[RESPONSES], slow[RESPONSES];
     decay_driven(decay + rate, t, quick);
     decay_driven(stiffness / (decay + rate), t, slow);
@@ -93,7 +104,12 @@ static void find_driven(const Oscillator* o, Swing* swing) {
 }
 
 Swing oscillator_swing(const Oscillator* o, double t) {
-  double decay = 0.5 * o->damping / o->mass, square = o->stiffness / o->mass - decay * decay;
+  double damping = o->damping / o->mass, stiffness = o->stiffness / o->mass;
+  double turns = damping * t + sqrt(stiffness) * t;
+  if (turns < kShort) {
+    return short_swing(damping, stiffness, turns, t);
+  }
+  double decay = 0.5 * damping, square = stiffness - decay * decay;
   double scale = exp(-decay * t), even, odd;
   if (fabs(square) * t * t < 1e-8) {
     even = 1 - 0.5 * square * t * t;
@@ -109,11 +125,11 @@ Swing oscillator_swing(const Oscillator* o, double t) {
     odd = 0.5 * (slow - fast) / rate;
     scale = 1;
   }
-  if (square > 0 && o->stiffness / o->mass * t * t > kUnresolved * kUnresolved) {
+  if (square > 0 && stiffness * t * t > kUnresolved * kUnresolved) {
     scale = 0;  // a ring that no sample shows has died away
   }
   Swing swing = {t, decay, scale, even, odd, {0}};
-  find_driven(o, &swing);
+  find_driven(damping, stiffness, &swing);
   return swing;
 }
 

@@ -10,9 +10,17 @@ GAS_AREA = 1e-3
 
 
 def gas(values: Values) -> None:
-    area = values.setdefault("gas_area", values.get("piston_area", GAS_AREA))
+    area = abs(values.setdefault("gas_area", values.get("piston_area", GAS_AREA)))
     values["gas_pressure"] = values.pop("gas_push") / area
     values["gas_volume"] = values.pop("gas_reach") * area
+
+
+def gas_above(values: Values) -> None:
+    """Of one that is compressed as the device lengthens."""
+    values.setdefault("gas_area", -values.get("piston_area", GAS_AREA))
+    for name in ("push", "reach"):
+        values[f"gas_{name}"] = values.pop(f"gas_{name}_above")
+    gas(values)
 
 
 def branch(values: Values) -> None:

@@ -91,7 +91,7 @@ class Effect:
     def parameters(self) -> tuple[str, ...]:
         """Device parameters that a finding reports."""
         known = (COORDINATES[name] for name in self.coordinates if name in COORDINATES)
-        return self.reported or tuple(name for each in known for name in each.words)
+        return self.reported or tuple(dict.fromkeys(name for each in known for name in each.words))
 
     @property
     def amplitudes(self) -> tuple[str, ...]:
@@ -189,9 +189,11 @@ _ALL = (
     ),
     Effect(
         name="gas_spring", rank=20,
-        coordinates=("gas_push", "gas_reach", "gas_exponent"),
-        telling=("gas_push",), stated_as=("gas_pressure", "gas_volume"), local=True,
-        unlike_friction=True, plain="a gas spring", meaning="p0 A (1 - (1 + A x / V0)^-gamma)",
+        coordinates=(
+            "gas_push", "gas_push_above", "gas_reach", "gas_reach_above", "gas_exponent",
+        ),
+        telling=("gas_push", "gas_push_above"), stated_as=("gas_pressure", "gas_volume"),
+        local=True, unlike_friction=True, plain="a gas spring", meaning="p0 A (1 - (1 + A x / V0)^-gamma)",
         cause="trapped air, an accumulator", taken_for="a parallel stiffness",
         experiment="repeat with more compression, a gas stiffens on one side only",
         rivals=("parallel_stiffness",),

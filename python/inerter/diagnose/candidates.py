@@ -207,17 +207,18 @@ def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
 
 
 def _gas(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    stated = {"gas_push", "gas_pressure"} & model.values.keys()
+    stated = {"gas_push", "gas_push_above", "gas_pressure"} & model.values.keys()
     if stated or not np.isfinite(sizes.travel).all():
         return
-    deepest = max(-sizes.travel[0], 0.1 * sizes.displacement)
-    starts = tuple(
-        model.adding(
-            gas_push=0.3 * sizes.force * ratio, gas_reach=deepest * ratio, gas_exponent=1.3
-        )
-        for ratio in (1.2, 2.0, 5.0)
-    )
-    yield Candidate(effect.name, None, starts)
+    # compressed as the device shortens, or on the other side of a piston as it lengthens
+    for side, far in (("", -sizes.travel[0]), ("_above", sizes.travel[1])):
+        deepest = max(far, 0.1 * sizes.displacement)
+        starts = []
+        for ratio in (1.2, 2.0, 5.0):
+            push, reach = 0.3 * sizes.force * ratio, deepest * ratio
+            gas = {f"gas_push{side}": push, f"gas_reach{side}": reach, "gas_exponent": 1.3}
+            starts.append(model.adding(None, **gas))
+        yield Candidate(effect.name, None, tuple(starts))
 
 
 def _saturation(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:

@@ -138,14 +138,21 @@ def _as_law_of_the_place(model: Model) -> list[Model]:
     bare = model.without(nodes)
     spring = _with_spring(bare, *np.polyfit(places, forces, 1))
     found = [spring, spring.adding(None, stiffness_cubic=0.0)]
-    if places[0] < 0.0 and not {"gas_push", "gas_pressure"} & model.values.keys():
-        found += _as_gas(bare, places, forces)
+    if not {"gas_push", "gas_push_above", "gas_pressure"} & model.values.keys():
+        found += _as_gas(bare, places, forces, "")
+        found += _as_gas(bare, -places[::-1], -forces[::-1], "_above")
     return found
 
 
-def _as_gas(bare: Model, places: Array, forces: Array) -> list[Model]:
-    """The gas, among some heights of it, that comes nearest to forces at places below its rest."""
+def _as_gas(bare: Model, places: Array, forces: Array, side: str) -> list[Model]:
+    """The gas, among some heights of it, that comes nearest to forces at places below its rest.
+
+    side: "_above" of one that is compressed as the device lengthens, whose places and forces are
+    given with the other sign.
+    """
     nearest, gas = np.inf, []
+    if not places[0] < 0.0:
+        return []
     for ratio in (1.2, 1.6, 2.5, 5.0):
         reach = -ratio * places[0]
         columns = np.column_stack([1.0 - (1.0 + places / reach) ** -_EXPONENT, 0.0 * places + 1.0])
@@ -153,8 +160,9 @@ def _as_gas(bare: Model, places: Array, forces: Array) -> list[Model]:
         missed = float(np.sum((columns @ (push, offset) - forces) ** 2))
         if push > 0.0 and missed < nearest:
             nearest = missed
-            law = {"gas_push": float(push), "gas_reach": reach, "gas_exponent": _EXPONENT}
-            offset += bare.values.get("force_offset", 0.0)
+            law = {f"gas_push{side}": float(push), f"gas_reach{side}": reach}
+            law["gas_exponent"] = _EXPONENT
+            offset = (-offset if side else offset) + bare.values.get("force_offset", 0.0)
             gas = [bare.adding(None, **law, force_offset=float(offset))]
     return gas
 

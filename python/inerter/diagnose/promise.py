@@ -9,10 +9,15 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
+from inerter.identify.beside import Followers, counted_columns, fit_beside
 from inerter.identify.fit import Near, Problem
 from inerter.identify.model import Model
+from inerter.identify.smoothness import smoothness
 
 Array = NDArray[np.float64]
+
+# coordinates that a candidate adds at most for a search over them alone
+MOST_NEW = 8
 
 
 class Known:
@@ -20,29 +25,66 @@ class Known:
 
     def __init__(self, problem: Problem, model: Model) -> None:
         self.problem, self.model = problem, model
+        self._followers: dict[tuple[object, ...], Followers] = {}
+
+    def __getstate__(self) -> dict[str, object]:
+        """What another process is told: bases are soon worked out again."""
+        return {**self.__dict__, "_followers": {}}
 
     @cached_property
     def columns(self) -> Array:
         """By the model's free coordinates, over all samples, (n, p)."""
         return self.problem.derivatives(self.model, counted=True)
 
-    def near(self, problem: Problem, start: Model) -> Near | None:
-        """Derivatives of a problem near a start that adds to the model; None of another one.
-
-        The problem may have the first parts of the runs.
-        """
-        same = all(start.values.get(name) == self.model.values[name] for name in self.model.free)
-        if start.friction != self.model.friction or not set(self.model.free) <= set(start.free):
-            return None
-        if not same:
-            return None
+    def _rows(self, problem: Problem) -> NDArray[np.intp]:
+        """Which of the samples a problem has that may have the first parts of the runs."""
         sizes = [run.force.size for run in self.problem.runs]
         begins = np.cumsum([0, *sizes[:-1]])
         pairs = zip(begins, problem.runs, strict=True)
-        rows = np.concatenate([begin + np.arange(run.force.size) for begin, run in pairs])
-        added = tuple(name for name in start.free if name not in self.model.free)
-        columns = np.empty((rows.size, len(start.free)))
-        columns[:, [start.free.index(name) for name in self.model.free]] = self.columns[rows]
+        return np.concatenate([begin + np.arange(run.force.size) for begin, run in pairs])
+
+    def beside(
+        self, problem: Problem, start: Model, evaluations: int, tolerance: float
+    ) -> Model | None:
+        """A fit of what a start adds to the model, all else following as is known here.
+
+        The problem may have the first parts of the runs. None where much is new, where what is not
+        new is not as it was, or where no force is finite. Of another friction law than the model's
+        all but its level along the stroke is new.
+        """
+        common = tuple(name for name in start.free if name in self.model.free)
+        same = all(start.values[name] == self.model.values[name] for name in common)
+        new = len(start.free) - len(common)
+        if not same or not common or new > MOST_NEW:
+            return None
+        nodes = start.free if len(smoothness(start)) else ()
+        key = (id(problem), common, nodes)
+        if key not in self._followers:
+            rows = self._rows(problem)[np.concatenate(problem.masks)]
+            columns = np.zeros((rows.size, len(start.free)))
+            which = [start.free.index(name) for name in common]
+            known = [self.model.free.index(name) for name in common]
+            columns[:, which] = self.columns[rows][:, known]
+            counted = counted_columns(problem, start, columns)[:, which]
+            self._followers[key] = Followers.of(common, counted)
+        return fit_beside(problem, start, self._followers[key], evaluations, tolerance)
+
+    def near(self, problem: Problem, start: Model, loosely: bool = False) -> Near | None:
+        """Derivatives of a problem near a start that adds to the model; None of another one.
+
+        The problem may have the first parts of the runs. Loosely also of a start that has come some
+        way from the model, or whose friction law is another: what is not known is worked out.
+        """
+        common = [name for name in start.free if name in self.model.free]
+        same = all(start.values.get(name) == self.model.values[name] for name in self.model.free)
+        adds = start.friction == self.model.friction and len(common) == len(self.model.free)
+        if not (loosely or (same and adds)):
+            return None
+        added = tuple(name for name in start.free if name not in common)
+        columns = np.empty((sum(run.force.size for run in problem.runs), len(start.free)))
+        known = [self.model.free.index(name) for name in common]
+        rows = self.columns[self._rows(problem)]
+        columns[:, [start.free.index(name) for name in common]] = rows[:, known]
         columns[:, [start.free.index(name) for name in added]] = problem.derivatives(
             start, added, counted=True
         )

@@ -11,6 +11,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.decision import CRITERIA, does_as_well, plainest
 from inerter.diagnose.instead import fitted_instead, others
+from inerter.diagnose.promise import Known
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
@@ -106,7 +107,8 @@ def _from_where_it_stands(
         for candidate in others(search, final, effect, kept)
         if candidate.effect in {*EFFECTS[effect].rivals} - near
     ]
-    fits = parallel(lambda c: search.trials.fit(c, (FAR * reach, np.inf), reach), usual)
+    known, limits = Known(search.problem, kept), (FAR * reach, np.inf)
+    fits = parallel(lambda c: search.trials.fit(c, limits, reach, known), usual)
     return [*fitted, *zip(usual, fits, strict=True)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.promise import Known, Promise
 from inerter.diagnose.sized import Sized
-from inerter.identify.fit import Fit, Problem, rms
+from inerter.identify.fit import Fit, Near, Problem, rms
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
 
@@ -41,6 +42,8 @@ AT_LEAST = 1.5
 FORETOLD = 0.5
 # how many times what a step foretells a candidate may take of the square of an error
 AT_BEST = 3.0
+# coordinates of a model from which on starting points are compared beside it
+MANY = 10
 # errors this near belong to the same fit
 SAME = 1e-5
 # sizes of a play that are followed; between two that are five times apart a fit goes astray
@@ -97,6 +100,11 @@ def of_each_size(starts: Sequence[Model], errors: Sequence[float]) -> list[Model
     return list(best.values())[:SIZES]
 
 
+def has_much(known: Known | None) -> TypeGuard[Known]:
+    """Whether what is known is of a model with so much free that it is not worked out at once."""
+    return known is not None and len(known.model.free) >= MANY
+
+
 def _asked_for(candidate: Candidate, model: Model) -> bool:
     """Whether other candidates are judged by it: another friction law, a delay."""
     return candidate.effect == "sensor_delay" or candidate.starts[0].friction != model.friction
@@ -122,15 +130,21 @@ class Trials:
         return {**self.__dict__, "_rounds": []}
 
     def fit(
-        self, candidate: Candidate, limits: Limits = (np.inf, np.inf), reach: float = np.inf
+        self,
+        candidate: Candidate,
+        limits: Limits = (np.inf, np.inf),
+        reach: float = np.inf,
+        known: Known | None = None,
     ) -> Fit:
         """Best fit over a candidate's starting points, which are compared on part of the data.
 
         What after a few steps from each of them is not below the first of the `limits` [N], or on
         that part anywhere near the second, is not followed further; nor what does not come down to
-        what is within `reach` [N] at its pace.
+        what is within `reach` [N] at its pace. Derivatives `known` of a model with much that is
+        free, which the candidate adds to, are begun with.
         """
-        return self._followed(self._rough(candidate, limits), limits[0], reach)
+        known = known if has_much(known) else None
+        return self._followed(self._rough(candidate, limits, known), limits[0], reach, known)
 
     def _rough(self, candidate: Candidate, limits: Limits, known: Known | None = None) -> list[Fit]:
         """A few steps from the best starting points, with derivatives `known` of most of it."""
@@ -145,7 +159,7 @@ class Trials:
             starts = best
         fits = []
         for start in starts:
-            near = known.near(self.problem, start) if known else None
+            near = known.near(self.problem, start, has_much(known)) if known else None
             fit = self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, near=near)
             elsewhere = known and start.friction != known.model.friction
             on_its_way = limits[0] <= fit.rmse(self.problem.masks) < ON_ITS_WAY * limits[0]
@@ -168,6 +182,10 @@ class Trials:
 
         trials: list[Fit] = []
         for start in starts:
+            beside = known.beside(part, start, evaluations, 1e-3) if has_much(known) else None
+            if beside:
+                trials.append(self._as_is(part, beside))
+                continue
             near = known.near(part, start) if known else None
             trials.append(
                 part.fit(
@@ -183,14 +201,33 @@ class Trials:
         near_best = [fit.model for fit in trials[:2] if fit.rmse(part.masks) < NEAR * best]
         return near_best or [trials[0].model]
 
-    def _followed(self, rough: Sequence[Fit], limit: float, reach: float = np.inf) -> Fit:
+    @staticmethod
+    def _as_is(problem: Problem, model: Model) -> Fit:
+        """A model as it is, whose errors nobody asks for."""
+        size = len(model.free)
+        return Fit(model, problem.residual(model), np.zeros((size, size)), 1, rough=True)
+
+    def _followed(
+        self,
+        rough: Sequence[Fit],
+        limit: float,
+        reach: float = np.inf,
+        known: Known | None = None,
+    ) -> Fit:
         """The best of them; those below a limit [N] are followed to their end first.
 
         What cannot come down to what is within `reach` [N] at its pace is followed no further.
+        Derivatives that are `known` of most of a model with much that is free are begun with.
         """
         masks = self.problem.masks
+
+        def near(fit: Fit) -> Near | None:
+            return known.near(self.problem, fit.model, loosely=True) if has_much(known) else None
+
         fits = [
-            self.problem.fit(fit.model, MOST, tolerance=ROUGH, give_up=Pace(reach).hopeless)
+            self.problem.fit(
+                fit.model, MOST, tolerance=ROUGH, give_up=Pace(reach).hopeless, near=near(fit)
+            )
             if fit.evaluations >= FEW and fit.rmse(masks) < limit
             else fit
             for fit in rough
@@ -250,7 +287,8 @@ class Trials:
                 if not aim:
                     reach = within_shortlist(so_far)
                 followed = parallel(
-                    lambda r, limit=limit, reach=reach: self._followed(r, limit, reach), rough
+                    lambda r, limit=limit, reach=reach: self._followed(r, limit, reach, at_current),
+                    rough,
                 )
                 found += zip(likely_enough, followed, strict=True)
             return found

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,7 +31,18 @@ def robust_weight(residual: Array, typical: float, loss: str) -> Array:
     }[loss]
 
 
-def sandwich(jacobian: Array, residual: Array, weight: Array, held: Array | None = None) -> Array:
+# shares of the information along any direction that one block counts as having at most: what one
+# block alone tells no other can contradict
+_MOST_LEVERAGE = 0.9
+
+
+def sandwich(
+    jacobian: Array,
+    residual: Array,
+    weight: Array,
+    held: Array | None = None,
+    left_out: bool = False,
+) -> Array:
     """Covariance of a least-squares estimate, robust against correlated residuals, shape (p, p).
 
     Residuals of neighbouring samples are correlated, so the scores are summed over blocks before
@@ -43,16 +56,42 @@ def sandwich(jacobian: Array, residual: Array, weight: Array, held: Array | None
         Rows, in the residual's unit, whose squares the fit counted besides: what it was held to.
         The bias by that counts as large as the fit takes it to be, which is what a smoothing
         spline's intervals cover with (Nychka 1988).
+    left_out : bool
+        Take each block's residuals as a fit without the block would leave them, a jackknife
+        (MacKinnon and White 1985; Bell and McCaffrey 2002). A fit draws what it leaves towards
+        itself, most where few blocks tell something, and two standard errors hold in 91 % of short
+        records in the place of 95 %. It takes longer.
     """
     blocks = np.array_split(np.arange(residual.size), min(60, max(residual.size // 20, 2)))
     weighted = weight * residual
     scores = np.array([jacobian[block].T @ weighted[block] for block in blocks])
     information = jacobian.T @ (weight[:, None] * jacobian)
+    prior = np.zeros_like(information) if held is None else held.T @ held
     count = len(blocks)
-    spread = scores.T @ scores * count / max(count - 1, 1)
+    bread: Array = np.asarray(np.linalg.pinv(information + prior))
+    if left_out:
+        roots = np.sqrt(weight)[:, None] * jacobian
+        scores = _without_own(scores, [roots[block] for block in blocks], bread)
+        spread = scores.T @ scores * (count - 1) / count
+    else:
+        spread = scores.T @ scores * count / max(count - 1, 1)
     if held is not None:
-        prior = held.T @ held
-        information = information + prior
         spread = spread + np.mean(weighted**2) * prior
-    bread = np.linalg.pinv(information)
     return bread @ spread @ bread
+
+
+def _without_own(scores: Array, blocks: Sequence[Array], bread: Array) -> Array:
+    """Scores (blocks, p) as the residuals of fits without each block make them.
+
+    blocks: weighted derivatives (m, p) of each; bread: inverse of the information of all (p, p).
+    """
+    sizes, directions = np.linalg.eigh(bread)
+    known = sizes > 1e-14 * sizes[-1]
+    roots = np.sqrt(sizes[known])
+    there, back = directions[:, known] * roots, directions[:, known] / roots
+    found = []
+    for score, rows in zip(scores, blocks, strict=True):
+        shares, turns = np.linalg.eigh((rows @ there).T @ (rows @ there))
+        shares = np.clip(shares, 0.0, _MOST_LEVERAGE)
+        found.append(back @ (turns @ ((turns.T @ (there.T @ score)) / (1 - shares))))
+    return np.array(found)

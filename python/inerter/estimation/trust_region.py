@@ -27,6 +27,8 @@ _SHORTER = 0.25
 _MET, _TRIES = 0.01, 10
 # share of the way to a bound that is gone at least
 _NEARLY = 0.995
+# distance of a start from 0 that is none
+_NOT_FAR = 1e-7
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
@@ -67,7 +69,9 @@ def trust_region(
         gradient = columns.T @ here
         room, slope = _room(point, gradient, bounds)
         if radius < 0:
-            radius = float(np.linalg.norm(point / np.sqrt(room))) or 1.0
+            # as wide as the start is far from 0; one beside a bound at 0 tells nothing
+            far = float(np.linalg.norm(point / np.sqrt(room)))
+            radius = far if far > _NOT_FAR else 1.0
         steepest = float(np.max(np.abs(gradient * room), initial=0.0))
         ended = ended or steepest < tolerances.gradient
         if ended or done >= evaluations:

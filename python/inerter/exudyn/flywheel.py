@@ -137,10 +137,10 @@ def _gas(f: Functions, p: Parameters, y: Value) -> Value:
     """Force of the enclosed gas against the atmosphere [N]."""
     push, fill, gamma = _gas_numbers(p)
     if p.gas_law == "expanded":
-        within = f.least(y, 1.0 / ((gamma + 1.0) * fill))
+        within = _growing(f, y, 1.0 / ((gamma + 1.0) * fill))
         return gamma * push * fill * within * (1.0 - 0.5 * (gamma + 1.0) * fill * within)
     edge = (LEAST_VOLUME - 1.0) / fill
-    within = f.greatest(y, edge)
+    within = _pressed(f, y, edge)
     tangent = gamma * push * fill * LEAST_VOLUME ** (-gamma - 1.0)
     return push * (1.0 - f.power(1.0 + fill * within, -gamma)) + tangent * (y - within)
 
@@ -149,17 +149,27 @@ def _gas_energy(f: Functions, p: Parameters, y: Value) -> Value:
     """Integral of the gas force from 0 to y [J]."""
     push, fill, gamma = _gas_numbers(p)
     if p.gas_law == "expanded":
-        within = f.least(y, 1.0 / ((gamma + 1.0) * fill))
+        within = _growing(f, y, 1.0 / ((gamma + 1.0) * fill))
         share = 0.5 - (gamma + 1.0) * fill * within / 6.0
         inside = gamma * push * fill * within * within * share
         return inside + _gas(f, p, within) * (y - within)
-    within = f.greatest(y, (LEAST_VOLUME - 1.0) / fill)
+    within = _pressed(f, y, (LEAST_VOLUME - 1.0) / fill)
     swell = f.log1p(fill * within)
     work = swell if gamma == 1.0 else f.expm1((1.0 - gamma) * swell) / (1.0 - gamma)
     beyond = y - within
     tangent = gamma * push * fill * LEAST_VOLUME ** (-gamma - 1.0)
     outside = (_gas(f, p, within) + 0.5 * tangent * beyond) * beyond
     return push * (within - work / fill) + outside
+
+
+def _growing(f: Functions, y: Value, edge: float) -> Value:
+    """Where the gas has grown no further than at an edge [m]."""
+    return f.least(y, edge) if edge > 0.0 else f.greatest(y, edge)
+
+
+def _pressed(f: Functions, y: Value, edge: float) -> Value:
+    """Where it is pressed no further than at an edge [m]."""
+    return f.greatest(y, edge) if edge < 0.0 else f.least(y, edge)
 
 
 def _gas_numbers(p: Parameters) -> tuple[float, float, float]:

@@ -81,14 +81,24 @@ def delayed(force: Array, delay: float, spacing: float) -> Array:
     shift = delay / spacing
     whole = int(np.floor(shift))
     s = 1 - (shift - whole)  # position after sample i - whole - 1
-    held = force[..., np.arange(-whole - 2, n - whole + 1).clip(0, n - 1)]
-    weights = (
-        -s * (s - 1) * (s - 2) / 6,
-        (s + 1) * (s - 1) * (s - 2) / 2,
-        -(s + 1) * s * (s - 2) / 2,
-        (s + 1) * s * (s - 1) / 6,
+    weights = np.array(
+        (
+            -s * (s - 1) * (s - 2) / 6,
+            (s + 1) * (s - 1) * (s - 2) / 2,
+            -(s + 1) * s * (s - 2) / 2,
+            (s + 1) * s * (s - 1) / 6,
+        )
     )
-    return sum(weight * held[..., i : i + n] for i, weight in enumerate(weights))  # type: ignore[return-value]
+    # samples -whole - 2 ... n - whole
+    before, after = (int(np.clip(k, 0, n + 3)) for k in (whole + 2, 1 - whole))
+    held = np.empty((*force.shape[:-1], n + 3))
+    held[..., :before] = force[..., :1]
+    held[..., n + 3 - after :] = force[..., -1:]
+    first = max(-whole - 2, 0)
+    held[..., before : n + 3 - after] = force[..., first : first + n + 3 - after - before]
+    if held.ndim == 1:
+        return np.correlate(held, weights, "valid")
+    return np.array([np.correlate(row, weights, "valid") for row in held])
 
 
 def without_tone(

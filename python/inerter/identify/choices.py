@@ -46,14 +46,36 @@ HIGHEST = 0.3
 def covered(
     problem: Problem, fit: Fit, records: Sequence[Record], channels: tuple[str, ...] = ()
 ) -> Fit:
-    """A fit of a problem with what other choices would move it by in its errors, see below."""
+    """A fit of a problem with what other choices would move it by in its errors, see below.
+
+    They are those of a jackknife over blocks before, where these are larger.
+    """
     units = problem.units(fit.model)
     # a tone is fitted to the force as measured, and may lie above the band
     kept = [i for i, name in enumerate(fit.model.free) if name not in TONE]
     rest = replace(fit.model, free=tuple(fit.model.free[i] for i in kept))
     moved = np.zeros((units.size, units.size))
     moved[np.ix_(kept, kept)] = moved_by_choices(problem, rest, records, channels)
-    return replace(fit, covariance=fit.covariance + moved * np.outer(units, units))
+    larger = np.ones(units.size)
+    larger[kept] = _jackknifed(problem, rest)
+    covariance = fit.covariance * np.outer(larger, larger)
+    return replace(fit, covariance=covariance + moved * np.outer(units, units))
+
+
+def _jackknifed(problem: Problem, model: Model) -> Array:
+    """Standard errors of a jackknife over blocks per those of their scores, at least 1, (p,)."""
+    if not model.free:
+        return np.zeros(0)
+    fit, derivatives = (
+        Fit(model, problem.residual(model), np.empty(0), 1),
+        problem.derivatives(model),
+    )
+    alone, scored = (
+        np.diag(problem.told(fit, derivatives, left_out).covariance) for left_out in (True, False)
+    )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        larger = np.sqrt(alone / scored)
+    return np.where(larger > 1, larger, 1.0)
 
 
 def moved_by_choices(

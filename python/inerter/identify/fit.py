@@ -181,7 +181,7 @@ class Problem:
         wanted = model.free if names is None else names
 
         def at(point: Array, pressed: float = 0.0) -> list[Array]:
-            return self.residual(self._decode(model, point), pressed, counted=counted)
+            return self.residual(self.decoded(model, point), pressed, counted=counted)
 
         return self._columns(model, here, wanted, at)
 
@@ -192,15 +192,24 @@ class Problem:
         samples = sum(run.force.size for run in self.runs)
         return np.column_stack(columns) if columns else np.zeros((samples, 0))
 
+    def columns_at(self, model: Model, point: Array, residual: ResidualAt) -> Array:
+        """Derivatives of what counts by the search variables of free coordinates at a point (p,).
+
+        Shape (n, p) [N]; `residual` is that at points of these.
+        """
+        columns = self._columns(self.decoded(model, point), point, model.free, residual)
+        return columns[np.concatenate(self.masks)]
+
     def moved(self, model: Model, step: Array) -> Model:
         """The model with its search variables moved, within their bounds."""
-        return self._decode(model, self.variables(model).encode(model.values) + step)
+        return self.decoded(model, self.variables(model).encode(model.values) + step)
 
     def units(self, model: Model) -> Array:
         """Coordinate per search variable, shape (p,)."""
         return self.variables(model).units(model.values)
 
-    def _decode(self, model: Model, point: Array) -> Model:
+    def decoded(self, model: Model, point: Array) -> Model:
+        """The model at a point (p,) of the search variables of its free coordinates."""
         return replace(model, values={**model.values, **self.variables(model).decode(point)})
 
     def fit(
@@ -232,12 +241,11 @@ class Problem:
             found := self._near(apart, model, evaluations, tolerance, give_up, near, within)
         ):
             model, spent, near = found
-        variables, at, smooth = self.variables(model), self._remembered(model), smoothness(model)
+        variables, at, smooth = self.variables(model), self.residual_at(model), smoothness(model)
         samples = int(selected.sum())
 
         def jacobian(point: Array) -> Array:
-            columns = self._columns(self._decode(model, point), point, model.free, at)
-            return np.concatenate([columns[selected] / size, smooth])
+            return np.concatenate([self.columns_at(model, point, at) / size, smooth])
 
         def hopeless(done: int, error: float) -> bool:
             return bool(give_up and give_up(spent + done, size * error))
@@ -247,7 +255,7 @@ class Problem:
 
         def bending(point: Array) -> tuple[list[int], Array]:
             which = [model.free.index(name) for name in bent or ()]
-            columns = self._columns(self._decode(model, point), point, bent or (), at)[selected]
+            columns = self._columns(self.decoded(model, point), point, bent or (), at)[selected]
             return which, np.concatenate([columns / size, smooth[:, which]])
 
         first = np.concatenate([near.columns / size, smooth]) if near else None
@@ -266,7 +274,7 @@ class Problem:
             give_up=hopeless if give_up else None,
             secants=secants,
         )
-        fitted = self._decode(model, solution.variables)
+        fitted = self.decoded(model, solution.variables)
         residual = at(solution.variables)
         flat = self.masked(residual)
         weight = robust_weight(flat, usual_size(flat), loss)
@@ -295,7 +303,7 @@ class Problem:
         such model is possible or better: what is solved for may be beyond its bounds.
         """
         inner = replace(model, free=tuple(n for n in model.free if n not in apart.names))
-        begin, at = self.variables(inner).encode(inner.values), self._remembered(inner)
+        begin, at = self.variables(inner).encode(inner.values), self.residual_at(inner)
         size, selected = self.scales.force, np.concatenate(self.masks)
         which = [model.free.index(name) for name in inner.free]
         smooth, whole = smoothness(model), self.variables(model).encode(model.values)
@@ -315,13 +323,12 @@ class Problem:
 
         def jacobian(point: Array) -> Array:
             nonlocal last
-            columns = self._columns(self._decode(inner, point), point, inner.free, at)
-            last = columns[selected]
+            last = self.columns_at(inner, point, at)
             return beside(last)
 
         def bending(point: Array) -> tuple[list[int], Array]:
             found = [inner.free.index(name) for name in bent or ()]
-            columns = self._columns(self._decode(inner, point), point, bent or (), at)
+            columns = self._columns(self.decoded(inner, point), point, bent or (), at)
             last[:, found] = columns[selected]
             return found, beside(last)[:, found]
 
@@ -348,7 +355,7 @@ class Problem:
                 ),
             )  # fmt: skip
             here, spent = found.variables, found.evaluations
-        reached = replace(self._decode(inner, here), free=model.free)
+        reached = replace(self.decoded(inner, here), free=model.free)
         reached = apart.solved(reached, counted(here), self.scales)
         if reached is None or not reached.is_possible:
             return None
@@ -364,31 +371,33 @@ class Problem:
         columns[:, others] = apart.columns(reached, self.scales)[: last.shape[0]]
         return reached, spent, Near(columns, near.bending if near else None)
 
-    def _remembered(self, model: Model) -> ResidualAt:
+    def residual_at(self, model: Model) -> ResidualAt:
         """The residual at a point of a model's variables; the last one asked for is kept."""
 
         @last_kept
         def last(point: Array) -> list[Array]:
-            return self.residual(self._decode(model, point), counted=True)
+            return self.residual(self.decoded(model, point), counted=True)
 
         def at(point: Array, pressed: float = 0.0) -> list[Array]:
             if pressed:
-                return self.residual(self._decode(model, point), pressed, counted=True)
+                return self.residual(self.decoded(model, point), pressed, counted=True)
             return last(point)
 
         return at
 
-    def told(self, fit: Fit, derivatives: Array) -> Fit:
-        """A rough fit with the covariance that the derivatives at its end tell."""
+    def told(self, fit: Fit, derivatives: Array, left_out: bool = False) -> Fit:
+        """A rough fit with the covariance that the derivatives at its end tell, see `sandwich`."""
         flat = self.masked(fit.residual)
         columns = derivatives[np.concatenate(self.masks)]
-        covariance = self._covariance(fit.model, columns, flat, np.ones_like(flat))
+        covariance = self._covariance(fit.model, columns, flat, np.ones_like(flat), left_out)
         return replace(fit, covariance=covariance, rough=False)
 
-    def _covariance(self, model: Model, jacobian: Array, flat: Array, weight: Array) -> Array:
+    def _covariance(
+        self, model: Model, jacobian: Array, flat: Array, weight: Array, left_out: bool = False
+    ) -> Array:
         """Covariance of the free coordinates, see `sandwich`."""
         held = self.scales.force * smoothness(model)
-        covariance = sandwich(jacobian, flat, weight, held if len(held) else None)
+        covariance = sandwich(jacobian, flat, weight, held if len(held) else None, left_out)
 
         # a coordinate without effect on the force is not known at all, whatever the sandwich says
         effect = np.sum(jacobian**2, axis=0)

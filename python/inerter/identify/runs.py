@@ -25,6 +25,7 @@ from inerter.records.motion import (
     filtered,
     filtered_and_thinned,
     has_one_line,
+    is_slow,
     response,
     weight_above,
 )
@@ -160,7 +161,8 @@ class BenchRun:
 
     def in_band(self, values: Array) -> Array:
         """Values at the measured rate through the low-pass of the measured force, thinned."""
-        if (steps := self.thinned * self.instants) > 1:
+        steps = self.thinned * self.instants
+        if is_slow(self.fine_spacing, self.cutoff, steps):
             return filtered_and_thinned(values, self.fine_spacing, self.cutoff, steps)
         return filtered(values, self._response)
 

@@ -37,6 +37,8 @@ Shaft = tuple[float, float]
 EDGE_PERIODS = 2.5
 # damping ratio of a resonance that a weight heeds; one of less would ring for ever
 LEAST_LOSS = 0.01
+# periods of the cut-off per sample below which the response and its exponentials are the same
+_SLOW = 1 / 8
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
 # bins of the upper third below which there is no more than noise, and power of a line per theirs
@@ -191,12 +193,17 @@ def filtered(values: Array, response: Array) -> Array:
     return line + irfft(rfft(wave) * response, length)[..., :n]
 
 
+def is_slow(spacing: float, cutoff: float, step: int) -> bool:
+    """Whether a cut-off is so far below the sample rate that `filtered_and_thinned` can be used."""
+    return step > 1 or cutoff * spacing < _SLOW
+
+
 def filtered_and_thinned(values: Array, spacing: float, cutoff: float, step: int) -> Array:
     """Every `step`th sample of `lowpass`, (..., 1 + (n - 1) // step), in a fraction of its time.
 
-    From two samples on: the nearer the cut-off is to the sample rate, the more it would differ.
+    The nearer the cut-off is to the sample rate, the more it would differ: there it is `lowpass`.
     """
-    if step < 2:
+    if not is_slow(spacing, cutoff, step):
         return lowpass(values, spacing, cutoff)
     values = np.ascontiguousarray(values, dtype=np.float64)
     channels = values.reshape(-1, values.shape[-1])

@@ -93,7 +93,7 @@ class DeviceParameters(FrictionParameters):
 
     gas_law: str = "polytropic"
     gas_pressure: float = parameter(0.0, "Pa", "pressure p0 at y = 0", at_least=0.0)
-    gas_area: float = parameter(UNSET, "m^2", "area A under gas", at_least=0.0)
+    gas_area: float = parameter(UNSET, "m^2", "area A under gas; below 0 above it")
     gas_volume: float = parameter(0.0, "m^3", "volume V0 at y = 0", at_least=0.0)
     gas_exponent: float = parameter(1.4, "-", "polytropic exponent", above=0.0, at_most=5.0)
 
@@ -355,7 +355,8 @@ class DeviceParameters(FrictionParameters):
         for name, value in (("gas_area", area), ("gas_volume", self.gas_volume)):
             if value == 0.0:
                 raise ValueError(
-                    f"{name}: the gas spring (gas_pressure {self.gas_pressure} Pa) needs {name} > 0"
+                    f"{name}: the gas spring (gas_pressure {self.gas_pressure} Pa) needs one that "
+                    "is not 0"
                 )
 
     def _check_channel(self) -> None:

@@ -5,7 +5,8 @@
 
 Symbols: y displacement of the flywheel side [m], p0 `gas_pressure` [Pa] (also outside),
 A `gas_area` [m^2] (NaN: `piston_area`), V0 `gas_volume` [m^3], gamma `gas_exponent` [-].
-Sign: tension positive; a longer device holds more gas, volume V0 + A y.
+Sign: tension positive; a longer device holds more gas, volume V0 + A y, and with A < 0 less: the
+gas is on the other side of the piston.
 Range: polytropic: 1 + A y / V0 > 0.05, below that the law goes on along its tangent. Expanded:
 y < y_c = V0 / ((gamma + 1) A), where its tangent turns negative; beyond it stays constant.
 Stored: the integral of F from 0 to y. Nothing is dissipated.
@@ -46,8 +47,8 @@ def valid(parameters: DeviceParameters, displacement: Quantity) -> bool | NDArra
     if parameters.gas_pressure == 0.0:
         return displacement == displacement
     if parameters.gas_law == "polytropic":
-        return displacement > limit(parameters)
-    return displacement < limit(parameters)
+        return _side(parameters) * displacement > _side(parameters) * limit(parameters)
+    return _side(parameters) * displacement < _side(parameters) * limit(parameters)
 
 
 def force(parameters: DeviceParameters, displacement: Quantity) -> Quantity:
@@ -57,9 +58,9 @@ def force(parameters: DeviceParameters, displacement: Quantity) -> Quantity:
     edge, gamma = limit(parameters), parameters.gas_exponent
     push, fill = _scales(parameters)
     if parameters.gas_law == "expanded":
-        within = np.minimum(displacement, edge)
+        within = _at_most(parameters, displacement, edge)
         return gamma * push * fill * (1.0 - 0.5 * (gamma + 1.0) * fill * within) * within
-    within = np.maximum(displacement, edge)
+    within = _at_least(parameters, displacement, edge)
     ratio = 1.0 + fill * within
     tangent = gamma * push * fill * LEAST_VOLUME ** (-gamma - 1.0)
     return push * (1.0 - ratio**-gamma) + tangent * (displacement - within)
@@ -72,13 +73,13 @@ def stored_energy(parameters: DeviceParameters, displacement: Quantity) -> Quant
     edge, gamma = limit(parameters), parameters.gas_exponent
     push, fill = _scales(parameters)
     if parameters.gas_law == "expanded":
-        within = np.minimum(displacement, edge)
+        within = _at_most(parameters, displacement, edge)
         bracket = 0.5 - (gamma + 1.0) * fill * within / 6.0
         inside = gamma * push * fill * within * within * bracket
         return inside + force(parameters, edge) * (displacement - within)
 
     # (r^(1 - gamma) - 1) / (1 - gamma) with its limit ln r
-    within = np.maximum(displacement, edge)
+    within = _at_least(parameters, displacement, edge)
     log_ratio = np.log(1.0 + fill * within)
     power = 1.0 - gamma
     compression = log_ratio if power == 0.0 else np.expm1(power * log_ratio) / power
@@ -88,6 +89,23 @@ def stored_energy(parameters: DeviceParameters, displacement: Quantity) -> Quant
         push * (within - compression / fill)
         + (force(parameters, within) + 0.5 * tangent * beyond) * beyond
     )
+
+
+def _side(parameters: DeviceParameters) -> float:
+    """The sign of displacements that make the gas grow."""
+    return float(np.sign(area(parameters)))
+
+
+def _at_most(parameters: DeviceParameters, displacement: Quantity, edge: float) -> Quantity:
+    """Displacements [m] that let the gas grow no further than an edge does."""
+    side = _side(parameters)
+    return side * np.minimum(side * displacement, side * edge)
+
+
+def _at_least(parameters: DeviceParameters, displacement: Quantity, edge: float) -> Quantity:
+    """Displacements [m] that press the gas no further than an edge does."""
+    side = _side(parameters)
+    return side * np.maximum(side * displacement, side * edge)
 
 
 def _scales(parameters: DeviceParameters) -> tuple[float, float]:
