@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
-from inerter.identify.beside import Followers, counted_columns, fit_beside
+from inerter.identify.apart import Basis
+from inerter.identify.beside import fit_beside
 from inerter.identify.fit import Near, Problem
 from inerter.identify.model import Model
 from inerter.identify.smoothness import smoothness
@@ -25,11 +26,11 @@ class Known:
 
     def __init__(self, problem: Problem, model: Model) -> None:
         self.problem, self.model = problem, model
-        self._followers: dict[tuple[object, ...], Followers] = {}
+        self._bases: dict[tuple[object, ...], Basis] = {}
 
     def __getstate__(self) -> dict[str, object]:
         """What another process is told: bases are soon worked out again."""
-        return {**self.__dict__, "_followers": {}}
+        return {**self.__dict__, "_bases": {}}
 
     @cached_property
     def columns(self) -> Array:
@@ -57,17 +58,17 @@ class Known:
         new = len(start.free) - len(common)
         if not same or not common or new > MOST_NEW:
             return None
-        nodes = start.free if len(smoothness(start)) else ()
-        key = (id(problem), common, nodes)
-        if key not in self._followers:
+        # what holds a curve counts too
+        smooth = smoothness(start)[:, [start.free.index(name) for name in common]]
+        key = (id(problem), common, smooth.tobytes())
+        if key not in self._bases:
             rows = self._rows(problem)[np.concatenate(problem.masks)]
-            columns = np.zeros((rows.size, len(start.free)))
-            which = [start.free.index(name) for name in common]
             known = [self.model.free.index(name) for name in common]
-            columns[:, which] = self.columns[rows][:, known]
-            counted = counted_columns(problem, start, columns)[:, which]
-            self._followers[key] = Followers.of(common, counted)
-        return fit_beside(problem, start, self._followers[key], evaluations, tolerance)
+            self._bases[key] = Basis.of(
+                np.concatenate([self.columns[rows][:, known] / problem.scales.force, smooth])
+            )
+        basis = self._bases[key]
+        return fit_beside(problem, start, common, basis, evaluations, tolerance)
 
     def near(self, problem: Problem, start: Model, loosely: bool = False) -> Near | None:
         """Derivatives of a problem near a start that adds to the model; None of another one.

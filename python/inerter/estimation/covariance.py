@@ -68,7 +68,7 @@ def sandwich(
     information = jacobian.T @ (weight[:, None] * jacobian)
     prior = np.zeros_like(information) if held is None else held.T @ held
     count = len(blocks)
-    bread: Array = np.asarray(np.linalg.pinv(information + prior))
+    bread = np.asarray(np.linalg.pinv(information + prior), dtype=np.float64)
     if left_out:
         roots = np.sqrt(weight)[:, None] * jacobian
         scores = _without_own(scores, [roots[block] for block in blocks], bread)

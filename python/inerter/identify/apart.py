@@ -48,6 +48,12 @@ class Basis:
             columns=columns, left=left[:, kept], inverse=right[kept].T / values[kept]
         )  # fmt: skip
 
+    def rest(self, values: Array) -> Array:
+        """What the columns cannot take of values in their rows, (n,) or (n, k)."""
+        # a prediction that runs away leaves nothing that is finite, which a search steps back from
+        with np.errstate(invalid="ignore", over="ignore"):
+            return values - self.left @ (self.left.T @ values)
+
 
 @dataclass(frozen=True)
 class Apart:
@@ -69,10 +75,7 @@ class Apart:
 
     def rest(self, values: Array) -> Array:
         """What the coordinates cannot take of values in the basis' rows, (n,) or (n, k)."""
-        left = self.basis.left
-        # a prediction that runs away leaves nothing that is finite, which a search steps back from
-        with np.errstate(invalid="ignore", over="ignore"):
-            return values - left @ (left.T @ values)
+        return self.basis.rest(values)
 
     def columns(self, model: Model, sizes: Scales) -> Array:
         """Derivatives of what counts by the search variables, (n, q)."""
