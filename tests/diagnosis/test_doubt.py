@@ -8,6 +8,7 @@ import pytest
 from inerter.blind_test.case import records_of
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import (
+    as_sure_as_its_value,
     descriptions,
     doubted,
     note,
@@ -53,6 +54,22 @@ def test_a_value_that_may_be_none_is_as_likely_not_there() -> None:
     assert with_own_value(halved, 0.98, is_distinct=False) is halved
     loop = replace(THREE, effect="hysteretic_friction")
     assert with_own_value(loop, 0.98, is_distinct=False) is loop
+
+
+def test_none_is_surer_than_its_own_value_is_there() -> None:
+    """A value of two standard errors is one of noise alone once in twenty."""
+    capped = as_sure_as_its_value(THREE, 2.0)
+    assert capped.confidence == pytest.approx(0.9545, abs=1e-4)
+    assert capped.evidence == "c = 1. Its own value differs from none by 2.0 standard errors."
+    assert as_sure_as_its_value(THREE, 1.2).confidence == pytest.approx(0.770, abs=1e-3)
+    # one that is known well, one that is less sure already, and what has been told to be none
+    assert as_sure_as_its_value(THREE, 3.0) is THREE
+    assert as_sure_as_its_value(THREE, float("inf")) is THREE
+    unsure = replace(THREE, confidence=0.6)
+    assert as_sure_as_its_value(unsure, 1.5) is unsure
+    assert as_sure_as_its_value(THREE, 0.8) is THREE
+    loop = replace(THREE, effect="hysteretic_friction")
+    assert as_sure_as_its_value(loop, 1.5) is loop
 
 
 @pytest.mark.long

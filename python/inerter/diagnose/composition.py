@@ -66,29 +66,41 @@ def is_shaft(effect: str) -> bool:
 def is_distinct(
     effect: str, fit: Fit, baseline: Model, required: float = CRITERIA.distinction
 ) -> bool:
-    """Whether a fitted effect differs from none by `required` standard errors of its coordinates.
+    """Whether a fitted effect differs from none by `required` standard errors, see below."""
+    return distinction(effect, fit, baseline) > required
+
+
+def distinction(effect: str, fit: Fit, baseline: Model) -> float:
+    """Standard errors of its coordinates by which a fitted effect differs from none.
 
     What the baseline states and a fit sets free is distinct as it is: it may be that there is none.
     """
     if _contradicts(effect, fit.model, baseline):
-        return True
+        return np.inf
     if EFFECTS[effect].kind == "law" and (_loses_nothing(fit.model) or not bristle_is_known(fit)):
-        return False
+        return 0.0
     if effect == "digressive_damping":
         # with a knee that is passed at once it is friction, and no damping below it is known
-        slope, error = parameter_errors(fit).get("viscous", (1.0, 0.0))
-        return slope > required * error
+        return _per_error(*parameter_errors(fit).get("viscous", (1.0, 0.0)))
     if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
-        stiffness, error = parameter_errors(fit).get("series_stiffness", (1.0, 0.0))
-        return stiffness > required * error
+        return _per_error(*parameter_errors(fit).get("series_stiffness", (1.0, 0.0)))
     errors = _errors(fit)
     known = [name for name in EFFECTS[effect].amplitudes if name in errors]
-    if EFFECTS[effect].kind == "law" and len(known) > 1 and _together(fit, known) > required:
-        return True
-    if (nodes := [name for name in known if node_of(name)]) and _curve(fit, nodes) > required:
-        return True
-    return not known or any(abs(fit.model.values[name]) > required * errors[name] for name in known)
+    if not known:
+        return np.inf
+    found = [_per_error(abs(fit.model.values[name]), errors[name]) for name in known]
+    if EFFECTS[effect].kind == "law" and len(known) > 1:
+        found.append(_together(fit, known))
+    if nodes := [name for name in known if node_of(name)]:
+        found.append(_curve(fit, nodes))
+    return float(max(found))
+
+
+def _per_error(value: float, error: float) -> float:
+    if error > 0.0:
+        return value / error
+    return np.inf if error == 0.0 < value else 0.0
 
 
 def _together(fit: Fit, names: Sequence[str]) -> float:

@@ -7,6 +7,7 @@ is not there. What gives it away is the rest that stays, of a size like its own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -78,6 +79,18 @@ def with_own_value(finding: Finding, before: float, is_distinct: bool) -> Findin
         confidence=0.5 * finding.confidence,
         evidence=f"{finding.evidence} Its own value may be none.",
     )
+
+
+def as_sure_as_its_value(finding: Finding, errors: float) -> Finding:
+    """A finding, no surer than its own value differs from none by so many standard errors.
+
+    Those hold what other choices of the analysis would change. Of a hysteresis see above.
+    """
+    most = math.erf(errors / math.sqrt(2.0))
+    if finding.effect == _LOOP or errors <= CRITERIA.own_value or most >= finding.confidence:
+        return finding
+    told = f"Its own value differs from none by {errors:.1f} standard errors."
+    return replace(finding, confidence=most, evidence=f"{finding.evidence} {told}")
 
 
 def of_one_sine(findings: Sequence[Finding]) -> list[Finding]:

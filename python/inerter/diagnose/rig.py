@@ -15,9 +15,9 @@ from inerter.diagnose import wording
 from inerter.diagnose.budget.carried import Carrying, carried
 from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
-from inerter.diagnose.composition import is_distinct
+from inerter.diagnose.composition import distinction
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.doubt import doubted, of_one_sine, with_own_value
+from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
 from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
@@ -209,21 +209,17 @@ def diagnosis_of(
         stands.searched.covered,
     )
     searched = stands.searched
-    findings = [
-        doubted(
-            with_own_value(
-                with_members(
-                    finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
-                ),
-                finding.confidence,
-                is_distinct(
-                    finding.effect, stands.fit, searched.prepared.baseline, CRITERIA.own_value
-                ),
-            ),
-            remains.structure,
+
+    def weighed(finding: Finding) -> Finding:
+        """A finding with its members, as sure as its own value and what remains let it be."""
+        errors = distinction(finding.effect, stands.fit, searched.prepared.baseline)
+        told = with_members(
+            finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
         )
-        for finding in _findings(stands, values)
-    ]  # fmt: skip
+        told = with_own_value(told, finding.confidence, errors > CRITERIA.own_value)
+        return doubted(as_sure_as_its_value(told, errors), remains.structure)
+
+    findings = [weighed(finding) for finding in _findings(stands, values)]
     if data.band.scales.one_tone:
         findings = of_one_sine(findings)
     # a member that the model has not is told by its finding alone

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeGuard
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.promise import Known, Promise
 from inerter.diagnose.sized import Sized
-from inerter.identify.fit import Fit, Near, Problem, rms
+from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
 
@@ -221,15 +221,14 @@ class Trials:
         """
         masks = self.problem.masks
 
-        def near(fit: Fit) -> Near | None:
-            return known.near(self.problem, fit.model, loosely=True) if has_much(known) else None
+        def followed(fit: Fit) -> Fit:
+            how: dict[str, Any] = {"tolerance": ROUGH, "give_up": Pace(reach).hopeless}
+            if has_much(known):
+                how["near"] = known.near(self.problem, fit.model, loosely=True)
+            return self.problem.fit(fit.model, MOST, **how)
 
         fits = [
-            self.problem.fit(
-                fit.model, MOST, tolerance=ROUGH, give_up=Pace(reach).hopeless, near=near(fit)
-            )
-            if fit.evaluations >= FEW and fit.rmse(masks) < limit
-            else fit
+            followed(fit) if fit.evaluations >= FEW and fit.rmse(masks) < limit else fit
             for fit in rough
         ]
         return min(fits, key=lambda fit: fit.rmse(masks))
