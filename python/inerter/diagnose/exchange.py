@@ -15,7 +15,7 @@ from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws, within_blur
-from inerter.diagnose.decision import CRITERIA, loss
+from inerter.diagnose.decision import CRITERIA, loss, plainest
 from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.plainer import (
     as_one,
@@ -103,16 +103,23 @@ def _spring_beside(search: Search, current: Scored) -> Scored | None:
 
 
 def plain_part(search: Search, current: Scored) -> Scored | None:
-    """A plain part in the place of a rich one, or of a shaft that stands for any slow sine."""
+    """A plain part in the place of a rich one, or of a shaft that stands for any slow sine.
+
+    Of some that do for it the plainest among those about as good as the best of them.
+    """
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)
+    good = []
     for model in filter(search.may_be, as_plain_part(current.model, search.longest, frequency)):
         fit = search.problem.fit(model)
         if none or fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
             scored = search.score("exchange", None, fit)
-            if none or loss(scored, current) < CRITERIA.gain:
+            if none:
                 return scored
-    return None
+            if loss(scored, current) < CRITERIA.gain:
+                good.append(scored)
+    best = min(good, key=lambda s: s.squares.sum(), default=None)
+    return best and plainest([s for s in good if s is best or loss(s, best) < CRITERIA.gain])
 
 
 def _weight(search: Search, current: Scored) -> Scored | None:

@@ -139,31 +139,28 @@ def _as_law_of_the_place(model: Model) -> list[Model]:
     spring = _with_spring(bare, *np.polyfit(places, forces, 1))
     found = [spring, spring.adding(None, stiffness_cubic=0.0)]
     if not {"gas_push", "gas_push_above", "gas_pressure"} & model.values.keys():
-        found += _as_gas(bare, places, forces, "")
-        found += _as_gas(bare, -places[::-1], -forces[::-1], "_above")
+        found += _as_gas(bare, places, forces)
     return found
 
 
-def _as_gas(bare: Model, places: Array, forces: Array, side: str) -> list[Model]:
-    """The gas, among some heights of it, that comes nearest to forces at places below its rest.
-
-    side: "_above" of one that is compressed as the device lengthens, whose places and forces are
-    given with the other sign.
-    """
+def _as_gas(bare: Model, places: Array, forces: Array) -> list[Model]:
+    """The gas, among some heights of it on either side, that comes nearest to forces at places."""
     nearest, gas = np.inf, []
-    if not places[0] < 0.0:
-        return []
-    for ratio in (1.2, 1.6, 2.5, 5.0):
-        reach = -ratio * places[0]
-        columns = np.column_stack([1.0 - (1.0 + places / reach) ** -_EXPONENT, 0.0 * places + 1.0])
-        (push, offset), *_ = np.linalg.lstsq(columns, forces)
-        missed = float(np.sum((columns @ (push, offset) - forces) ** 2))
-        if push > 0.0 and missed < nearest:
-            nearest = missed
-            law = {f"gas_push{side}": float(push), f"gas_reach{side}": reach}
-            law["gas_exponent"] = _EXPONENT
-            offset = (-offset if side else offset) + bare.values.get("force_offset", 0.0)
-            gas = [bare.adding(None, **law, force_offset=float(offset))]
+    for side, sign in (("", 1.0), ("_above", -1.0)):
+        # compressed where the sign makes a place negative
+        pressed = sign * places
+        for ratio in (1.2, 1.6, 2.5, 5.0) if np.min(pressed) < 0.0 else ():
+            reach = -ratio * float(np.min(pressed))
+            shape = sign * (1.0 - (1.0 + pressed / reach) ** -_EXPONENT)
+            columns = np.column_stack([shape, np.ones_like(shape)])
+            (push, offset), *_ = np.linalg.lstsq(columns, forces)
+            missed = float(np.sum((columns @ (push, offset) - forces) ** 2))
+            if push > 0.0 and missed < nearest:
+                nearest = missed
+                law = {f"gas_push{side}": float(push), f"gas_reach{side}": reach}
+                law["gas_exponent"] = _EXPONENT
+                offset += bare.values.get("force_offset", 0.0)
+                gas = [bare.adding(None, **law, force_offset=float(offset))]
     return gas
 
 

@@ -15,7 +15,7 @@ from inerter.diagnose.promise import Known
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
-from inerter.diagnose.trials import FAR
+from inerter.diagnose.trials import FAR, has_much
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
@@ -108,6 +108,9 @@ def _from_where_it_stands(
         if candidate.effect in {*EFFECTS[effect].rivals} - near
     ]
     known, limits = Known(search.problem, kept), (FAR * reach, np.inf)
+    if usual and has_much(known):
+        # worked out before it is shared out
+        _ = known.columns
     fits = parallel(lambda c: search.trials.fit(c, limits, reach, known), usual)
     return [*fitted, *zip(usual, fits, strict=True)]
 
