@@ -63,6 +63,7 @@ BESIDE = {
         {"stop_lower": -0.01, "stop_upper": 0.01, "stop_stiffness": 1e4, "stop_damping": 1.0},
     ),
     "gas": ("none", {"gas_push": 50.0, "gas_reach": 0.1, "gas_exponent": 1.3}),
+    "gas above": ("none", {"gas_push": 50.0, "gas_reach_above": 0.1, "gas_exponent": 1.3}),
     "periods": (
         "coulomb",
         {f"{q.name}_{word}_1": value for q in QUANTITIES

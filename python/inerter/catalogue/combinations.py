@@ -10,17 +10,12 @@ GAS_AREA = 1e-3
 
 
 def gas(values: Values) -> None:
-    area = abs(values.setdefault("gas_area", values.get("piston_area", GAS_AREA)))
+    area = values.get("piston_area", GAS_AREA)
+    # one that is compressed as the device lengthens has an area below 0
+    above = values.pop("gas_reach_above", None)
+    area = abs(values.setdefault("gas_area", area if above is None else -area))
     values["gas_pressure"] = values.pop("gas_push") / area
-    values["gas_volume"] = values.pop("gas_reach") * area
-
-
-def gas_above(values: Values) -> None:
-    """Of one that is compressed as the device lengthens."""
-    values.setdefault("gas_area", -values.get("piston_area", GAS_AREA))
-    for name in ("push", "reach"):
-        values[f"gas_{name}"] = values.pop(f"gas_{name}_above")
-    gas(values)
+    values["gas_volume"] = (values.pop("gas_reach") if above is None else above) * area
 
 
 def branch(values: Values) -> None:

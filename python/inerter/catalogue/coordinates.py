@@ -11,7 +11,7 @@ is the combination that the data see:
     series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
     gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
-    gas_push_above, gas_reach_above  of a gas that is compressed as the device lengthens    [N, m]
+    gas_reach_above  the same of a gas that is compressed as the device lengthens               [m]
     branch_time_1, _2  branch_damping / branch_stiffness, in which a branch relaxes              [s]
     friction_place  where in the free play before the friction a run begins, where its first force
                     does not tell: -1 ... 1 of half the play   [-], not a device parameter
@@ -318,13 +318,6 @@ _ALL = (
         of_device=lambda d: d.gas_pressure * abs(d.gas_area),
     ),
     Coordinate(
-        name="gas_push_above", unit="N",
-        words={"gas_pressure": "pressure p0", "gas_area": "piston area A"},
-        size=lambda s: s.force, lower=lambda s: 1e-4 * s.force, upper=lambda s: 1e4 * s.force,
-        logarithmic=True, to_parameters=combinations.gas_above,
-        of_device=lambda d: d.gas_pressure * abs(d.gas_area),
-    ),
-    Coordinate(
         name="gas_reach", unit="m", words={"gas_volume": "volume V0"},
         size=lambda s: s.displacement, lower=_reach, upper=lambda s: 1e3 * s.displacement,
         logarithmic=True, of_device=lambda d: d.gas_volume / abs(d.gas_area),
@@ -383,11 +376,8 @@ COORDINATES: Mapping[str, Coordinate] = MappingProxyType({each.name: each for ea
 # a level that breaks away is told from the distance of a bristle before that is taken
 _CONVERTED = tuple(
     COORDINATES[name]
-    for name in (
-        "gas_push", "gas_push_above", "series_frequency", "static_excess", "presliding",
-        "branch_time_1",
-    )
-)  # fmt: skip
+    for name in ("gas_push", "series_frequency", "static_excess", "presliding", "branch_time_1")
+)
 
 CHANNEL_UNITS: Mapping[str, str] = MappingProxyType(
     {each.name: each.unit for each in _ALL if each.belongs_to == "channel"}

@@ -189,10 +189,8 @@ _ALL = (
     ),
     Effect(
         name="gas_spring", rank=20,
-        coordinates=(
-            "gas_push", "gas_push_above", "gas_reach", "gas_reach_above", "gas_exponent",
-        ),
-        telling=("gas_push", "gas_push_above"), stated_as=("gas_pressure", "gas_volume"),
+        coordinates=("gas_push", "gas_reach", "gas_reach_above", "gas_exponent"),
+        telling=("gas_push",), stated_as=("gas_pressure", "gas_volume"),
         local=True, unlike_friction=True, plain="a gas spring",
         meaning="p0 A (1 - (1 + A x / V0)^-gamma)",
         cause="trapped air, an accumulator", taken_for="a parallel stiffness",

@@ -207,7 +207,7 @@ def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
 
 
 def _gas(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    stated = {"gas_push", "gas_push_above", "gas_pressure"} & model.values.keys()
+    stated = {"gas_push", "gas_pressure"} & model.values.keys()
     if stated or not np.isfinite(sizes.travel).all():
         return
     # compressed as the device shortens, or on the other side of a piston as it lengthens
@@ -216,7 +216,7 @@ def _gas(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
         starts = []
         for ratio in (1.2, 2.0, 5.0):
             push, reach = 0.3 * sizes.force * ratio, deepest * ratio
-            gas = {f"gas_push{side}": push, f"gas_reach{side}": reach, "gas_exponent": 1.3}
+            gas = {"gas_push": push, f"gas_reach{side}": reach, "gas_exponent": 1.3}
             starts.append(model.adding(None, **gas))
         yield Candidate(effect.name, None, tuple(starts))
 

@@ -138,7 +138,7 @@ def _as_law_of_the_place(model: Model) -> list[Model]:
     bare = model.without(nodes)
     spring = _with_spring(bare, *np.polyfit(places, forces, 1))
     found = [spring, spring.adding(None, stiffness_cubic=0.0)]
-    if not {"gas_push", "gas_push_above", "gas_pressure"} & model.values.keys():
+    if not {"gas_push", "gas_pressure"} & model.values.keys():
         found += _as_gas(bare, places, forces)
     return found
 
@@ -157,7 +157,7 @@ def _as_gas(bare: Model, places: Array, forces: Array) -> list[Model]:
             missed = float(np.sum((columns @ (push, offset) - forces) ** 2))
             if push > 0.0 and missed < nearest:
                 nearest = missed
-                law = {f"gas_push{side}": float(push), f"gas_reach{side}": reach}
+                law = {"gas_push": float(push), f"gas_reach{side}": reach}
                 law["gas_exponent"] = _EXPONENT
                 offset += bare.values.get("force_offset", 0.0)
                 gas = [bare.adding(None, **law, force_offset=float(offset))]

@@ -114,9 +114,9 @@ def _shaft(model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 def _gas(model: Model) -> Iterator[Candidate]:
     device, effect = model.device(), EFFECTS["gas_spring"]
-    if {"gas_push", "gas_push_above"} & model.values.keys() or not device.gas_pressure:
+    if "gas_push" in model.values or not device.gas_pressure:
         return
-    side = "_above" if device.gas_area < 0 else ""
-    names = (f"gas_push{side}", f"gas_reach{side}", "gas_exponent")
+    reach = "gas_reach_above" if device.gas_area < 0 else "gas_reach"
+    names = ("gas_push", reach, "gas_exponent")
     stated = {name: COORDINATES[name].of(device) for name in names}
     yield Candidate(effect.name, None, (model.without(effect.stated_as).adding(None, **stated),))
