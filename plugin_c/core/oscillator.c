@@ -26,12 +26,11 @@ static const double kUnresolved = 16.0;
 static const double kShort = 2.0;
 enum { MOST_POWERS = 40 };
 // 1 / (n + 5)
-static const double kShare[] = {1. / 5,  1. / 6,  1. / 7,  1. / 8,  1. / 9,  1. / 10, 1. / 11,
-                                1. / 12, 1. / 13, 1. / 14, 1. / 15, 1. / 16, 1. / 17, 1. / 18,
-                                1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24, 1. / 25,
-                                1. / 26, 1. / 27, 1. / 28, 1. / 29, 1. / 30, 1. / 31, 1. / 32,
-                                1. / 33, 1. / 34, 1. / 35, 1. / 36, 1. / 37, 1. / 38, 1. / 39,
-                                1. / 40, 1. / 41, 1. / 42, 1. / 43, 1. / 44};
+static const double kShare[] = {
+    1. / 5,  1. / 6,  1. / 7,  1. / 8,  1. / 9,  1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14,
+    1. / 15, 1. / 16, 1. / 17, 1. / 18, 1. / 19, 1. / 20, 1. / 21, 1. / 22, 1. / 23, 1. / 24,
+    1. / 25, 1. / 26, 1. / 27, 1. / 28, 1. / 29, 1. / 30, 1. / 31, 1. / 32, 1. / 33, 1. / 34,
+    1. / 35, 1. / 36, 1. / 37, 1. / 38, 1. / 39, 1. / 40, 1. / 41, 1. / 42, 1. / 43, 1. / 44};
 
 void decay_driven(double rate, double t, double* driven) {
   double power[RESPONSES];  // t^k / k!
@@ -57,8 +56,8 @@ void decay_driven(double rate, double t, double* driven) {
   }
 }
 
-// where little turns in a step: powers of the answer to a blow, 0, 1, and what the equation makes of
-// them
+// where little turns in a step: powers of the answer to a blow, 0, 1, and what the equation makes
+// of them
 static Swing short_swing(double damping, double stiffness, double turns, double t) {
   double before = 0, now = 1, bound = 1, square = t * t / 2, cube = square * t / 3;
   double fourth = cube * t / 4, power = fourth * t / 5;

@@ -55,7 +55,7 @@
   /* gas spring */                                                                                 \
   X(gas_pressure, "Pa", 0, 0, INFINITY, CLOSED, "", "pressure at x = 0 and around, p0; 0: no gas") \
   X(gas_area, "m^2", NAN, -INFINITY, INFINITY, CLOSED, "",                                         \
-    "piston area on the gas, A; below 0: lengthening compresses it; unset: piston_area")                                             \
+    "piston area on the gas, A; below 0: lengthening compresses it; unset: piston_area")           \
   X(gas_volume, "m^3", 0, 0, INFINITY, CLOSED, "", "gas volume at x = 0, V0")                      \
   X(gas_exponent, "1", 1.4, 0, 5, OPEN, "", "polytropic exponent of the gas, gamma")               \
   /* fluid in a channel: inertance and loss from the geometry */                                   \
