@@ -9,7 +9,7 @@ import pytest
 from inerter.identify import prediction
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
-from inerter.records.motion import EDGE_PERIODS, filtered_and_thinned, lowpass
+from inerter.records.motion import EDGE_PERIODS, filtered_and_thinned, is_slow, lowpass
 from three_sines import H, N, motion, run_of
 
 LAWS = {
@@ -86,6 +86,21 @@ def test_the_low_pass_of_a_fit_is_that_of_records(size: int, step: int) -> None:
     np.testing.assert_allclose(
         found[inner], known[inner], rtol=0, atol=1e-5 * float(np.std(values))
     )
+
+
+def test_no_sample_is_left_out_and_the_cut_off_is_slow() -> None:
+    """Below a ninth of the rate exponentials serve there too; above it is the records' own."""
+    values = np.cumsum(np.random.default_rng(5).normal(size=4000))
+    for share in (0.01, 0.07, 0.11):
+        assert is_slow(H, share / H, 1)
+        found, known = (each(values, H, share / H, *more) for each, more in
+                        ((filtered_and_thinned, (1,)), (lowpass, ())))  # fmt: skip
+        edge = int(1.5 * EDGE_PERIODS / share) + 1
+        difference = np.abs(found - known)[edge:-edge]
+        assert difference.max() < 1e-5 * float(np.std(values))
+    assert not is_slow(H, 0.112 / H, 1)
+    found = filtered_and_thinned(values, H, 0.112 / H, 1)
+    np.testing.assert_array_equal(found, lowpass(values, H, 0.112 / H))
 
 
 def test_a_line_passes_the_low_pass_as_it_is() -> None:

@@ -38,7 +38,7 @@ EDGE_PERIODS = 2.5
 # damping ratio of a resonance that a weight heeds; one of less would ring for ever
 LEAST_LOSS = 0.01
 # periods of the cut-off per sample below which the response and its exponentials are the same
-_SLOW = 1 / 8
+_SLOW = 1 / 9
 # samples of the segments that white noise is read from
 NOISE_SEGMENT = 64
 # bins of the upper third below which there is no more than noise, and power of a line per theirs
