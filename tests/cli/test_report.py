@@ -395,3 +395,13 @@ def test_a_device_file_tells_what_only_the_record_has(tmp_path: Path) -> None:
     assert read_device(path).given == usual.extended.device
     assert read_delay(path) == channels["delay"]
     assert set(read_filters(path)) == {"force"}
+
+
+def test_why_a_value_that_may_be_none_is_not_sure_is_said_beside_it() -> None:
+    made = two_runs()
+    first, *rest = made.findings
+    told = "Its own value differs from none by 1.1 standard errors."
+    unsure = replace(first, evidence=f"{first.evidence} {told}")
+    shown = render_report(replace(made, findings=[unsure, *rest]), TOML, XML)
+    assert f'<p class="warn">{told}</p>' in shown
+    assert told not in render_report(made, TOML, XML)

@@ -8,6 +8,7 @@ is not there. What gives it away is the rest that stays, of a size like its own.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -91,6 +92,15 @@ def as_sure_as_its_value(finding: Finding, errors: float) -> Finding:
         return finding
     told = f"Its own value differs from none by {errors:.1f} standard errors."
     return replace(finding, confidence=most, evidence=f"{finding.evidence} {told}")
+
+
+def about_its_value(finding: Finding) -> str:
+    """What its evidence says of how far its own value is from none; empty where nothing."""
+    told = re.search(
+        r"Its own value (may be none|differs from none by [\d.]+ standard errors)\.",
+        finding.evidence,
+    )
+    return told[0] if told else ""
 
 
 def of_one_sine(findings: Sequence[Finding]) -> list[Finding]:

@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from inerter.diagnose.doubt import by_weight, reason
+from inerter.diagnose.doubt import about_its_value, by_weight, reason
 from inerter.diagnose.remainder.words import WORDS
 from inerter.diagnose.result import (
     Diagnosis,
@@ -186,6 +186,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         ],
         "notes": _notes(finding),
         "doubt": reason(finding, diagnosis.unexplained.structure),
+        "own_value": about_its_value(finding),
         "evidence": finding.evidence,
     }
 
