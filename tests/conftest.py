@@ -3,8 +3,8 @@
 Tests marked `long` (whole diagnoses, campaigns) are left out unless `--long` asks for all of them
 or `--only-long SECONDS` for as many as begin in that time; every day begins at another one. Of a
 test marked `often("case", ...)` its other cases are long; of one marked `rarely("case", ...)`,
-these cases. Of one marked `turns(n)` each case is run every n-th day, another share every day, and
-is long on the others. A test that is named on the command line (`file::test`) is run in any case.
+these cases. What takes some seconds has its turn every few days (`turns.py`) and is long on the
+others. A test that is named on the command line (`file::test`) is run in any case.
 
 Tests that hide an effect and look for it draw it from one seed, so that a failure can be repeated:
 `pytest --effects-seed N` or the environment variable INERTER_SEED choose another, `random` a new
@@ -23,10 +23,10 @@ import time
 from datetime import date
 from pathlib import Path
 from typing import Any
-from zlib import crc32
 
 import inerter  # noqa: F401  (with MuJoCo 3 this makes the plugin known, 4 does it by itself)
 import pytest
+import turns
 
 # before NumPy is imported: one thread for each worker, not one for each core in each of them
 if "PYTEST_XDIST_WORKER" in os.environ:
@@ -50,7 +50,7 @@ _STARTED = time.monotonic()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add --effects-seed, --long and --only-long."""
+    """Add --effects-seed, --long, --only-long and --measure."""
     parser.addoption(
         "--long",
         action="store_true",
@@ -62,6 +62,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type=float,
         metavar="SECONDS",
         help="run the tests marked long, as many as begin in SECONDS; every day begins at another",
+    )
+    parser.addoption(
+        "--measure",
+        action="store_true",
+        help="run what has its turn another day too, and write tests/seconds.csv anew",
     )
     parser.addoption(
         "--effects-seed",
@@ -77,9 +82,8 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "long: takes long; runs with --long or --only-long")
     config.addinivalue_line("markers", "often(*cases): the other cases of this test are long")
     config.addinivalue_line("markers", "rarely(*cases): these cases of this test are long")
-    config.addinivalue_line(
-        "markers", "turns(n): each case is run every n-th day, another share every day, else long"
-    )
+    if config.getoption("measure"):
+        turns.measure(config)
     told = getattr(config, "workerinput", {})
     config.stash[_DAY] = told.get("day", date.today().toordinal())
     given = told.get("effects_seed")
@@ -103,18 +107,18 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     """Mark the cases of a test that are not run often."""
     case = item.name.partition("[")[2].removesuffix("]")
     often, rarely = item.get_closest_marker("often"), item.get_closest_marker("rarely")
-    turns = item.get_closest_marker("turns")
-    day = item.config.stash[_DAY]
-    if (
-        (often and case not in often.args)
-        or (rarely and case in rarely.args)
-        or (turns and (crc32(_of_case(item.nodeid).encode()) - day) % turns.args[0])
-    ):
+    if (often and case not in often.args) or (rarely and case in rarely.args):
         item.add_marker("long")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out the long tests, or the others; begin somewhere else every day."""
+    if not config.getoption("measure"):
+        names = [item.nodeid for item in items if not item.get_closest_marker("long")]
+        another_day = turns.without_turn(names, turns.read(), config.stash[_DAY])
+        for item in items:
+            if item.nodeid in another_day:
+                item.add_marker("long")
     only = config.getoption("--only-long") is not None
     if not only and (config.getoption("--long") or any("::" in arg for arg in config.args)):
         return
@@ -161,14 +165,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 def _together(nodeid: str) -> str:
     """What one worker runs: a test file; of the diagnoses, the tests of a case."""
     file = nodeid.partition("::")[0]
-    return _of_case(nodeid) if file.startswith("tests/diagnosis/") else file
-
-
-def _of_case(nodeid: str) -> str:
-    """The tests of a file that have one case, which may share what is expensive; or one test."""
-    file, _, test = nodeid.partition("::")
-    name, bracket, case = test.partition("[")
-    return f"{file}::[{case}" if bracket else f"{file}::{name}"
+    return turns.case_of(nodeid) if file.startswith("tests/diagnosis/") else file
 
 
 @pytest.fixture(scope="session")

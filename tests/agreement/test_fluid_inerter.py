@@ -132,7 +132,6 @@ def test_the_shaker_has_the_published_numbers(file: str) -> None:
     assert coil.dynprm[0] == pytest.approx(S.inductance / S.resistance, rel=1e-15)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("name", SHAKEN)
 def test_the_reference_is_the_printed_equations(name: str, shaken: dict[str, Array]) -> None:
     device = dry_device() if name == "dry" else complete_device()

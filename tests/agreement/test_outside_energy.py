@@ -164,7 +164,6 @@ def test_energy_is_kept(device: str, engine: str) -> None:
     assert abs(total / total[0] - 1).max() < (1e-6 if device == "stops" else 1e-10)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.rarely(
     "dahl-mujoco",
     "bouc_wen-mujoco",

@@ -191,7 +191,6 @@ def break_away(engine: str) -> Array:
 RATES = np.array([8.0, 1.0, 0.125])  # [N/s]
 
 
-@pytest.mark.turns(7)
 @pytest.mark.often("mujoco", "exudyn")
 @engines
 def test_break_away(engine: str) -> None:

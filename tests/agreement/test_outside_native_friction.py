@@ -183,7 +183,6 @@ def test_motor_friction(telling: str) -> None:
     assert error(2 * fine - middle, true) < 5e-6
 
 
-@pytest.mark.turns(3)
 def test_exudyn_and_reference_with_friction() -> None:
     """The two tellings that the engine was held against, against each other."""
     assert error(in_exudyn("lugre"), in_reference("lugre")) < 1e-7

@@ -194,7 +194,6 @@ def test_inertance_between_two_free_masses(engine: str) -> None:
     assert abs(found / 0.01 - true).max() < BOUND
 
 
-@pytest.mark.turns(3)
 @engines
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
 def test_isolator(ratio: float, engine: str) -> None:
@@ -216,7 +215,6 @@ def test_isolator(ratio: float, engine: str) -> None:
     assert abs(found / 0.01 - true).max() < BOUND * abs(true).max()
 
 
-@pytest.mark.turns(3)
 @engines
 @pytest.mark.parametrize("ratio", [0.7, 1.0, 1.5])
 def test_absorber(ratio: float, engine: str) -> None:
@@ -241,7 +239,6 @@ def test_absorber(ratio: float, engine: str) -> None:
     assert abs(found / 0.01 - true).max() < BOUND * abs(true).max()
 
 
-@pytest.mark.turns(3)
 @engines
 @pytest.mark.parametrize("mode", [0, 1])
 def test_modes_of_the_absorber(mode: int, engine: str) -> None:

@@ -207,7 +207,6 @@ def coulomb_cycle() -> Array:
     return np.array([period, speed(times).max(), force(times).min()])
 
 
-@pytest.mark.turns(4)
 @pytest.mark.often("mujoco", "exudyn")
 @pytest.mark.parametrize("engine", ENGINES)
 def test_published_end(engine: str) -> None:
@@ -238,7 +237,6 @@ def test_order_from_large_steps(
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(np.full((2, 3), order), abs=0.1)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("engine", ENGINES[1:])
 def test_engines_share_the_limit_cycle(engine: str) -> None:
     """Period, largest speed, least spring force of the stick-slip cycle, as in the reference."""

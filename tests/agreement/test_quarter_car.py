@@ -75,7 +75,6 @@ def error(found: np.ndarray, true: np.ndarray) -> float:
     return float(np.max(np.abs(found - true)) / np.max(np.abs(true)))
 
 
-@pytest.mark.turns(3)
 @pytest.mark.often("S2")
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_layouts(layout: str) -> None:
@@ -87,7 +86,6 @@ def test_layouts(layout: str) -> None:
     assert errors[0] / errors[1] > 3.5
 
 
-@pytest.mark.turns(7)
 @pytest.mark.often("dahl")
 @pytest.mark.parametrize("law", [law for law in FRICTION if law != "none"])
 def test_laws(law: str) -> None:
@@ -96,7 +94,6 @@ def test_laws(law: str) -> None:
     assert error(simulated("model.xml", "RK4", 5e-4, **friction), truth) < 2e-5
 
 
-@pytest.mark.turns(4)
 @pytest.mark.often("implicitfast")
 @pytest.mark.parametrize("integrator", ["Euler", "implicit", "implicitfast", "discrete"])
 def test_single_step_integrators_converge_in_first_order(integrator: str) -> None:

@@ -95,7 +95,6 @@ def test_an_unknown_input() -> None:
         signal("jolt", 1.0, 1.0)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.rarely("load_on_lugre", "load_on_maxwell_slip")
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "ideal"])
 def test_every_law_acts(law: str) -> None:
@@ -115,7 +114,6 @@ def travel(law: str) -> tuple[Any, Any, Any]:
     return run.device_motion[0][:, 0], run.device_motion[1][:, 0], run
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("law", ["coulomb", "stribeck", "lugre", "dahl"])
 def test_friction_sticks_and_slides(law: str) -> None:
     _, v, run = travel(law)
@@ -170,7 +168,6 @@ def test_stepping_the_reference_is_of_fourth_order() -> None:
     assert found[0] / found[1] == pytest.approx(16, rel=0.15)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     "law", ["ideal", "variable_inertance", "load_friction", "coulomb", "lugre", "end_stops"]
 )
@@ -232,7 +229,6 @@ def test_a_smooth_law_has_to_show_the_order() -> None:
     assert bounds.is_within(case("lugre"), small, wide, (2.0, 4.0))
 
 
-@pytest.mark.turns(3)
 def test_the_sensitivity_of_a_law_shrinks_with_the_step() -> None:
     asked = case("coulomb")
     true = truth(asked, asked.times)
@@ -334,7 +330,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path]:
     return done, out
 
 
-@pytest.mark.turns(7)
 def test_json_alone_on_stdout_and_two_files(finished: tuple[Any, Path]) -> None:
     done, out = finished
     assert (done.returncode, done.stderr) == (0, ""), done.stdout[:2000]
@@ -346,7 +341,6 @@ def test_json_alone_on_stdout_and_two_files(finished: tuple[Any, Path]) -> None:
     assert (out / "validation.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.turns(4)
 def test_every_row_is_within_its_bound(finished: tuple[Any, Path]) -> None:
     found = json.loads(finished[0].stdout)
     rows = found["rows"]

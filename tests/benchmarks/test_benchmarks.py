@@ -347,7 +347,6 @@ def test_make_bench_writes_json_and_a_picture(
     assert "pip install no_such_package" in (tmp_path / "log").read_text()
 
 
-@pytest.mark.turns(3)
 def test_pictures_are_drawn(tmp_path: Path) -> None:
     from benchmarks import along_motion, one_step, work_precision
 

@@ -27,7 +27,6 @@ def test_many(tmp_path: Path) -> None:
     assert (tmp_path / "many.png").stat().st_size > 10_000
 
 
-@pytest.mark.turns(4)
 @pytest.mark.skipif(sys.platform != "linux", reason="resident memory is read from /proc")
 def test_memory() -> None:
     from benchmarks import memory
@@ -105,7 +104,6 @@ def test_identification() -> None:
     assert told["least"] == told["most"] == rows[0]["seconds"]
 
 
-@pytest.mark.turns(4)
 def test_diagnosis(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     from benchmarks import diagnosis
 

@@ -70,7 +70,6 @@ def test_noise_levels() -> None:
     assert levels.displacement == pytest.approx(5e-6)
 
 
-@pytest.mark.turns(4)
 def test_a_process_that_dies_is_a_failure_of_its_case_alone() -> None:
     tasks = [Task(group="clean", seed=seed, noise=0.01) for seed in (1, 2, 3)]
     shares: list[float] = []
@@ -156,7 +155,6 @@ def _diagnosis(effect: str, law: str | None, values: dict[str, tuple[float, floa
     )
 
 
-@pytest.mark.turns(3)
 def test_parameters_are_compared_by_name() -> None:
     task = Task(group="single", seed=4, noise=0.0, effects=("hysteretic_friction",), law="dahl")
     case = hide(task)
@@ -194,7 +192,6 @@ def realistic(effect: str, **chain: float) -> HiddenCase:
     return replace(case, chain=Chain(**chain))  # pyright: ignore[reportArgumentType]
 
 
-@pytest.mark.turns(3)
 def test_a_bench_without_filters_shows_its_mass_and_drift_with_those_hidden() -> None:
     drifting = realistic("force_drift", drift=0.5)
     hidden, run = drifting.parameters["force_drift"], drifting.runs[0]
@@ -229,7 +226,6 @@ def with_device(case: HiddenCase, **changes: float | str) -> HiddenCase:
     return replace(case, device=replace(case.device, **changes))  # pyright: ignore[reportArgumentType]
 
 
-@pytest.mark.turns(4)
 def test_a_peak_that_noise_hides_may_be_called_coulomb_friction() -> None:
     case = realistic("coulomb_friction")
     level = case.parameters["coulomb_force"]

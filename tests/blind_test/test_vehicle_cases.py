@@ -98,7 +98,6 @@ OF = {
 }  # fmt: skip
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("effect", [*OF])
 def test_a_hidden_effect_is_what_the_same_number_does_in_mujoco(effect: str) -> None:
     random = np.random.default_rng([7, len(effect)])
@@ -144,7 +143,6 @@ def case() -> HiddenVehicle:
     return hide_in_vehicle(11, ("tyre_damping",), vehicle="quarter")
 
 
-@pytest.mark.turns(4)
 def test_noise_is_that_of_the_channels(case: HiddenVehicle) -> None:
     for name in case.truth[0]:
         noise = np.concatenate(

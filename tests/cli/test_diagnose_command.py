@@ -47,7 +47,6 @@ def diagnosed(folder: Path, tmp_path_factory: pytest.TempPathFactory):
     return inerter("diagnose", folder, "--out", out, "--json"), out
 
 
-@pytest.mark.turns(4)
 def test_json_alone_on_stdout(diagnosed) -> None:
     done, out = diagnosed
     assert done.returncode == 0, done.stderr
@@ -82,7 +81,6 @@ def test_four_files_and_nothing_else(diagnosed) -> None:
     assert names == ["device.toml", "diagnosis.json", "model.xml", "report.html"]
 
 
-@pytest.mark.turns(3)
 def test_summary_for_people(folder: Path, tmp_path: Path) -> None:
     done = inerter("diagnose", folder / "run_0.csv", "--out", tmp_path / "deep" / "out")
     assert done.returncode == 0, done.stderr
@@ -90,7 +88,6 @@ def test_summary_for_people(folder: Path, tmp_path: Path) -> None:
     assert (tmp_path / "deep" / "out" / "report.html").exists()
 
 
-@pytest.mark.turns(7)
 def test_quick_writes_nothing(folder: Path, tmp_path: Path) -> None:
     done = inerter("diagnose", folder / "run_0.csv", "--quick", "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
@@ -108,7 +105,6 @@ def test_model_and_device_as_baseline(folder: Path, diagnosed, tmp_path: Path) -
         assert json.loads(done.stdout)["findings"] == []
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

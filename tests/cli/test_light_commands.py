@@ -26,7 +26,6 @@ def run(script: str) -> subprocess.CompletedProcess[str]:
     )  # fmt: skip
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("words", CASES)
 def test_a_command_loads_no_other_ones_libraries(words: str) -> None:
     done = run(

@@ -98,7 +98,6 @@ def effects(done: Done) -> list[str]:
     return [finding["effect"] for finding in done.result["findings"]]
 
 
-@pytest.mark.turns(3)
 def test_names_are_kept_and_do_no_harm(tmp_path: Path) -> None:
     names = ["two words", "<script>alert(1)</script>", 'ünï → 😀 & "q" ]]>']
     runs = {name: made(seed=i, seconds=3) for i, name in enumerate(names)}
@@ -110,7 +109,6 @@ def test_names_are_kept_and_do_no_harm(tmp_path: Path) -> None:
     assert "<script>alert" not in page
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("size", "inertance", "coulomb"),
     [(0.003, 1.0, 0.1), (0.03, 1e4, 5e3)],

@@ -44,7 +44,6 @@ def finished(tmp_path_factory: pytest.TempPathFactory):
     return inerter("simulate", path, *arguments), out
 
 
-@pytest.mark.turns(3)
 def test_json_alone_on_stdout_and_four_files(finished) -> None:
     done, out = finished
     assert done.returncode == 0, done.stderr
@@ -82,7 +81,6 @@ def test_a_number_that_is_not_finite_is_null_in_the_file_and_on_stdout(
     assert (found["duration"], found["spread"]) == (None, [None])
 
 
-@pytest.mark.turns(3)
 def test_a_model_without_device_runs_and_says_so(tmp_path: Path) -> None:
     path = written(tmp_path, oscillator("", extra=PULL))
     done = inerter("simulate", path, "--duration", "0.2", "--keyframe", "0", "--out", tmp_path)
@@ -120,7 +118,6 @@ WRONG = {
 }
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("case", WRONG)
 def test_mistakes_get_one_line_status_2_and_no_files(tmp_path: Path, case: str) -> None:
     good = oscillator(device(inertance=1), extra=PULL)
@@ -193,7 +190,6 @@ def test_without_the_lab_the_extra_is_named() -> None:
     assert "this needs the extra `lab`" in done.stderr
 
 
-@pytest.mark.turns(3)
 def test_what_the_documentation_shows_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = DOCUMENTATION.read_text(encoding="utf-8")
     command, table, code = (
@@ -248,7 +244,6 @@ def test_a_browser_draws_every_plot_within_the_page(tmp_path: Path, width: int) 
     assert found["wide"] == 0
 
 
-@pytest.mark.turns(4)
 def test_a_video_shows_the_motion(tmp_path: Path) -> None:
     from PIL import Image, ImageChops
 

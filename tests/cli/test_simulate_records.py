@@ -208,7 +208,6 @@ def drive(folder: Path) -> Path:
     return path
 
 
-@pytest.mark.turns(4)
 @pytest.mark.often("ideal")
 @pytest.mark.parametrize("kind", ["ideal", "coulomb"])
 def test_a_diagnosis_of_the_record_finds_what_was_simulated(tmp_path: Path, kind: str) -> None:

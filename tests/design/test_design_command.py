@@ -57,7 +57,6 @@ def test_json_files_and_device(kind: str, tmp_path: Path) -> None:
     assert "<script src=" not in page
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "words", [*([kind, *words] for kind, words in COMMANDS.items()), *PLAIN.values()]
 )

@@ -39,7 +39,6 @@ def records() -> list[Record]:
     return measured(ReferenceDevice(**TRUE), motions, np.arange(0, 9, 2e-3))  # type: ignore[arg-type]
 
 
-@pytest.mark.turns(3)
 def test_right_device_brings_no_finding(records) -> None:
     diagnosis = diagnose_bench(records, Device(**TRUE))
     assert diagnosis.findings == []
@@ -105,7 +104,6 @@ def of_wrong_inertance(records) -> Diagnosis:
     return diagnose_bench(records, Device(**{**TRUE, "inertance": 70.0}))
 
 
-@pytest.mark.turns(4)
 def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
     diagnosis = of_wrong_inertance
     assert [finding.effect for finding in diagnosis.findings] == ["inertance_error"]
@@ -125,7 +123,6 @@ def test_wrong_inertance_is_named_alone(of_wrong_inertance: Diagnosis) -> None:
     assert told["gain"]["interval"] == pytest.approx([low, high], rel=1e-6)
 
 
-@pytest.mark.turns(7)
 @pytest.mark.parametrize(
     ("stated", "told"),
     [
@@ -145,7 +142,6 @@ def test_a_contradiction_is_more_than_the_error_of_the_fit(
     assert told is None or told in words
 
 
-@pytest.mark.turns(7)
 def test_missing_friction_is_named_beside_stated_values(records) -> None:
     stated = Device(inertance=80.0, viscous=40.0)
     diagnosis = diagnose_bench(records, stated)

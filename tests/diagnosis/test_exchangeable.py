@@ -347,7 +347,6 @@ def test_along_one_sine_a_play_has_to_do_more_than_its_shaft(
     assert search._is_shaft_alone(scored) is (play == 0.0)
 
 
-@pytest.mark.turns(4)
 def test_along_one_sine_no_stiffness_stands_for_the_inertance(effects_seed: int) -> None:
     """Of a fast record the acceleration has noise in the search's band, the displacement none."""
     draw = np.random.default_rng(effects_seed)
@@ -360,7 +359,6 @@ def test_along_one_sine_no_stiffness_stands_for_the_inertance(effects_seed: int)
     assert "parallel_stiffness" not in named
 
 
-@pytest.mark.turns(4)
 def test_along_one_slow_sine_a_delay_is_no_shaft(effects_seed: int) -> None:
     """The acceleration has more noise than size: the displacement shows that it is one sine."""
     draw = np.random.default_rng(effects_seed)

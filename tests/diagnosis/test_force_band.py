@@ -94,7 +94,6 @@ def test_above_the_motions_cut_off_its_noise_is_none() -> None:
     assert quiet[-1] == pytest.approx(1.0 + 15.0**4 / (1.0 + 7.5**6) ** 2)
 
 
-@pytest.mark.turns(3)
 def test_above_the_motions_band_what_was_found_stays(effects_seed: int) -> None:
     """Teeth are found beside a damper that these data do not need, and nothing linear is added."""
     begun = start(np.random.default_rng(effects_seed), 8.0)

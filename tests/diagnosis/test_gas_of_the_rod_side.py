@@ -28,7 +28,6 @@ def strut(name: str, swing: float, frequency: float) -> Record:
     )  # fmt: skip
 
 
-@pytest.mark.turns(3)
 def test_it_is_named_and_measured() -> None:
     diagnosis = diagnose_bench([strut("a", 0.025, 1.2), strut("bb", 0.03, 1.9)])
     found = {finding.effect: finding for finding in diagnosis.findings}

@@ -41,7 +41,6 @@ def solved(request: pytest.FixtureRequest, effects_seed: int):
     return solve(effects_seed + CASES.index(request.param), effect, law)
 
 
-@pytest.mark.turns(3)
 def test_effect_is_named_alone(solved) -> None:
     case, diagnosis = solved
     assert [finding.effect for finding in diagnosis.findings] == [case.effect], (
@@ -51,7 +50,6 @@ def test_effect_is_named_alone(solved) -> None:
         assert diagnosis.findings[0].law == case.law, f"seed {case.seed}"
 
 
-@pytest.mark.turns(3)
 def test_parameters_are_near(solved) -> None:
     case, diagnosis = solved
     if case.law == "bouc_wen":
@@ -97,7 +95,6 @@ def _size(case: HiddenCase, name: str) -> float | None:
             "friction_asymmetry": 1.0}.get(name)  # fmt: skip
 
 
-@pytest.mark.turns(3)
 def test_gain_is_real(solved) -> None:
     """On data that neither the fit nor the search saw, against the truth without noise."""
     case, diagnosis = solved
@@ -111,7 +108,6 @@ def test_gain_is_real(solved) -> None:
             assert after < 0.5 * before, f"seed {case.seed}"
 
 
-@pytest.mark.turns(3)
 def test_engines_agree_with_the_diagnosis(solved) -> None:
     """Each engine, along the held-out motion, misses the measured force by as much as was said.
 
@@ -143,7 +139,6 @@ def _agree_mostly(diagnosis: Diagnosis) -> None:
         assert np.quantile(apart, 0.75) < 0.01 * float(np.std(force)), simulate.__module__
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("offset", [100, 101, 102])
 def test_clean_data_bring_no_finding(offset: int, effects_seed: int) -> None:
     case, diagnosis = solve(effects_seed + offset, "none")

@@ -36,7 +36,6 @@ def late_record(ringing: float = 0.0) -> Record:
     )
 
 
-@pytest.mark.turns(4)
 def test_a_late_damper_with_elasticity_is_no_damper_beside_a_shaft() -> None:
     found = diagnose_bench([late_record(ringing=0.02)])
     names = {finding.effect for finding in found.findings}

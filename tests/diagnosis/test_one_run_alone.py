@@ -27,7 +27,6 @@ def moved(name: str, size: float, seed: int) -> Record:
     )  # fmt: skip
 
 
-@pytest.mark.turns(3)
 def test_a_stop_that_what_is_held_out_does_not_reach_is_kept() -> None:
     """Without it the inertance makes up for it, and that shows in what is held out."""
     runs = [moved("far", 0.024, 3), moved("near", 0.012, 4)]

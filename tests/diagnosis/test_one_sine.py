@@ -39,7 +39,6 @@ def one_sine(
     )
 
 
-@pytest.mark.turns(7)
 def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> None:
     draw = np.random.default_rng(effects_seed)
     low_pass = Channel(force_filter=5.0, force_filter_order=2.0)
@@ -55,7 +54,6 @@ def test_a_low_pass_of_a_jump_is_no_friction_with_memory(effects_seed: int) -> N
 DAHL = {"friction": "dahl", "coulomb_force": 30.0, "bristle_stiffness": 15e3}
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     "viscous", [0.0, pytest.param(80.0, marks=pytest.mark.long)], ids=["alone", "with a damper"]
 )
@@ -82,7 +80,6 @@ def test_a_tone_at_a_harmonic_does_not_repeat_along_the_stroke() -> None:
     assert {each.effect for each in found.findings} <= {"periodic_disturbance"}
 
 
-@pytest.mark.turns(3)
 def test_a_force_that_repeats_along_the_stroke_has_its_length(effects_seed: int) -> None:
     """No other force has so many harmonics of one sine and no more."""
     draw = np.random.default_rng(effects_seed)
@@ -97,7 +94,6 @@ def test_a_force_that_repeats_along_the_stroke_has_its_length(effects_seed: int)
     assert found.parameters["inertance"].value == pytest.approx(54.0, rel=0.02)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("effect", "name", "device"),
     [
@@ -117,7 +113,6 @@ def test_what_bends_shows_in_harmonics_near_the_cut_off(
     assert abs(value.value - device[name]) < max(3 * value.stderr, 0.03 * device[name])
 
 
-@pytest.mark.turns(3)
 def test_a_law_is_told_by_the_harmonics_of_one_sine() -> None:
     """In the motion's band most laws are the same; what they differ in lies above it."""
     made = one_sine(
@@ -130,7 +125,6 @@ def test_a_law_is_told_by_the_harmonics_of_one_sine() -> None:
     assert found.parameters["coulomb_force"].value == pytest.approx(80.0, rel=0.05)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("level", [40.0, None])
 def test_the_force_is_compared_in_its_harmonics_where_there_are_any(level: float | None) -> None:
     law = {"friction": "coulomb", "coulomb_force": level} if level else {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from inerter.diagnose import diagnose_bench
 from inerter.records import Record
 
@@ -30,7 +29,6 @@ def records(draw: np.random.Generator) -> list[Record]:
     return found
 
 
-@pytest.mark.turns(3)
 def test_another_run_is_held_out_where_the_usual_one_alone_tells(effects_seed: int) -> None:
     made = records(np.random.default_rng(effects_seed))
     told = diagnose_bench(made)

@@ -67,7 +67,6 @@ def test_what_cannot_be_sent_is_worked_out_here() -> None:
     assert parallel(lambda i: i * i, range(20)) == [i * i for i in range(20)]
 
 
-@pytest.mark.turns(4)
 @with_a_helper
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 20, 257])
 def test_results_keep_their_order(count: int) -> None:
@@ -139,7 +138,6 @@ def test_what_a_process_that_ends_had_to_do_is_done_here(tmp_path: Path) -> None
     assert parallel(lambda i: i + 1, range(6)) == [1, 2, 3, 4, 5, 6]
 
 
-@pytest.mark.turns(3)
 @with_a_helper
 def test_help_within_help_is_the_same(tmp_path: Path) -> None:
     with helped():
@@ -163,7 +161,6 @@ def test_helpers_end_with_the_work(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
         os.kill(helper, 0)
 
 
-@pytest.mark.turns(7)
 def test_a_diagnosis_is_the_same_to_the_last_digit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "cpu_count", lambda: 2)
     device = ReferenceDevice(inertance=80.0, friction="coulomb", coulomb_force=20.0)

@@ -10,7 +10,6 @@ from inerter.records import Record
 TIME = np.arange(0, 10, 1 / 250)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("case", range(2))
 def test_a_displaced_spring_is_named(case: int, effects_seed: int) -> None:
     draw = np.random.default_rng((effects_seed, case))

@@ -100,7 +100,6 @@ def test_a_run_without_a_contact_stays_as_it_is() -> None:
     assert from_contact(still) is still
 
 
-@pytest.mark.turns(3)
 def test_play_is_found_from_anywhere() -> None:
     model = find_play(followed(problem(1)), RIGID)
     assert model is not None
@@ -109,7 +108,6 @@ def test_play_is_found_from_anywhere() -> None:
         assert found[name] == pytest.approx(TRUTH.given[name], rel=0.02), name
 
 
-@pytest.mark.turns(3)
 def test_the_spread_is_that_of_fits_to_other_data() -> None:
     """Of three runs each left out; the truth lies within some standard errors of the fit."""
     given = forgiving(followed(problem(3)), true_model())
@@ -123,7 +121,6 @@ def test_the_spread_is_that_of_fits_to_other_data() -> None:
         assert abs(value - true) < max(5 * sigma, 2e-3 * true), name
 
 
-@pytest.mark.turns(3)
 def test_a_few_false_impacts_do_not_matter() -> None:
     """Of 12 s 20 ms are struck by something else, five times as hard as the flywheel strikes."""
     given = problem()

@@ -36,13 +36,11 @@ def effects(diagnosis: Diagnosis) -> list[str]:
     return [finding.effect for finding in diagnosis.findings]
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(("share", "found"), [(1.0001, []), (1.01, ["inertance_error"])])
 def test_an_error_that_no_load_cell_shows_is_none(share: float, found: list[str]) -> None:
     assert effects(quiet(IDEAL, {**IDEAL, "inertance": share * IDEAL["inertance"]})) == found
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("delay", "found"), [(0.015 * 2e-3, []), (5e-4, ["sensor_delay"])])
 def test_a_delay_of_a_hundredth_of_the_sample_spacing_is_none(
     delay: float, found: list[str]
@@ -50,7 +48,6 @@ def test_a_delay_of_a_hundredth_of_the_sample_spacing_is_none(
     assert effects(quiet(IDEAL, IDEAL, delay)) == found
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("excess", "found"), [(0.1, ["coulomb_friction"]), (8.0, ["stribeck_friction"])]
 )

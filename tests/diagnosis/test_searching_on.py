@@ -70,7 +70,6 @@ def test_what_was_dropped_and_is_likelier_is_not_replaced(
     assert not stands_in(None, {"force_drift"})
 
 
-@pytest.mark.turns(4)
 def test_search_goes_on_without_what_was_dropped(effects_seed: int) -> None:
     found, told = confirmed_from(bench(100.0, 8.0, effects_seed), viscous=0.0, force_drift=0.0)
     assert "force_drift is not confirmed on held-out data: dropped" in told
@@ -80,7 +79,6 @@ def test_search_goes_on_without_what_was_dropped(effects_seed: int) -> None:
     assert set(found.standings) == names(found)
 
 
-@pytest.mark.turns(4)
 def test_nothing_is_added_where_nothing_is_left(effects_seed: int) -> None:
     found, told = confirmed_from(bench(100.0, 0.0, effects_seed), viscous=0.0, force_drift=0.0)
     assert "searching on without force_drift" in told

@@ -62,7 +62,6 @@ def test_short_rests_and_rests_between_motions_stay() -> None:
     assert told == ""
 
 
-@pytest.mark.turns(3)
 def test_friction_is_found_in_swings_that_come_to_rest() -> None:
     """Seven of eight seconds are at rest, each run under another force that friction holds."""
     diagnosis = diagnose_bench([swing(8.0, at) for at in (0.012, -0.009, 0.0105)])
@@ -72,7 +71,6 @@ def test_friction_is_found_in_swings_that_come_to_rest() -> None:
     assert "Most of the time nothing moves" in diagnosis.verdict
 
 
-@pytest.mark.turns(3)
 def test_of_one_free_swing_no_stiffness_takes_the_place_of_inertance() -> None:
     """Its motion follows from its force: b a + f is -(k/m) b x + f (1 - b/m) for any share of b."""
     diagnosis = diagnose_bench([swing(8.0, 0.02)])

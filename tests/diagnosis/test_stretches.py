@@ -69,7 +69,6 @@ def test_short_records_are_searched_whole(random: np.random.Generator) -> None:
     assert stretches([bench.record(50 * bench.a)]) is None
 
 
-@pytest.mark.turns(4)
 def test_what_is_found_is_fitted_to_everything(random: np.random.Generator) -> None:
     bench = Bench(random, 60_000)
     level, damping = random.uniform(15, 40), random.uniform(40, 120)
@@ -146,7 +145,6 @@ def test_what_is_held_out_has_no_say(random: np.random.Generator) -> None:
         assert (block in {3, 6, 8}) == (record.name in given.holdout)
 
 
-@pytest.mark.turns(7)
 def test_runs_are_held_out_whole(random: np.random.Generator) -> None:
     runs = []
     for i in range(4):
@@ -164,7 +162,6 @@ def test_runs_are_held_out_whole(random: np.random.Generator) -> None:
     assert diagnosis.parameters["viscous"].value == pytest.approx(40, rel=0.03)
 
 
-@pytest.mark.turns(4)
 def test_dense_samples_are_averaged(random: np.random.Generator) -> None:
     bench = Bench(random, 64_000, 16 * RATE)
     found = stretches([bench.record(50 * bench.a)])

@@ -39,7 +39,6 @@ def test_amplitude_of_coulomb_friction_is_four_over_pi() -> None:
     assert amplitude(device, 2.0, 3.0) == pytest.approx(4 / np.pi * 5, rel=1e-4)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("added", "effect", "name", "value"),
     [
@@ -106,7 +105,6 @@ def test_amplitude_of_a_lightly_damped_shaft_is_its_steady_one(frequency: float)
     assert amplitude(device, frequency, 10.0) == pytest.approx(expected, rel=0.02)
 
 
-@pytest.mark.turns(4)
 def test_a_stated_breakaway_does_not_stand_in_the_way() -> None:
     """The sliding level found is above the breakaway level stated."""
     stated = Device(
@@ -117,7 +115,6 @@ def test_a_stated_breakaway_does_not_stand_in_the_way() -> None:
     assert diagnosis.extended.rmse < diagnosis.baseline.rmse
 
 
-@pytest.mark.turns(4)
 def test_a_copy_of_a_table_is_left_out() -> None:
     one = table(0.01, viscous=900.0)
     copied = check_records([one, replace(one, name="copy")])
@@ -127,7 +124,6 @@ def test_a_copy_of_a_table_is_left_out() -> None:
     assert [record.role for record in both.records] == ["fit", "unused"]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("effect", "stated"),
     [
@@ -181,7 +177,6 @@ def test_a_soft_bristle_swings_steadily_from_the_start() -> None:
     assert found == pytest.approx(points.force_amplitude, rel=1e-6)
 
 
-@pytest.mark.turns(7)
 def test_a_stated_law_is_contradicted_as_a_whole() -> None:
     """The level is right; the bristle, left to its default, is ten times as stiff as there."""
     points = dahl_table(12.0, 9e3, 0.003)

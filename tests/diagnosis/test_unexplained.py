@@ -48,7 +48,6 @@ UNKNOWN: list[tuple[Callable, set[str]]] = [
 NAMES = [law.__name__ for law, _ in UNKNOWN]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("law", "expected"), UNKNOWN, ids=NAMES)
 @pytest.mark.parametrize("share", [0.07, 0.25])
 def test_unknown_force_is_found_and_described(
@@ -70,7 +69,6 @@ def test_dead_band_of_the_channel_goes_with_the_force(effects_seed: int) -> None
     assert any("clip(F" in term["term"] for term in found.proposal["terms"]), found.proposal
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("noise", [0.005, 0.01, 0.05])
 @pytest.mark.parametrize(
     ("effect", "law"),

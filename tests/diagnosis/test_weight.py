@@ -28,7 +28,6 @@ def arm(name: str, middle: float, swing: float, frequency: float) -> Record:
     )  # fmt: skip
 
 
-@pytest.mark.turns(3)
 def test_an_arm_that_swings_is_out_of_balance() -> None:
     diagnosis = diagnose_bench([arm("a", 0.3, 0.5, 0.8), arm("bb", 0.6, 0.4, 1.3)])
     found = {finding.effect: finding for finding in diagnosis.findings}

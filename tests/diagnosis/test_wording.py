@@ -102,7 +102,6 @@ def test_the_main_cause_is_what_explains_most(spring_and_damper: Diagnosis) -> N
     assert f"The main cause is {effect_in_words(main)}" in spring_and_damper.verdict
 
 
-@pytest.mark.turns(7)
 def test_an_experiment_is_named_only_where_it_tells_the_two_apart(
     spring_and_damper: Diagnosis,
 ) -> None:

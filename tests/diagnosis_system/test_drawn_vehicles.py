@@ -47,7 +47,6 @@ def test_nothing_is_named_in_a_drawn_vehicle_with_nothing_hidden(effects_seed: i
     assert np.isfinite(found.extended.rmse)
 
 
-@pytest.mark.turns(4)
 def test_a_drawn_effect_of_a_quarter_car_is_named_quickly(effects_seed: int) -> None:
     case = hide_in_vehicle(effects_seed, ("tyre_damping",), vehicle="quarter")
     found = diagnose_vehicle(case)

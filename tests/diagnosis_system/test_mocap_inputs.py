@@ -37,7 +37,6 @@ def columns_of(case: HiddenVehicle) -> list[str]:
     return [name for name in case.runs[0] if name not in ("time", "tyre_force")]
 
 
-@pytest.mark.turns(3)
 def test_a_table_moves_the_model_as_a_road_actuator_does(effects_seed: int) -> None:
     case = hide_in_vehicle(effects_seed, (), vehicle="quarter", noise=0.0)
     record = vehicle_records(case)[0]
@@ -70,7 +69,6 @@ def test_what_a_table_cannot_show_is_said_and_its_spring_is_tried(effects_seed: 
     assert "springlength" in (found.model_xml or "")
 
 
-@pytest.mark.turns(3)
 def test_inputs_that_are_not_there_are_named(effects_seed: int) -> None:
     case = hide_in_vehicle(effects_seed, (), vehicle="quarter")
     user = on_table(case, "shaker")

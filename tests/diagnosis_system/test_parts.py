@@ -83,7 +83,6 @@ def test_tyre_cannot_pull_more_than_its_static_load() -> None:
         assert data.sensor("tyre_force").data[0] == pytest.approx(force)
 
 
-@pytest.mark.turns(7)
 def test_native_spring_and_damper_in_a_model_with_gravity(tmp_path: Path) -> None:
     # the same car: spring and damper are the tendon's, it stands on its tyre under gravity
     model = tmp_path / "car.xml"
@@ -118,7 +117,6 @@ def test_native_spring_and_damper_in_a_model_with_gravity(tmp_path: Path) -> Non
     assert found.extended.rmse < 1.1 * found.noise_floor
 
 
-@pytest.mark.turns(3)
 def test_written_model_is_the_extended_one(tmp_path: Path) -> None:
     found = diagnose([record(Car(sprung_mass=200.0), Road(80 + i, 3.0), f"r{i}") for i in range(2)])
     path = tmp_path / "model.xml"

@@ -13,7 +13,6 @@ from inerter.records import VehicleRecord
 from inerter.records.quality import check_records
 
 
-@pytest.mark.turns(4)
 def test_stated_value_stands_beside_the_one_found() -> None:
     found = diagnose(records(Car(damping=3300.0), runs=2))
     value = found.findings[0].parameters["viscous"]
@@ -50,7 +49,6 @@ def test_nothing_is_found_where_nothing_is_hidden() -> None:
         assert found.extended.rmse == found.baseline.rmse < 1.1 * found.noise_floor
 
 
-@pytest.mark.turns(4)
 def test_single_run_is_judged_on_blocks_of_it() -> None:
     found = diagnose(records(Car(unsprung_mass=28.0), runs=1, duration=8.0))
     assert [finding.effect for finding in found.findings] == ["wheel_mass_error"]
@@ -102,7 +100,6 @@ def test_other_sign_of_the_tyre_force_is_no_effect() -> None:
     assert found.method["signs"] == ["tyre_force counted with the other sign"]
 
 
-@pytest.mark.turns(4)
 def test_an_accelerometer_turned_round_is_told_before_any_cause() -> None:
     turned = []
     for run in records(Car(), runs=2):

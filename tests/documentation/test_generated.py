@@ -24,7 +24,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.turns(7)
 def test_every_picture_that_a_page_shows_is_made_once(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -65,7 +65,6 @@ def help_of(names: tuple[str, ...]) -> str:
     return done.stdout if done.returncode == 0 else ""
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p, "python")], ids=lambda p: p.name)
 def test_python_of_a_page_runs(page: Path, tmp_path: Path) -> None:
     """In the order of the page, as one program."""
@@ -79,7 +78,6 @@ def test_python_of_a_page_runs(page: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("page", "line"), commands())
 def test_a_command_line_is_understood(page: str, line: str) -> None:
     """The command exists and knows every option."""
@@ -113,7 +111,6 @@ def steps(page: Path) -> list[tuple[str, object]]:
     return found
 
 
-@pytest.mark.turns(7)
 @pytest.mark.rarely("bench.md")
 @pytest.mark.parametrize("page", [page for page in HOW_TO if steps(page)], ids=lambda p: p.name)
 def test_a_how_to_works_as_it_stands(page: Path, tmp_path: Path) -> None:
@@ -172,7 +169,6 @@ def serves(words: object) -> bool:
     return words[0] == "view" and "--picture" not in words
 
 
-@pytest.mark.turns(7)
 @pytest.mark.parametrize("path", sorted(DOCS.rglob("*.ipynb")), ids=lambda path: path.name)
 def test_a_notebook_runs(path: Path, tmp_path: Path) -> None:
     """Its cells as one program; the page builder runs it in a kernel."""

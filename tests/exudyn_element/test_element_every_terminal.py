@@ -340,7 +340,6 @@ def force_error(name: str, step: float) -> float:
     return float(np.abs(told[1:-1] - expected)[settled].max() / np.abs(told).max())
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("name", ALONG)
 def test_force_is_the_inertance_times_the_acceleration(name: str) -> None:
     """The difference is the solver's and that of differencing: it goes with the step squared."""

@@ -166,7 +166,6 @@ def test_more_coordinates_than_exudyn_evaluates_by_itself() -> None:
     assert not strut.symbolic
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("heat", [False, True])
 @pytest.mark.parametrize("friction", LAWS + SEVERAL)
 def test_three_ways_to_evaluate_are_one(friction: str, heat: bool) -> None:

@@ -118,7 +118,6 @@ DEVICES_WITH_MEMORY: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("law", DEVICES_WITH_MEMORY)
 def test_a_load_on_a_bristle(law: str) -> None:
     """The rate follows the latest acceleration: order one under RK44, two where it iterates."""

@@ -128,7 +128,6 @@ def path(mbs: Any, strut: Any, end: float = 0.3) -> Array:
     return np.stack([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in sensors], axis=1)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("name", "kind"), BOTH)
 def test_a_changed_part_is_the_part_that_was_given(name: str, kind: str) -> None:
     changed = PARTS[name][1]

@@ -33,7 +33,6 @@ from model_cases import (
 # ------------------------------ the models move as the reference ------------------------------
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", [name for name in CASES if "fluid" not in name])
 def test_free_motion(name: str) -> None:
     """RK44 at 1 ms: 3e-8 to 2e-6, 1e-5 where the damper is fast against the wheel (S3)."""
@@ -43,7 +42,6 @@ def test_free_motion(name: str) -> None:
     assert 13 < errors[0] / errors[1] < 20
 
 
-@pytest.mark.turns(4)
 @pytest.mark.rarely("fluid_inerter complete", "fluid_inerter dry")
 @pytest.mark.parametrize("name", CASES)
 def test_inputs(name: str) -> None:
@@ -59,7 +57,6 @@ def test_inputs(name: str) -> None:
         assert error(force[1:], true.device_force[1:, i]) < 2e-6
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", CASES)
 def test_second_order_under_generalized_alpha(name: str) -> None:
     true = truth(name, True)
@@ -154,7 +151,6 @@ def states_of(model: Model, name: str, step: float) -> tuple[Run, Array]:
     return found, np.array(model.mbs.GetSensorStoredData(sensor)[:, 1:])
 
 
-@pytest.mark.turns(7)
 @pytest.mark.often("S3")
 @pytest.mark.parametrize(
     ("layout", "extra"), [("S2", {}), ("S2", ELASTIC), ("S3", {})], ids=["S2", "S2 elastic", "S3"]
@@ -180,7 +176,6 @@ def test_a_device_of_ones_own_in_the_quarter_car(layout: str, extra: dict[str, f
     assert error(found.force["strut"][1:], true.device_force[1:]) < 1e-6
 
 
-@pytest.mark.turns(4)
 @pytest.mark.often("S2")
 @pytest.mark.parametrize("layout", ["S2", "S3"])
 def test_a_device_of_ones_own_in_the_half_car(layout: str) -> None:

@@ -175,7 +175,6 @@ def test_without_exudyn_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch)
 # ------------------------------ what is shipped ------------------------------
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", exudyn_model_names())
 def test_a_model_runs_as_a_script(name: str, tmp_path: Path) -> None:
     """It prints figures, draws them, and neither it nor Exudyn warns of anything."""

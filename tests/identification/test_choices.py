@@ -19,7 +19,6 @@ def off(case: Case, found: dict[str, tuple[float, float]]) -> dict[str, float]:
     return {name: (value - truth) / error for name, ((value, error), truth) in pairs.items()}
 
 
-@pytest.mark.turns(3)
 def test_what_smoothing_and_reversals_do_is_in_the_errors() -> None:
     """Viscous, quadratic and Coulomb friction make up for the blur of a filter's jumps."""
     case = drawn(38)
@@ -29,7 +28,6 @@ def test_what_smoothing_and_reversals_do_is_in_the_errors() -> None:
     assert max(map(abs, missed.values())) < 2, missed
 
 
-@pytest.mark.turns(3)
 def test_a_filter_that_is_taken_for_a_delay_is_in_the_errors() -> None:
     case = drawn(27)
     missed = off(case, by_identify(case))

@@ -139,7 +139,6 @@ def test_nodes_of_friction_are_right_beside_every_channel(beside: str, band: flo
     assert rms_errors_of_columns(data, Model("coulomb", values, tuple(nodes))).max() < 1e-3
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("low_pass", [{}, LOW_PASS], ids=["", "low-pass"])
 @pytest.mark.parametrize("band", [np.inf, 60.0])
 @pytest.mark.parametrize("law", ["none", "dahl", "bouc_wen", "lugre"])

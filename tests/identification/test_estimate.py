@@ -48,7 +48,6 @@ def test_a_device_of_each_law_is_recovered(law: str) -> None:
     assert all(each.stderr < 0.1 * each.value for each in known)
 
 
-@pytest.mark.turns(3)
 def test_the_right_law_has_the_smallest_error_on_data_not_seen() -> None:
     case = drawn("dahl", 5)
     result = identify(case.records, ["ideal", "viscous", "dahl"], intervals="normal")
@@ -60,7 +59,6 @@ def test_the_right_law_has_the_smallest_error_on_data_not_seen() -> None:
     assert result.json()["records"][held]["role"] == "holdout"
 
 
-@pytest.mark.turns(4)
 def test_every_start_of_a_hysteretic_law_leads_to_one_minimum_or_says_so() -> None:
     case = drawn("bouc_wen", 6)
     result = found(case, "bouc_wen")
@@ -207,7 +205,6 @@ def test_outliers_count_less_with_a_robust_loss() -> None:
     assert errors["cauchy"] < 0.005
 
 
-@pytest.mark.turns(3)
 def test_what_is_known_is_held() -> None:
     case = drawn("dahl", 3)
     fixed = {"inertance": case.parameters["inertance"], "bristle_stiffness": 1e5}
@@ -273,7 +270,6 @@ def test_an_error_is_relative_to_the_force_it_was_made_in() -> None:
     assert best.nrmse == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.turns(3)
 def test_the_same_on_one_processor_and_on_two(monkeypatch: pytest.MonkeyPatch) -> None:
     """Laws are shared with another process, which starts from what simpler ones found here."""
     records = drawn("coulomb", 4).records

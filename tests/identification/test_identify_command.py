@@ -60,7 +60,6 @@ def run(*arguments: object) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
-@pytest.mark.turns(4)
 def test_files_and_json_say_the_same(case: Drawn, folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     status, stdout, stderr = run(
@@ -86,7 +85,6 @@ def test_files_and_json_say_the_same(case: Drawn, folder: Path, tmp_path: Path) 
     assert (out / "identification.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.turns(3)
 def test_the_terminal_shows_laws_and_parameters(folder: Path, tmp_path: Path) -> None:
     status, stdout, _ = run(
         folder, "--law", "viscous", "--intervals", "normal", "--fix", "viscous=3",
@@ -123,7 +121,6 @@ def test_a_simulation_refines_the_best_law(tmp_path: Path) -> None:
         assert abs(each["value"] - truth) < 4 * each["stderr"] + 2e-3 * truth
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

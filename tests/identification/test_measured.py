@@ -12,7 +12,6 @@ from inerter.identify.simulated import Simulator, fit_simulated, start_from
 from inerter.records import read_records
 
 
-@pytest.mark.turns(3)
 def test_rack_inerter_by_named_causes(measured_data: Path) -> None:
     """The authors' model leaves 34 to 47 N on a run that it has not seen."""
     records = read_records(str(measured_data / "rack_inerter" / "r0_*.csv"), "bench")
@@ -22,7 +21,6 @@ def test_rack_inerter_by_named_causes(measured_data: Path) -> None:
     assert result.parameters["inertance"].value == pytest.approx(61.35, rel=0.05)
 
 
-@pytest.mark.turns(3)
 def test_emps_gives_its_authors_parameters(measured_data: Path) -> None:
     records = read_records(measured_data / "emps" / "emps.csv", "bench")
     law = "coulomb+offset+asymmetry+delay"
@@ -33,7 +31,6 @@ def test_emps_gives_its_authors_parameters(measured_data: Path) -> None:
         assert abs(each.value - value) < 3 * each.stderr + 0.005 * value, name
 
 
-@pytest.mark.turns(4)
 def test_friction_damper_on_a_run_left_out(measured_data: Path) -> None:
     """Its authors' LuGre model leaves 3031 N on harmonic runs."""
     records = read_records(measured_data / "friction_damper", "bench")

@@ -104,7 +104,6 @@ def test_what_cannot_be_is_said() -> None:
         modulation(runs((3.0, 3.0)), "pressure")
 
 
-@pytest.mark.turns(4)
 @pytest.mark.skipif(not SEALS.exists(), reason="no measured records beside the checkout")
 @pytest.mark.parametrize(("seal", "most"), [("nap310", 0.8), ("o-ring257", 1.0)])
 def test_seals_have_one_law_over_pressure(seal: str, most: float) -> None:

@@ -27,7 +27,6 @@ def shipped() -> list[Record]:
     return read_records([str(data_path("bench_record.csv"))], "bench")
 
 
-@pytest.mark.turns(4)
 def test_the_bias_of_noise_is_taken_out_only_where_it_is_known(shipped: list[Record]) -> None:
     """The shape of a hysteresis that is all but a jump hangs on nothing but noise."""
     result = identify(shipped, ["ideal", "bouc_wen"], intervals="normal", starts=16)

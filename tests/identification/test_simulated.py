@@ -89,7 +89,6 @@ def free(offset: float, name: str, frequency: float, late: float = 0.0) -> Recor
     return Record(name=name, time=t, displacement=x, force=100.0 * a + 200.0 * v + offset)
 
 
-@pytest.mark.turns(3)
 def test_a_constant_force_is_kept_and_a_delay_is_held() -> None:
     """Both are in the measured force: without them a free device drifts, or moves too late."""
     values = {"inertance": 98.0, "viscous": 205.0, "force_offset": 4.9, "delay": 5e-3}
@@ -120,7 +119,6 @@ def test_a_run_begins_with_the_force_its_series_element_carries() -> None:
     assert fit.error < 5e-4 * np.std(run.displacement)
 
 
-@pytest.mark.turns(3)
 def test_figures_are_those_of_the_device_that_is_told() -> None:
     runs = [free(5.0, "one", 1.0), free(5.0, "two", 1.5)]
     bench = identify(runs, ["viscous+offset"], intervals="normal")

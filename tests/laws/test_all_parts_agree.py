@@ -172,7 +172,6 @@ def worst_errors(seed: int, law: str, devices: int) -> dict[str, dict[str, float
     return worst
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("law", ALL)
 def test_three_tellings_of_any_device_agree(law: str) -> None:
     for who, errors in worst_errors(31, law, DEVICES).items():

@@ -251,7 +251,6 @@ def test_a_bouc_wen_outside_the_passive_range_is_known_to_create_energy() -> Non
     assert heat[0] > 0.0 > heat[1]
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("law", MEMORY)
 def test_work_done_is_stored_or_lost(law: str) -> None:
     # forth and back at constant speed; integral of F dx = stored + lost, by the trapezoid rule

@@ -200,7 +200,6 @@ def energy_of(device: Device, x: float, v: float, z: Array) -> float:
     return float(device.evaluate(x, v, 0.0, z)["stored_energy"][0])
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("stiffness", [1e3, 1e5, 1e8, 1e12])
 @pytest.mark.parametrize("damping", [0.0, 10.0, 1e4])
 def test_a_held_device_with_backlash_never_gains_energy(stiffness: float, damping: float) -> None:
@@ -281,7 +280,6 @@ def test_along_is_second_order_with_a_series_element() -> None:
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 1.8), errors
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("damping", [0.0, 20.0, 200.0, 2e4])
 @pytest.mark.parametrize("play", [0.0, 2e-4])
 def test_along_a_cubic_a_linear_element_is_exact_in_contact(play: float, damping: float) -> None:

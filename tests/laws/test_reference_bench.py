@@ -26,7 +26,6 @@ CASES: list[tuple[str, str | None]] = [(effect, None) for effect in ("none", *SI
 CASES += [("hysteretic_friction", law) for law in HYSTERETIC_LAWS]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.rarely(
     "11-hysteretic_friction-bouc_wen",
     "11-hysteretic_friction-dahl",

@@ -113,7 +113,6 @@ def test_benches_differ_and_their_motions_are_what_they_say() -> None:
     assert len(kinds) == 6
 
 
-@pytest.mark.turns(3)
 def test_a_case_follows_from_its_seed_and_holds_what_was_hidden() -> None:
     first, again = (
         hide_effect(7, "viscous_friction", noise=QUIET, realistic=True) for _ in range(2)

@@ -146,7 +146,6 @@ def program(tmp_path: Path) -> Path:
 # ------------------------------ another MuJoCo ------------------------------
 
 
-@pytest.mark.turns(3)
 @LINUX
 def test_a_library_compiled_for_another_mujoco(for_another: Path) -> None:
     printed, warned = imported(for_another)

@@ -110,7 +110,6 @@ def test_cluster_gives_the_same(cluster: Any) -> None:
     ]
 
 
-@pytest.mark.turns(4)
 def test_workers_that_die_lose_nothing(cluster: Any, tmp_path: Path) -> None:
     """Three pieces of twenty-four end the worker that they are on, once each."""
     shares: list[float] = []

@@ -44,7 +44,6 @@ def truths() -> dict[str, np.ndarray]:
     return {name: quarter_car_truth(Law(name, p), TIMES) for name, p in FRICTION.items()}
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("law", FRICTION)
 def test_the_error_falls_with_the_step(law: str, integrator: str, truths: dict) -> None:

@@ -63,7 +63,6 @@ def energy(model: mujoco.MjModel, data: mujoco.MjData, layout: str) -> float:
     return (WHEEL * vu**2 + CAR * vs**2) / 2 + springs + data.sensordata[-2:].sum()
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("name", DEVICES)
 def test_a_closed_system_keeps_its_energy(name: str, layout: str) -> None:

@@ -269,7 +269,6 @@ def loop() -> tuple[Array, Array, Array]:
     return values, speeds, np.array(rows)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("persistent", [False, True])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_batch_is_the_loop(

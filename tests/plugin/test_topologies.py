@@ -102,7 +102,6 @@ def test_any_inertance_in_the_quarter_car(layout: str, ratio: float, integrator:
     assert observed > (3.7 if integrator == "RK4" else 0.8), observed
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_any_inertance_between_tumbling_bodies(ratio: float, integrator: str) -> None:

@@ -91,7 +91,6 @@ ELEMENTS = {
 }  # fmt: skip
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("name", ELEMENTS)
 def test_the_motion_converges_to_the_equations(name: str, integrator: str) -> None:

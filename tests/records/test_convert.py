@@ -48,7 +48,6 @@ def same(one: Record, other: Record) -> None:
         np.testing.assert_array_equal(values, other.channels()[name])
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("form", ["csv", "parquet"])
 @pytest.mark.parametrize(("name", "write"), [("test.csv", semicolons), ("test.xlsx", workbook)])
 def test_the_record_format_holds_the_same(name: str, write, form: str, tmp_path: Path) -> None:

@@ -80,7 +80,6 @@ def test_samples_may_lie_further_apart_than_any_delay() -> None:
     assert found.value == pytest.approx(tau, abs=1e-3 / 18.0)
 
 
-@pytest.mark.turns(7)
 @pytest.mark.parametrize("friction", ["none", "coulomb"])
 def test_force_behind_motion(friction: str) -> None:
     """25 devices with inertance, damping, spring and friction, all of them unknown."""
@@ -94,7 +93,6 @@ def test_force_behind_motion(friction: str) -> None:
     assert np.std(scores) < 1.4
 
 
-@pytest.mark.turns(7)
 def test_memory_of_friction_is_hardly_taken_for_a_delay() -> None:
     errors = []
     for seed in range(5):

@@ -29,7 +29,6 @@ def test_a_channel_of_any_kind_and_length_has_facts(count: int) -> None:
         assert (facts.low, facts.high) == (values.min(), values.max())
 
 
-@pytest.mark.turns(3)
 def test_rate_and_noise_are_told(tmp_path: Path) -> None:
     """White noise of 0.5 N on the force; the record's rate, strokes and channels."""
     rng, t = np.random.default_rng(3), 1e-3 * np.arange(8000)

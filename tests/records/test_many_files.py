@@ -31,7 +31,6 @@ def test_there_are_forty_files() -> None:
     assert len(CASES) >= 40
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", CASES)
 def test_a_file_is_read_with_its_values_or_refused(name: str, tmp_path: Path) -> None:
     case, path = CASES[name], tmp_path / name

@@ -36,7 +36,6 @@ def test_two_tones_are_two_modes() -> None:
     assert selected(fast + slow, 0.01).period[:2] == pytest.approx([23, 230], rel=0.03)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("size", [500, 2000, 8000])
 def test_the_law_of_the_noise(size: int) -> None:
     """Mean energies over many draws; the modes whose scatter is small enough to tell."""
@@ -51,7 +50,6 @@ def test_the_law_of_the_noise(size: int) -> None:
     assert np.all(np.abs(found / law - 1) < 0.1 + error)
 
 
-@pytest.mark.turns(3)
 def test_of_noise_alone_next_to_nothing_is_kept() -> None:
     left = [np.std(selected(v := noise(seed), 1.0).denoised - v.mean()) for seed in range(60)]
     assert np.quantile(left, 0.9) < 0.2

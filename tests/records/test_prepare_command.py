@@ -65,7 +65,6 @@ def record(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.turns(4)
 def test_everything_at_once(record: Path, tmp_path: Path) -> None:
     out = tmp_path / "deep" / "out"
     done = inerter(

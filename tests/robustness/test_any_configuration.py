@@ -142,7 +142,6 @@ def simulated(path: Path) -> SimulatedRun | str:
         return str(error)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("integrator", ["RK4", "Euler", "implicitfast", "discrete"])
 @settings(SETTINGS, max_examples=25)
 @given(values=meant(), speed=st.floats(0.05, 1.0))

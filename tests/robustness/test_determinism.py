@@ -165,7 +165,6 @@ TWICE = {
 }  # fmt: skip
 
 
-@pytest.mark.turns(7)
 @pytest.mark.parametrize("command", TWICE)
 def test_a_command_run_twice_writes_the_same(command: str, tmp_path: Path) -> None:
     first = results(tmp_path / "a", *TWICE[command])
@@ -182,7 +181,6 @@ WORKERS = {
 }  # fmt: skip
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("command", WORKERS)
 def test_workers_change_nothing(command: str, tmp_path: Path) -> None:
     one = results(tmp_path / "one", *WORKERS[command], "--jobs", "1")
@@ -193,7 +191,6 @@ def test_workers_change_nothing(command: str, tmp_path: Path) -> None:
     assert one == three
 
 
-@pytest.mark.turns(4)
 def test_processors_change_no_diagnosis(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Coulomb friction, noise and a seed: the whole of the JSON, on one thread and on five."""
     random = np.random.default_rng(3)

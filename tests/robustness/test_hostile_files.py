@@ -26,7 +26,6 @@ def run(*arguments: str | Path) -> dict[str, Any]:
     return json.loads(done.stdout)
 
 
-@pytest.mark.turns(4)
 def test_hostile_files_are_refused_within_bounds(tmp_path: Path) -> None:
     """Those that are quickly made, one after another in one process."""
     paths = []
@@ -58,7 +57,6 @@ def test_a_command_refuses_a_hostile_file(hostile: Hostile, tmp_path: Path, long
     assert int(told[2]) * 1e6 < MEMORY
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_damaged_file_is_read_or_refused(seed: int, tmp_path: Path, long_run: bool) -> None:
     """Within a limit of memory; a crash, a traceback or a number of the seed tells which."""

@@ -26,7 +26,6 @@ def refused(path: Path) -> str:
     return said
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("name", CONTAINERS)
 def test_a_damaged_file_is_read_or_refused(name: str, tmp_path: Path, long_run: bool) -> None:
     sound = tmp_path / name

@@ -118,7 +118,6 @@ def test_an_ordinary_model_is_compiled_where_it_is_wanted(
     assert len(started) == 1
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("name", MODELS)
 def test_a_command_survives_it(name: str, tmp_path: Path, long_run: bool) -> None:
     """As `inerter simulate` gets it; the usual run takes what exhausts memory, once."""

@@ -34,7 +34,6 @@ def inerter(*arguments: str, shell: str = "", **variables: str) -> subprocess.Co
 ENCODINGS = ["ascii", "latin-1", "cp437", "utf-16", "koi8-r", "shift_jis"]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_every_encoding_shows_something(encoding: str, tmp_path: Path, long_run: bool) -> None:
     if encoding != "ascii" and not long_run:
@@ -55,7 +54,6 @@ def test_a_character_that_cannot_be_shown_has_another() -> None:
     )
 
 
-@pytest.mark.turns(3)
 def test_a_closed_stdout_is_told_and_results_are_there(tmp_path: Path) -> None:
     done = inerter("design", "fluid", "--out", str(tmp_path / "out"), shell=">&-")
     assert done.returncode == 1
@@ -63,7 +61,6 @@ def test_a_closed_stdout_is_told_and_results_are_there(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "design.json").read_text().startswith("{")
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("shell", ["2>&-", "<&-"])
 def test_other_streams_may_be_closed(shell: str, tmp_path: Path) -> None:
     done = inerter("design", "fluid", "--out", str(tmp_path / "out"), shell=shell)
@@ -74,14 +71,12 @@ def test_other_streams_may_be_closed(shell: str, tmp_path: Path) -> None:
 ODD = {"MPLBACKEND": "nonsense", "COLUMNS": "0", "LINES": "x"}
 
 
-@pytest.mark.turns(4)
 def test_odd_variables_change_nothing(tmp_path: Path) -> None:
     usual = inerter("diagnose", TABLE, "--out", str(tmp_path / "out"))
     odd = inerter("diagnose", TABLE, "--out", str(tmp_path / "out"), **ODD)
     assert (odd.returncode, odd.stdout, odd.stderr) == (0, usual.stdout, "")
 
 
-@pytest.mark.turns(3)
 def test_a_number_of_processors_that_is_none_is_named(tmp_path: Path) -> None:
     done = inerter("diagnose", RECORD, "--out", str(tmp_path / "out"), LOKY_MAX_CPU_COUNT="abc")
     assert done.returncode == 2
@@ -89,7 +84,6 @@ def test_a_number_of_processors_that_is_none_is_named(tmp_path: Path) -> None:
     assert done.stderr.count("\n") == 1
 
 
-@pytest.mark.turns(7)
 @pytest.mark.parametrize("command", [["identify", "--law", "ideal", "--intervals", "normal"],
                                      ["prepare"], ["diagnose", "--quick"]])  # fmt: skip
 def test_a_name_that_is_not_utf8(command: list[str], tmp_path: Path) -> None:

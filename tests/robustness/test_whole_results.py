@@ -61,7 +61,6 @@ def full_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (20, 20))
 
 
-@pytest.mark.turns(3)
 def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     out = tmp_path / "new" / "out"
     done = inerter(*COMMANDS["simulate"], "--out", out, before=full_disk, cwd=tmp_path)
@@ -70,7 +69,6 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_leaves_nothing_on_a_full_disk(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -206,7 +204,6 @@ SIGNALS = ["SIGKILL", "SIGTERM"]
 MORE_SIGNALS = ["SIGHUP", "SIGINT", "SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU"]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", [*SIGNALS, *MORE_SIGNALS])
 def test_a_signal_at_any_step_leaves_all_or_nothing(
     name: str, tmp_path: Path, long_run: bool
@@ -268,7 +265,6 @@ def start_up() -> float:
     return time.monotonic() - begun
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("command", "after"),
     [("simulate", 0.7), *((command, 3.5) for command in LONG)],

@@ -84,7 +84,6 @@ def leaves(value: Any, path: str = "") -> dict[str, Any]:
     return {path: value}
 
 
-@pytest.mark.turns(4)
 def test_nothing_but_units_differs(both: dict[str, tuple[Diagnosis, Path]]) -> None:
     along, about = (leaves(both[m][0].json()) for m in HEADERS)
     assert along.keys() == about.keys()
@@ -106,7 +105,6 @@ def test_nothing_but_units_differs(both: dict[str, tuple[Diagnosis, Path]]) -> N
     assert viscous.unit == "N*m*s/rad"
 
 
-@pytest.mark.turns(3)
 def test_no_text_speaks_of_newtons_or_metres(both: dict[str, tuple[Diagnosis, Path]]) -> None:
     diagnosis, folder = both["rotation"]
     texts = [

@@ -20,7 +20,6 @@ def one(rig: Rig, sweep: Sweep, **values: float) -> Signals:
     return found
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(("configuration", "sweep"), [("dry", DRY[3]), ("complete", COMPLETE[1])])
 def test_rig_agrees_with_the_reference(configuration: Configuration, sweep: Sweep) -> None:
     """Other parameters than the model's, so that they must have come through the batch."""

@@ -76,7 +76,6 @@ def made() -> Study:
     )  # fmt: skip
 
 
-@pytest.mark.turns(3)
 def test_statements_of_the_paper(made: Study) -> None:
     """All but one: with the printed parameters the level matters no less than dry."""
     assert [each.text[:40] for each in made.statements if not each.holds] == [
@@ -92,7 +91,6 @@ def test_statements_of_the_paper(made: Study) -> None:
     assert len(shift.figures["hertz"]) == 2
 
 
-@pytest.mark.turns(3)
 def test_recovery_counts_errors_and_intervals(made: Study) -> None:
     found = recovery(made)["spectra"]
     assert set(found) == {*published("dry", DRY), *published("complete", COMPLETE)}
@@ -109,7 +107,6 @@ def test_pairs_that_make_up_for_each_other_are_named(made: Study) -> None:
     assert made.shown.dry.undetermined == ()
 
 
-@pytest.mark.turns(3)
 def test_files(made: Study, tmp_path: Path) -> None:
     names = write_study(made, tmp_path)
     assert set(names) == {

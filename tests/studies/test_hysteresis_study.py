@@ -25,7 +25,6 @@ def small() -> Study:
     return found
 
 
-@pytest.mark.turns(4)
 def test_files(small: Study, tmp_path: Path) -> None:
     names = write_study(small, tmp_path / "out")
     assert {p.name for p in (tmp_path / "out").iterdir()} == set(names)
@@ -43,7 +42,6 @@ def test_files(small: Study, tmp_path: Path) -> None:
             assert (tmp_path / "out" / name).read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.turns(7)
 def test_tables_are_full(small: Study) -> None:
     made = tables(small)
     assert all(len(row) == len(table.heads) for table in made for row in table.rows)
@@ -53,7 +51,6 @@ def test_tables_are_full(small: Study) -> None:
     assert made[0].markdown().count("\n") == len(made[0].rows) + 1
 
 
-@pytest.mark.turns(7)
 def test_verdicts_are_words(small: Study) -> None:
     assert {each.verdict for each in small.conclusions} <= {"holds", "in part", "does not hold"}
 

@@ -82,7 +82,6 @@ def cars() -> dict[str, CarParts]:
     }
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", list(cars()))
 def test_three_tellings_of_a_car_agree(name: str, tmp_path: Path) -> None:
     car = cars()[name]

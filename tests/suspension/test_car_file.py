@@ -75,7 +75,6 @@ def test_the_shipped_cars_are_the_published_ones() -> None:
     assert shipped_car("full").static_loads["front"] == pytest.approx(half_car().static_loads[0])
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("layout", VALUES)
 def test_mujoco_has_the_strut_of_every_layout(layout: str, tmp_path: Path) -> None:
     """Swept in frequency against the transfer function, with a motion ratio of 0.8."""

@@ -64,7 +64,6 @@ def test_one_variable_ends_on_the_limit() -> None:
     assert values_of(problem("S1", "J1w"), found.point)["travel"] == pytest.approx(0.0065, rel=2e-6)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("index", "k", "limits"),
     [
@@ -107,7 +106,6 @@ OWN = ["optimize", "--sprung-mass", "320", "--unsprung-mass", "42", "--tyre-stif
        "--stiffness", "25e3", "--index", "J1w"]  # fmt: skip
 
 
-@pytest.mark.turns(3)
 def test_a_layout_that_keeps_no_limit_leaves_the_others(tmp_path: Path) -> None:
     words = [*OWN, "--layout", "S1,SR", "--limit", "J3=560"]
     run = CliRunner().invoke(app, [*words, "--json", "--out", str(tmp_path)])
@@ -147,7 +145,6 @@ def test_a_half_car_within_a_limit() -> None:
             assert vehicle_index("J1", half_car(), "S3", struts) >= held.value * (1.0 - 1e-9)
 
 
-@pytest.mark.turns(3)
 def test_a_front_goes_on_where_it_stood(tmp_path: Path) -> None:
     words = ["pareto", "--layout", "S1,S3", "--stiffness", "60e3", "--points", "4", "--json",
              "--out", str(tmp_path)]  # fmt: skip

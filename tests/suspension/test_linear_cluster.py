@@ -23,7 +23,6 @@ STUDY = Study(
 )
 
 
-@pytest.mark.turns(4)
 def test_a_cluster_whose_workers_die_gives_the_same_rows() -> None:
     distributed = pytest.importorskip("distributed")
     here = [row.json() for row in sweep(STUDY, jobs=1)]

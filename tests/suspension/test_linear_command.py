@@ -24,7 +24,6 @@ def command(*words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.turns(3)
 def test_rows_of_json() -> None:
     done = command(
         "--layout", "S1,S2,S3", "--index", "J1,J3,J5", "--stiffness", "120e3",
@@ -54,7 +53,6 @@ def test_a_refusal_of_the_command_line() -> None:
     assert done.stderr.startswith("inerter: layout 'S9' is not known")
 
 
-@pytest.mark.turns(7)
 def test_a_range_writes_figures(tmp_path: Path) -> None:
     folder = tmp_path / "results"
     done = command(

@@ -73,7 +73,6 @@ def test_a_rigid_spring_is_none() -> None:
         assert found(s) == pytest.approx(expected(s), rel=1e-13)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("index", ["J1", "J1w", "J3"])
 def test_a_layout_that_contains_another_is_never_worse(index: str) -> None:
     for k in (20e3, 60e3):
@@ -131,7 +130,6 @@ def test_sw7_is_a_relaxation_damper_where_that_is_best() -> None:
     assert built == pytest.approx(expected, rel=1e-5)
 
 
-@pytest.mark.turns(7)
 def test_a_layout_that_contains_another_is_never_worse_in_j5() -> None:
     values = {name: best(name, "J5", 70e3).value for name in ("S1", "S2", "S3", "S4", "S5", "S6")}
     values["SR"] = best("SR", "J5", 70e3).value
@@ -222,7 +220,6 @@ def test_weighted_ranks_otherwise() -> None:
     assert gains["J1w", "S2"] > 2.0 * gains["J1w", "S3"] > 0.0
 
 
-@pytest.mark.turns(3)
 def test_series_pairs_go_with_every_layout() -> None:
     pair = SeriesPair(1e6, 3200.0)
     for name in ("S4", "SW7", "SW8"):

@@ -46,7 +46,6 @@ def solved(
     return problem, found, np.log([design[name] for name in problem.variables])
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("layout", "index", "k", "pair"), EVERY)
 def test_the_design_has_the_value(
     layout: str, index: str, k: float, pair: SeriesPair | None
@@ -61,7 +60,6 @@ def test_the_design_has_the_value(
         assert h_infinity_norm(function) == pytest.approx(found.value, rel=1e-7 if held else 2e-9)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("layout", "index", "k", "pair"), EVERY)
 def test_no_other_design_is_better(
     layout: str, index: str, k: float, pair: SeriesPair | None
@@ -106,7 +104,6 @@ def evolved(problem: SuspensionProblem) -> float:
     return float(np.exp(found.fun))
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("layout", ["S2", "S3", "S4", "S5", "S6"])
 @pytest.mark.parametrize("index", ["J1", "J5"])
 def test_differential_evolution_finds_the_same(layout: str, index: str) -> None:
@@ -117,7 +114,6 @@ def test_differential_evolution_finds_the_same(layout: str, index: str) -> None:
     assert other == pytest.approx(found.value, rel=2e-3)
 
 
-@pytest.mark.turns(3)
 def test_the_deeper_of_two_minima() -> None:
     """S6, tyre load on a very soft spring: the wider of two minima lies only 0.1 % higher.
 

@@ -62,7 +62,6 @@ def test_closed_form_of_the_most_comfortable_damper(k: float) -> None:
     assert found.value == pytest.approx(comfort, rel=1e-10)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("layout", ["S1", "S2", "S3", "S4", "S5", "S6"])
 @pytest.mark.parametrize("k", [20e3, 50e3, 120e3])
 def test_no_layout_carries_a_load_better_than_the_springs_alone(layout: str, k: float) -> None:

@@ -114,7 +114,6 @@ def test_linear_values_are_the_norms_where_the_band_is_wide(kind: str) -> None:
     assert found == pytest.approx(exact, rel=2e-4)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("tables", [False, True])
 def test_a_bump_agrees_with_an_adaptive_solver(tables: bool) -> None:
     more = {

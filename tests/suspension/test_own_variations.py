@@ -38,7 +38,6 @@ def with_strut(car: CarParts, **values: Any) -> CarParts:
     return replace(car, front=front, rear=rear)
 
 
-@pytest.mark.turns(4)
 def test_a_variation_is_the_file_that_states_it() -> None:
     """To the last digit: the changed car on the changed road, and the planned one unchanged."""
     car = with_strut(shipped_car("quarter"), layout="S6", relaxation_stiffness=30e3, **TABLES)

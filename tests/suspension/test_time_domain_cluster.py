@@ -51,7 +51,6 @@ def test_a_cluster_whose_workers_die_gives_the_same_rows() -> None:
     ]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for a child there")
 def test_an_interrupt_ends_at_once(tmp_path: Path) -> None:
     begin = (

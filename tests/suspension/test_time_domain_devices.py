@@ -88,7 +88,6 @@ def reference_car(layout: str, case: Case) -> QuarterCar:
     )
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("layout", ["S2", "S3"])
 @pytest.mark.parametrize("case", ["friction100", "elastic", "both", "dahl", "lugre", "bouc_wen"])
 def test_gains_are_those_of_the_reference(layout: str, case: str) -> None:
@@ -114,7 +113,6 @@ def test_gains_are_those_of_the_reference(layout: str, case: str) -> None:
     assert found == pytest.approx(np.sqrt(np.mean(body**2) / (0.5 * amplitude**2)), rel=3e-4)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("layout", "case"), [("S2", "dahl"), ("S3", "friction100")])
 def test_road_indices_are_those_of_the_reference(layout: str, case: str) -> None:
     """A road that ends at 12 Hz, which an adaptive solver drives over in seconds."""

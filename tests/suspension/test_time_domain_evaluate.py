@@ -43,7 +43,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     assert held == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / 4000))
 
 
-@pytest.mark.turns(3)
 def test_rows_of_a_plan() -> None:
     cases = tuple(CASES[name] for name in ("ideal", "friction100", "elastic"))
     plan = Plan(
@@ -89,7 +88,6 @@ def test_search_does_not_lose() -> None:
         assert value(*factors) > lowest * (1 - 1e-4)
 
 
-@pytest.mark.turns(3)
 def test_command(tmp_path: Path) -> None:
     run = CliRunner().invoke(
         app,

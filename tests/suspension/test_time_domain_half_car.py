@@ -45,7 +45,6 @@ def accuracy(layout: str, case: str) -> float:
     return 4e-4 if (layout, case) == ("S3", "elastic") else 1e-4
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(("layout", "case"), LINEAR)
 def test_indices_are_the_sums_over_the_sinusoids(layout: str, case: str) -> None:
     """Also that the rear wheel is on the front's road, later by the wheelbase over the speed."""
@@ -59,7 +58,6 @@ def test_indices_are_the_sums_over_the_sinusoids(layout: str, case: str) -> None
         )
 
 
-@pytest.mark.turns(3)
 @pytest.mark.rarely("S3-elastic")
 @pytest.mark.parametrize(("layout", "case"), LINEAR)
 def test_gains_are_the_transfer_function(layout: str, case: str) -> None:
@@ -72,7 +70,6 @@ def test_gains_are_the_transfer_function(layout: str, case: str) -> None:
     )
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("layout", "case"), LINEAR)
 def test_indices_are_those_of_the_linear_study(layout: str, case: str) -> None:
     """The paper's sinusoids end at 1000 Hz, the norms do not: of the tyre force kt zr is left.
@@ -103,7 +100,6 @@ def test_static_load_is_shared_by_the_axles() -> None:
     assert slow == pytest.approx(by_hand, rel=1e-3)
 
 
-@pytest.mark.turns(7)
 @pytest.mark.rarely("S2-friction100")
 @pytest.mark.parametrize(("layout", "case"), [("S2", "friction100"), ("S3", "dahl")])
 def test_road_indices_are_those_of_the_reference(layout: str, case: str) -> None:

@@ -40,7 +40,6 @@ def own(folder: Path) -> tuple[str, ...]:
     return str(folder / "seat.toml"), str(folder / "grip.toml"), f"{folder / 'mine.py'}:cost"
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     ("car", "layout", "case", "design", "turns"),
     [
@@ -112,7 +111,6 @@ def run(words: str) -> Any:
     return CliRunner().invoke(app, words.split(), catch_exceptions=False)
 
 
-@pytest.mark.turns(3)
 def test_the_command_takes_the_indices_of_optimize(tmp_path: Path) -> None:
     seat, _, cost = own(tmp_path)
     words = f"evaluate --layout S2 --case ideal --damping 4000 --inertance 80 --out {tmp_path}"

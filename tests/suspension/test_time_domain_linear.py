@@ -71,7 +71,6 @@ def test_indices_scale_with_the_road() -> None:
     assert indices(car, DESIGNS["S2"], four, SETTINGS) == pytest.approx(4.0 * found, rel=1e-9)
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(("layout", "case"), LINEAR)
 def test_gains_are_the_transfer_function(layout: str, case: str) -> None:
     f = np.array([0.7, 1.9, 3.1, 4.5, 9.0, 17.3])

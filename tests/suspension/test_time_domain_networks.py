@@ -59,7 +59,6 @@ def test_a_shaft_inside_a_network_is_exact(layout: str) -> None:
     )
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("layout", STRUT)
 def test_loads_are_carried_exactly(layout: str) -> None:
     f, design = np.array([[0.7, 1.9, 4.1, 9.0]]), STRUT[layout]

@@ -56,7 +56,6 @@ app = typer.Typer(pretty_exceptions_enable=False)
 app.command()(evaluate_command)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("layout", ["S2", "S3"])
 @pytest.mark.parametrize("values", CARRIED, ids=lambda v: "-".join(map(str, v)))
 def test_what_is_carried_is_what_the_reference_has(values: dict, layout: str) -> None:
@@ -144,7 +143,6 @@ def test_a_given_design_is_evaluated_as_it_is(tmp_path: Path) -> None:
     assert [exact[name] for name in ("S1", "S2", "S3")] > [2.9882, 2.5773, 2.4281]
 
 
-@pytest.mark.turns(7)
 def test_the_inertance_of_the_file_is_kept(tmp_path: Path) -> None:
     """60 kg stay 60 kg in every layout, with the c that is best for them."""
     path = tmp_path / "device.toml"

@@ -17,7 +17,6 @@ from inerter.suspension.vehicle.cars import half_car
 QUICK = RunSettings(step=2e-3, jobs=2)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("index", "within"), [("J1", 1e-5), ("J5", 1e-4)])
 def test_an_elastic_shaft_is_found_from_the_ideal_inerter(index: str, within: float) -> None:
     """Start and correction know the ideal inerter alone; the shaft is only in the simulations.
@@ -38,7 +37,6 @@ def test_an_elastic_shaft_is_found_from_the_ideal_inerter(index: str, within: fl
     assert exact(found) < exact(best) * (1.0 + within)
 
 
-@pytest.mark.turns(3)
 def test_a_half_cars_struts_are_found_from_the_ideal_inerter() -> None:
     """Four variables at once."""
     car = half_car()

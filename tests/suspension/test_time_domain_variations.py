@@ -33,7 +33,6 @@ PLAN = Plan(
 )
 
 
-@pytest.mark.turns(3)
 def test_a_variation_is_that_car_with_those_parts_at_that_speed() -> None:
     """The same digits as a plan that states the changed car, and the planned one unchanged."""
     factors = {"body_mass": (1.0, 1.3), "damping": (0.8, 1.0), "speed": (0.6, 1.0)}
@@ -53,7 +52,6 @@ def test_a_variation_is_that_car_with_those_parts_at_that_speed() -> None:
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-12)
 
 
-@pytest.mark.turns(7)
 def test_two_axles_and_inner_springs_vary() -> None:
     """Linear, so every value has its transfer function; by hand the payload turns, too."""
     car = half_car()

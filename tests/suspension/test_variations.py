@@ -39,7 +39,6 @@ def by_hand(c: float, b: float) -> float:
     return float(np.sqrt(np.mean(squares)))
 
 
-@pytest.mark.turns(3)
 def test_the_value_is_the_root_mean_square_and_no_design_beats_it() -> None:
     words = f"optimize --layout S3 --index J1w --stiffness 40e3 {VARY}"
     (row,) = run(words)
@@ -98,7 +97,6 @@ def test_bad_words_are_told(words: list[str], told: str) -> None:
     assert told in answer.output.replace("\n", " ")
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("first", ["limited", "optimum", "vehicle.problem", "problem"])
 def test_a_worker_may_import_any_module_first(first: str) -> None:
     """A process that is handed a problem imports what it is made of, in no order of ours."""

@@ -21,7 +21,6 @@ def command(*words: str) -> Any:
     return CliRunner().invoke(app, ["suspension", "optimize", *words])
 
 
-@pytest.mark.turns(4)
 def test_rows_of_json() -> None:
     done = command("--car", "half", "--layout", "S1,S4", "--index", "J1", "--json", "--jobs", "1")
     assert (done.exit_code, done.stderr) == (0, "")
@@ -51,7 +50,6 @@ def test_a_table_names_the_axles() -> None:
     assert "rear" in done.stdout
 
 
-@pytest.mark.turns(3)
 def test_a_range_writes_figures(tmp_path: Path) -> None:
     done = command(
         "--car", "half", "--layout", "S1,S3", "--index", "J1,J3", "--stiffness", "40e3:60e3:2",
@@ -67,7 +65,6 @@ def test_a_range_writes_figures(tmp_path: Path) -> None:
     assert len(full["rows"]) == 2 * 2 * 2
 
 
-@pytest.mark.turns(4)
 def test_processes_do_not_change_the_answer() -> None:
     study = Study(
         layouts=("S1", "S3"),

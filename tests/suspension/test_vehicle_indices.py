@@ -88,7 +88,6 @@ def test_a_dynamic_index_of_1_is_two_quarter_cars(layout: str, velocity: float) 
                                           layout == "S6" else 1e-10)  # fmt: skip
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("pair", PAIRS)
 @pytest.mark.parametrize("layout", STRUTS)
 @pytest.mark.parametrize("index", ["J1", "J3"])
@@ -140,7 +139,6 @@ def test_no_delay_and_a_long_one(index: str) -> None:
     assert abs(exact[0] / exact[1] - 1.0) > 1e-3
 
 
-@pytest.mark.turns(4)
 @pytest.mark.rarely("car1")
 @pytest.mark.parametrize("car", [COUPLED, full_car()])
 def test_j5_is_reached_and_never_exceeded(car: HalfCar | FullCar) -> None:

@@ -35,7 +35,6 @@ def solved(
     return vehicle_optimum(index, HALF, layout, stiffnesses, pair, ROAD)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("layout", ["S1", "S2", "S3", "S6"])
 @pytest.mark.parametrize("index", ["J1", "J3"])
 def test_a_dynamic_index_of_1_has_the_optima_of_its_quarter_cars(index: str, layout: str) -> None:
@@ -61,7 +60,6 @@ def test_a_dynamic_index_of_1_has_the_optima_of_its_quarter_cars(index: str, lay
         assert strut.damping == pytest.approx(quarter.damping, rel=1e-4)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("layout", "index", "stiffnesses", "pair"),
     [

@@ -179,7 +179,6 @@ def test_the_port_of_the_drawing_hears_its_own_process_alone() -> None:
     listener.close()
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT", "SIGQUIT"])
 def test_every_signal_ends_it_and_leaves_nothing(name: str, tmp_path: Path) -> None:
     with served(tmp_path) as found:
