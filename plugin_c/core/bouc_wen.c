@@ -11,7 +11,9 @@
 // redundant: scaling z changes alpha, beta, gamma, k0 and leaves F alone.
 // Along the stroke (friction.h), and under a load (load_friction.c), which raises the yield force
 // abs(1 - A) k0 (alpha / (beta + gamma))^(1/n), beta and gamma are divided by level^n: |z| yields
-// at that share of where it did, with the same stiffness and the same stored energy. Free play
+// at that share of where it did, with the same stiffness and the same stored energy. Where the
+// level has fallen below |z|, z comes back no slower than from the level: for gamma > beta the law
+// by itself would let it run away. Free play
 // before the yielding share: friction_play.c. Not modelled: pinching, degradation.
 
 #include "friction_block.h"
@@ -19,14 +21,24 @@
 // share of the limit of z that it may be off to slide: less than what the sub-steps leave
 #define SLIDING 1e-14
 
-double bouc_wen_level(const InerterDevice* p) {
-  double bound = pow(p->bw_alpha / (p->bw_beta + p->bw_gamma), 1 / p->bw_exponent);
-  return fabs(1 - p->bw_ratio) * p->bw_stiffness * bound;
-}
-
 // how beta and gamma slow z down that grows, or that comes back, for a level of 1
 static INLINED double slowing(const InerterDevice* p, int loading) {
   return loading ? p->bw_gamma + p->bw_beta : p->bw_gamma - p->bw_beta;
+}
+
+// the least slope with which z comes back where gamma > beta: that at its level
+static INLINED double least_return(const InerterDevice* p) {
+  double limit = slowing(p, 1), back = slowing(p, 0);
+  return limit > 0 && back > 0 ? p->bw_alpha * (1 - back / limit) : -INFINITY;
+}
+
+// |z| at which it yields
+static double bound_of(const InerterDevice* p, double narrow) {
+  return pow(p->bw_alpha / (slowing(p, 1) * narrow), 1 / p->bw_exponent);
+}
+
+double bouc_wen_level(const InerterDevice* p) {
+  return fabs(1 - p->bw_ratio) * p->bw_stiffness * bound_of(p, 1);
 }
 
 // z' along the path: rate per unit |v| in direction s = sgn(v), and its slope over z. `loading`: z
@@ -52,7 +64,8 @@ static double narrowing(const InerterDevice* p, double level) {
 
 static double rate(const InerterDevice* p, double x, double v, double z, double load) {
   double derivative, narrow = narrowing(p, level_at(p, x, v, load));
-  return fabs(v) * slope(p, narrow, sign(v), z, v * z >= 0, &derivative);
+  double s = sign(v), value = slope(p, narrow, s, z, v * z >= 0, &derivative);
+  return fabs(v) * (v * z >= 0 ? value : s * fmax(s * value, least_return(p)));
 }
 
 // (e^x - 1) / x
@@ -67,7 +80,16 @@ static INLINED double growth(double x) {
 static double advance(const InerterDevice* p, double narrow, double s, double z, double path) {
   double derivative;
   if (z * s < 0) {
-    double value = slope(p, narrow, s, z, 0, &derivative);
+    double value = slope(p, narrow, s, z, 0, &derivative), least = least_return(p);
+    if (s * value < least) {
+      double bound = bound_of(p, narrow), beyond = fmax(0, fabs(z) - bound);
+      if (path * least <= beyond) {
+        return z + s * path * least;
+      }
+      path -= beyond / least;
+      z = -s * bound;
+      value = slope(p, narrow, s, z, 0, &derivative);
+    }
     double next = z + path * growth(derivative * path) * value;
     if (next * s < 0) {
       return next;
@@ -94,7 +116,7 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
   if (n == 1 || limit <= 0) {
     return advance(p, narrow, s, z, path);
   }
-  double bound = pow(p->bw_alpha / limit, 1 / n) * level;
+  double bound = bound_of(p, 1) * level;
   double part = 0.25 * bound / p->bw_alpha;
   int inside = s * z <= bound;
   for (int i = 0; i < 16 && path > part; i++) {
@@ -113,8 +135,13 @@ static double step(const InerterDevice* p, double x, double v, double z, double 
 static double straight(const InerterDevice* p, double x, double v, double z, double load) {
   const double points[] = {0.5384693101056831, 0.9061798459386640};
   const double weights[] = {0.4786286704993665, 0.2369268850561891};
-  double n = p->bw_exponent, size = fabs(z);
-  double rise = (p->bw_beta - p->bw_gamma) * narrowing(p, level_at(p, x, v, load));
+  double n = p->bw_exponent, size = fabs(z), before = 0;
+  double narrow = narrowing(p, level_at(p, x, v, load)), least = least_return(p);
+  double rise = -slowing(p, 0) * narrow;
+  if (least >= 0 && size > bound_of(p, narrow)) {
+    before = (size - bound_of(p, narrow)) / least;
+    size = bound_of(p, narrow);
+  }
   double ratio = rise * pow(size, n) / p->bw_alpha;
   if (!(ratio > -1)) {
     return INFINITY;
@@ -130,7 +157,7 @@ static double straight(const InerterDevice* p, double x, double v, double z, dou
     }
     path *= 0.5 * sum;
   }
-  return path / fabs(v);
+  return (before + path) / fabs(v);
 }
 
 static double force(const InerterDevice* p, double x, double v, double z, double load) {
@@ -152,7 +179,8 @@ static double stiffness(const InerterDevice* p) {
 // alone
 static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* path, double* z,
                                   double* forces) {
-  if (p->bw_exponent != 1 || !friction_level_is_one(p)) {
+  int beyond = fabs(*z) * slowing(p, 1) > p->bw_alpha;
+  if (p->bw_exponent != 1 || !friction_level_is_one(p) || beyond) {
     friction_along(p, path, z, forces, step, force);
     return;
   }

@@ -123,3 +123,21 @@ def test_a_start_without_a_finite_force_promises_nothing() -> None:
                  for s in ([endless], [endless, candidate.starts[0]]))  # fmt: skip
     assert promise.foretold(one) == np.inf
     assert promise.foretold(both) == promise.foretold(replace(one, starts=[candidate.starts[0]]))
+
+
+def test_a_start_whose_force_runs_away_later_in_the_run_is_given_up() -> None:
+    """On the part that starting points are compared on nothing is wrong."""
+    given = problem("nothing")
+    run = given.runs[0]
+    far = run.displacement.copy()
+    far[run.force.size // 2 :] = 1e110
+    given = Problem([replace(run, displacement=far)], given.masks, given.scales)
+    values = {
+        **IDEAL.values, "stiffness_cubic": 1e3, "coulomb_force": 2.0, "bristle_stiffness": 1e4,
+    }  # fmt: skip
+    start = Model("dahl", values, ("inertance", "stiffness_cubic"))
+    other = replace(start, values={**start.values, "coulomb_force": 5.0})
+    trial = Candidate("hardening_stiffness", None, (start, other))
+    with np.errstate(over="ignore", invalid="ignore"):
+        fit = Trials(given).fit(trial)
+        assert fit.rmse(given.masks) == np.inf

@@ -17,6 +17,8 @@ from core_draws import (
 )
 from inerter.core import Device, DeviceError
 from inerter.exudyn import device as element
+from inerter.exudyn.friction import bouc_wen
+from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.parameters import Parameters
 from inerter.reference import ReferenceDevice
 from inerter.reference.motion import Motion, response
@@ -173,6 +175,45 @@ def test_a_load_that_pumps_gets_nothing(law: str) -> None:
         after = made.evaluate(0.0, v, 0.0, z[np.newaxis])["friction"][0]
         work += 0.5 * (before + after) * v * 1e-5
         assert work >= -1e-6
+
+
+@pytest.mark.parametrize("exponent", [1.0, 3.4])
+@pytest.mark.parametrize("beta", [0.0, 0.3])
+def test_a_load_that_falls_lets_no_bouc_wen_run_away(exponent: float, beta: float) -> None:
+    """With gamma > beta the way back from above the level has the slope that it has at the level.
+
+    By itself z' = v (alpha - (gamma - beta) |z|^n / level^n) leaves every bound there.
+    """
+    bound = 1e-4
+    narrow = bound**-exponent
+    law = {
+        "bw_stiffness": 1e5, "bw_alpha": 1.0, "bw_exponent": exponent,
+        "bw_beta": beta * narrow, "bw_gamma": (1.0 - beta) * narrow,
+    }  # fmt: skip
+    made = Device(inertance=B, friction="bouc_wen", load_friction=0.9, **law)
+    reference = ReferenceDevice(inertance=B, friction="bouc_wen", load_friction=0.9, **law)
+    z = np.array([[-30.0 * bound], [-1.01 * bound], [-0.99 * bound], [-0.5 * bound]])
+    x, v, a = np.zeros(4), np.full(4, 0.1), np.zeros(4)
+    rate = made.evaluate(x, v, a, z)["state_rate"]
+    inside = 1.0 - (1.0 - 2.0 * beta) * np.minimum(-z[:, 0] / bound, 1.0) ** exponent
+    assert rate[:, 0] == pytest.approx(0.1 * inside, rel=1e-12, abs=1e-15)
+    told = reference.state_rate(x, v, reference.state_argument(z), a=a)
+    assert np.reshape(told, rate.shape) == pytest.approx(rate, rel=1e-12, abs=1e-15)
+    for i in range(4):
+        one = bouc_wen(NUMBERS, Parameters.of(made), 0.0, 0.1, float(z[i, 0]))
+        assert one.rate == pytest.approx(rate[i, 0], rel=1e-12, abs=1e-15)
+    # bent under a load that is gone when it goes back, along samples and step by step
+    t = np.arange(0.0, 2.0, 5e-4)
+    motion = 0.02 * np.sin(7.0 * t), 0.14 * np.cos(7.0 * t), 8.0 * np.sin(13.0 * t)
+    states = made.along(t[1], *motion, np.zeros(1))["states"]
+    highest = bound * (1.0 + 0.9 * B * 8.0 / 10.0)
+    assert np.all(abs(states) <= highest)
+    assert abs(states).max() > 5.0 * bound
+    now = np.zeros(1)
+    for k in range(400):
+        pressed = k % 20 < 10
+        now = made.step(0.0, -0.2 if pressed else 0.2, now, 5e-4, a=8.0 * pressed)
+        assert np.all(abs(now) <= highest)
 
 
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "maxwell_slip"])

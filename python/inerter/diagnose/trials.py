@@ -14,6 +14,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.promise import Known, Promise
 from inerter.diagnose.sized import Sized
+from inerter.estimation.solution import NotFiniteError
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
@@ -160,13 +161,17 @@ class Trials:
         fits = []
         for start in starts:
             near = known.near(self.problem, start, has_much(known)) if known else None
-            fit = self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, near=near)
+            try:
+                fit = self.problem.fit(start, FEW, tolerance=ROUGH, rough=True, near=near)
+            except NotFiniteError:
+                # the part that starting points are compared on did not show it
+                continue
             elsewhere = known and start.friction != known.model.friction
             on_its_way = limits[0] <= fit.rmse(self.problem.masks) < ON_ITS_WAY * limits[0]
             if elsewhere and on_its_way and fit.evaluations >= FEW:
                 fit = self.problem.fit(fit.model, FEW, tolerance=ROUGH, rough=True)
             fits.append(fit)
-        return fits
+        return fits or [self._as_is(self.problem, starts[0])]
 
     def _compared(
         self, starts: Sequence[Model], limits: Limits, known: Known | None

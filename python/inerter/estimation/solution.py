@@ -11,6 +11,10 @@ Array = NDArray[np.float64]
 Bounds = tuple[Array, Array]
 
 
+class NotFiniteError(ValueError):
+    """A residual is not finite where a search starts."""
+
+
 @dataclass(frozen=True)
 class Tolerances:
     """What ends a search: relative change of the point and of the cost, size of the gradient."""

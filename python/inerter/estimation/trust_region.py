@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.estimation.solution import Bounds, Solution, Tolerances
+from inerter.estimation.solution import Bounds, NotFiniteError, Solution, Tolerances
 
 Array = NDArray[np.float64]
 
@@ -56,12 +56,12 @@ def trust_region(
 
     Raises
     ------
-    ValueError
+    NotFiniteError
         The residual is not finite at the start.
     """
     point, here = start.copy(), residual(start)
     if not np.isfinite(here).all():
-        raise ValueError("the residual is not finite where the search starts")
+        raise NotFiniteError("the residual is not finite where the search starts")
     cost, done, ended = 0.5 * float(here @ here), 1, False
     columns = jacobian(point)
     radius, damping = -1.0, 0.0

@@ -174,7 +174,8 @@ def yield_force(p: Parameters) -> float:
 def bouc_wen(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Friction:
     """Z' = alpha v - (beta |v| z + gamma v |z|) |z|^(n-1); F = A k0 x + (1 - A) k0 z.
 
-    Along the stroke and under a load, beta and gamma over level^n.
+    Along the stroke and under a load, beta and gamma over level^n; beyond its level z comes back no
+    slower than from there.
     """
     s, z = z, bristle(f, p, z)
     narrowing = p.bw_beta * f.abs(v) * z + p.bw_gamma * v * f.abs(z)
@@ -185,6 +186,10 @@ def bouc_wen(f: Functions, p: Parameters, x: Value, v: Value, z: Value) -> Frict
         if loaded_by(p):
             height = height + p.load_level / yield_force(p)
         narrowing = narrowing / f.power(height, p.bw_exponent)
+    if p.bw_gamma > p.bw_beta > -p.bw_gamma:
+        most = p.bw_alpha * (p.bw_gamma - p.bw_beta) / (p.bw_gamma + p.bw_beta) * f.abs(v)
+        returning = f.greatest(-most, f.least(most, narrowing))
+        narrowing = f.choose(v * z < 0.0, returning, narrowing)
     elastic, yielding = p.bw_ratio * p.bw_stiffness, (1.0 - p.bw_ratio) * p.bw_stiffness
     law = Friction(elastic * x + yielding * z, 0.0, p.bw_alpha * v - narrowing)
     return _behind_play(f, p, v, s, law)

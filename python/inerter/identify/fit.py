@@ -89,9 +89,10 @@ def narrowed(bounds: Limits, within: Limits | None) -> Limits:
 
 
 def rms(residual: Sequence[Array], masks: Masks) -> float:
-    """Root mean square over the masked samples of all runs."""
+    """Root mean square over the masked samples of all runs; infinite if one is not a number."""
     square = sum(float(np.sum(r[m] ** 2)) for r, m in zip(residual, masks, strict=True))
-    return float(np.sqrt(square / max(sum(int(m.sum()) for m in masks), 1)))
+    error = float(np.sqrt(square / max(sum(int(m.sum()) for m in masks), 1)))
+    return np.inf if np.isnan(error) else error
 
 
 def typical(residual: Sequence[Array], masks: Masks) -> float:

@@ -17,7 +17,8 @@ Source: Bouc 1967 and Wen 1976, as in "Modelling and identification of the hyste
 of inerters", eqs. (12)-(13), where the last term's exponent n is lost in print.
 Along the stroke (`friction_curve` and its kin), and where a load adds to the force at which it
 yields, |1 - A| k0 (alpha / (beta + gamma))^(1/n) (`load.py`), beta and gamma are divided by
-level^n: z saturates at that share, with the same stiffness and energy.
+level^n: z saturates at that share, with the same stiffness and energy. Where the level has fallen
+below |z|, z comes back no slower than from the level: for gamma > beta it would run away.
 Not modelled: degradation, pinching, rate dependence.
 Only scale-free combinations can be identified: (alpha, beta, gamma, k0) may be rescaled with z.
 """
@@ -48,14 +49,17 @@ def rate(
     """Rate of the hysteretic displacement z' [m/s]; arguments broadcast together."""
     bent = free_play.bristle(parameters, state)
     size = abs(bent)
-    power = size ** (parameters.bw_exponent - 1.0)
     level = 1.0
     if "friction" in parameters.along or "friction_back" in parameters.along:
         level = friction_level(parameters, displacement, velocity)
     level = raised(parameters, level)
-    power = power / level**parameters.bw_exponent
-    hardening = parameters.bw_beta * abs(velocity) * bent * power
-    shaping = parameters.bw_gamma * velocity * size * power
+    narrowed = size**parameters.bw_exponent / level**parameters.bw_exponent
+    saturation = parameters.bw_beta + parameters.bw_gamma
+    if parameters.bw_gamma > parameters.bw_beta and saturation > 0.0:
+        at_level = np.minimum(narrowed, parameters.bw_alpha / saturation)
+        narrowed = np.where(velocity * bent < 0.0, at_level, narrowed)
+    hardening = parameters.bw_beta * abs(velocity) * np.sign(bent) * narrowed
+    shaping = parameters.bw_gamma * velocity * narrowed
     engaged = parameters.bw_alpha * velocity - hardening - shaping
     return free_play.state_rate(parameters, velocity, state, engaged)
 
