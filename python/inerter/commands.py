@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -113,6 +114,13 @@ def diagnose_command(
             "over displacement and velocity: any, passive (nothing that gives energy), nothing."
         ),
     ] = "any",
+    time_limit: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            help="Search no longer than this; what was found is judged and reported then.",
+        ),
+    ] = None,
     out_dir: Folder = Path("out/diagnosis"),
     as_json: AsJson = False,
     dry_run: Annotated[
@@ -135,7 +143,7 @@ def diagnose_command(
     mapping = (inputs or [], sensors or [])
     # --quick: the name of --dry-run before
     folder = None if dry_run or quick else out_dir
-    how = (filters or [], carry)
+    how = (filters or [], carry, math.inf if time_limit is None else time_limit)
     _diagnose(record, device, model, holdout or [], folder, as_json, mapping, stated, how)
 
 
@@ -148,7 +156,7 @@ def _diagnose(
     as_json: bool,
     mapping: tuple[list[str], list[str]] = ([], []),
     stated: dict[str, Any] | None = None,
-    how: tuple[Sequence[str], Literal["any", "passive", "nothing"]] = ((), "any"),
+    how: tuple[Sequence[str], Literal["any", "passive", "nothing"], float] = ((), "any", math.inf),
 ) -> Diagnosis:
     """Without a folder nothing is written."""
     from warnings import catch_warnings, simplefilter

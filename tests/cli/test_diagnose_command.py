@@ -119,6 +119,8 @@ def test_model_and_device_as_baseline(folder: Path, diagnosed, tmp_path: Path) -
         (["{bad}/still.csv"], "does not move"),
         (["{bad}/table.csv", "{folder}/run_0.csv"], "different kinds"),
         (["{bad}/vehicle.csv"], "vehicle"),
+        (["{folder}", "--time-limit", "0"], "give more than 0 s"),
+        (["{bad}/table.csv", "--time-limit", "5"], "is of bench records over time; leave it out"),
     ],
 )
 def test_mistakes_get_one_line_and_status_2(

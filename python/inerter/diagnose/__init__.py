@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from inerter.core import Device
 from inerter.device_file import (
     read_bench_device,
@@ -36,6 +38,7 @@ def diagnose(
     sensors: Sequence[str] = (),
     filters: Sequence[str] = (),
     carry: Carrying = "any",
+    time_limit: float = np.inf,
 ) -> Diagnosis:
     """Diagnose records from files.
 
@@ -60,6 +63,8 @@ def diagnose(
         as "force=bessel:50".
     carry : str
         What the extended device may carry without a name, see `diagnose_bench`.
+    time_limit : float
+        Seconds after which bench records are searched no further, see `diagnose_bench`.
 
     Raises
     ------
@@ -72,6 +77,8 @@ def diagnose(
     if model is None and mapping:
         raise ValueError("--input and --sensor name parts of a model; give one with --model")
     if model is not None and is_for_a_model(records, mapping, model):
+        if np.isfinite(time_limit):
+            raise ValueError("--time-limit is of bench records, not of vehicles; leave it out")
         return diagnose_model(records, model, mapping, holdout, progress)
     if isinstance(device, Path):
         baseline, delay, motion = read_bench_device(device), read_delay(device), read_motion(device)
@@ -91,8 +98,10 @@ def diagnose(
     tables = [record for record in read if isinstance(record, BenchTable)]
     bench = [record for record in read if isinstance(record, Record)]
     if len(bench) == len(read):
-        found = diagnose_bench(bench, baseline, holdout, progress, delay, known, carry)
+        found = diagnose_bench(bench, baseline, holdout, progress, delay, known, carry, time_limit)
         return replace(found, rest_length=rest_length)
+    if np.isfinite(time_limit):
+        raise ValueError("--time-limit is of bench records over time; leave it out")
     if len(tables) == len(read):
         if holdout:
             raise ValueError("--holdout names runs, and a table has none; leave it out")

@@ -44,6 +44,7 @@ from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
 from inerter.diagnose.standstill import without_standstill
 from inerter.diagnose.start import Given, prepared
 from inerter.diagnose.statistics import gain_interval
+from inerter.diagnose.time_limit import TimeLimit
 from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
 from inerter.identify.channel import channel_values
@@ -69,6 +70,7 @@ def diagnose_bench(
     delay: float = 0.0,
     filters: Mapping[str, Filter] | None = None,
     carry: Carrying = "any",
+    time_limit: float = np.inf,
 ) -> Diagnosis:
     """What a simulation of the device lacks, on data it has not seen.
 
@@ -90,12 +92,17 @@ def diagnose_bench(
     carry : str
         What the extended device may carry without a name, as a force over displacement and
         velocity: "any", "passive" (nothing that would give energy) or "nothing".
+    time_limit : float
+        Seconds after which nothing more is searched for: what was found is judged and told. The
+        step at hand comes to its end, and judging takes its time.
 
     Raises
     ------
     ValueError
-        Runs that cannot be split or do not move, or some that turn beside others that do not.
+        Runs that cannot be split or do not move, or some that turn beside others that do not; a
+        time limit that is not above 0.
     """
+    time = TimeLimit(time_limit)
     one_motion(records)
     channel = {"delay": delay}
     for name, known in (filters or {}).items():
@@ -103,13 +110,13 @@ def diagnose_bench(
     moving, left_out = without_standstill(records)
     given = Given(
         records=moving, left_out=left_out, device=device, holdout=holdout, progress=progress,
-        channel=channel, carry=carry,
+        channel=channel, carry=carry, time=time,
     )  # fmt: skip
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
     with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
         stands, long = _stood(given)
-        other = other_split_of(stands)
+        other = None if time.is_over() else other_split_of(stands)
         if other and not long and not given.holdout:
             better = _with_other_split(given, stands, *other)
             if better:
@@ -140,7 +147,7 @@ def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
     stands = _on_stretches(found)
     for _ in range(CRITERIA.more_stretches):
         more = found.with_missed(errors_of(stands))
-        if more is None:
+        if more is None or given.time.is_over():
             break
         found, stands = more, _on_stretches(more)
     return stands, found
@@ -251,6 +258,7 @@ def diagnosis_of(
                 steps_in_words(steps, motion),
                 given.left_out,
                 long.in_words() if long else "",
+                given.time.in_words(sum(x.effect not in stands.standings for x in stands.chain)),
             )
             if note
         ],

@@ -33,6 +33,7 @@ from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.plainer import swings_on
 from inerter.diagnose.play import is_felt
 from inerter.diagnose.statistics import Array, block_squares
+from inerter.diagnose.time_limit import TimeLimit
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials
 from inerter.identify.fit import Fit, Problem
@@ -89,7 +90,7 @@ class Search:
     `least` of the error away.
 
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
-    It `draws` curves along the stroke, or adds none.
+    It `draws` curves along the stroke, or none. When its `time` is over nothing is added.
     """
 
     runs: Sequence[BenchRun]
@@ -103,6 +104,7 @@ class Search:
     witness: Witness | None = None
     one_tone: bool = False
     draws: bool = True
+    time: TimeLimit = field(default_factory=TimeLimit)
 
     def __post_init__(self) -> None:
         self._divide()
@@ -169,7 +171,7 @@ class Search:
             current = plainer
         current, seen = self._stepped(current, until, most), []
         # where another effect does better in the place of one, the search goes on from there
-        while until not in current.model.free:
+        while until not in current.model.free and not self.time.is_over():
             other = instead(self, current)
             if other is None or other.model.shape in seen:
                 break
@@ -180,7 +182,7 @@ class Search:
 
     def _stepped(self, current: Scored, until: str | None, most: int) -> Scored:
         """Effects added one after another, and pruned."""
-        while len(self.found) < most:
+        while len(self.found) < most and not self.time.is_over():
             chosen = self._best_step(current) or self._two_steps(current)
             if chosen is None:
                 break
@@ -254,8 +256,7 @@ class Search:
         fitted = sorted(
             [*fitted, *where_late(self, current, fitted)], key=lambda p: p[1].rmse(masks)
         )
-        floor = fitted[0][1].rmse(masks)
-        worth = (1 - self.least) * current.fit.rmse(masks)
+        floor, worth = fitted[0][1].rmse(masks), (1 - self.least) * current.fit.rmse(masks)
         worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
         if not worthy:
             return None

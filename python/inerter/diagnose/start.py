@@ -10,6 +10,7 @@ from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.budget.carried import Carrying
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.run_constants import constants, contradicting, without_constants
+from inerter.diagnose.time_limit import TimeLimit
 from inerter.identify.instants import at_instants, with_instants
 from inerter.identify.model import Model
 from inerter.identify.runs import thin
@@ -41,6 +42,8 @@ class Given:
         What the extended device may carry without a name.
     left_out
         What of the records was left out before, in a sentence.
+    time
+        How long to search.
     """
 
     records: Sequence[Record]
@@ -50,6 +53,7 @@ class Given:
     channel: Mapping[str, float] = field(default_factory=dict)
     carry: Carrying = "any"
     left_out: str = ""
+    time: TimeLimit = field(default_factory=TimeLimit)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -171,7 +171,7 @@ class Trials:
             if elsewhere and on_its_way and fit.evaluations >= FEW:
                 fit = self.problem.fit(fit.model, FEW, tolerance=ROUGH, rough=True)
             fits.append(fit)
-        return fits or [self._as_is(self.problem, starts[0])]
+        return fits or [self._as_is(self.problem, candidate.starts[0])]
 
     def _compared(
         self, starts: Sequence[Model], limits: Limits, known: Known | None

@@ -48,7 +48,8 @@ def confirmed(start: Settled) -> Confirmed:
     before_held_out = final.fit
     final, chain, dropped = _standing_on_held_out(found, final)
     standings = dict(start.standings)
-    if dropped and chain and (further := _searched_on(found, final, dropped, standings)):
+    further = _searched_on(found, final, dropped, standings) if dropped and chain else None
+    if further:
         progress("measuring the gain of each effect")
         more, links, _ = _standing_on_held_out(found, further[0])
         new = {link.effect for link in links} - {link.effect for link in chain}
@@ -106,11 +107,11 @@ def _searched_on(
 ) -> tuple[Scored, dict[str, Standing]] | None:
     """A model with further effects in the place of those dropped, which are compared with rivals.
 
-    None where there are none. What has a shaft or a play was searched for with weights and data of
-    its own, and is not taken further.
+    None where there are none, or the time is over. What has a shaft or a play was searched for with
+    weights and data of its own, and is not taken further.
     """
     baseline = found.prepared.baseline
-    if has_series(final.model):
+    if has_series(final.model) or found.prepared.given.time.is_over():
         return None
     left = frozenset(name for name, _ in effects_of(final.model, baseline))
     search = replace(found.search, found=[], excluded=frozenset({*dropped, *DRIVE}))

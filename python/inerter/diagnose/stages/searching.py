@@ -115,7 +115,7 @@ def search_in(start: Prepared, band: Preparation) -> Search:
     parted = split(runs, start.data.held, start.data.split.in_blocks)
     return Search(
         runs, parted, start.baseline, start.given.progress, witness=start.data.witness,
-        one_tone=start.data.band.scales.one_tone,
+        one_tone=start.data.band.scales.one_tone, time=start.given.time,
     )  # fmt: skip
 
 
@@ -257,7 +257,7 @@ def _with_play(found: Searched, play: Model) -> Searched:
     told = start.given.progress
     search = Search(
         learnt.runs, data.full, start.baseline, told, witness=data.witness,
-        one_tone=start.data.band.scales.one_tone,
+        one_tone=start.data.band.scales.one_tone, time=start.given.time,
     )  # fmt: skip
     return replace(found, data=data, search=search, final=search.run(play))
 

@@ -1,0 +1,49 @@
+"""How long causes are searched for; what was found until then is judged and reported."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+
+class TimeLimit:
+    """Time that a search may take, counted from when it is made.
+
+    Attributes
+    ----------
+    seconds : float
+        The time [s]; infinite for none.
+    was_felt : bool
+        Whether something was left out because the time was over.
+    """
+
+    def __init__(self, seconds: float = np.inf) -> None:
+        if not seconds > 0:
+            raise ValueError(f"--time-limit is {seconds:g} s; give more than 0 s")
+        self.seconds = seconds
+        self.was_felt = False
+        self._ends = time.monotonic() + seconds
+
+    def is_over(self) -> bool:
+        """Whether to leave out what is only asked to find more, or to be surer."""
+        over = time.monotonic() >= self._ends
+        self.was_felt = self.was_felt or over
+        return over
+
+    def in_words(self, without_rivals: int) -> str:
+        """What it has cost, in two sentences; findings that were not compared with their rivals."""
+        if not self.was_felt:
+            return ""
+        text = (
+            f"The search ended after the {self.seconds:g} s of --time-limit: what it had not come "
+            "to is not named, and may be in what remains."
+        )
+        if not without_rivals:
+            return text
+        one = without_rivals == 1
+        which = "A finding was" if one else f"{without_rivals} findings were"
+        return (
+            f"{text} {which} not compared with what else could explain the data; the confidence "
+            f"{'is' if one else 'of each is'} 0.5 for that."
+        )

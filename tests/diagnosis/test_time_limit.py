@@ -1,0 +1,69 @@
+"""A search that has no time left judges and tells what it has found."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bench_runs import measured
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.time_limit import TimeLimit
+from inerter.records import Record
+from inerter.reference import ReferenceDevice, sum_of_sines
+
+
+@pytest.fixture(scope="module")
+def records() -> list[Record]:
+    truth = ReferenceDevice(inertance=80.0, viscous=60.0, friction="coulomb", coulomb_force=12.0)
+    motions = [
+        sum_of_sines([0.01, 0.003, 0.001], [0.7, 1.9, 4.1], [0.0, 1.0, phase])
+        for phase in (0.0, 2.0)
+    ]
+    return measured(truth, motions, np.arange(0, 6, 4e-3))
+
+
+def test_without_time_nothing_is_added_and_that_is_said(records: list[Record]) -> None:
+    found = diagnose_bench(records, time_limit=1e-9)
+    assert found.findings == []
+    assert found.baseline.rmse == pytest.approx(found.extended.rmse)
+    assert "ended after the 1e-09 s of --time-limit" in found.verdict
+    assert "not compared" not in found.verdict
+
+
+def test_what_was_found_in_time_stands_without_comparison(
+    records: list[Record], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A limit that is over when it is asked for the third time: two effects are searched for."""
+    asked = iter([False, False])
+
+    def is_over(limit: TimeLimit) -> bool:
+        limit.was_felt = limit.was_felt or next(asked, True)
+        return limit.was_felt
+
+    monkeypatch.setattr(TimeLimit, "is_over", is_over)
+    found = diagnose_bench(records, time_limit=3600.0)
+    assert {finding.effect for finding in found.findings} == {
+        "viscous_friction",
+        "coulomb_friction",
+    }
+    assert all(finding.confidence <= 0.5 for finding in found.findings)
+    assert "2 findings were not compared" in found.verdict
+    assert found.extended.rmse < 0.5 * found.baseline.rmse
+
+
+def test_with_time_enough_it_is_the_same(records: list[Record]) -> None:
+    usual, limited = diagnose_bench(records), diagnose_bench(records, time_limit=3600.0)
+    assert limited.json() == usual.json()
+
+
+@pytest.mark.parametrize("seconds", [0.0, -5.0, np.nan])
+def test_a_limit_is_above_none(records: list[Record], seconds: float) -> None:
+    with pytest.raises(ValueError, match="--time-limit is .* give more than 0 s"):
+        diagnose_bench(records, time_limit=seconds)
+
+
+def test_one_finding_is_told_as_one() -> None:
+    limit = TimeLimit(30.0)
+    assert limit.in_words(1) == ""
+    limit.was_felt = True
+    assert limit.in_words(1).endswith("the confidence is 0.5 for that.")
+    assert "30 s" in limit.in_words(0)
