@@ -105,7 +105,7 @@ def _spring_beside(search: Search, current: Scored) -> Scored | None:
 def plain_part(search: Search, current: Scored) -> Scored | None:
     """A plain part in the place of a rich one, or of a shaft that stands for any slow sine.
 
-    Of some that do for it the plainest among those about as good as the best of them.
+    Of some that do for it the plainest of those that the best is better than by chance alone.
     """
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)
@@ -119,7 +119,7 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
             if loss(scored, current) < CRITERIA.gain:
                 good.append(scored)
     best = min(good, key=lambda s: s.squares.sum(), default=None)
-    return best and plainest([s for s in good if s is best or loss(s, best) < CRITERIA.gain])
+    return best and plainest([s for s in good if s is best or not search.better(s, best)])
 
 
 def _weight(search: Search, current: Scored) -> Scored | None:
