@@ -57,7 +57,7 @@ def test_with_time_enough_it_is_the_same(records: list[Record]) -> None:
 
 @pytest.mark.parametrize("seconds", [0.0, -5.0, np.nan])
 def test_a_limit_is_above_none(records: list[Record], seconds: float) -> None:
-    with pytest.raises(ValueError, match="--time-limit is .* give more than 0 s"):
+    with pytest.raises(ValueError, match=r"--time-limit is .* give more than 0 s"):
         diagnose_bench(records, time_limit=seconds)
 
 
