@@ -139,7 +139,7 @@ static double straight(const InerterDevice* p, double x, double v, double z, dou
   double narrow = narrowing(p, level_at(p, x, v, load)), least = least_return(p);
   double rise = -slowing(p, 0) * narrow;
   if (least >= 0 && size > bound_of(p, narrow)) {
-    before = (size - bound_of(p, narrow)) / least;
+    before = least > 0 ? (size - bound_of(p, narrow)) / least : INFINITY;
     size = bound_of(p, narrow);
   }
   double ratio = rise * pow(size, n) / p->bw_alpha;
