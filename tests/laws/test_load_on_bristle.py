@@ -216,6 +216,25 @@ def test_a_load_that_falls_lets_no_bouc_wen_run_away(exponent: float, beta: floa
         assert np.all(abs(now) <= highest)
 
 
+@pytest.mark.parametrize("exponent", [1.0, 2.6])
+def test_from_above_its_level_bouc_wen_comes_back_and_crosses_its_play(exponent: float) -> None:
+    """One step is as many short ones, through the level, the play and the other side."""
+    narrow = 1e-4**-exponent
+    made = Device(
+        inertance=B, friction="bouc_wen", load_friction=0.9, friction_backlash=2e-4,
+        bw_stiffness=1e5, bw_alpha=1.0, bw_exponent=exponent,
+        bw_beta=0.3 * narrow, bw_gamma=0.7 * narrow,
+    )  # fmt: skip
+    start = made.step(0.0, -0.1, np.zeros(1), 0.02, a=8.0)
+    assert start[0] < -1e-3
+    for path in (3e-4, 2e-3, 3.2e-3, 4e-3):
+        many, count = start, 4000
+        for _ in range(count):
+            many = made.step(0.0, 0.1, many, path / 0.1 / count, a=0.0)
+        once = made.step(0.0, 0.1, start, path / 0.1, a=0.0)
+        assert once == pytest.approx(many, abs=1e-12 if exponent == 1.0 else 1e-6)
+
+
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "maxwell_slip"])
 def test_along_a_motion_core_and_reference_agree_to_second_order(law: str) -> None:
     made = device(law, load_friction=0.3)
