@@ -23,15 +23,24 @@ from inerter.parallel_steps import parallel
 
 @dataclass(frozen=True)
 class Standing:
-    """An effect's confidence, its rivals, and the rival to name instead, if any."""
+    """An effect's confidence, its rivals, and the rival to name instead, if any.
+
+    compared: False where there was no time to ask what else could explain the data.
+    """
 
     confidence: float
     rivals: list[Rival]
     better: Scored | None
+    compared: bool = True
 
 
 def standing(search: Search, final: Scored, effect: str) -> Standing:
-    """Compare a model with what it would be with another effect in the place of one of its own."""
+    """Compare a model with what it would be with another effect in the place of one of its own.
+
+    When the search's time is over nothing says how sure the effect is.
+    """
+    if search.time.is_over():
+        return Standing(0.5, [], None, compared=False)
     baseline, problem = search.baseline, search.problem
     without = search.score(effect, None, problem.fit(stripped(final.model, effect, baseline)))
 

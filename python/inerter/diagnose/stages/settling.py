@@ -132,12 +132,10 @@ def compared(
 ) -> tuple[Scored, dict[str, Standing]]:
     """A model with the standing of its effects; where one's rival is to be named, with that.
 
-    Those of `known` standing are not compared again, and none when the search's time is over.
+    Those of `known` standing are not compared again.
     """
     standings: dict[str, Standing] = {}
     for effect, _ in effects_of(final.model, baseline):
-        if effect not in known and search.time.is_over():
-            continue
         standings[effect] = known.get(effect) or standing(search, final, effect)
         better = standings[effect].better
         if exchanges and better is not None and effect not in known:
