@@ -16,6 +16,7 @@ import csv
 import os
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -26,8 +27,6 @@ TABLE = Path(__file__).with_name("seconds.csv")
 # what a day has of a test, and the most days until a case has its turn again
 DAILY, MOST_DAYS = 0.5, 8
 _SHARED_SCOPES = ("class", "module", "package", "session")
-
-_SPENT = pytest.StashKey["Spent"]()
 
 
 def case_of(nodeid: str) -> str:
@@ -86,6 +85,7 @@ class Spent:
         self._shared = 0.0
         self._within = False
 
+    @contextmanager
     def test(self, nodeid: str) -> Iterator[None]:
         """Around a test: what it takes beside what it shares with others."""
         self._file, self._shared, before = nodeid.partition("::")[0], 0.0, _busy()
@@ -93,14 +93,17 @@ class Spent:
         self.rows[test_of(nodeid)] += _busy() - before - self._shared
         self.ran.add(nodeid)
 
+    @contextmanager
     def shared(self, of_case: bool) -> Iterator[None]:
         """Around the making of what tests share; what it needs for that is in it."""
         if self._within:
             yield
             return
         self._within, before = True, _busy()
-        yield
-        self._within = False
+        try:
+            yield
+        finally:
+            self._within = False
         spent = _busy() - before
         self.rows[f"{self._file}::[case]" if of_case else self._file] += spent
         self._shared += spent
@@ -140,35 +143,28 @@ def written(rows: Mapping[str, float], ran: Iterable[str], path: Path = TABLE) -
 
 def measure(config: pytest.Config) -> None:
     """Measure from now on."""
-    config.stash[_SPENT] = Spent()
-    config.pluginmanager.register(_Measuring(config.stash[_SPENT]), "measuring")
+    config.pluginmanager.register(_Measuring(), "measuring")
 
 
 class _Measuring:
     """Around every test and what tests share; at the end the table."""
 
-    def __init__(self, spent: Spent) -> None:
-        self.spent = spent
+    def __init__(self) -> None:
+        self.spent = Spent()
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Any:
         """Count a test."""
-        counting = self.spent.test(item.nodeid)
-        next(counting)
-        result = yield
-        next(counting, None)
-        return result
+        with self.spent.test(item.nodeid):
+            return (yield)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any, request: Any) -> Any:
         """Count what tests share."""
         if fixturedef.scope not in _SHARED_SCOPES:
             return (yield)
-        counting = self.spent.shared(hasattr(request, "param"))
-        next(counting)
-        result = yield
-        next(counting, None)
-        return result
+        with self.spent.shared(hasattr(request, "param")):
+            return (yield)
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node: Any) -> None:

@@ -13,8 +13,8 @@
 // abs(1 - A) k0 (alpha / (beta + gamma))^(1/n), beta and gamma are divided by level^n: |z| yields
 // at that share of where it did, with the same stiffness and the same stored energy. Where the
 // level has fallen below |z|, z comes back no slower than from the level: for gamma > beta the law
-// by itself would let it run away. Free play
-// before the yielding share: friction_play.c. Not modelled: pinching, degradation.
+// by itself would let it run away. Free play before the yielding share: friction_play.c. Not
+// modelled: pinching, degradation.
 
 #include "friction_block.h"
 

@@ -347,7 +347,7 @@ def _contradiction(stands: Confirmed) -> dict[str, list[dict[str, str]]]:
 
 
 def _method(stands: Confirmed) -> dict:
-    data = stands.data
+    data, given = stands.data, stands.searched.prepared.given
     band = data.preparation
     return {
         "cutoff": band.cutoff,
@@ -358,6 +358,8 @@ def _method(stands: Confirmed) -> dict:
         "one_tone": data.band.scales.one_tone,
         "split": data.split.description,
         "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
+        # where it ended the search
+        "time_limit": given.time.seconds if given.time.was_felt else None,
         "searched_samples": sum(run.force.size for run in stands.searched.data.whole),
     }
 

@@ -41,9 +41,8 @@ class TimeLimit:
         )
         if not without_rivals:
             return text
-        one = without_rivals == 1
-        which = "A finding was" if one else f"{without_rivals} findings were"
+        which = "A finding was" if without_rivals == 1 else f"{without_rivals} findings were"
         return (
-            f"{text} {which} not compared with what else could explain the data; the confidence "
-            f"{'is' if one else 'of each is'} 0.5 for that."
+            f"{text} {which} not compared with what else could explain the data: no confidence of "
+            "such a one is above 0.5."
         )
