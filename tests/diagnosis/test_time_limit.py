@@ -9,6 +9,7 @@ from inerter.diagnose import diagnose_bench
 from inerter.diagnose.time_limit import TimeLimit
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, sum_of_sines
+from inerter.report.page import render_report
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +49,10 @@ def test_what_was_found_in_time_stands_without_comparison(
     }
     assert all(finding.confidence <= 0.5 for finding in found.findings)
     assert "2 findings were not compared" in found.verdict
+    assert all(told["compared"] is False for told in found.json()["findings"])
+    page = render_report(found, "", "")
+    assert page.count("There was no time to ask what else") == 2
+    assert "No rival explains" not in page
     assert found.extended.rmse < 0.5 * found.baseline.rmse
 
 

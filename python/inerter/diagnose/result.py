@@ -56,6 +56,7 @@ class Finding:
     confidence: share of resamples of the data in which it does better than without it and better
     than every rival; gain_interval: 95 % interval of the gain, None where there are too few data;
     members: effects that these data cannot tell apart, this one among them; none where they can;
+    compared: False where a time limit left no time to ask what else could explain the data;
     motion: what the device does, in rotation read N m for N.
     """
 
@@ -71,6 +72,7 @@ class Finding:
     gain_interval: tuple[float, float] | None = None
     members: tuple[str, ...] = ()
     looks_like: bool = False
+    compared: bool = True
     motion: Kind = TRANSLATION
 
     @property
@@ -82,9 +84,11 @@ class Finding:
         """As in the contract."""
         members = {"members": list(self.members)} if self.members else {}
         describes = {"looks_like": True} if self.looks_like else {}
+        alone = {} if self.compared else {"compared": False}
         return (
             members
             | describes
+            | alone
             | {
                 "effect": self.effect,
                 "law": self.law,

@@ -258,7 +258,7 @@ def diagnosis_of(
                 steps_in_words(steps, motion),
                 given.left_out,
                 long.in_words() if long else "",
-                given.time.in_words(_not_compared(stands)),
+                given.time.in_words(sum(not finding.compared for finding in findings)),
             )
             if note
         ],
@@ -268,12 +268,6 @@ def diagnosis_of(
         repeatability=again.rmse if again else None,
     )
     return replace(diagnosis, verdict=wording.verdict(diagnosis))
-
-
-def _not_compared(stands: Confirmed) -> int:
-    """Number of findings that were not compared with what else could explain the data."""
-    known = (stands.standings.get(link.effect) for link in stands.chain)
-    return sum(standing is not None and not standing.compared for standing in known)
 
 
 def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Finding]:
@@ -295,6 +289,7 @@ def _findings(stands: Confirmed, values: dict[str, ParameterValue]) -> list[Find
             ],
             seen_in_blocks=link.seen_in_blocks,
             gain_interval=link.interval,
+            compared=known is None or known.compared,
             motion=stands.data.whole[0].motion,
         )
         findings.append(replace(finding, evidence=wording.evidence(finding)))

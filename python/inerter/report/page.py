@@ -180,6 +180,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         "after_width": width(finding.rmse_after),
         "gain": finding.gain,
         "gain_interval": finding.gain_interval,
+        "compared": finding.compared,
         "rivals": [
             (text.effect_name(r.effect), r.law, text.confidence(r.confidence))
             for r in finding.rivals
