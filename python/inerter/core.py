@@ -391,7 +391,8 @@ class Device:
     ) -> NDArray[np.float64]:
         """The force "total" or "friction" alone of `along_checked`, shape (n,)."""
         force, now = np.empty(x.size), self._states(state)
-        wanted = [force.ctypes.data if each == name else None for each in ("total", "friction")]
+        at = force.ctypes.data
+        wanted = (at, None) if name == "total" else (None, at)
         library().inerter_along_commanded(
             ctypes.byref(self._c), x.size, h, x.ctypes.data, v.ctypes.data, a.ctypes.data, None,
             now.ctypes.data, *wanted, None,

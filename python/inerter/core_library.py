@@ -211,9 +211,11 @@ def device_type() -> type[ctypes.Structure]:
 
 def set_numbers(c: ctypes.Structure, name: str, value: object) -> bool:
     """Set a parameter or a list without a text in between; whether that did it."""
-    parameter, row = (known.get(name) for known in _places())
-    if isinstance(value, float) and parameter is not None:
-        return not library().inerter_set_number(ctypes.addressof(c), parameter, value)
+    parameters, rows = _places()
+    if isinstance(value, float):
+        at = parameters.get(name)
+        return at is not None and not library().inerter_set_number(ctypes.addressof(c), at, value)
+    row = rows.get(name)
     if row is None or not isinstance(value, tuple) or not value:
         return False
     if not all(isinstance(each, float) for each in value):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from inerter.inspection.channel import channel_facts
 from inerter.inspection.facts import facts_of, span
-from inerter.inspection.tells import Tell, words
+from inerter.inspection.tells import Tell, clauses, words
 from inerter.records import Record, check_records
 from inerter.records.steps import converter_step
 from numpy.typing import NDArray
@@ -95,6 +95,25 @@ def test_what_a_clipped_force_tells_is_not_told_wrong(most: float) -> None:
 def test_a_value_has_the_digits_of_its_error(value: float, error: float, said: str) -> None:
     tell = Tell(name="stiffness", value=value, stderr=error, unit="N/m", verdict="told")
     assert words(tell) == f"stiffness {said} N/m"
+
+
+def test_what_cannot_be_told_for_one_reason_is_said_once() -> None:
+    told = Tell(name="inertance", value=60.0, stderr=1.0, unit="kg", verdict="told")
+    stroke = {
+        "value": 0.0,
+        "stderr": 1.0,
+        "verdict": "not told",
+        "reason": "one stroke",
+        "motion": "more",
+    }
+    first = Tell(name="dry friction", unit="N", **stroke)
+    other = Tell(name="stiffness", unit="N/m", **stroke)
+    slow = Tell(name="viscous friction", unit="N s/m", **{**stroke, "reason": "it goes with x"})
+    assert clauses([told, first, slow, other]) == [
+        words(told),
+        "dry friction and stiffness not: one stroke; more would tell",
+        words(slow),
+    ]
 
 
 @pytest.mark.parametrize("step", [1e-6, 2e-5, 1e-4])

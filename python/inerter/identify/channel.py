@@ -40,7 +40,7 @@ def channel_values(values: Mapping[str, float]) -> dict[str, float]:
 
 def clips(values: Mapping[str, float]) -> bool:
     """Whether the channel has a limit."""
-    return any(name in values for name in LIMITS)
+    return not values.keys().isdisjoint(LIMITS)
 
 
 def without_limits(values: Mapping[str, float]) -> dict[str, float]:
@@ -90,7 +90,7 @@ def delayed(force: Array, delay: float, spacing: float) -> Array:
         )
     )
     # samples -whole - 2 ... n - whole
-    before, after = (int(np.clip(k, 0, n + 3)) for k in (whole + 2, 1 - whole))
+    before, after = (min(max(k, 0), n + 3) for k in (whole + 2, 1 - whole))
     held = np.empty((*force.shape[:-1], n + 3))
     held[..., :before] = force[..., :1]
     held[..., n + 3 - after :] = force[..., -1:]

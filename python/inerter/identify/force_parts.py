@@ -10,6 +10,7 @@ hangs together, friction at the flywheel or raised by a load, a channel that cli
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Hashable, Mapping
 
 import numpy as np
@@ -114,11 +115,15 @@ def _shown(
 
 def states_of(part: Part, model: Model, state: State) -> State:
     """Those states of a model's device that a part of it has too."""
-    if not model.device().nstate or not part.device.nstate:
+    of_all, of_part = model.device().state_names, part.device.state_names
+    if not of_all or not of_part:
         return 0.0
-    known = part.device.state_names
-    kept = [name in known for name in model.device().state_names]
-    return np.atleast_1d(state)[kept]
+    return np.atleast_1d(state)[_kept(of_all, of_part)]
+
+
+@functools.lru_cache(maxsize=64)
+def _kept(of_all: tuple[str, ...], of_part: tuple[str, ...]) -> NDArray[np.intp]:
+    return np.array([i for i, name in enumerate(of_all) if name in of_part], dtype=np.intp)
 
 
 def _found(run: BenchRun, key: tuple[Hashable, ...], work_out: Callable[[], Array]) -> Array:

@@ -85,7 +85,7 @@ def _twisted(device: Device, run: BenchRun, states: Array) -> Array:
 def _bent(device: Device, state: float) -> tuple[float, float]:
     """Deflection of the bristle [m] behind its free play, and its side, -1, 0 or 1."""
     half = device.friction_backlash
-    return state - float(np.clip(state, -half, half)), float(np.sign(state))
+    return state - min(max(state, -half), half), float((state > 0) - (state < 0))
 
 
 def _held(device: Device) -> float:
@@ -210,7 +210,7 @@ def moves_late(values: Mapping[str, float], run: BenchRun) -> bool:
     return bool(values.get("delay") and "backlash" in values and np.isinf(run.cutoff))
 
 
-def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, float]]:
+def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, Mapping[str, float]]:
     """A run and coordinates whose delay is in the motion, where it has to be; else as they are.
 
     A filter of the displacement channel is taken out of the motion.
@@ -218,11 +218,11 @@ def with_late_motion(model: Model, run: BenchRun) -> tuple[BenchRun, dict[str, f
     A flywheel that lands has a force between samples that none of them shows: a delayed force would
     be read off those. The motion is smooth.
     """
-    values = dict(model.values)
-    run = before_filter(run, values)
-    if not moves_late(values, run):
-        return run, values
-    delay, h = values.pop("delay"), run.spacing
+    run = before_filter(run, model.values)
+    if not moves_late(model.values, run):
+        return run, model.values
+    values, h = dict(model.values), run.spacing
+    delay = values.pop("delay")
     more = int(abs(delay) / h) + 2
     before, after = h * np.arange(-more, 0), h * np.arange(1, more + 1)
     inner = slice(more, more + run.displacement.size)

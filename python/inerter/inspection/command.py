@@ -68,7 +68,7 @@ def inspect_command(
 def _print(facts: Any) -> None:
     from inerter.inspection.facts import clock_words, motion_words
     from inerter.inspection.page import CHANNEL_HEADER, channel_rows
-    from inerter.inspection.tells import words
+    from inerter.inspection.tells import clauses
 
     record = facts.record
     out.print(f"{record.name}: {clock_words(facts)}", style="bold", highlight=False)
@@ -78,7 +78,7 @@ def _print(facts: Any) -> None:
     out.print(table)
     if facts.motion is not None:
         out.print(f"motion: {motion_words(facts.motion, facts.record.motion)}", highlight=False)
-    for tell in facts.tells:
-        out.print(f"- {words(tell)}", highlight=False)
+    for clause in clauses(facts.tells):
+        out.print(f"- {clause}", highlight=False)
     for warning in record.warnings:
         out.print(f"{warning.code}: {warning.text}", highlight=False)

@@ -13,7 +13,7 @@ import numpy as np
 from inerter import motion_units as units
 from inerter.inspection.channel import ChannelFacts, channel_facts
 from inerter.inspection.motion import MotionFacts, motion_facts
-from inerter.inspection.tells import Tell, tells, words
+from inerter.inspection.tells import Tell, clauses, tells
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.printable import in_digits
 from inerter.records import AnyRecord, Record, TimeRecord
@@ -181,7 +181,7 @@ def short(facts: Facts) -> list[str]:
     if facts.motion is not None:
         lines.append(f"  {motion_words(facts.motion, record.motion)}")
     if facts.tells:
-        lines.append("  a first look: " + "; ".join(words(tell) for tell in facts.tells))
+        lines.append(f"  a first look: {'; '.join(clauses(facts.tells))}")
     return lines
 
 

@@ -8,7 +8,7 @@ says what it cannot be told from.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -207,6 +207,23 @@ def words(tell: Tell) -> str:
         most = abs(tell.value) + TIMES * tell.stderr
         return f"{tell.name} below {float(f'{most:.2g}'):g} {tell.unit}"
     return f"{tell.name} not: {tell.reason}; {tell.motion} would tell"
+
+
+def clauses(tells: Sequence[Tell]) -> list[str]:
+    """One of each; of those that cannot be told for the same reason one of them all."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for tell in tells:
+        if tell.verdict == "not told":
+            alike.setdefault((tell.reason, tell.motion), []).append(tell.name)
+    found = []
+    for tell in tells:
+        names = alike.get((tell.reason, tell.motion), [tell.name])
+        if tell.verdict != "not told" or len(names) == 1:
+            found.append(words(tell))
+        elif names[0] == tell.name:
+            listed = f"{', '.join(names[:-1])} and {names[-1]}"
+            found.append(f"{listed} not: {tell.reason}; {tell.motion} would tell")
+    return found
 
 
 def _with_error(value: float, error: float) -> str:
