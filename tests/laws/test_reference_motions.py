@@ -39,6 +39,16 @@ def test_derivatives(name: str) -> None:
     )
 
 
+@pytest.mark.parametrize("name", MOTIONS)
+def test_one_time_is_as_many(name: str) -> None:
+    """A solver asks for one time after another, also beyond the ends and at the edges."""
+    motion, times = MOTIONS[name], np.concatenate([np.linspace(-1.0, 7.0, 333), [0.0, 3.0, 6.0]])
+    for channel in (motion.displacement, motion.velocity, motion.acceleration):
+        together = np.broadcast_to(channel(times), times.shape)
+        alone = [float(channel(float(t))) for t in times]
+        np.testing.assert_allclose(alone, together, rtol=1e-12, atol=1e-13 * np.max(abs(together)))
+
+
 def test_reversals_are_found_to_rounding() -> None:
     found = velocity_crossings(sine_motion(1e-3, 3.0), 0.0, 0.0, 2.0, 1e-3)
     np.testing.assert_allclose(found, (np.arange(12) + 0.5) / 6.0, atol=1e-12)

@@ -22,6 +22,7 @@ Not modelled: masses of the terminals, several series elements.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -227,7 +228,7 @@ class ReferenceDevice(DeviceStates):
             return change + 0.0 * np.asarray(v)
         rates = np.asarray(present._own_rate(x, v, inner, a, contact))
         columns = [rates] if present.nstate == 1 else list(np.moveaxis(rates, -1, 0))
-        return np.stack(np.broadcast_arrays(*columns, change), axis=-1)
+        return _beside([*columns, change])
 
     def control_power(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
         """Power that the control's actuator gives to the device [W]: dE/dp p'."""
@@ -268,7 +269,7 @@ class ReferenceDevice(DeviceStates):
         if self.nstate > count:
             several = self.nstate - count > 1
             columns = [*(np.moveaxis(np.asarray(inner), -1, 0) if several else [inner]), *columns]
-        return np.stack(np.broadcast_arrays(*columns), axis=-1)
+        return _beside(columns)
 
     def _inner_rate(
         self, x: Quantity, v: Quantity, z: Quantity, a: Quantity, contact: Contact
@@ -297,7 +298,7 @@ class ReferenceDevice(DeviceStates):
         rates += [series_rate, (pull - rest - self._flywheel_side(position, speed)) / mass]
         if self.backlash > 0.0:
             rates.append(series.gap_rate(self, deflection, series_rate, gap, contact))
-        return np.stack(np.broadcast_arrays(*rates), axis=-1)
+        return _beside(rates)
 
     @at_command
     def stored_energy(self, x: Quantity, v: Quantity, z: Quantity = 0.0) -> Quantity:
@@ -397,3 +398,10 @@ class ReferenceDevice(DeviceStates):
         """G [N]: damper, pipe and gas between the flywheel and terminal 1."""
         pipe = channel.force(self, velocity)
         return self.flywheel_viscous * velocity + pipe + gas.force(self, displacement)
+
+
+def _beside(columns: Sequence[Quantity]) -> NDArray[np.float64]:
+    """States or their rates (n,) or (..., n), from those of each."""
+    if all(isinstance(each, float) for each in columns):
+        return np.array(columns)
+    return np.stack(np.broadcast_arrays(*columns), axis=-1)
