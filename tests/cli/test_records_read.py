@@ -261,6 +261,14 @@ def test_further_columns_are_kept_as_written(tmp_path: Path) -> None:
     np.testing.assert_array_equal(record.extra["Temperature[degC]"], np.linspace(20.0, 30.0, 80))
 
 
+def test_a_set_point_is_no_measured_velocity(tmp_path: Path) -> None:
+    columns = signals() | {"speed_set [mm/s]": signals()["time"]}
+    (tmp_path / "r.csv").write_text(csv_text(columns))
+    record = one(tmp_path / "r.csv")
+    assert record.velocity is None
+    assert list(record.extra) == ["speed_set [mm/s]"]
+
+
 def test_run_column_splits_interleaved_rows_in_order_of_appearance(tmp_path: Path) -> None:
     runs = {"up": signals(60), "down": signals(70, start=1.0), "3": signals(55, start=2.0)}
     parts = [
@@ -354,7 +362,10 @@ def test_a_bench_record_may_have_a_road_column(tmp_path: Path) -> None:
     assert one(tmp_path / "r.csv").kind == "bench"
 
 
-@pytest.mark.parametrize("cell", ["", "nan", " NaN ", "NA", "null", "inf", "-inf"])
+@pytest.mark.parametrize(
+    "cell",
+    ["", "nan", " NaN ", "NA", "null", "inf", "-inf", "#N/A", "#NV", "#DIV/0!", "#WERT!", "#NAME?"],
+)
 def test_few_missing_cells_are_interpolated(cell: str, tmp_path: Path) -> None:
     truth = signals(400)
     lines = csv_text(truth).splitlines()

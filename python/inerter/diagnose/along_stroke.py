@@ -25,6 +25,7 @@ from inerter.catalogue.friction import FRICTION
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.waves import FINEST, THROUGH, shares_taken
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.motion_units import ROTATION
@@ -33,10 +34,9 @@ Array = NDArray[np.float64]
 # of a function of the place and its derivative by it: what it adds to the force
 Effect = Callable[[Array, Array], Array]
 
-# samples that are asked, at least and at most; lines per stroke; the finest length as a share of it
+# samples that are asked, at least and at most; lines per stroke
 _FEWEST, _SAMPLES = 100, 20_000
 _LINES = 4
-_FINEST = 1 / 40
 # periods that one sine goes through at least, and share of the square of a residual that they take,
 # to be told from all else that has harmonics: fitted, four true ones take 0.96 to 1, a tone's 0.35
 _OF_ONE_SINE, _MOST_OF_IT = 3.0, 0.5
@@ -61,13 +61,14 @@ def candidates(problem: Problem, fit: Fit, curves: bool = True) -> Iterator[Cand
         return
     one_tone = problem.scales.one_tone
     fewest, least = (_OF_ONE_SINE, _MOST_OF_IT) if one_tone else (1.0, _WORTH)
-    x, v, a, residual = _samples(problem, fit)
+    (x, v, a, residual), apart = _samples(problem, fit)
     if residual.size < _FEWEST:
         return
+    finest = max(FINEST * (high - low), THROUGH * apart * float(np.median(np.abs(v))))
     for quantity in QUANTITIES:
         effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
         if effect is not None:
-            shown = _Shown(x, v > 0, residual, effect, ends, fewest, least)
+            shown = _Shown(x, v > 0, residual, effect, ends, fewest, least, finest)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
             if quantity.name == "force" and problem.runs[0].motion == ROTATION and not one_tone:
                 yield from _weight(quantity, fit.model, shown)
@@ -106,8 +107,8 @@ def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -
 class _Shown:
     """Where samples are, which way they go, what is left there, and what it is asked for.
 
-    Of a period the travel has at least the `fewest`, and it takes at `least` that share of the
-    square.
+    Of a period the travel has at least the `fewest`, it takes at `least` that share of the square,
+    and it is no shorter than the `finest` [m].
     """
 
     x: Array
@@ -117,6 +118,7 @@ class _Shown:
     ends: tuple[float, float]
     fewest: float
     least: float
+    finest: float
 
 
 def _periodic(
@@ -207,8 +209,11 @@ def _with_curve(model: Model, quantity: Quantity, nodes: int, ends: tuple[float,
     return bare.holding(curve_lower=ends[0], curve_upper=ends[1], **zeros).adding(None, **curve)
 
 
-def _samples(problem: Problem, fit: Fit) -> tuple[Array, Array, Array, Array]:
-    """Displacement, velocity, acceleration and residual of samples that count, thinned."""
+def _samples(problem: Problem, fit: Fit) -> tuple[Array, float]:
+    """Displacement, velocity, acceleration and residual of samples that count, thinned (4, n).
+
+    And how far they are apart [s].
+    """
     errors = problem.errors(fit.model)
     rows = []
     step = max(1, sum(int(mask.sum()) for mask in problem.masks) // _SAMPLES)
@@ -216,26 +221,28 @@ def _samples(problem: Problem, fit: Fit) -> tuple[Array, Array, Array, Array]:
         which = np.flatnonzero(mask)[::step]
         channels = (run.displacement, run.velocity, run.acceleration, error)
         rows.append(np.array([channel[which] for channel in channels]))
-    x, v, a, residual = np.concatenate(rows, axis=1)
-    return x, v, a, residual
+    return np.concatenate(rows, axis=1), step * max(run.spacing for run in problem.runs)
 
 
 def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
     """Lengths [m] and amplitudes (2,) of the sines of the place that take most, the best first."""
-    stroke = shown.ends[1] - shown.ends[0]
-    lines = np.arange(shown.fewest / stroke, 1 / (_FINEST * stroke), 1 / (_LINES * stroke))
-    gains, amplitudes = np.zeros(lines.size), np.zeros((lines.size, 2))
-    for i, line in enumerate(lines):
-        angle, rate = 2 * np.pi * line * shown.x, 2 * np.pi * line
-        c, s = np.cos(angle), np.sin(angle)
-        columns = np.column_stack([shown.effect(c, -rate * s), shown.effect(s, rate * c)])
-        gains[i], amplitudes[i] = _gain(columns, shown.residual)
+    stroke, x = shown.ends[1] - shown.ends[0], shown.x
+    step = 1 / (_LINES * stroke)
+    lines = step * np.arange(int(1 / (shown.finest * step)))
+    one, none = np.ones(x.size), np.zeros(x.size)
+    level, rise = (none + shown.effect(*each) for each in ((one, none), (none, one)))
+    both = np.array([level, rise])
+    gains = shares_taken(x, shown.residual, *both, step, lines.size)
+    gains[lines < (1 - 1e-9) * shown.fewest / stroke] = 0.0
     found: list[tuple[float, Array]] = []
     for i in np.argsort(-gains):
         if gains[i] < shown.least or len(found) == _TRIED:
             break
         if all(abs(lines[i] - 1 / length) > _APART / stroke for length, _ in found):
-            found.append((float(1 / lines[i]), amplitudes[i]))
+            angle, rate = 2 * np.pi * lines[i] * x, 2 * np.pi * lines[i]
+            c, s = np.cos(angle), np.sin(angle)
+            columns = np.column_stack([shown.effect(c, -rate * s), shown.effect(s, rate * c)])
+            found.append((float(1 / lines[i]), _gain(columns, shown.residual)[1]))
     return found
 
 

@@ -43,6 +43,9 @@ def is_known(header: str, stated: Mapping[str, Statement]) -> bool:
     name = split_header(header)[0]
     if name in QUANTITIES or name == "run" or guess(header) is not None:
         return True
+    # where no name tells, the only column of such a unit is taken
+    if any(of_unit(header, quantity) for quantity in _REQUIRED):
+        return True
     names = {bare_name(each.column).casefold() for each in stated.values()}
     return bare_name(header).casefold() in names or header.strip().casefold() in {
         each.column.casefold() for each in stated.values()
@@ -143,7 +146,11 @@ def _guess_others(table: RawTable, found: Columns) -> None:
         ]
         if quantity not in _REQUIRED:
             # a measured velocity counts: a unit has to say that it is one
-            ranked = [(r, i) for r, i in ranked if _fits(quantity, table.header[i], found)]
+            ranked = [
+                (rank, i)
+                for rank, i in ranked
+                if _fits(quantity, table.header[i], found) and not is_wanted(table.header[i])
+            ]
         best = [index for rank, index in ranked if rank == max(r for r, _ in ranked)]
         if quantity in _REQUIRED:
             best = _measured_ones(table, quantity, best, found)

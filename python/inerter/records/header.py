@@ -126,12 +126,16 @@ def _behind(text: str) -> tuple[str, str | None]:
         return text, None
     quantity = _best_guess(match[1])
     unit = bench_unit(match[2])
+    if quantity is None and re.search(r"\s/\s", text) and any(agrees(q, unit) for q in _UNITS):
+        # as standards write it, whatever the quantity's sign: `s / mm`
+        return match[1], unit
     if quantity is None or not (agrees(quantity, unit) or unit in ("V", "mV")):
         return text, None
     plain = _words(match[2])
     # "load cell", "time t": a word is no unit where it may be a name
     if re.search(rf"{re.escape(match[1])}\s+{re.escape(match[2])}$", text) and (
-        len(match[2]) == 1 or (plain and plain[0] in _NAMES and match[2] not in ("ms",))
+        (len(match[2]) == 1 and match[2] != _UNITS[quantity])
+        or (plain and plain[0] in _NAMES and match[2] not in ("ms",))
     ):
         return text, None
     return match[1], unit

@@ -16,7 +16,22 @@ from numpy.typing import NDArray
 from .record import Array
 
 # cells that say "no value here"
-MISSING_WORDS = ("", "nan", "na", "n/a", "null", "none", "inf", "+inf", "-inf", "#n/a")
+MISSING_WORDS = (
+    "",
+    "nan",
+    "na",
+    "n/a",
+    "null",
+    "none",
+    "inf",
+    "+inf",
+    "-inf",
+    "#n/a",
+    "#nv",
+    "#n/d",
+)
+# what a spreadsheet writes where a formula has no value, in any language: #DIV/0!, #WERT!, #NAME?
+SPREADSHEET_ERROR = r"^#[^\s#]+[!?]$"
 
 
 @dataclass(frozen=True)
@@ -102,6 +117,7 @@ def to_numbers(series: pl.Series) -> tuple[Array, NDArray[np.intp]]:
         text = series.str.strip_chars().str.replace(r"^([+-]) +", "$1")
         values = text.cast(pl.Float64, strict=False)
         spared = text.str.to_lowercase().is_in(MISSING_WORDS) | text.is_null()
+        spared |= text.str.contains(SPREADSHEET_ERROR)
         bad = np.flatnonzero((values.is_null() & ~spared).to_numpy())
     array = (values.fill_null(np.nan) if values.null_count() else values).to_numpy()
     finite = np.isfinite(array)

@@ -18,6 +18,7 @@ import polars as pl
 
 from .header import guess
 from .header_rows import Heading, heading, is_clock
+from .raw_table import MISSING_WORDS, SPREADSHEET_ERROR
 from .record import RecordError
 
 HEAD = 1 << 18  # bytes at the beginning that are looked at
@@ -33,7 +34,7 @@ _COMMA_GROUPED = re.compile(r"[+-]?\d{1,3}(?:\.\d{3})+,\d+")
 _POINT_GROUPED = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+\.\d+")
 _UNSURE = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _COMMENTS = "#%"
-_MISSING = {"", "nan", "na", "n/a", "null", "none", "inf", "+inf", "-inf", "#n/a", "-"}
+_MISSING = {*MISSING_WORDS, "-"}
 
 
 # encodings that are tried where a text is no UTF-8, and what people call them
@@ -368,6 +369,7 @@ def is_value(cell: str) -> bool:
     """Whether a cell is a number in some way of writing, or says that there is none."""
     return (
         cell.casefold() in _MISSING
+        or re.fullmatch(SPREADSHEET_ERROR, cell) is not None
         or _POINT.fullmatch(cell) is not None
         or _COMMA.fullmatch(cell) is not None
         or _COMMA_GROUPED.fullmatch(cell) is not None

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.diagnose.waves import FINEST, THROUGH, wave_sums
+
 from .learning import FOLDS, LearntPart, Samples, chance, share
 
 Array = NDArray[np.float64]
 
-# shortest period along the stroke, in strokes, and wave numbers per period of the whole stroke
-SHORTEST = 1 / 60
+# wave numbers per period of the whole stroke
 FINENESS = 5
 
 
@@ -42,7 +43,10 @@ def along_stroke(data: Samples, x: Array, factor: Array) -> Period:
         What the sine is multiplied by: ones, or the direction of motion.
     """
     stroke = float(np.ptp(x)) or 1.0
-    numbers = np.arange(1.0, 1 / SHORTEST + 1e-9, 1 / FINENESS) / stroke
+    # no wave that samples in a row step through, as another one shows there
+    finest = max(FINEST, THROUGH * float(np.median(np.abs(np.diff(x)))) / stroke)
+    last = max(FINENESS / finest, FINENESS + 2)
+    numbers = np.arange(FINENESS, last) / (FINENESS * stroke)
     powers = _moments(data, x, factor, numbers)
     values = np.zeros(x.size)
     picked = []
@@ -76,24 +80,23 @@ def _pair(x: Array, factor: Array, number: float) -> Array:
 def _moments(data: Samples, x: Array, factor: Array, numbers: Array) -> Array:
     """Per fold and wave number: sums of s s, s c, c c, s r, c r, shape (folds, numbers, 5)."""
     found = np.empty((FOLDS + 1, numbers.size, 5))
-    square = factor**2
+    step = float(numbers[1] - numbers[0])
+    first = round(numbers[0] / step)
     for k in range(FOLDS + 1):
         part = data.fold == k
-        first = np.exp(2j * np.pi * numbers[0] * x[part])
-        step = np.exp(2j * np.pi * (numbers[1] - numbers[0]) * x[part])
-        wave, weight, r = first, square[part], (factor * data.residual)[part]
-        for i in range(numbers.size):
-            double = np.sum(weight * wave * wave)
-            single = np.sum(r * wave)
-            total = float(np.sum(weight))
-            found[k, i] = (
-                (total - double.real) / 2,
-                double.imag / 2,
-                (total + double.real) / 2,
-                single.imag,
-                single.real,
-            )
-            wave = wave * step
+        weight, r = factor[part] ** 2, (factor * data.residual)[part]
+        count, total = first + numbers.size, float(np.sum(weight))
+        if not part.any():
+            found[k] = 0.0
+            continue
+        single = wave_sums(x[part], r[None], step, count)[0, first:]
+        double = wave_sums(x[part], weight[None], step, 2 * count)[0, 2 * first :: 2]
+        found[k] = np.column_stack(
+            [
+                (total - double.real) / 2, double.imag / 2, (total + double.real) / 2,
+                single.imag, single.real,
+            ]
+        )  # fmt: skip
     return found
 
 
