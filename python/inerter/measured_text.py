@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 
 
+NOTHING = 1e-6
+"""Share of its error below which a value is told as 0."""
+
+
 def decimals_told(value: float, error: float, digits: int = 1, least: int = 1) -> int:
     """Decimals to which a value is told, negative before the point.
 
@@ -26,6 +30,8 @@ def measured(value: float, error: float, digits: int = 1, least: int = 1) -> str
     """Both in words, arguments as `decimals_told`; with powers of ten where they are far from 1."""
     if not (value and math.isfinite(value) and math.isfinite(error) and error > 0):
         return f"{value:.3g} ± {error:.1g}"
+    if abs(value) < NOTHING * error:
+        value = 0.0
     decimals = decimals_told(value, error, digits, least)
     top = math.floor(math.log10(max(abs(value), error)))
     if not -4 < top < 6:

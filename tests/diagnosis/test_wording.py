@@ -77,6 +77,20 @@ def test_a_tone_of_the_mains_is_called_hum(frequency: float, text: str) -> None:
     assert text in evidence(finding)
 
 
+def test_an_error_that_rises_is_not_said_to_fall() -> None:
+    """A play is judged by a loss that forgives impacts that come too late."""
+    values = {"backlash": ParameterValue(6.6e-5, 4e-6, "m")}
+    finding = Finding(
+        effect="backlash", law=None, confidence=0.2, parameters=values,
+        rmse_before=18.4, rmse_after=22.8, evidence="", rivals=[],
+    )  # fmt: skip
+    assert "rises from 18.4 N to 22.8 N" in evidence(finding)
+    assert "falls" not in evidence(finding)
+    lower = evidence(replace(finding, rmse_after=9.1))
+    assert "falls from 18.4 N to 9.1 N" in lower
+    assert "rises" not in lower
+
+
 def slow_sampled(device: ReferenceDevice) -> list[Record]:
     """Two runs at 250 Hz."""
     motions = [

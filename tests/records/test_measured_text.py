@@ -13,7 +13,7 @@ from inerter.measured_text import decimals_told, measured
         (527.2, 31.0, 1, 1, "530 ± 30"), (104.6, 9.6, 1, 1, "100 ± 10"),
         (104.6, 9.6, 2, 1, "104.6 ± 9.6"), (6.75, 0.0031, 1, 4, "6.750 ± 0.003"),
         (-0.5, 2.0, 1, 3, "-0.50 ± 2.00"), (1.23456e-7, 1e-9, 1, 3, "1.23e-07 ± 1e-09"),
-        (113.0, np.nan, 1, 1, "113 ± nan"),
+        (113.0, np.nan, 1, 1, "113 ± nan"), (3.9e-13, 2.7e-4, 1, 1, "0 ± 0.0003"),
     ],
 )  # fmt: skip
 def test_examples(value: float, error: float, digits: int, least: int, told: str) -> None:

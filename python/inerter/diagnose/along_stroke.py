@@ -230,16 +230,17 @@ def _lengths(shown: _Shown) -> list[tuple[float, Array]]:
     step = 1 / (_LINES * stroke)
     lines = step * np.arange(int(1 / (shown.finest * step)))
     one, none = np.ones(x.size), np.zeros(x.size)
-    level, rise = (none + shown.effect(*each) for each in ((one, none), (none, one)))
-    both = np.array([level, rise])
-    gains = shares_taken(x, shown.residual, *both, step, lines.size)
+    level = np.asarray(none + shown.effect(one, none), dtype=np.float64)
+    rise = np.asarray(none + shown.effect(none, one), dtype=np.float64)
+    gains = shares_taken(x, shown.residual, level, rise, step, lines.size)
     gains[lines < (1 - 1e-9) * shown.fewest / stroke] = 0.0
     found: list[tuple[float, Array]] = []
     for i in np.argsort(-gains):
         if gains[i] < shown.least or len(found) == _TRIED:
             break
         if all(abs(lines[i] - 1 / length) > _APART / stroke for length, _ in found):
-            angle, rate = 2 * np.pi * lines[i] * x, 2 * np.pi * lines[i]
+            rate = 2 * np.pi * float(lines[i])
+            angle = rate * x
             c, s = np.cos(angle), np.sin(angle)
             columns = np.column_stack([shown.effect(c, -rate * s), shown.effect(s, rate * c)])
             found.append((float(1 / lines[i]), _gain(columns, shown.residual)[1]))

@@ -105,7 +105,7 @@ def unexplained(
         found = np.zeros_like(found)
         details.clear()
     power = remainder.data.power
-    shares = {name: float(max(p.share, 0.0)) for name, p in chosen}
+    shares = _shares(remainder.data.residual[held_out], held_out, chosen, raw)
     tests = _rows(first, power)
     predicted = structure
 
@@ -153,6 +153,7 @@ def unexplained(
         runs[0].motion,
         above,
         (left, min(run.cutoff for run in runs)) if left < BELOW * raw else None,
+        predicted,
     )
     return Unexplained(
         significant=significant,
@@ -174,6 +175,21 @@ def _taken(residual: Array, predicted: Array) -> float:
     if not residual.size:
         return 0.0
     return float(np.sqrt(max(np.mean(residual**2 - (residual - predicted) ** 2), 0.0)))
+
+
+def _shares(
+    residual: Array,
+    held_out: NDArray[np.bool_],
+    chosen: Sequence[tuple[str, LearntPart]],
+    raw: float,
+) -> dict[str, float]:
+    """Share of the square of what remains, `raw` [N] rms, that each takes away after the others."""
+    shares = {}
+    for name, prediction in chosen:
+        values = prediction.values[held_out]
+        shares[name] = min((_taken(residual, values) / raw) ** 2, 1.0) if raw > 0 else 0.0
+        residual = residual - values
+    return shares
 
 
 def _remainder(runs: Sequence[BenchRun], split: Split, residual: Sequence[Array]) -> Remainder:
@@ -201,13 +217,14 @@ def _depends(
     small, newton = motion_units.words(motion, "mm"), motion_units.words(motion, "N")
     while len(chosen) < MOST:
         required = FURTHER_SHARE if chosen else FIRST_SHARE
+        # of all data, and of those that the figures are about
         gains = {
-            name: prediction.share * remainder.data.power
+            name: min(prediction.share, prediction.share_held_out) * remainder.data.power
             for name, prediction in outcome.tests.items()
-            if _real(prediction, len(outcome.tests))
-            and prediction.share * remainder.data.power > max(required * power, least**2)
-            and name not in dict(chosen)
+            if _real(prediction, len(outcome.tests)) and name not in dict(chosen)
         }
+        least_gain = max(required * power, least**2)
+        gains = {name: gain for name, gain in gains.items() if gain > least_gain}
         if not gains:
             break
         enough = PLAIN_ENOUGH * max(gains.values())

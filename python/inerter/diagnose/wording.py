@@ -222,11 +222,19 @@ def evidence(finding: Finding) -> str:
         else "held-out data"
     )
     newton = words(finding.motion, "N")
+    rises = finding.rmse_after > finding.rmse_before
     text = (
-        f"{values}: the rms {force_word(finding.motion)} error on {where} falls from "
+        f"{values}: the rms {force_word(finding.motion)} error on {where} "
+        f"{'rises' if rises else 'falls'} from "
         f"{finding.rmse_before:.3g} {newton} to {finding.rmse_after:.3g} {newton} "
         f"({100 * finding.gain:.0f} %)"
     )
+    if rises:
+        # only of effects that are judged by another loss
+        text += (
+            ", for an impact that is predicted too early or too late errs by all of its force; what "
+            "is so far off counts little in the choice of this effect, and all else is met better"
+        )
     likely = [
         rival
         for rival in finding.rivals

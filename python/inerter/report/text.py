@@ -10,7 +10,7 @@ from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.wording import effect_in_words
-from inerter.measured_text import decimals_told
+from inerter.measured_text import NOTHING, decimals_told
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.motion_units import parameter_unit as unit_in
 
@@ -86,7 +86,8 @@ def with_error(value: ParameterValue) -> str:
     decimals = decimals_told(scaled, scaled_error, digits=2)
     if value.value and not round(scaled, decimals):
         # so uncertain that no digit of the value counts: not shown as 0, which it may not be
-        return f"{number(value.value, 2)} ± {number(error, 2)}{suffix}"
+        shown = value.value if abs(value.value) > NOTHING * error else 0.0
+        return f"{number(shown, 2)} ± {number(error, 2)}{suffix}"
     pair = f"{_plain(scaled, decimals)} ± {_plain(scaled_error, decimals)}"
     if power:
         return f"({pair}) × 10{str(power).translate(_SUPERSCRIPT)}{suffix}"

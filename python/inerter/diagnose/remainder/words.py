@@ -42,13 +42,15 @@ def summary(
     motion: Kind = TRANSLATION,
     above: tuple[float, float, float] | None = None,
     beyond: tuple[float, float] | None = None,
+    predicted: float | None = None,
 ) -> str:
     """One paragraph.
 
     Parameters
     ----------
     depends, details, shares
-        Names of what was found; what is known more closely; share of the residual's power each.
+        Names of what was found; what is known more closely; share of the power of what remains that
+        each takes away.
     raw, floor
         Rms of what remains and of the noise [N].
     structure
@@ -67,6 +69,8 @@ def summary(
     beyond
         Rms of what remains up to the end of the motion's band [N], and that end [Hz], where most
         lies above it.
+    predicted
+        Rms of what the other data predict, value for value [N]; all of the structure if not given.
     """
     newton, force = words(motion, "N"), force_word(motion)
     blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} {newton}"
@@ -104,10 +108,20 @@ def summary(
         part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
         parts.append(named + detail + part)
     # of bursts it is known when they come, not what they are
-    only = list(depends) == ["bursts"]
-    told = "come and go as the other data tell" if only else "can be predicted from the other data"
+    if predicted is None:
+        predicted = 0.0 if list(depends) == ["bursts"] else structure
+    told = []
+    if predicted > 0:
+        left = max(raw**2 - predicted**2, 0.0) ** 0.5
+        told.append(
+            f"{predicted:.3g} {newton} rms can be predicted from the other data, which leaves "
+            f"{left:.3g} {newton}"
+        )
+    if "bursts" in depends:
+        come = max(structure**2 - predicted**2, 0.0) ** 0.5
+        told.append(f"{come:.3g} {newton} rms come and go as the other data tell")
     text = (
-        f"{start} is not noise: {structure:.3g} {newton} rms {told}. It "
+        f"{start} is not noise: {'; '.join(told)}. It "
         f"goes with {'; and with '.join(parts)}. No effect that is known here explains it."
     )
     if proposal:
