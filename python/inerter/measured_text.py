@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-
 NOTHING = 1e-6
 """Share of its error below which a value is told as 0."""
 

@@ -232,8 +232,9 @@ def evidence(finding: Finding) -> str:
     if rises:
         # only of effects that are judged by another loss
         text += (
-            ", for an impact that is predicted too early or too late errs by all of its force; what "
-            "is so far off counts little in the choice of this effect, and all else is met better"
+            ", for an impact that is predicted too early or too late errs by all of its force; "
+            "what is so far off counts little in the choice of this effect, and all else is met "
+            "better"
         )
     likely = [
         rival
