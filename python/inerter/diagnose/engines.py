@@ -16,6 +16,7 @@ from inerter.identify.between import about_samples, between, quintics
 from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
 from inerter.identify.prediction import (
+    bristle_reach,
     first_state,
     lateness,
     settled,
@@ -33,6 +34,8 @@ Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 # shortest step [s] of a device with free play, and steps per sample at most: half as long changes
 # nothing where an impact hardly comes, in either engine
 PLAY_STEP, PLAY_PARTS = 3e-5, 32
+# steps of a run at most where a bristle asks for more of them
+MOST_STEPS = 300_000
 # steps from which on the engines run at the same time
 _LONG = 100_000
 
@@ -111,16 +114,23 @@ def _mujoco(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
 def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
     from inerter.exudyn.rig import simulate_along
 
-    parts, channels = _steps(device, run)
+    parts, channels = _steps(device, run, bristle_reach(device))
     step, every = run.spacing / parts, parts if run.instants == 1 else 1
     found = simulate_along(device, step, *channels, state, every=every, motion=run.motion)
     return _at_samples(run, found, parts // every)
 
 
-def _steps(device: Device, run: BenchRun) -> tuple[int, tuple[Any, Any, Any]]:
-    """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands."""
+def _steps(device: Device, run: BenchRun, reach: float = 0.0) -> tuple[int, tuple[Any, Any, Any]]:
+    """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands.
+
+    No step goes further than the `reach` of a bristle [m], if any, where few enough are too many.
+    """
     channels = run.displacement, run.velocity, run.acceleration
     parts = run.instants
+    if reach:
+        path = float(np.max(np.abs(run.velocity))) * run.spacing / parts
+        most = min(PLAY_PARTS, MOST_STEPS // run.force.size)
+        parts *= max(1, min(math.ceil(path / reach), most // parts))
     if device.backlash:
         parts = min(PLAY_PARTS, math.ceil(run.spacing / PLAY_STEP))
     return parts, between(run.spacing, channels, parts) if parts > 1 else channels
