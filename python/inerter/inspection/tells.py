@@ -27,6 +27,7 @@ SURE = 0.1  # of a standard error in its value
 ASTRAY = 0.3  # of the force, left by the linear model: its errors and bounds hold no more
 LEAST_SHARE = 0.2  # of the samples that have to be neither clipped nor spikes
 TIMES = 3.0  # standard errors that are seen
+BLOCKS = 10  # parts of a record that are left out in turn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +97,8 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
     variance = float(np.var(rest)) * _correlated(rest, motion)
     inverse = np.linalg.pinv(scaled.T @ scaled)
     stderrs = np.sqrt(np.maximum(np.diag(inverse) * variance, 0))
+    # what is not linear shows otherwise in each part of the record
+    stderrs = np.maximum(stderrs, _over_blocks(scaled, force))
     return [
         _tell(name, units[name], weights[k] / scale[k], stderrs[k] / scale[k],
               _own_share(scaled[:, :-1], k), facts, _closest(scaled[:, :-1], k, names))
@@ -127,6 +130,19 @@ def _spoilt(motion: Motion, warned: Collection[str]) -> NDArray[np.bool_]:
             bad |= cut | np.roll(cut, 1) | np.roll(cut, -1)
     around = int(np.ceil(0.75 / (motion.cutoff * motion.spacing)))
     return np.asarray(binary_dilation(bad, iterations=around) if bad.any() else bad, dtype=np.bool_)
+
+
+def _over_blocks(columns: Array, force: Array) -> Array:
+    """Standard errors (p,) of a regression by how it changes without each block in turn."""
+    parts = np.array_split(np.arange(len(force)), BLOCKS)
+    squares = np.array([columns[part].T @ columns[part] for part in parts])
+    sides = np.array([columns[part].T @ force[part] for part in parts])
+    left_out = [
+        np.linalg.pinv(squares.sum(axis=0) - square) @ (sides.sum(axis=0) - side)
+        for square, side in zip(squares, sides, strict=True)
+    ]
+    spread = np.asarray(left_out) - np.mean(left_out, axis=0)
+    return np.asarray(np.sqrt((BLOCKS - 1) / BLOCKS * np.sum(spread**2, axis=0)))
 
 
 def _whole(motion: Motion, inner: NDArray[np.bool_], values: Array) -> Array:
