@@ -97,16 +97,20 @@ def test_a_value_has_the_digits_of_its_error(value: float, error: float, said: s
     assert words(tell) == f"stiffness {said} N/m"
 
 
-def test_errors_of_a_first_look_hold_what_no_linear_model_has() -> None:
-    """A free swing between stops: each part of the record tells another inertance."""
+@pytest.mark.parametrize("grows", [0.05, 0.1, 0.2])
+@pytest.mark.parametrize("stiffness", [8e3, 1.5e4, 3e4])
+def test_errors_of_a_first_look_hold_what_no_linear_model_has(
+    grows: float, stiffness: float
+) -> None:
+    """A swing that dies out between bumpers: each part of the record tells another inertance."""
     t = np.arange(0, 12, 0.004)
-    x = 0.03 * np.exp(-0.2 * t) * np.sin(2 * np.pi * 2 * t)
+    x = 0.03 * np.exp(-0.2 * t) * np.sin(2 * np.pi * (1.5 * t + grows * t**2))
     v, a = np.gradient(x, t), np.gradient(np.gradient(x, t), t)
-    stops = 6e5 * (np.maximum(x - 0.024, 0) + np.minimum(x + 0.024, 0))
-    force = 55 * a + 70 * v + stops + np.random.default_rng(3).normal(0, 2, t.size)
+    bumpers = stiffness * (np.maximum(x - 0.02, 0) + np.minimum(x + 0.02, 0))
+    force = 55 * a + 70 * v + bumpers + np.random.default_rng(3).normal(0, 2, t.size)
     (inertance, *_) = facts_of(Record(name="run", time=t, displacement=x, force=force)).tells
     assert inertance.name == "inertance"
-    assert inertance.verdict == "not told" or abs(inertance.value - 55) < 3 * inertance.stderr
+    assert abs(inertance.value - 55) < 3 * inertance.stderr
 
 
 def test_what_cannot_be_told_for_one_reason_is_said_once() -> None:
