@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from bench_runs import measured
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.time_limit import TimeLimit
+from inerter.diagnose.trials import Trials
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, sum_of_sines
 from inerter.report.page import render_report
@@ -54,6 +57,25 @@ def test_what_was_found_in_time_stands_without_comparison(
     assert page.count("There was no time to ask what else") == 2
     assert "No rival explains" not in page
     assert found.extended.rmse < 0.5 * found.baseline.rmse
+
+
+def test_a_step_is_left_when_the_time_is_over(
+    records: list[Record], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Amid the second step: what the first has found stands."""
+    steps, fit_all = iter([1]), Trials.fit_all
+
+    def fitted(trials: Trials, *given: Any, **also: Any) -> Any:
+        if next(steps, None) is None:
+            # as the clock does in a while
+            trials._time._ends = 0.0
+        return fit_all(trials, *given, **also)
+
+    monkeypatch.setattr(Trials, "fit_all", fitted)
+    found = diagnose_bench(records, time_limit=3600.0)
+    assert len(found.findings) == 1
+    assert "ended after the 3600 s of --time-limit" in found.verdict
+    assert found.json()["findings"][0]["compared"] is False
 
 
 def test_with_time_enough_it_is_the_same(records: list[Record]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from inerter.diagnose.promise import Known
 from inerter.diagnose.result import Rival
 from inerter.diagnose.search import Scored, Search
 from inerter.diagnose.statistics import advantage, win_shares
+from inerter.diagnose.time_limit import OverTimeError
 from inerter.diagnose.trials import FAR, has_much
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
@@ -39,8 +41,13 @@ def standing(search: Search, final: Scored, effect: str) -> Standing:
 
     When the search's time is over nothing says how sure the effect is.
     """
-    if search.time.is_over():
-        return Standing(0.5, [], None, compared=False)
+    if not search.time.is_over():
+        with suppress(OverTimeError):
+            return _standing(search, final, effect)
+    return Standing(0.5, [], None, compared=False)
+
+
+def _standing(search: Search, final: Scored, effect: str) -> Standing:
     baseline, problem = search.baseline, search.problem
     without = search.score(effect, None, problem.fit(stripped(final.model, effect, baseline)))
 

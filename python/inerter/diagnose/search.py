@@ -8,6 +8,7 @@ fewest parameters is taken.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -33,7 +34,7 @@ from inerter.diagnose.low_passes import noise_taken, where_late
 from inerter.diagnose.plainer import swings_on
 from inerter.diagnose.play import is_felt
 from inerter.diagnose.statistics import Array, block_squares
-from inerter.diagnose.time_limit import TimeLimit
+from inerter.diagnose.time_limit import OverTimeError, TimeLimit
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
 from inerter.diagnose.trials import Trials
 from inerter.identify.fit import Fit, Problem
@@ -118,7 +119,7 @@ class Search:
         sizes = replace(sizes, one_tone=sizes.one_tone or self.one_tone)
         self.problem = Problem(self.runs, self.split.fit, sizes)
         self.blocks = blocks(self.problem.masks)
-        self.trials = Trials(self.problem)
+        self.trials = Trials(self.problem, self.time)
         self._folds = self._problems(self.split.folds)
         self._spread = self._problems(spread_folds(self.split.fit))
 
@@ -138,15 +139,9 @@ class Search:
 
     def _problems(self, folds: Sequence[list[Mask]]) -> Folds:
         """The fit data without each fold, and the fold."""
+        fit = self.split.fit
         return [
-            (
-                Problem(
-                    self.runs,
-                    [f & ~left for f, left in zip(self.split.fit, fold, strict=True)],
-                    self.problem.scales,
-                ),
-                fold,
-            )
+            (self.problem.with_masks([f & ~x for f, x in zip(fit, fold, strict=True)]), fold)
             for fold in folds
         ]
 
@@ -171,37 +166,41 @@ class Search:
             current = plainer
         current, seen = self._stepped(current, until, most), []
         # where another effect does better in the place of one, the search goes on from there
-        while until not in current.model.free and not self.time.is_over():
-            other = instead(self, current)
-            if other is None or other.model.shape in seen:
-                break
-            self.found.append(other.effect)
-            seen.append(other.model.shape)
-            current = other if other.effect == until else self._stepped(other, until, most)
+        with suppress(OverTimeError):
+            while until not in current.model.free and not self.time.is_over():
+                other = instead(self, current)
+                if other is None or other.model.shape in seen:
+                    break
+                self.found.append(other.effect)
+                seen.append(other.model.shape)
+                current = other if other.effect == until else self._stepped(other, until, most)
         return current
 
     def _stepped(self, current: Scored, until: str | None, most: int) -> Scored:
         """Effects added one after another, and pruned."""
-        while len(self.found) < most and not self.time.is_over():
-            chosen = self._best_step(current) or self._two_steps(current)
-            if chosen is None:
-                break
-            self.found.append(chosen.effect)
-            if chosen.effect == until:
-                return chosen
-            before, current = current.model, exchanged(self, chosen)
-            if before.shape == current.model.shape:
-                # the exchange takes back what the step has brought, and would again
-                break
-        return self._prune(current)
+        with suppress(OverTimeError):
+            while len(self.found) < most and not self.time.is_over():
+                chosen = self._best_step(current) or self._two_steps(current)
+                if chosen is None:
+                    break
+                self.found.append(chosen.effect)
+                if chosen.effect == until:
+                    return chosen
+                before, current = current.model, exchanged(self, chosen)
+                if before.shape == current.model.shape:
+                    # the exchange takes back what the step has brought, and would again
+                    break
+        return current if self.time.is_over() else self._prune(current)
 
     def next_effect(self, model: Model) -> str | None:
         """The effect that would be added to a model in one more step, fitted to all fit data."""
         self._weigh_for(model)
         if any(is_local(effect) for effect, _ in effects_of(model, self.baseline)):
             self._folds = self._spread
-        chosen = self._best_step(self.score("", None, self.problem.fit(model)))
-        return chosen.effect if chosen else None
+        with suppress(OverTimeError):
+            chosen = self._best_step(self.score("", None, self.problem.fit(model)))
+            return chosen.effect if chosen else None
+        return None
 
     def baseline_fit(self) -> Fit:
         """The baseline fitted by least squares, also where a play lets what is far off count less.

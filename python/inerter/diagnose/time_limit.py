@@ -7,6 +7,10 @@ import time
 import numpy as np
 
 
+class OverTimeError(Exception):
+    """The time is over amid a step, of which nothing is known then."""
+
+
 class TimeLimit:
     """Time that a search may take, counted from when it is made.
 
@@ -30,6 +34,12 @@ class TimeLimit:
         over = time.monotonic() >= self._ends
         self.was_felt = self.was_felt or over
         return over
+
+    def check(self) -> None:
+        """Amid a step: raise OverTimeError where it is over."""
+        if time.monotonic() >= self._ends:
+            self.was_felt = True
+            raise OverTimeError
 
     def in_words(self, without_rivals: int) -> str:
         """What it has cost, in two sentences; findings that were not compared with their rivals."""

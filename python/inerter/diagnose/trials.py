@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -14,6 +15,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.promise import Known, Promise
 from inerter.diagnose.sized import Sized
+from inerter.diagnose.time_limit import TimeLimit
 from inerter.estimation.solution import NotFiniteError
 from inerter.identify.fit import Fit, Problem, rms
 from inerter.identify.model import Model
@@ -121,8 +123,9 @@ def _cost(candidate: Candidate) -> float:
 class Trials:
     """The candidates of a search fitted to its data; what was fitted before is remembered."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, time: TimeLimit | None = None) -> None:
         self.problem = problem
+        self._time = time or TimeLimit()
         self._part = problem.head(STARTING_SHARE)
         self._rounds: list[tuple[Fit, list[tuple[Candidate, Fit]]]] = []
 
@@ -248,6 +251,8 @@ class Trials:
         """Fits of candidates, the best first; rough of what stays far above the best or the `aim`.
 
         None of what will not take the share `least` of the error away.
+        Raises OverTimeError where the time of the search ends meanwhile.
+
         The laws with many parameters are tried where the simple law with memory, Dahl's, does
         better than friction without memory and not far worse than what does best, or is in the
         model already.
@@ -285,15 +290,21 @@ class Trials:
                     t for t in part
                     if part is not later or _at_best(foretold[t.key], error) < reach
                 ]  # fmt: skip
-                rough = parallel(lambda t: self._rough(t, limits, at_current), likely_enough, _cost)
+
+                def begun(trial: Candidate) -> list[Fit]:
+                    self._time.check()
+                    return self._rough(trial, limits, at_current)
+
+                def ended(rough: Sequence[Fit], limit: float, reach: float) -> Fit:
+                    self._time.check()
+                    return self._followed(rough, limit, reach, at_current)
+
+                rough = parallel(begun, likely_enough, _cost)
                 so_far += [min(fit.rmse(masks) for fit in each) for each in rough]
                 limit = min([limits[0], *(FAR * error for error in so_far)])
                 if not aim:
                     reach = within_shortlist(so_far)
-                followed = parallel(
-                    lambda r, limit=limit, reach=reach: self._followed(r, limit, reach, at_current),
-                    rough,
-                )
+                followed = parallel(partial(ended, limit=limit, reach=reach), rough)
                 found += zip(likely_enough, followed, strict=True)
             return found
 
