@@ -190,7 +190,7 @@ class Search:
                 if before.shape == current.model.shape:
                     # the exchange takes back what the step has brought, and would again
                     break
-        return current if self.time.is_over() else self._prune(current)
+        return self._prune(current)
 
     def next_effect(self, model: Model) -> str | None:
         """The effect that would be added to a model in one more step, fitted to all fit data."""
@@ -447,3 +447,5 @@ class Search:
             if not simpler:
                 return current
             current = min(simpler, key=lambda scored: scored.squares.sum())
+            if self.time.is_over():
+                return current
