@@ -427,7 +427,8 @@ class Search:
     def _prune(self, current: Scored) -> Scored:
         """Take away what the others have made unnecessary, the least important first."""
         masks = self.problem.masks
-        while True:
+        more = True
+        while more:
             self.progress("checking that every effect is still needed")
             models = [
                 (effect, model)
@@ -444,8 +445,7 @@ class Search:
                 astray = scored.fit.rmse(masks) > (1 + CRITERIA.too_much) * current.fit.rmse(masks)
                 if not_needed(scored, current, lost, astray):
                     simpler.append(scored)
-            if not simpler:
-                return current
-            current = min(simpler, key=lambda scored: scored.squares.sum())
-            if self.time.is_over():
-                return current
+            if simpler:
+                current = min(simpler, key=lambda scored: scored.squares.sum())
+            more = bool(simpler) and not self.time.is_over()
+        return current
