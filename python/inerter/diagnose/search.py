@@ -89,7 +89,6 @@ class Search:
 
     Effects `excluded` are not added, those `kept` stay; one that is added takes at least the share
     `least` of the error away.
-
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
     It `draws` curves along the stroke, or none. When its `time` is over nothing is added.
     """
