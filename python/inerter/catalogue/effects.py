@@ -297,7 +297,8 @@ _ALL = (
         name="sensor_delay", rank=6, coordinates=("delay",),
         plain="a delay between the force and the displacement channel",
         meaning="the force channel is late by a constant time",
-        cause="filters or clocks that differ between the channels",
+        cause="filters or clocks that differ between the channels; of a fluid inerter a leak past "
+        "the piston, whose force is late by the inertance over the leak's damping",
         taken_for="series elasticity and viscous friction",
         experiment="they change with amplitude or with frequency, a delay does not",
         rivals=("series_elasticity", "viscous_friction"),
