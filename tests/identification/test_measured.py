@@ -56,6 +56,16 @@ def test_friction_damper_has_free_play_before_its_friction(measured_data: Path) 
     assert next(stiffness) > 1.5 * next(stiffness)
 
 
+def test_magnetorheological_damper_without_voltage(measured_data: Path) -> None:
+    """Dahl and viscous friction, as its authors have it; what runs away on the way is not told."""
+    records = read_records(str(measured_data / "mr_damper" / "off_*.csv"), "bench")
+    result = identify(records, ["dahl+offset", "bouc_wen_any+offset"])
+    assert {each.law for each in result.results} == {"dahl+offset", "bouc_wen_any+offset"}
+    for each in result.results:
+        assert each.rmse < 12
+        assert each.parameters["force_offset"].value == pytest.approx(135, abs=10)
+
+
 @pytest.mark.long
 def test_bouc_wen_oscillator_down_to_its_noise(measured_data: Path) -> None:
     """Simulated on a stretch it has not seen; what the true parameters leave is the noise."""

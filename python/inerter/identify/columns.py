@@ -265,7 +265,9 @@ class Columns:
                 continue
             moved = point.copy()
             moved[index] += step
-            change = np.concatenate(residual(moved)) - here
+            # where both have run away their difference is no number
+            with np.errstate(invalid="ignore"):
+                change = np.concatenate(residual(moved)) - here
             if np.all(np.abs(change) < RUNAWAY, where=np.isfinite(here)):
                 return change / step
         # beyond lies on both sides what no force can be: the variable stays where it is
@@ -333,7 +335,8 @@ class Columns:
         """Derivative of the residual by the first force, of every run."""
         step = _STEP * self.problem.scales.force
         there = residual(point, step)
-        return [(each - here) / step for each, here in zip(there, base, strict=True)]
+        with np.errstate(invalid="ignore"):
+            return [(each - here) / step for each, here in zip(there, base, strict=True)]
 
 
 def _shown(rows: Rows, run: BenchRun, beyond: NDArray[np.bool_] | None = None) -> Array:
