@@ -62,6 +62,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[str], None]
 
 
+# of what runs away on the way to a fit nothing has to be told
+@np.errstate(over="ignore", invalid="ignore")
 def diagnose_bench(
     records: Sequence[Record],
     device: Device | None = None,

@@ -265,9 +265,7 @@ class Columns:
                 continue
             moved = point.copy()
             moved[index] += step
-            # where both have run away their difference is no number
-            with np.errstate(invalid="ignore"):
-                change = np.concatenate(residual(moved)) - here
+            change = np.concatenate(residual(moved)) - here
             if np.all(np.abs(change) < RUNAWAY, where=np.isfinite(here)):
                 return change / step
         # beyond lies on both sides what no force can be: the variable stays where it is
@@ -335,8 +333,7 @@ class Columns:
         """Derivative of the residual by the first force, of every run."""
         step = _STEP * self.problem.scales.force
         there = residual(point, step)
-        with np.errstate(invalid="ignore"):
-            return [(each - here) / step for each, here in zip(there, base, strict=True)]
+        return [(each - here) / step for each, here in zip(there, base, strict=True)]
 
 
 def _shown(rows: Rows, run: BenchRun, beyond: NDArray[np.bool_] | None = None) -> Array:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from inerter.core import WORDS, Device, parameters
@@ -32,6 +33,8 @@ LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 INTERVALS = ("profile", "normal")
 
 
+# of what runs away on the way to a fit nothing has to be told
+@np.errstate(over="ignore", invalid="ignore")
 def identify(
     records: Sequence[Record],
     laws: Sequence[str] = LAWS,
