@@ -46,7 +46,9 @@ def test_one_time_is_as_many(name: str) -> None:
     for channel in (motion.displacement, motion.velocity, motion.acceleration):
         together = np.broadcast_to(channel(times), times.shape)
         alone = [float(channel(float(t))) for t in times]
-        np.testing.assert_allclose(alone, together, rtol=1e-12, atol=1e-13 * np.max(abs(together)))
+        np.testing.assert_allclose(
+            alone, together, rtol=1e-12, atol=1e-13 * float(np.max(abs(together)))
+        )
 
 
 def test_reversals_are_found_to_rounding() -> None:
