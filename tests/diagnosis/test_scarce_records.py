@@ -188,6 +188,15 @@ def test_a_value_has_the_digits_that_its_error_leaves(
     assert quantity(ParameterValue(value, error, "N")) == text
 
 
+def test_what_can_be_predicted_and_what_it_leaves_are_one_sum() -> None:
+    text = summary(
+        ["force", "bursts"], {}, {"force": 0.08, "bursts": 0.21}, 85.3, 1.9, 46.0, False, None,
+        predicted=24.1,
+    )  # fmt: skip
+    assert "24.1 N rms can be predicted from the other data, which leaves 81.8 N; 39.2 N" in text
+    assert "(8 %)" in text
+
+
 def test_of_bursts_it_is_known_when_they_come() -> None:
     text = summary(["bursts"], {}, {"bursts": 0.94}, 1.7, 0.2, 1.66, False, None)
     assert "1.66 N rms come and go as the other data tell" in text

@@ -2,7 +2,13 @@
 
 import numpy as np
 import pytest
-from inerter.diagnose.waves import shares_taken, wave_sums
+from inerter.diagnose.waves import shares_taken, shortest, wave_sums
+
+
+@pytest.mark.parametrize(("path", "share"), [(1e-6, 1 / 400), (1e-3, 1 / 125), (1e-2, 1 / 60)])
+def test_quick_motion_does_not_ask_for_less_than_usual(path: float, share: float) -> None:
+    assert shortest(1.0, path) == pytest.approx(share)
+    assert shortest(0.05, 0.05 * path) == pytest.approx(0.05 * share)
 
 
 def test_sums_are_those_of_each_wave() -> None:

@@ -85,7 +85,9 @@ def test_an_error_that_rises_is_not_said_to_fall() -> None:
         rmse_before=18.4, rmse_after=22.8, evidence="", rivals=[],
     )  # fmt: skip
     assert "rises from 18.4 N to 22.8 N" in evidence(finding)
-    assert "falls" not in evidence(finding)
+    assert "falls from" not in evidence(finding)
+    assert "impact" in evidence(finding)
+    assert "impact" not in evidence(replace(finding, effect="series_elasticity"))
     lower = evidence(replace(finding, rmse_after=9.1))
     assert "falls from 18.4 N to 9.1 N" in lower
     assert "rises" not in lower

@@ -25,7 +25,7 @@ from inerter.catalogue.friction import FRICTION
 from inerter.catalogue.scales import Scales
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA
-from inerter.diagnose.waves import FINEST, THROUGH, shares_taken
+from inerter.diagnose.waves import shares_taken, shortest
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.motion_units import ROTATION
@@ -64,7 +64,7 @@ def candidates(problem: Problem, fit: Fit, curves: bool = True) -> Iterator[Cand
     (x, v, a, residual), apart = _samples(problem, fit)
     if residual.size < _FEWEST:
         return
-    finest = max(FINEST * (high - low), THROUGH * apart * float(np.median(np.abs(v))))
+    finest = shortest(high - low, apart * float(np.median(np.abs(v))))
     for quantity in QUANTITIES:
         effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
         if effect is not None:

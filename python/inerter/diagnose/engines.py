@@ -34,7 +34,7 @@ Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 # shortest step [s] of a device with free play, and steps per sample at most: half as long changes
 # nothing where an impact hardly comes, in either engine
 PLAY_STEP, PLAY_PARTS = 3e-5, 32
-# steps of a run at most where a bristle asks for more of them
+# steps of a run at most where a bristle asks for more of them: some ten seconds of Exudyn
 MOST_STEPS = 300_000
 # steps from which on the engines run at the same time
 _LONG = 100_000
@@ -123,7 +123,7 @@ def _exudyn(device: Device, run: BenchRun, state: Any) -> dict[str, Array]:
 def _steps(device: Device, run: BenchRun, reach: float = 0.0) -> tuple[int, tuple[Any, Any, Any]]:
     """Steps per sample, and the motion at them; behind a play many, for when the flywheel lands.
 
-    No step goes further than the `reach` of a bristle [m], if any, where few enough are too many.
+    Where there is a bristle no step is longer than its `reach` [m], as far as so many are allowed.
     """
     channels = run.displacement, run.velocity, run.acceleration
     parts = run.instants

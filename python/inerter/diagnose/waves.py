@@ -7,12 +7,22 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-FINEST = 1 / 400
-"""Shortest wave that is looked for, as a share of the travel: 36 a turn, along eleven turns."""
-THROUGH = 8.0
-"""Samples in which half of the motion goes through the shortest wave that is looked for."""
+# shortest wave that is looked for, as a share of the travel: in any motion, and where it is slow
+# enough (36 waves a turn, along eleven turns)
+_USUAL, _FINEST = 1 / 60, 1 / 400
+# samples in which half of a motion that is slow enough goes through one
+_THROUGH = 8.0
 # places per period of the shortest wave that are told apart
 _PLACES = 32
+
+
+def shortest(travel: float, path: float) -> float:
+    """Shortest wave that is looked for along a travel, where half of the samples go no `path` on.
+
+    All in one unit. Samples that step through a wave show another one there, but for where the
+    motion turns.
+    """
+    return travel * min(_USUAL, max(_FINEST, _THROUGH * path / travel))
 
 
 def wave_sums(x: Array, weights: Array, step: float, count: int) -> NDArray[np.complex128]:

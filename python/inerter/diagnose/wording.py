@@ -230,11 +230,12 @@ def evidence(finding: Finding) -> str:
         f"({100 * finding.gain:.0f} %)"
     )
     if rises:
-        # only of effects that are judged by another loss
+        # it was chosen by errors as they count
         text += (
             ", for an impact that is predicted too early or too late errs by all of its force; "
-            "what is so far off counts little in the choice of this effect, and all else is met "
-            "better"
+            "without what is so far off the error falls"
+            if finding.effect == "backlash"
+            else ", and falls as errors count against the noise of the motion"
         )
     likely = [
         rival

@@ -17,19 +17,8 @@ from .record import Array
 
 # cells that say "no value here"
 MISSING_WORDS = (
-    "",
-    "nan",
-    "na",
-    "n/a",
-    "null",
-    "none",
-    "inf",
-    "+inf",
-    "-inf",
-    "#n/a",
-    "#nv",
-    "#n/d",
-)
+    "", "nan", "na", "n/a", "null", "none", "inf", "+inf", "-inf", "#n/a", "#nv", "#n/d",
+)  # fmt: skip
 # what a spreadsheet writes where a formula has no value, in any language: #DIV/0!, #WERT!, #NAME?
 SPREADSHEET_ERROR = r"^#[^\s#]+[!?]$"
 

@@ -48,7 +48,7 @@ def smooth_step(t: Quantity, start: float, length: float) -> Jet:
     Source: Flash and Hogan, J. Neurosci. 5(7), 1985: rate and acceleration vanish at both ends.
     """
     s = (t - start) / length
-    # of one time, as a solver asks for, NumPy would take ten times as long
+    # of one time, as a solver asks for, NumPy takes longer
     s = min(1.0, max(0.0, s)) if isinstance(s, float) else np.minimum(1.0, np.maximum(0.0, s))
     value = s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
     rate = 30.0 * (s * (1.0 - s)) ** 2 / length

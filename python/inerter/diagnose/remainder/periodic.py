@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.diagnose.waves import FINEST, THROUGH, wave_sums
+from inerter.diagnose.waves import shortest, wave_sums
 
 from .learning import FOLDS, LearntPart, Samples, chance, share
 
@@ -43,10 +43,8 @@ def along_stroke(data: Samples, x: Array, factor: Array) -> Period:
         What the sine is multiplied by: ones, or the direction of motion.
     """
     stroke = float(np.ptp(x)) or 1.0
-    # no wave that samples in a row step through, as another one shows there
-    finest = max(FINEST, THROUGH * float(np.median(np.abs(np.diff(x)))) / stroke)
-    last = max(FINENESS / finest, FINENESS + 2)
-    numbers = np.arange(FINENESS, last) / (FINENESS * stroke)
+    finest = shortest(stroke, float(np.median(np.abs(np.diff(x)))))
+    numbers = np.arange(FINENESS, FINENESS * stroke / finest) / (FINENESS * stroke)
     powers = _moments(data, x, factor, numbers)
     values = np.zeros(x.size)
     picked = []
