@@ -302,8 +302,12 @@ def friction_side() -> None:
 
 def end_stops() -> None:
     """End stops at 8 mm."""
-    stop = Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)
-    loops("end_stops", {"8 mm": stop}, 1.0, AMPLITUDE)
+    stop = {"stop_lower": -8e-3, "stop_upper": 8e-3, "stop_damping": 5}
+    devices = {
+        "stiff alike": Device(**stop, stop_stiffness=1e4),
+        "of rubber": Device(**stop, stop_stiffness=3e3, stop_stiffness_cubic=3e9),
+    }
+    loops("end_stops", devices, 1.0, AMPLITUDE)
 
 
 def gas() -> None:

@@ -175,9 +175,11 @@ static int check_branches(const InerterDevice* device, char* message) {
 static int check_stops(const InerterDevice* device, char* message) {
   int lower = !isnan(device->stop_lower), upper = !isnan(device->stop_upper);
   if (!lower && !upper) {
-    const int needy[] = {INERTER_INDEX_stop_stiffness, INERTER_INDEX_stop_damping};
-    const double values[] = {device->stop_stiffness, device->stop_damping};
-    for (int i = 0; i < 2; i++) {
+    const int needy[] = {INERTER_INDEX_stop_stiffness, INERTER_INDEX_stop_stiffness_cubic,
+                         INERTER_INDEX_stop_damping};
+    const double values[] = {device->stop_stiffness, device->stop_stiffness_cubic,
+                             device->stop_damping};
+    for (int i = 0; i < 3; i++) {
       const InerterParameter* p = inerter_parameter(needy[i]);
       if (values[i] > 0) {
         return refuse(message,

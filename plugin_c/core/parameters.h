@@ -50,6 +50,8 @@
   X(stop_upper, "m", NAN, -INFINITY, INFINITY, CLOSED, "",                                         \
     "x above which it stops; unset: no stop")                                                      \
   X(stop_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "", "stiffness of the end stops, k_e")          \
+  X(stop_stiffness_cubic, "N/m^3", 0, 0, INFINITY, CLOSED, "",                                     \
+    "rise of that stiffness: force per depth^3, k_e3")                                             \
   X(stop_damping, "s/m", 0, 0, INFINITY, CLOSED, "",                                               \
     "relative rise of the stop force per approach speed, e")                                       \
   /* gas spring */                                                                                 \

@@ -77,6 +77,10 @@ DEVICES: dict[str, tuple[dict[str, Any], float]] = {
     ),
     "stops": ({"stop_stiffness": 2e3, "stop_damping": 0.5, "stop_upper": 0.62,
                "stop_lower": 0.58, "rest_length": 0.0}, 1e-4),
+    "stops of rubber": (
+        {"stop_stiffness": 1e3, "stop_stiffness_cubic": 3e5, "stop_damping": 0.5,
+         "stop_upper": 0.62, "stop_lower": 0.58, "rest_length": 0.0}, 1e-4,
+    ),
     "gas": ({"gas_pressure": 1e5, "gas_area": 2e-4, "gas_volume": 2e-4, "rest_length": 0.6}, 1e-8),
     "pipe": (
         {"piston_area": 1.6e-3, "channel_area": 3e-5, "channel_length": 0.02,

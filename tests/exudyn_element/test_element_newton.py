@@ -29,6 +29,9 @@ STIFF: dict[str, dict[str, Any]] = {
     },
     "play without damper": {"series_stiffness": 1e6, "backlash": 5e-4},
     "stops": {"stop_stiffness": 1e7, "stop_damping": 1.0, "stop_upper": 5e-3, "stop_lower": -5e-3},
+    "stops of rubber": {
+        "stop_stiffness": 1e6, "stop_stiffness_cubic": 1e12, "stop_upper": 5e-3, "stop_lower": -5e-3
+    },
     "gas": {"gas_pressure": 1e5, "gas_area": 1e-2, "gas_volume": 1e-4},
     "load friction": {"load_friction": 0.3, "transition_velocity": 1e-3},
     "varying": {"inertance_gradient": 20.0, "inertance_speed_gradient": 0.5},

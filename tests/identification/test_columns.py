@@ -58,6 +58,10 @@ BESIDE = {
         {"branch_stiffness_1": 2e3, "branch_time_1": 0.1, "branch_stiffness_2": 2e3,
          "branch_time_2": 1.0},
     ),
+    "stops of rubber": (
+        "none",
+        {"stop_upper": 0.01, "stop_stiffness": 1e4, "stop_stiffness_cubic": 1e8},
+    ),
     "stops": (
         "none",
         {"stop_lower": -0.01, "stop_upper": 0.01, "stop_stiffness": 1e4, "stop_damping": 1.0},

@@ -143,6 +143,8 @@ def draw_stops(rng: np.random.Generator) -> Parameters:
         "stop_stiffness": around(rng, 1e5),
         "stop_damping": around(rng, 1.0) * float(rng.random() < 0.8),
     }
+    if rng.random() < 0.5:
+        drawn["stop_stiffness_cubic"] = around(rng, 1e9)
     which = rng.integers(3)
     if which != 0:
         drawn["stop_lower"] = -around(rng, 1e-2)

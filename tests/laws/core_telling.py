@@ -156,17 +156,20 @@ class Telling:
         """Force, stored energy and heat of the end stops."""
         p = self.p
         force, energy, heat = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
-        size = p["stop_stiffness"] * (1.0 + p["stop_damping"] * abs(v))
-        reach = np.zeros_like(x)
+        k, cubic = p["stop_stiffness"], p["stop_stiffness_cubic"]
+        reach, deepest = np.zeros_like(x), np.zeros_like(x)
         for place, side in ((p["stop_lower"], -1.0), (p["stop_upper"], 1.0)):
             if np.isnan(place):
                 continue
             depth = np.maximum(0.0, side * (x - place))
-            spring = p["stop_stiffness"] * depth
+            spring = k * depth + cubic * depth**3
             push = spring * np.maximum(0.0, 1.0 + p["stop_damping"] * side * v)
-            force, energy = force + side * push, energy + spring * depth / 2.0
+            force, energy = force + side * push, energy + k * depth**2 / 2 + cubic * depth**4 / 4
             heat = heat + (push - spring) * side * v
             reach = reach + np.where(depth > 0.0, abs(x) + abs(place), 0.0)
+            deepest = np.maximum(deepest, depth)
+        # by how much a place that is rounded may change them
+        size = (k + 3.0 * cubic * deepest**2) * (1.0 + p["stop_damping"] * abs(v))
         return (force, size * reach), (energy, size * reach**2), (heat, size * reach * abs(v))
 
     def friction(self, v: Array, z: Array, load: Array) -> tuple[Pair, Pair, Pair, Pair]:

@@ -34,6 +34,7 @@ MAP: dict[str, Any] = {
 PARTS: dict[str, dict[str, Any]] = {
     "gas_exponent": GAS,
     "stop_damping": {"stop_upper": 0.1, "stop_stiffness": 1e4},
+    "stop_stiffness_cubic": {"stop_upper": 0.1, "stop_stiffness": 1e4},
     "backlash": {"inertance": 1.0, "series_stiffness": 1e4},
     "channel_roughness": CHANNEL,
     "force_map_columns": MAP,
@@ -208,6 +209,10 @@ def test_an_unknown_gas_law_is_told_the_laws() -> None:
             "stop_stiffness is 7 N/m, but there is no stop; give stop_lower or stop_upper, or",
         ),
         ({"stop_damping": 0.5}, "stop_damping is 0.5 s/m, but there is no stop.*remove stop_damp"),
+        (
+            {"stop_stiffness_cubic": 7.0},
+            r"stop_stiffness_cubic is 7 N/m\^3, but there is no stop.*remove stop_stiffness_cubic",
+        ),
         # gas spring
         ({"gas_law": "polytropic"}, "gas_law is given, but gas_pressure is 0 Pa.*remove gas_law"),
         ({"gas_exponent": 1.4}, "gas_exponent is given, but gas_pressure is 0 Pa.*give gas_press"),
@@ -296,7 +301,8 @@ def test_zero_leaves_a_part_away() -> None:
     # a program may write every key
     zero = {
         "series_stiffness", "series_damping", "series_hardening", "backlash", "stop_stiffness",
-        "stop_damping", "gas_pressure", "gas_area", "gas_volume", "piston_area", "channel_area",
+        "stop_stiffness_cubic", "stop_damping", "gas_pressure", "gas_area", "gas_volume",
+        "piston_area", "channel_area",
         "channel_length", "fluid_viscosity", "channel_roughness", "minor_loss",
     }  # fmt: skip
     device = Device(inertance=2.0, **dict.fromkeys(sorted(zero), 0.0))

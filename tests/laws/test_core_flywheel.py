@@ -219,6 +219,19 @@ def test_stops_by_hand() -> None:
     np.testing.assert_allclose(found["dissipated_power"], [50.0, 50.0, 300.0], rtol=1e-10)
 
 
+def test_a_stop_of_rubber_by_hand() -> None:
+    device = Device(
+        stop_lower=-0.1, stop_upper=0.2, stop_stiffness=1e4, stop_stiffness_cubic=1e8,
+        stop_damping=0.5,
+    )  # fmt: skip
+    assert total(device, x=0.21) == pytest.approx(200.0)
+    assert total(device, x=0.21, v=1.0) == pytest.approx(300.0)
+    assert total(device, x=-0.12) == pytest.approx(-1000.0)
+    found = device.evaluate(0.21, [1.0, -3.0], 0.0, 0.0)
+    np.testing.assert_allclose(found["stored_energy"], 0.75)
+    np.testing.assert_allclose(found["dissipated_power"], [100.0, 600.0], rtol=1e-10)
+
+
 def test_one_stop_alone() -> None:
     upper = Device(stop_upper=0.2, stop_stiffness=1e4)
     lower = Device(stop_lower=0.2, stop_stiffness=1e4)
@@ -232,10 +245,13 @@ def test_stops_count_from_the_rest_length() -> None:
     assert total(device, x=1.21) == pytest.approx(100.0)
 
 
+@pytest.mark.parametrize("cubic", [0.0, 1e9])
 @pytest.mark.parametrize("damping", [0.05, 0.2])
-def test_restitution_of_a_stop_is_that_of_hunt_and_crossley(damping: float) -> None:
-    # a mass against the stop: 1 - 2 / 3 e v for the force k depth (1 + e v), to first order
-    device = Device(stop_upper=0.0, stop_stiffness=1e4, stop_damping=damping)
+def test_restitution_of_a_stop_is_that_of_hunt_and_crossley(damping: float, cubic: float) -> None:
+    # a mass against the stop: 1 - 2 / 3 e v for any elastic force times 1 + e v, to first order
+    device = Device(
+        stop_upper=0.0, stop_stiffness=1e4, stop_stiffness_cubic=cubic, stop_damping=damping
+    )
     x, v, h = 0.0, 1.0, 1e-5
     while x >= 0.0:
         v -= h * total(device, x=x, v=v)

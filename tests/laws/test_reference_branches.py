@@ -106,6 +106,16 @@ def test_stops_by_hand() -> None:
     assert only.force(-5.0, 0.0, 0.0) == 0.0
 
 
+def test_a_stop_of_rubber_by_hand() -> None:
+    device = ReferenceDevice(
+        stop_lower=-0.01, stop_upper=0.02, stop_stiffness=1e4, stop_stiffness_cubic=1e10,
+        stop_damping=2.0,
+    )  # fmt: skip
+    assert device.force(0.021, 0.0, 0.0) == pytest.approx(20.0)
+    assert device.force(0.021, 0.25, 0.0) == pytest.approx(30.0)
+    assert device.force(-0.012, 0.0, 0.0) == pytest.approx(-100.0)
+
+
 @pytest.mark.parametrize("speed", [0.02, 0.05])
 def test_restitution_after_hunt_and_crossley(speed: float) -> None:
     # first order in the impact speed: 1 - 2/3 e v

@@ -35,6 +35,9 @@ DEVICES = {
         {"stop_lower": -0.02, "stop_upper": 0.03, "stop_stiffness": 3000.0, "stop_damping": 0.5},
         5e-6,
     ),
+    "end stop of rubber": (
+        {"stop_upper": 0.02, "stop_stiffness": 1000.0, "stop_stiffness_cubic": 2e6}, 5e-6,
+    ),
 }  # fmt: skip
 
 

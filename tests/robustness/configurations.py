@@ -162,7 +162,10 @@ def meant(draw: st.DrawFn) -> Values:
             "stop_upper": draw(st.floats(5e-3, 5e-2)),
             "stop_stiffness": draw(_around(5e4, 0.5)),
         }
-        values |= {"stop_damping": draw(st.floats(0.0, 2.0))}
+        values |= {
+            "stop_stiffness_cubic": draw(st.floats(0.0, 1e8)),
+            "stop_damping": draw(st.floats(0.0, 2.0)),
+        }
     if draw(st.booleans()):
         values |= {
             "gas_pressure": draw(_around(2e5, 0.3)),

@@ -104,6 +104,7 @@ static void configuration(Text* text, int law, int variant, double rest_length) 
       key(text, "stop_upper", 0.02);
       key(text, "stop_stiffness", 2e4);
       key(text, "stop_damping", 0.5);
+      key(text, "stop_stiffness_cubic", 1e7);
       key(text, "gas_pressure", 1e5);
       key(text, "gas_area", 1e-4);
       key(text, "gas_volume", 1e-4);

@@ -306,6 +306,11 @@ _ALL = (
         upper=lambda s: 1e6 * s.force / s.displacement,
     ),
     Coordinate(
+        name="stop_stiffness_cubic", unit="N/m^3",
+        words={"stop_stiffness_cubic": "rise of the stop stiffness k_e3"}, jumps=True,
+        size=lambda s: 100 * s.force / s.displacement**3, lower=_zero,
+    ),
+    Coordinate(
         name="stop_damping", unit="s/m", words={"stop_damping": "stop damping"}, jumps=True,
         size=lambda s: 1 / s.velocity, lower=_zero,
     ),

@@ -199,10 +199,13 @@ _ALL = (
     ),
     Effect(
         name="end_stop", rank=19,
-        coordinates=("stop_upper", "stop_lower", "stop_stiffness", "stop_damping"), telling=(),
-        local=True, unlike_friction=True, plain="an end stop",
-        meaning="k_e (x - x_stop) beyond the stop",
-        cause="a bump stop, a nut that reaches its end", taken_for="hardening stiffness",
+        coordinates=(
+            "stop_upper", "stop_lower", "stop_stiffness", "stop_stiffness_cubic", "stop_damping"
+        ),
+        telling=(), local=True, unlike_friction=True, plain="an end stop",
+        meaning="k_e d + k_e3 d^3 at a depth d beyond the stop",
+        cause="a bump stop, rubber that stiffens, a nut that reaches its end",
+        taken_for="hardening stiffness",
         experiment="repeat with strokes that end just before the stop",
         rivals=("hardening_stiffness",),
     ),

@@ -13,6 +13,7 @@ from itertools import product
 
 import numpy as np
 
+from inerter.catalogue.along_stroke import QUANTITIES
 from inerter.catalogue.coordinates import COORDINATES, FRICTION_SHARE
 from inerter.catalogue.effects import EFFECTS, Effect
 from inerter.catalogue.friction import (
@@ -35,7 +36,9 @@ def candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Every candidate that adds something to a model, or sets free what it states."""
     for each in _built(model, sizes):
         # load friction, say, is none of a hysteresis that hardens without end
-        starts = tuple(start for start in each.starts if start.is_possible)
+        starts = tuple(
+            start for start in each.starts if start.is_possible and not _is_drawn(start, model)
+        )
         if starts:
             yield replace(each, starts=starts)
 
@@ -45,6 +48,20 @@ def _built(model: Model, sizes: Scales) -> Iterator[Candidate]:
         build = _SPECIAL.get(effect.name) or _OF_KIND[effect.kind]
         yield from build(effect, model, sizes)
     yield from stated_candidates(model, sizes)
+
+
+def _is_drawn(start: Model, model: Model) -> bool:
+    """Whether a start sets free what a curve of the model draws already: a spring, say.
+
+    Beside what was there before it a curve is held at 0 where it would do the same.
+    """
+    added = set(start.free).difference(model.free)
+    return any(
+        not (added - model.values.keys()).isdisjoint(quantity.nodes_zero)
+        or not added.isdisjoint(quantity.stands_for)
+        for quantity in QUANTITIES
+        if not model.values.keys().isdisjoint(quantity.nodes)
+    )
 
 
 # --- by kind -----------------------------------------------------------------------------------
@@ -132,8 +149,6 @@ def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
     along = effect.name == "position_dependent_friction"
     names = ("friction_gradient", "friction_curvature") if along else effect.coordinates
-    if along and any(name.startswith("friction_node") for name in model.values):
-        return
     zero = dict.fromkeys(names, 0.0)
     if model.friction == "none":
         zero |= {"coulomb_force": _level_of(model, sizes), **width(model)}
@@ -188,9 +203,12 @@ _OF_KIND: dict[str, Build] = {
 
 
 def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    if "stop_stiffness" in model.values or not np.isfinite(sizes.travel).all():
+    if not np.isfinite(sizes.travel).all():
         return
     low, high = sizes.travel
+    if "stop_stiffness" in model.values:
+        yield from _rubber(effect, model, low, high)
+        return
     contact = {
         "stop_stiffness": 5 * sizes.force / sizes.displacement,
         "stop_damping": 0.1 / sizes.velocity,
@@ -204,6 +222,19 @@ def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
             stops |= {"stop_upper": high - depth * share} if above else {}
             starts.append(model.adding(None, **stops, **contact))
         yield Candidate(effect.name, form, tuple(starts))
+
+
+def _rubber(effect: Effect, model: Model, low: float, high: float) -> Iterator[Candidate]:
+    """A stop that stiffens, from one that does not, and from one that mostly does."""
+    deepest = max(
+        model.values.get("stop_lower", low) - low, high - model.values.get("stop_upper", high)
+    )
+    if "stop_stiffness_cubic" in model.values or deepest <= 0.0:
+        return
+    stiffness = model.values["stop_stiffness"]
+    softer = {"stop_stiffness": 0.2 * stiffness, "stop_stiffness_cubic": stiffness / deepest**2}
+    starts = (model.adding(None, stop_stiffness_cubic=0.0), model.adding(None, **softer))
+    yield Candidate(effect.name, None, starts)
 
 
 def _gas(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
@@ -235,8 +266,7 @@ def _saturation(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candida
 
 
 def _variable_inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    if not any(name.startswith("inertance_node") for name in model.values):
-        yield from _free(effect.name, ("inertance_gradient", "inertance_curvature"), model, sizes)
+    yield from _free(effect.name, ("inertance_gradient", "inertance_curvature"), model, sizes)
     # along one sine abs(v) a has the third harmonic of x^3, which the curvature has too
     if "inertance_speed_gradient" not in model.free and not sizes.one_tone:
         yield Candidate(effect.name, "speed", (model.adding(inertance_speed_gradient=0.0),))

@@ -265,6 +265,8 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
             return [model.without(speed), model.without(along), without]
     if EFFECTS[effect].kind != "level" and (fewer := _fewer_periods(model, effect)):
         return [*fewer, without]
+    if effect == "end_stop" and "stop_stiffness_cubic" in model.free:
+        return [model.without(("stop_stiffness_cubic",)), without]
     if effect == "viscoelasticity" and "branch_time_2" in model.free:
         return [model.without(("branch_stiffness_2", "branch_time_2")), without]
     if effect in (*_LEVELS, *_DAMPERS):

@@ -5,8 +5,8 @@
 
 f and c_x, force and damping of the place: `stroke.py`; F_map: `force_map.py`.
 
-Sign: tension positive. A stop at x_e pushes back with k_e delta (1 + e delta'), delta its
-compression, and never pulls (Hunt and Crossley 1975, exponent 1).
+Sign: tension positive. A stop at x_e pushes back with (k_e delta + k_e3 delta^3) (1 + e delta'),
+delta its compression, and never pulls (Hunt and Crossley 1975, exponents 1 and 3).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         approach = f.greatest(0.0, 1.0 + p.stop_damping * direction * v)
-        total = total + direction * p.stop_stiffness * depth * approach
+        total = total + direction * _elastic(p, depth) * approach
     return total
 
 
@@ -68,6 +68,8 @@ def stored_energy(f: Functions, p: Parameters, x: Value) -> Value:
     for direction, place in _stops(p):
         depth = f.greatest(0.0, direction * (x - place))
         energy = energy + 0.5 * p.stop_stiffness * depth * depth
+        if p.stop_stiffness_cubic:
+            energy = energy + 0.25 * p.stop_stiffness_cubic * depth * depth * depth * depth
     return energy
 
 
@@ -81,8 +83,16 @@ def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
         depth = f.greatest(0.0, direction * (x - place))
         approach = direction * v
         share = f.greatest(0.0, 1.0 + p.stop_damping * approach) - 1.0
-        heat = heat + p.stop_stiffness * depth * share * approach
+        heat = heat + _elastic(p, depth) * share * approach
     return heat
+
+
+def _elastic(p: Parameters, depth: Value) -> Value:
+    """Elastic force of a stop [N] at a depth [m]."""
+    force = p.stop_stiffness * depth
+    if p.stop_stiffness_cubic:
+        force = force + p.stop_stiffness_cubic * depth * depth * depth
+    return force
 
 
 def _stops(p: Parameters) -> list[tuple[float, float]]:

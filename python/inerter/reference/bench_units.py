@@ -194,10 +194,18 @@ def _end_stop(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) ->
         stops["stop_lower"] = rounded(float(np.quantile(x, within)))
     damping = rounded(draw.uniform(0.1, 0.5) / float(np.max(abs(v))))
     unit = replace(ideal, **stops, stop_stiffness=1.0, stop_damping=damping)
-    names = (*stops, "stop_stiffness", "stop_damping")
-    return Unit(
-        device=unit, channel=Channel(), scaling=("stop_stiffness",), names=names, share=(0.10, 0.40)
-    )
+    scaling: tuple[str, ...] = ("stop_stiffness",)
+    # one of three is of rubber, two to six times as stiff where it is deepest
+    stiffer = draw.uniform(1.0, 5.0)
+    if draw.integers(0, 3) == 2:
+        beyond = [side * (place - end) for side, place, end in (
+            (1.0, float(np.max(x)), stops.get("stop_upper", np.inf)),
+            (-1.0, float(np.min(x)), stops.get("stop_lower", -np.inf)),
+        )]  # fmt: skip
+        unit = replace(unit, stop_stiffness_cubic=rounded(stiffer / max(beyond) ** 2))
+        scaling = (*scaling, "stop_stiffness_cubic")
+    names = (*stops, *scaling, "stop_damping")
+    return Unit(device=unit, channel=Channel(), scaling=scaling, names=names, share=(0.10, 0.40))
 
 
 def _variable(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) -> Unit:

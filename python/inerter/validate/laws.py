@@ -112,6 +112,8 @@ LAWS = {
              control_upper=400.0, control_lag=0.3),
         _law("end_stops", "corner", stop_lower=-5e-3, stop_upper=6e-3, stop_stiffness=1e6,
              stop_damping=0.5),
+        _law("rubber_stops", "corner", stop_lower=-5e-3, stop_upper=6e-3, stop_stiffness=2e5,
+             stop_stiffness_cubic=5e10, stop_damping=0.5),
         _law("backlash", "contact", **_SHAFT, backlash=5e-4),
     )
 }  # fmt: skip

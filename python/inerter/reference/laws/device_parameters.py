@@ -89,6 +89,9 @@ class DeviceParameters(FrictionParameters):
     stop_lower: float = parameter(UNSET, "m", "shortest displacement before the stop")
     stop_upper: float = parameter(UNSET, "m", "longest displacement before the stop")
     stop_stiffness: float = parameter(0.0, "N/m", "stiffness of the stops", at_least=0.0)
+    stop_stiffness_cubic: float = parameter(
+        0.0, "N/m^3", "rise of the stops' stiffness, force per depth^3", at_least=0.0
+    )
     stop_damping: float = parameter(0.0, "s/m", "damping of the stops", at_least=0.0)
 
     gas_law: str = "polytropic"
@@ -324,7 +327,7 @@ class DeviceParameters(FrictionParameters):
                 f"{there[0]}: {getattr(self, there[0])} m needs stop_stiffness > 0; "
                 f"give stop_stiffness, or drop {there[0]}"
             )
-        for name in ("stop_stiffness", "stop_damping"):
+        for name in ("stop_stiffness", "stop_stiffness_cubic", "stop_damping"):
             if not there and getattr(self, name) > 0.0:
                 raise ValueError(
                     f"{name}: {getattr(self, name)} without a stop; give stop_lower or stop_upper"
