@@ -203,29 +203,36 @@ _OF_KIND: dict[str, Build] = {
 
 
 def _end_stop(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """Stops at one end or both; where there is one that at the other end, and rubber that stiffens.
+
+    Both ends have one stiffness.
+    """
     if not np.isfinite(sizes.travel).all():
         return
     low, high = sizes.travel
+    share = 0.5 * (high - low)
+    deep = (0.03, 0.12, 0.3, 0.6)
+    lower = [{"stop_lower": low + depth * share} for depth in deep]
+    upper = [{"stop_upper": high - depth * share} for depth in deep]
     if "stop_stiffness" in model.values:
+        for name, places in (("stop_lower", lower), ("stop_upper", upper)):
+            if name not in model.values:
+                starts = tuple(model.adding(None, **place) for place in places)
+                yield Candidate(effect.name, name, starts)
         yield from _rubber(effect, model, low, high)
         return
     contact = {
         "stop_stiffness": 5 * sizes.force / sizes.displacement,
         "stop_damping": 0.1 / sizes.velocity,
     }
-    share = 0.5 * (high - low)
-    forms = {"upper": (False, True), "lower": (True, False), "both": (True, True)}
-    for form, (below, above) in forms.items():
-        starts = []
-        for depth in (0.03, 0.12, 0.3, 0.6):
-            stops = {"stop_lower": low + depth * share} if below else {}
-            stops |= {"stop_upper": high - depth * share} if above else {}
-            starts.append(model.adding(None, **stops, **contact))
-        yield Candidate(effect.name, form, tuple(starts))
+    both = [one | other for one, other in zip(lower, upper, strict=True)]
+    for form, places in (("upper", upper), ("lower", lower), ("both", both)):
+        starts = tuple(model.adding(None, **place, **contact) for place in places)
+        yield Candidate(effect.name, form, starts)
 
 
 def _rubber(effect: Effect, model: Model, low: float, high: float) -> Iterator[Candidate]:
-    """A stop that stiffens, from one that does not, and from one that mostly does."""
+    """From a stop that does not stiffen, and from one that mostly does."""
     deepest = max(
         model.values.get("stop_lower", low) - low, high - model.values.get("stop_upper", high)
     )
@@ -234,7 +241,7 @@ def _rubber(effect: Effect, model: Model, low: float, high: float) -> Iterator[C
     stiffness = model.values["stop_stiffness"]
     softer = {"stop_stiffness": 0.2 * stiffness, "stop_stiffness_cubic": stiffness / deepest**2}
     starts = (model.adding(None, stop_stiffness_cubic=0.0), model.adding(None, **softer))
-    yield Candidate(effect.name, None, starts)
+    yield Candidate(effect.name, "rubber", starts)
 
 
 def _gas(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:

@@ -265,14 +265,23 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
             return [model.without(speed), model.without(along), without]
     if EFFECTS[effect].kind != "level" and (fewer := _fewer_periods(model, effect)):
         return [*fewer, without]
-    if effect == "end_stop" and "stop_stiffness_cubic" in model.free:
-        return [model.without(("stop_stiffness_cubic",)), without]
+    if effect == "end_stop" and (fewer := _less_of_a_stop(model)):
+        return [*fewer, without]
     if effect == "viscoelasticity" and "branch_time_2" in model.free:
         return [model.without(("branch_stiffness_2", "branch_time_2")), without]
     if effect in (*_LEVELS, *_DAMPERS):
         # the variation of the level, the bend of the damping alone
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
+
+
+def _less_of_a_stop(model: Model) -> list[Model]:
+    """The model with one of two stops, and with stops that do not stiffen."""
+    ends = ("stop_lower", "stop_upper")
+    names = [*ends] if all(name in model.free for name in ends) else []
+    return [
+        model.without((name,)) for name in (*names, "stop_stiffness_cubic") if name in model.free
+    ]
 
 
 def _fewer_periods(model: Model, effect: str) -> list[Model]:
