@@ -302,12 +302,9 @@ def friction_side() -> None:
 
 def end_stops() -> None:
     """End stops at 8 mm."""
-    stop = {"stop_lower": -8e-3, "stop_upper": 8e-3, "stop_damping": 5}
-    devices = {
-        "stiff alike": Device(**stop, stop_stiffness=1e4),
-        "of rubber": Device(**stop, stop_stiffness=3e3, stop_stiffness_cubic=3e9),
-    }
-    loops("end_stops", devices, 1.0, AMPLITUDE)
+    stop = Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)
+    rubber = stop.replace(stop_stiffness=3e3, stop_stiffness_cubic=3e9)
+    loops("end_stops", {"stiff alike": stop, "of rubber": rubber}, 1.0, AMPLITUDE)
 
 
 def gas() -> None:

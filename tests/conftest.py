@@ -1,7 +1,8 @@
 """What the tests share: the folder of measured records, the seed of hidden effects, long tests.
 
 Tests marked `long` (whole diagnoses, campaigns) are left out unless `--long` asks for all of them
-or `--only-long SECONDS` for as many as begin in that time; every day begins at another one. Of a
+or `--only-long SECONDS` for as many as begin in that time, `--long-first SECONDS` for these before
+all others, so that the last of them keeps nobody waiting; every day begins at another one. Of a
 test marked `often("case", ...)` its other cases are long; of one marked `rarely("case", ...)`,
 these cases. What takes some seconds has its turn every few days (`turns.py`) and is long on the
 others. A test that is named on the command line (`file::test`) is run in any case.
@@ -50,7 +51,7 @@ _STARTED = time.monotonic()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add --effects-seed, --long, --only-long and --measure."""
+    """Add --effects-seed, --long, --only-long, --long-first and --measure."""
     parser.addoption(
         "--long",
         action="store_true",
@@ -62,6 +63,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type=float,
         metavar="SECONDS",
         help="run the tests marked long, as many as begin in SECONDS; every day begins at another",
+    )
+    parser.addoption(
+        "--long-first",
+        type=float,
+        metavar="SECONDS",
+        help="begin with tests marked long, as many as begin in SECONDS, and run all others",
     )
     parser.addoption(
         "--measure",
@@ -119,26 +126,28 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         for item in items:
             if item.nodeid in another_day:
                 item.add_marker("long")
-    only = config.getoption("--only-long") is not None
+    only, first = (config.getoption(name) is not None for name in ("--only-long", "--long-first"))
     if not only and (config.getoption("--long") or any("::" in arg for arg in config.args)):
         return
-    chosen = [item for item in items if bool(item.get_closest_marker("long")) == only]
-    left = [item for item in items if bool(item.get_closest_marker("long")) != only]
-    config.hook.pytest_deselected(items=left)
-    if only:
-        together = list(dict.fromkeys(_together(item.nodeid) for item in chosen))
-        first = config.stash[_DAY] * 7919 % max(len(together), 1)
-        turn = {name: (k - first) % len(together) for k, name in enumerate(together)}
-        chosen.sort(key=lambda item: turn[_together(item.nodeid)])
-    items[:] = chosen
+    long = [item for item in items if item.get_closest_marker("long")]
+    others = [item for item in items if not item.get_closest_marker("long")]
+    together = list(dict.fromkeys(_together(item.nodeid) for item in long))
+    begin = config.stash[_DAY] * 7919 % max(len(together), 1)
+    turn = {name: (k - begin) % len(together) for k, name in enumerate(together)}
+    long.sort(key=lambda item: turn[_together(item.nodeid)])
+    config.hook.pytest_deselected(items=others if only else [] if first else long)
+    items[:] = long if only else [*long, *others] if first else others
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Begin no test when the time of --only-long is over."""
-    seconds = item.config.getoption("--only-long")
-    if seconds is not None and time.monotonic() - _STARTED > seconds:
-        pytest.skip(f"the {seconds:g} s of --only-long are over; it has its turn another day")
+    """Begin no long test when the time of --only-long or --long-first is over."""
+    if not item.get_closest_marker("long"):
+        return
+    for option in ("--only-long", "--long-first"):
+        seconds = item.config.getoption(option)
+        if seconds is not None and time.monotonic() - _STARTED > seconds:
+            pytest.skip(f"the {seconds:g} s of {option} are over; it has its turn another day")
 
 
 def pytest_terminal_summary(

@@ -4,8 +4,9 @@
 
 FOLDER/wheel holds the wheel. Every version gets an environment of its own in FOLDER: engine and
 wheel installed, the other packages linked from the environment that runs this. The oldest and the
-newest version run the plugin's tests, the others load and drive the quarter-car; with 3.17
-entities of dm_control's Composer have devices: it does not run on a newer MuJoCo.
+newest version run the plugin's tests, one of them a day and with `--both` both; the others load and
+drive the quarter-car. With 3.17 entities of dm_control's Composer have devices: it does not run on
+a newer MuJoCo.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import runpy
 import subprocess
 import sys
 import time
+from datetime import date
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,9 +34,11 @@ BESIDE = {
 
 def main() -> int:
     """Run the tests; 1 if a version fails."""
-    folder, *arguments = sys.argv[1:]
+    folder, *arguments = (argument for argument in sys.argv[1:] if argument != "--both")
     (wheel,) = Path(folder).resolve().glob("wheel/*.whl")
-    results, ends = [], (min(ENGINES, key=_numbers), max(ENGINES, key=_numbers))
+    results, ends = [], [min(ENGINES, key=_numbers), max(ENGINES, key=_numbers)]
+    if "--both" not in sys.argv:
+        ends = [ends[date.today().toordinal() % 2]]
     for version, package in ENGINES.items():
         packages, beside = BESIDE.get(version, ([], []))
         tests = [*(WHOLE if version in ends else SOME), *beside]
