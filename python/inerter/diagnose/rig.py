@@ -40,6 +40,7 @@ from inerter.diagnose.result import (
     RunCurves,
 )
 from inerter.diagnose.run_constants import constants_in_words, explained
+from inerter.diagnose.shape_of_stop import as_shape_of_stop
 from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
 from inerter.diagnose.standstill import without_standstill
 from inerter.diagnose.start import Given, prepared
@@ -226,6 +227,7 @@ def diagnosis_of(
             finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
         )
         told = with_own_value(told, finding.confidence, errors > CRITERIA.own_value)
+        told = as_shape_of_stop(told, final)
         return doubted(as_sure_as_its_value(told, errors), remains.structure)
 
     findings = [weighed(finding) for finding in _findings(stands, values)]
