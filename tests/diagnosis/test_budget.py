@@ -217,3 +217,10 @@ def test_what_can_be_predicted_together_is_said_to_remain() -> None:
     assert told.structure > 2
     right, rest = left_of(coulomb)
     assert not with_ceiling(right, rest, NOISE, quiet).significant
+
+
+def test_a_part_of_what_is_left_is_told_beside_a_large_error() -> None:
+    """What tests foretell, and the predictor with them, is in the sum."""
+    budget = budget_of(192.5, 5.39, 4.77, None, foretold=2.5)
+    assert "0.62 N more could be predicted from the motion" in budget.sentence
+    assert "took nothing more away" not in budget.sentence

@@ -163,3 +163,17 @@ def test_runs_that_agree_contradict_nobody() -> None:
     assert contradicting(thinned([record(i, offset=5.0 * i) for i in range(4)])) == {}
     # of two runs nobody knows which one is wrong
     assert contradicting(thinned([record(0), record(1, inertance=80.0)])) == {}
+
+
+def test_friction_of_runs_that_go_one_way_is_no_constant() -> None:
+    """Spin-ups: of one that turns forward and one that turns back friction is all that differs."""
+    random = np.random.default_rng(8)
+
+    def spun(name: str, push: float) -> Record:
+        speed = push * 20.0 * (1.0 - np.exp(-TIME / 3.0)) + 0.4 * push * np.sin(3.0 * TIME)
+        x = np.cumsum(speed) / 200
+        force = 0.5 * np.gradient(speed, TIME) + 0.2 * speed + 3.0 * np.sign(speed)
+        noise = random.normal(0, 0.02, x.size)
+        return Record(name=name, time=TIME, displacement=x, force=force + noise)
+
+    assert constants(thinned([spun("forward", 1.0), spun("back", -1.0)])) == {}

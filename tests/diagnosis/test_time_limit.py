@@ -99,3 +99,11 @@ def test_one_finding_is_told_as_one() -> None:
     limit.was_felt = True
     assert "A finding was not compared" in limit.in_words(1)
     assert "30 s" in limit.in_words(0)
+
+
+def test_a_summary_claims_no_more_than_was_tried() -> None:
+    limit = TimeLimit(1e-9)
+    text = "It goes with the place. No effect that is known here explains it."
+    assert limit.tried(text) == text
+    assert limit.is_over()
+    assert limit.tried(text).endswith("No effect that was tried in the time given explains it.")

@@ -144,6 +144,19 @@ def test_of_a_current_the_motors_constant_is_asked_for(tmp_path: Path) -> None:
     assert "--column force='0.5 N*m/A * i6'" in said
 
 
+@pytest.mark.parametrize(
+    ("head", "factor"),
+    [("i_mA", 1e-3), ("current_A", 1.0), ("i mA", 1e-3), ("i [mA]", 1e-3), ("i_left", 1.0)],
+)
+def test_a_unit_behind_a_name_counts_in_a_formula(tmp_path: Path, head: str, factor: float) -> None:
+    path = written(tmp_path / "a.csv", f"t;x [rad];{head}", ROW)
+    with reading([f"torque=0.4 N*m/A * {head}"]):
+        (record,) = read_records(path, "bench")
+    assert record.force[:5] == pytest.approx(
+        0.4 * factor * np.array([0.25, 1.25, 2.25, 3.25, 4.25])
+    )
+
+
 def test_two_columns_that_may_be_meant_are_both_shown(tmp_path: Path) -> None:
     rows = [f"{row};1.5" for row in ROW]
     path = written(tmp_path / "a.csv", "t;Position [mm];Extension [mm];F [N]", rows)

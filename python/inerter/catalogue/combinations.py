@@ -20,7 +20,7 @@ def gas(values: Values) -> None:
 
 def branch(values: Values) -> None:
     """Relaxation times in the place of the dashpots of viscoelastic branches."""
-    for i in (1, 2):
+    for i in (1, 2, 3):
         if (time := values.pop(f"branch_time_{i}", None)) is not None:
             values[f"branch_damping_{i}"] = values[f"branch_stiffness_{i}"] * time
 

@@ -287,6 +287,7 @@ _ALL = (
     ),
     *_branch(1),
     *_branch(2),
+    *_branch(3),
     *along_stroke.COORDINATES,
     # stops
     Coordinate(

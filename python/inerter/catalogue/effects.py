@@ -265,8 +265,9 @@ _ALL = (
         name="viscoelasticity", rank=17, smooth=True,
         coordinates=(
             "branch_stiffness_1", "branch_time_1", "branch_stiffness_2", "branch_time_2",
+            "branch_stiffness_3", "branch_time_3",
         ),
-        telling=("branch_stiffness_1", "branch_stiffness_2"),
+        telling=("branch_stiffness_1", "branch_stiffness_2", "branch_stiffness_3"),
         plain="a spring that relaxes", meaning="springs K, each with a dashpot C in series with it",
         cause="rubber mounts, seals, plastic bushes, a gas that gives its heat away",
         taken_for="a spring with viscous friction, or friction with memory",

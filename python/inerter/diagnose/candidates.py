@@ -29,6 +29,9 @@ from inerter.diagnose.composition import carries, has_series, width
 from inerter.diagnose.stated import shafts, stated_candidates
 from inerter.identify.model import Model
 
+# branches of a device
+_BRANCHES = 3
+
 Build = Callable[[Effect, Model, Scales], Iterator[Candidate]]
 
 
@@ -301,12 +304,14 @@ def _play_of_friction(effect: Effect, model: Model, sizes: Scales) -> Iterator[C
 
 
 def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    """A branch, or a second one beside it, that relaxes within a period or over many."""
+    """A branch more, up to three, that relaxes within a period or over many."""
     # along one sine it is a stiffness and a damper
     if sizes.one_tone:
         return
-    number = 2 if "branch_time_1" in model.values else 1
-    if f"branch_stiffness_{number}" in model.values:
+    number = 1
+    while f"branch_stiffness_{number}" in model.values:
+        number += 1
+    if number > _BRANCHES:
         return
     stiffness = 0.05 * sizes.force / sizes.displacement
     starts = tuple(

@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Set
 from dataclasses import asdict, dataclass
 from typing import Any
+
+import numpy as np
+
+from inerter.catalogue.scales import Scales
+from inerter.identify.channel_filter import filters_of
+from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun
+
+# strokes from which on time and place are told apart; share of the largest speed from which on a
+# device moves; share of the travel that is left between two stops; share of a period by which a
+# low-pass is late at most
+FEW_STROKES, _MOVING, _ROOM, _TURNED = 4, 0.05, 0.1, 0.15
 
 
 @dataclass(frozen=True)
@@ -45,6 +58,51 @@ IN_WORDS = (
     "them apart. "
 )
 """The same of one sine, as a verdict says it."""
+FEW = CannotTell(
+    ("viscous_drift", "friction_drift", "force_drift"),
+    "damping, friction and a force that change along the stroke",
+    "strokes there and back, several of them",
+)
+FEW_IN_WORDS = (
+    "There are few strokes. What changes with the time changes with the place along them, and no "
+    "drift of damping, friction or force was looked for: several strokes there and back would "
+    "tell. "
+)
+
+
+def strokes_of(runs: Iterable[BenchRun]) -> int:
+    """In how many strokes some runs go: one each, and one more where they turn back."""
+    count = 0
+    for run in runs:
+        v = run.velocity[run.inner]
+        moving = v[np.abs(v) > _MOVING * np.max(np.abs(v), initial=0.0)]
+        count += 1 + int(np.count_nonzero(np.diff(np.sign(moving))))
+    return count
+
+
+def is_hidden(effects: Set[str], model: Model, sizes: Scales, strokes: int) -> bool:
+    """Whether a motion hides one of a model's effects, or has another one do the same.
+
+    Along one sine a shaft is an inertance of another size, and a low-pass with a delay is as late
+    as the one that it takes back; one that turns the only frequency by much makes a damper of an
+    inertance. Along few strokes what changes with the time changes with the
+    place. Two stops with no room between them are a spring.
+    """
+    if sizes.one_tone:
+        shaft = "series_elasticity" in effects and "inertance" in model.free
+        found = filters_of(model.values).values() if "sensor_filter" in effects else ()
+        turned = any(
+            each.cutoff < sizes.frequency or each.lateness * sizes.frequency > _TURNED
+            for each in found
+        )
+        if shaft or turned or {"sensor_filter", "sensor_delay"} <= effects:
+            return True
+    if strokes < FEW_STROKES and not effects.isdisjoint(FEW.effects):
+        return True
+    if {"stop_lower", "stop_upper"} <= set(model.free):
+        room = model.values["stop_upper"] - model.values["stop_lower"]
+        return room < _ROOM * (sizes.travel[1] - sizes.travel[0])
+    return False
 
 
 def of_a_tone(frequency: float) -> CannotTell:

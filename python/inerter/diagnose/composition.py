@@ -268,7 +268,8 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
     if effect == "end_stop" and (fewer := _less_of_a_stop(model)):
         return [*fewer, without]
     if effect == "viscoelasticity" and "branch_time_2" in model.free:
-        return [model.without(("branch_stiffness_2", "branch_time_2")), without]
+        last = 3 if "branch_time_3" in model.free else 2
+        return [model.without((f"branch_stiffness_{last}", f"branch_time_{last}")), without]
     if effect in (*_LEVELS, *_DAMPERS):
         # the variation of the level, the bend of the damping alone
         return [model.without(EFFECTS[effect].coordinates), without]

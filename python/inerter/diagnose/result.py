@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
-from inerter.diagnose.cannot_tell import ONE_SINE, CannotTell, of_a_tone
+from inerter.diagnose.cannot_tell import FEW, FEW_STROKES, ONE_SINE, CannotTell, of_a_tone
 from inerter.identify.channel_filter import filters_of
 from inerter.motion_units import TRANSLATION, Kind
 
@@ -276,8 +276,9 @@ class Diagnosis:
     def cannot_tell(self) -> tuple[CannotTell, ...]:
         """What the motion cannot tell, whatever is found."""
         sine = ONE_SINE if self.method.get("one_tone") else ()
+        few = (FEW,) if self.method.get("strokes", FEW_STROKES) < FEW_STROKES else ()
         tone = self.unexplained.tone_above
-        return sine if tone is None else (*sine, of_a_tone(tone))
+        return (*sine, *few, *(() if tone is None else (of_a_tone(tone),)))
 
     @property
     def budget(self) -> Budget | None:

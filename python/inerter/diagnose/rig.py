@@ -195,6 +195,7 @@ def diagnosis_of(
     remains = with_ceiling(
         part, of_part, floor, remains, judge.motion_noise(final), extended.rmse if long else None
     )
+    remains = replace(remains, summary=given.time.tried(remains.summary))
     kept = None
     if given.carry != "nothing":
         passive = given.carry == "passive"
@@ -355,6 +356,7 @@ def _method(stands: Confirmed) -> dict:
         "force_error_at_cutoffs": [float(value) for value in band.errors],
         "channels": ["displacement", *band.channels],
         "one_tone": data.band.scales.one_tone,
+        "strokes": stands.searched.search.strokes,
         "split": data.split.description,
         "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
         # where it ended the search

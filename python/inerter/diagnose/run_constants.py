@@ -33,6 +33,8 @@ STRETCHES = 12
 BENDS = 9
 # speed below which friction may be anything, per rms; width of sign(v)
 SLOW, WIDTH = 0.1, 0.02
+# share of its moving samples that a run goes one way, from which on friction is a constant there
+ONE_WAY = 0.95
 # what a run that contradicts the others is missed by more than by itself, per its force, and how
 # many times less the others are
 CONTRADICTION = 0.15
@@ -57,6 +59,8 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     if len(runs) < 2 or any(run.part for run in runs):
         return {}
     runs = on_clocks(runs)
+    if any(_goes_one_way(run) for run in runs):
+        return {}
     rows = [_rows(run, _bends(runs)) for run in runs]
     count = len(rows)
     if min(row.force.size for row in rows) < 10 * STRETCHES:
@@ -166,6 +170,14 @@ def _bends(runs: Sequence[BenchRun]) -> Array:
     """Places (m,) between which a force of the place is taken as straight: a stop is only there."""
     x = [run.displacement[run.inner] for run in runs]
     return np.linspace(min(map(np.min, x)), max(map(np.max, x)), BENDS + 2)[1:-1]
+
+
+def _goes_one_way(run: BenchRun) -> bool:
+    """Whether a run hardly turns back: what differs with the direction is its constant, too."""
+    v = run.velocity[run.inner]
+    moving = v[np.abs(v) > SLOW * (_rms(v) or 1.0)]
+    share = float(np.mean(moving > 0)) if moving.size else 0.0
+    return max(share, 1.0 - share) > ONE_WAY
 
 
 def _rows(run: BenchRun, bends: Array | None = None) -> _Rows:

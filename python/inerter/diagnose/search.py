@@ -18,6 +18,7 @@ from inerter.diagnose import along_stroke
 from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
+from inerter.diagnose.cannot_tell import is_hidden, strokes_of
 from inerter.diagnose.composition import (
     effects_of,
     is_blur,
@@ -107,6 +108,7 @@ class Search:
     time: TimeLimit = field(default_factory=TimeLimit)
 
     def __post_init__(self) -> None:
+        self.strokes = strokes_of(self.runs)
         self._divide()
         # what the last step without a result came upon
         self._refused: list[Scored] = []
@@ -310,6 +312,7 @@ class Search:
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self._is_shaft_alone(s)
             and self.is_felt(s.model)
+            and self.may_be(s.model)
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
             and along_stroke.repeats(s.model, sizes)
             and not is_harmonic(s.model, sizes, self.longest)
@@ -386,8 +389,8 @@ class Search:
         self._folds = folds
         return None
 
-    def _is_better_on_blocks(self, simple: Scored, rich: Scored) -> bool:
-        return self.better(*(self.score_on_blocks(each.fit) for each in (simple, rich)))
+    def _is_better_on_blocks(self, *pair: Scored) -> bool:
+        return self.better(*(self.score_on_blocks(each.fit) for each in pair))
 
     def is_blur(self, fit: Fit, without: Fit, fitted: Sequence[tuple[Candidate, Fit]]) -> bool:
         """Whether a fit's peak of friction does little more than the laws without it."""
@@ -400,16 +403,10 @@ class Search:
         return is_blur(fit.model, self.problem.scales, plainest, fit.rmse(masks))
 
     def may_be(self, model: Model) -> bool:
-        """Whether a model has no effect excluded, all kept, and along one sine none that it hides.
-
-        There a shaft is an inertance of another size, and a low-pass with a delay is as late as the
-        one that it takes back.
-        """
+        """Whether a model has no effect excluded, all kept, and none that the motion hides."""
         names = {name for name, _ in effects_of(model, self.baseline)}
-        if self.problem.scales.one_tone:
-            shaft = "series_elasticity" in names and "inertance" in model.free
-            if shaft or {"sensor_filter", "sensor_delay"} <= names:
-                return False
+        if is_hidden(names, model, self.problem.scales, self.strokes):
+            return False
         return self.kept <= names and not (self.excluded - self.kept) & names
 
     def better(self, simple: Scored, rich: Scored) -> bool:

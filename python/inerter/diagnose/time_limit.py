@@ -41,6 +41,11 @@ class TimeLimit:
             self.was_felt = True
             raise OverTimeError
 
+    def tried(self, summary: str) -> str:
+        """A summary of what remains, which claims no more than was tried in the time."""
+        known, tried = "No effect that is known here", "No effect that was tried in the time given"
+        return summary.replace(known, tried) if self.was_felt else summary
+
     def in_words(self, without_rivals: int) -> str:
         """What it has cost, in two sentences; findings that were not compared with their rivals."""
         if not self.was_felt:

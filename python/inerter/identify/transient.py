@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 # squared rms residual per squared size that a transient is expected to have
 TIMID = 1e-2
-RELAXING = ("branch_time_1", "branch_time_2")
+RELAXING = ("branch_time_1", "branch_time_2", "branch_time_3")
 """Coordinates that say how long branches relax."""
 # how fast a flywheel may have turned as a record began, in largest speeds of the record
 MOST_SPEEDS = 5.0

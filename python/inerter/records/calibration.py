@@ -242,7 +242,7 @@ def applied(
     stated: Statement, name: str, values: Array, header: str, where: str
 ) -> tuple[Array, Kind | None]:
     """The values [SI] of a quantity from those of its column; the motion that the units tell."""
-    own = split_header(header)[1]
+    own = split_header(header)[1] or _behind_name(header, stated, name)
     # a unit in the statement's name of the column is one, too
     written = split_header(stated.column)[1] if stated.column else None
     unit = stated.unit or (own if own is not None else written)
@@ -255,6 +255,21 @@ def applied(
         values = values - finite[0] if len(finite) else values
     factor, motion = _factor(stated, name, unit, where)
     return values * factor, ROTATION if stated.turns and motion is None else motion
+
+
+def _behind_name(header: str, stated: Statement, name: str) -> str | None:
+    """The unit at the end of a name as `current_mA`, where a scale asks for one of its kind."""
+    match = re.fullmatch(r".*[^\W_](?:_|\s+)([^\s_]+)", header.strip())
+    unit = bench_unit(match[1]) if match else None
+    if unit is None or stated.gain is None or not stated.gain[1]:
+        return None
+    registry = unit_registry()
+    found = registry.Quantity(1, parse_unit(stated.gain[1])) * registry.Quantity(
+        1, parse_unit(unit)
+    )
+    targets = [QUANTITIES[name].unit, *([UNITS[name]] if name in UNITS else [])]
+    fits = any(found.dimensionality == parse_unit(each).dimensionality for each in targets)
+    return unit if fits or turns(name, found.units) else None
 
 
 def _offset(offset: tuple[float, str], unit: str | None, where: str) -> float:

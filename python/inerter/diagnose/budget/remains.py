@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.diagnose.budget.ceiling import Ceiling, ceiling
 from inerter.diagnose.data import Data
+from inerter.diagnose.remainder.words import no_noise
 from inerter.diagnose.result import Unexplained
 from inerter.identify.fit import rms
 from inerter.motion_units import Kind, words
@@ -21,6 +23,8 @@ _LOOKS_AT = {
     "place": "the place along the stroke",
     "memory": "what went before",
 }
+# share by which two errors differ by rounding alone
+_SAME = 1e-3
 
 
 def with_ceiling(
@@ -55,13 +59,19 @@ def with_ceiling(
         own = rmse
     by_tests = float(np.sqrt(max(own**2 - found.predicted**2, 0.0)))
     told = replace(found, ceiling={"rmse": min(best.rmse, by_tests)})
+    if best.rmse < (1 - _SAME) * by_tests:
+        # what else is predicted leaves less than the tests alone do
+        told = replace(told, summary=re.sub(r", which leaves [^ ]+ N( m)?", "", told.summary))
     if not best.takes or found.depends_on:
         return told
     return replace(
         told,
         significant=True,
         structure=max(found.structure, best.takes),
-        summary=f"{_start(found.summary)} is not noise: {_predicted(best, data.whole[0].motion)}",
+        summary=(
+            f"{_start(found.summary)} {no_noise(own, noise)}: "
+            f"{_predicted(best, data.whole[0].motion)}"
+        ),
     )
 
 

@@ -8,6 +8,8 @@ from inerter.motion_units import TRANSLATION, Kind, words
 
 # share of the error below which a part is not worth a word
 LEAST = 0.005
+# share of what is left from which on a part of it is told all the same
+TOLD = 0.05
 # share of an error that sums in another order make
 ROUNDING = 1e-9
 
@@ -71,7 +73,7 @@ class Budget:
         more = (
             f"{self.predictable:.3g} {newton} more could be predicted from the motion but has no "
             "name"
-            if self.predictable > LEAST * whole
+            if self.predictable > min(LEAST * whole, TOLD * self.rest)
             else "nothing more was predictable"
             if self.foretold <= LEAST * whole
             else "a flexible predictor took nothing more away on data left out"

@@ -29,6 +29,11 @@ WORDS = {
 MORE = 1.2
 
 
+def no_noise(raw: float, floor: float) -> str:
+    """That what remains [N] holds more than noise, whose estimate [N] may be larger."""
+    return "is not noise" if raw > floor else "is not noise alone"
+
+
 def summary(
     depends: Sequence[str],
     details: dict[str, str],
@@ -121,7 +126,7 @@ def summary(
         come = max(structure**2 - predicted**2, 0.0) ** 0.5
         told.append(f"{come:.3g} {newton} rms come and go as the other data tell")
     text = (
-        f"{start} is not noise: {'; '.join(told)}. It "
+        f"{start} {no_noise(raw, floor)}: {'; '.join(told)}. It "
         f"goes with {'; and with '.join(parts)}. No effect that is known here explains it."
     )
     if proposal:

@@ -213,9 +213,7 @@ def _behind_low_pass(
     begin = min(fits, key=lambda fit: fit.rmse(again.problem.masks))
     other = again.run(begin.model, until="backlash")
     late = has_filter(other.model) or "delay" in other.model.free
-    # one below the only frequency makes an inertance of any size
-    below = any(f.cutoff < scales.frequency for f in filters_of(other.model.values).values())
-    if "backlash" in other.model.free or below:
+    if "backlash" in other.model.free or not again.may_be(other.model):
         return search, final
     plainer = other.complexity <= final.complexity and loss(other, final) < CRITERIA.exchange_loss
     plainer = plainer or as_good(other, final, again.advantage(other, final, "sensor_filter"))
