@@ -28,6 +28,7 @@ from scipy.interpolate import make_interp_spline
 
 from inerter.core_library import library
 from inerter.motion_units import TRANSLATION, Kind
+from inerter.records.even_clock import even_spacing
 from inerter.records.record import Part, Record
 
 Array = NDArray[np.float64]
@@ -120,14 +121,12 @@ def uniform_channels(time: Array, channels: Mapping[str, Array]) -> tuple[float,
     """Channels (n,) measured at times (n,) [s] on a uniform clock from the first time on.
 
     Returns the sample spacing [s] and the channels: as they are where the clock is uniform to 2 %
-    of an interval, else interpolated by a cubic spline at the median spacing.
+    of an interval or to what its times are rounded by, else interpolated by a cubic spline at the
+    median spacing.
     """
-    steps = np.diff(time)
-    spacing = float((time[-1] - time[0]) / steps.size)
-    grid = time[0] + spacing * np.arange(time.size)
-    if np.max(np.abs(grid - time)) < 0.02 * spacing:
-        return spacing, dict(channels)
-    spacing = float(np.median(steps))
+    if (even := even_spacing(time)) is not None:
+        return even, dict(channels)
+    spacing = float(np.median(np.diff(time)))
     count = int((time[-1] - time[0]) / spacing + 1e-9) + 1
     grid = time[0] + spacing * np.arange(count)
     return spacing, {

@@ -17,6 +17,7 @@ from scipy.ndimage import gaussian_filter1d, label, median_filter
 from inerter.motion_units import ROTATION, words
 
 from .duplicates import find_duplicate_records
+from .even_clock import even_spacing
 from .record import Array, Columns, Record, TimeRecord
 
 R = TypeVar("R", bound=Columns)
@@ -62,6 +63,9 @@ def _gaps(time: Array) -> tuple[NDArray[np.bool_], bool]:
     5 % of all are gaps.
     """
     step = np.diff(time)
+    if even_spacing(time) is not None:
+        # rounded times may be half an interval apart, and one and a half
+        return np.zeros(step.size, bool), True
     middle = np.median(step)
     gap = step > 1.5 * middle
     off = np.abs(step[~gap] / middle - 1.0) > 0.1

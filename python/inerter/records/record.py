@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.motion_units import TRANSLATION, Kind
+from inerter.records.even_clock import even_spacing
 
 Array = NDArray[np.float64]
 
@@ -136,12 +137,15 @@ class TimeRecord(Columns):
 
     @property
     def sample_interval(self) -> float:
-        """Median interval, s; NaN for fewer than two samples."""
-        return float(np.median(np.diff(self.time))) if self.samples > 1 else float("nan")
+        """That of an even clock, else the median, s; NaN for fewer than two samples."""
+        if self.samples < 2:
+            return float("nan")
+        even = even_spacing(self.time)
+        return float(np.median(np.diff(self.time))) if even is None else even
 
     @property
     def sample_rate(self) -> float:
-        """One over the median interval, Hz."""
+        """One over the interval, Hz."""
         return 1.0 / self.sample_interval
 
     @property
