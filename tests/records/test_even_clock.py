@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from inerter.inspection.facts import clock_words, facts_of
 from inerter.records import Record
 from inerter.records.even_clock import even_spacing
 from inerter.records.quality import find_missing_samples, find_nonuniform_sampling
@@ -43,3 +44,14 @@ def test_a_clock_that_trembles_is_not() -> None:
     time = 1e-3 * (np.arange(3000) + random.uniform(-0.2, 0.2, 3000))
     assert even_spacing(time) is None
     assert even_spacing(np.round(time, 6)) is None
+
+
+def test_inspect_says_so() -> None:
+    random = np.random.default_rng(2)
+
+    def said(time: np.ndarray) -> str:
+        x = 0.01 * np.sin(30.0 * time) + random.normal(0.0, 1e-6, time.size)
+        return clock_words(facts_of(Record(name="a", time=time, displacement=x, force=-900.0 * x)))
+
+    assert "as its times are rounded: an even clock" in said(np.round(TIME, 4))
+    assert "rounded" not in said(TIME + 1e-5 * random.uniform(-1.0, 1.0, TIME.size))

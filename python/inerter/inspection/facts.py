@@ -17,6 +17,7 @@ from inerter.inspection.tells import Tell, clauses, tells
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.printable import in_digits
 from inerter.records import AnyRecord, Record, TimeRecord
+from inerter.records.even_clock import even_spacing
 from inerter.records.motion import Motion, smooth, uniform_channels
 from inerter.records.units import QUANTITIES, quantity_in
 
@@ -149,6 +150,13 @@ def scale(value: float, unit: str) -> tuple[float, str]:
     return 1.0, unit.replace("*", " ")
 
 
+def _is_rounded(facts: Facts) -> bool:
+    """Whether intervals differ for the rounding of times alone; by less they may for any cause."""
+    if facts.jitter is None or facts.jitter < 0.05 or not isinstance(facts.record, TimeRecord):
+        return False
+    return even_spacing(facts.record.time) is not None
+
+
 def clock_words(facts: Facts) -> str:
     """How many samples, how often, how evenly."""
     text = f"{facts.record.samples} samples"
@@ -159,6 +167,8 @@ def clock_words(facts: Facts) -> str:
         text += "an even clock"
     else:
         text += f"98 % of the intervals within {100 * facts.jitter:.2g} % of the usual one"
+        if _is_rounded(facts):
+            text += ", as its times are rounded: an even clock"
     if facts.looked_at < facts.record.samples:
         text += f"; looked at: the first {facts.looked_at}"
     return text
