@@ -24,7 +24,7 @@ from inerter.identify.model import Model
 Array = NDArray[np.float64]
 
 # what the force of an added effect is in proportion to; of a friction law its level is, too
-_SIZES = ("gas_push", "stop_stiffness", *EFFECTS["viscoelasticity"].telling)
+_SIZES = ("gas_push", "stop_stiffness", *EFFECTS["viscoelasticity"].amplitudes)
 # what comes with a damping of its own
 _OF_DAMPERS = {n for each in EFFECTS.values() if each.kind == "damper" for n in each.coordinates}
 # share of the size given that a start has at least and at most; choices: what has the other sign
