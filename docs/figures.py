@@ -304,7 +304,7 @@ def end_stops() -> None:
     """End stops at 8 mm."""
     stop = Device(stop_lower=-8e-3, stop_upper=8e-3, stop_stiffness=1e4, stop_damping=5)
     rubber = stop.replace(stop_stiffness=3e3, stop_stiffness_cubic=3e9)
-    loops("end_stops", {"stiff alike": stop, "of rubber": rubber}, 1.0, AMPLITUDE)
+    loops("end_stops", {"straight": stop, "of rubber": rubber}, 1.0, AMPLITUDE)
 
 
 def gas() -> None:
