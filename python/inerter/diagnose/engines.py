@@ -34,9 +34,8 @@ Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 # shortest step [s] of a device with free play, and steps per sample at most: half as long changes
 # nothing where an impact hardly comes, in either engine
 PLAY_STEP, PLAY_PARTS = 3e-5, 32
-# steps of a run at most where a bristle asks for more of them: some ten seconds of Exudyn; with
-# eight times as many the error of a bristle of 0.8 um changed by 3 %
-MOST_STEPS = 40_000
+# steps of a run at most where a bristle asks for more of them: half a minute of Exudyn
+MOST_STEPS = 80_000
 # steps from which on the engines run at the same time
 _LONG = 100_000
 
