@@ -12,6 +12,7 @@ from inerter.diagnose import diagnose_bench
 from inerter.diagnose.cannot_tell import FEW, FEW_STROKES, is_hidden, strokes_of
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
+from inerter.motion_units import ROTATION
 from inerter.records import Record
 
 SIZES = Scales(
@@ -38,6 +39,13 @@ def test_strokes_are_counted() -> None:
     # what trembles about a rest is no stroke, and a rest of all is one
     assert strokes_of([run(np.r_[np.sin(np.pi * t), 0.01 * np.sin(90.0 * t)])]) == 1
     assert strokes_of([run(0.0 * t)]) == 1
+
+
+def test_a_turn_comes_back_to_where_it_was() -> None:
+    t = np.linspace(0.0, 1.0, 500)
+    spun = replace(run(np.ones(500)), displacement=40.0 * t)
+    assert strokes_of([spun]) == 1
+    assert strokes_of([replace(spun, motion=ROTATION)]) == 7
 
 
 @pytest.mark.parametrize("effect", FEW.effects)

@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from inerter.catalogue.along_stroke import TURN
 from inerter.catalogue.scales import Scales
 from inerter.identify.channel_filter import filters_of
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
+from inerter.motion_units import ROTATION
 
 # strokes from which on time and place are told apart; share of the largest speed from which on a
 # device moves; share of the travel that is left between two stops; share of a period by which a
@@ -71,12 +73,17 @@ FEW_IN_WORDS = (
 
 
 def strokes_of(runs: Iterable[BenchRun]) -> int:
-    """In how many strokes some runs go: one each, and one more where they turn back."""
+    """In how many strokes some runs go: one each, and one more where they turn back.
+
+    And for each turn about an axis, after which a device is where it was.
+    """
     count = 0
     for run in runs:
         v = run.velocity[run.inner]
         moving = v[np.abs(v) > _MOVING * np.max(np.abs(v), initial=0.0)]
         count += 1 + int(np.count_nonzero(np.diff(np.sign(moving))))
+        if run.motion == ROTATION:
+            count += int(np.ptp(run.displacement[run.inner]) / TURN) if run.inner.any() else 0
     return count
 
 
