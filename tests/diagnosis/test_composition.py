@@ -16,6 +16,7 @@ from inerter.catalogue.scales import Scales
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
+    distinction,
     effects_of,
     is_blur,
     is_distinct,
@@ -273,3 +274,13 @@ def test_friction_that_rises_with_the_logarithm_of_speed_has_no_peak(
     values = {"coulomb_force": 20.0, "rate_effect": 0.03, "age_effect": ages}
     law = BASELINE.adding("rate_state", **values, age_distance=narrowest)
     assert is_blur(law, SCALES, 1.05, 1.0) is blur
+
+
+def test_rate_and_state_friction_of_no_level_is_none() -> None:
+    """All that it does is in proportion to its level: one of 0 +- 0.4 N is no friction."""
+    values = {"rate_effect": 0.3, "age_effect": 0.3, "age_distance": 2e-5}
+    some = BASELINE.adding("rate_state", coulomb_force=20.0, **values)
+    none = BASELINE.adding("rate_state", coulomb_force=1e-4, **values)
+    assert distinction("rate_state_friction", fitted(some), BASELINE) > 1.0
+    unknown = replace(fitted(none), covariance=np.diag([0.1, 0.4, 0.05, 0.05, 1e-6]) ** 2)
+    assert distinction("rate_state_friction", unknown, BASELINE) < 0.01

@@ -90,6 +90,10 @@ def distinction(effect: str, fit: Fit, baseline: Model) -> float:
     if not known:
         return np.inf
     found = [_per_error(abs(fit.model.values[name]), errors[name]) for name in known]
+    level = fit.model.values.get("coulomb_force", 0.0)
+    if effect == "rate_state_friction" and level < errors.get("coulomb_force", 0.0):
+        # all that it does is in proportion to its level, and of none there is nothing
+        return _per_error(level, errors["coulomb_force"])
     if EFFECTS[effect].kind == "law" and len(known) > 1:
         found.append(_together(fit, known))
     if nodes := [name for name in known if node_of(name)]:
