@@ -53,3 +53,10 @@ def test_another_force_of_the_place_stays(force: np.ndarray, stops: dict[str, fl
 def test_other_findings_stay() -> None:
     other = replace(FINDING, effect="coulomb_friction", law=None)
     assert as_shape_of_stop(other, model(BEYOND, **BOTH)) == other
+
+
+def test_a_member_is_no_rival_besides() -> None:
+    rivals = [Rival("end_stop", 0.4), Rival("gas_spring", 0.1)]
+    both = replace(FINDING, members=("position_force", "end_stop"), rivals=rivals)
+    assert [rival.effect for rival in both.other_rivals] == ["gas_spring"]
+    assert replace(both, members=()).other_rivals == rivals

@@ -28,9 +28,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import carries, has_series, width
 from inerter.diagnose.stated import shafts, stated_candidates
 from inerter.identify.model import Model
-
-# branches of a device
-_BRANCHES = 3
+from inerter.identify.transient import RELAXING
 
 Build = Callable[[Effect, Model, Scales], Iterator[Candidate]]
 
@@ -311,7 +309,7 @@ def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate
     number = 1
     while f"branch_stiffness_{number}" in model.values:
         number += 1
-    if number > _BRANCHES:
+    if number > len(RELAXING):
         return
     stiffness = 0.05 * sizes.force / sizes.displacement
     starts = tuple(

@@ -76,6 +76,11 @@ class Finding:
     motion: Kind = TRANSLATION
 
     @property
+    def other_rivals(self) -> list[Rival]:
+        """Rivals that are none of its members, which are told already."""
+        return [rival for rival in self.rivals if rival.effect not in self.members]
+
+    @property
     def gain(self) -> float:
         """Share of the held-out rms error that it takes away."""
         return 1 - self.rmse_after / self.rmse_before if self.rmse_before > 0 else 0.0

@@ -237,11 +237,7 @@ def evidence(finding: Finding) -> str:
             if finding.effect == "backlash"
             else ", and falls as errors count against the noise of the motion"
         )
-    likely = [
-        rival
-        for rival in finding.rivals
-        if rival.confidence >= CRITERIA.rival_told and rival.effect not in finding.members
-    ]
+    likely = [r for r in finding.other_rivals if r.confidence >= CRITERIA.rival_told]
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"

@@ -183,7 +183,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         "compared": finding.compared,
         "rivals": [
             (text.effect_name(r.effect), r.law, text.confidence(r.confidence))
-            for r in finding.rivals
+            for r in finding.other_rivals
         ],
         "notes": _notes(finding),
         "doubt": reason(finding, diagnosis.unexplained.structure),

@@ -58,11 +58,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
         effect = Text(text.finding_name(finding), style="bold")
         if finding.looks_like:
             effect = Text("looks like ", style="dim").append(effect)
-        likely = [
-            rival
-            for rival in finding.rivals
-            if rival.confidence >= 0.05 and rival.effect not in finding.members
-        ]
+        likely = [rival for rival in finding.other_rivals if rival.confidence >= 0.05]
         if likely:
             names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
             effect.append(f"\nor {names}", style="dim not bold")
