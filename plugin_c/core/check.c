@@ -350,6 +350,12 @@ int device_check(InerterDevice* device, char* message) {
   if (isnan(device->static_force)) {
     device->static_force = device->coulomb_force;
   }
+  if (isnan(device->damping_knee_back)) {
+    device->damping_knee_back = device->damping_knee;
+  }
+  if (isnan(device->damping_beyond_back)) {
+    device->damping_beyond_back = device->damping_beyond;
+  }
   return check_law(device, message) || check_ranges(device, message) ||
                  check_friction(device, message) || check_load(device, message) ||
                  check_branches(device, message) || check_stops(device, message) ||

@@ -5,24 +5,33 @@
 //
 // kappa damping_asymmetry, positive: stronger while x grows (rebound of a strut); v_k [m/s]
 // damping_knee, 0: D = v; r damping_beyond, slope beyond the knee over that below: less than 1
-// digressive, more progressive; c [N s/m] viscous (c(x) along the stroke), c2 quadratic_damping.
+// digressive, more progressive; for v < 0 damping_knee_back and damping_beyond_back, a valve of its
+// own; c [N s/m] viscous (c(x) along the stroke), c2 quadratic_damping.
 // Passive for |kappa| < 1, r >= 0. The force is continuous, its slope jumps at v = 0 with kappa.
 // Not modelled: hysteresis of the valve, cavitation.
 
 #include "laws.h"
 
 double damper_shaped(const InerterDevice* p, double viscous, double v) {
+  double knee = v < 0 ? p->damping_knee_back : p->damping_knee;
   double bent = v;
-  if (p->damping_knee > 0) {
-    double ratio = v / p->damping_knee;
-    bent = p->damping_beyond * v + (1 - p->damping_beyond) * v / sqrt(1 + ratio * ratio);
+  if (knee > 0) {
+    double beyond = v < 0 ? p->damping_beyond_back : p->damping_beyond;
+    double ratio = v / knee;
+    bent = beyond * v + (1 - beyond) * v / sqrt(1 + ratio * ratio);
   }
   double force = viscous * bent + p->quadratic_damping * fabs(v) * v;
   double side = v < 0 ? -p->damping_asymmetry : p->damping_asymmetry;
   return force * (1 + side) - p->damping_held * v;
 }
 
+// largest slope of D while x grows, or shrinks
+static double steepest(double knee, double beyond) {
+  return knee > 0 ? fmax(1, beyond) : 1;
+}
+
 double damper_steepest(const InerterDevice* p) {
-  double bent = p->damping_knee > 0 ? fmax(1, p->damping_beyond) : 1;
-  return p->viscous * bent * (1 + fabs(p->damping_asymmetry));
+  double forth = steepest(p->damping_knee, p->damping_beyond) * (1 + p->damping_asymmetry);
+  double back = steepest(p->damping_knee_back, p->damping_beyond_back) * (1 - p->damping_asymmetry);
+  return p->viscous * fmax(forth, back);
 }

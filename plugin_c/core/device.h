@@ -148,7 +148,8 @@ static inline int inerter_is_given(const InerterDevice* device, int i) {
 // Whether damping bends or differs by direction: no engine's damping can hold it.
 static inline int inerter_shapes_damping(const InerterDevice* device) {
   return device->damping_asymmetry != 0 ||
-         (device->damping_knee > 0 && device->damping_beyond != 1);
+         (device->damping_knee > 0 && device->damping_beyond != 1) ||
+         (device->damping_knee_back > 0 && device->damping_beyond_back != 1);
 }
 // Whether a finished device has load friction.
 static inline int inerter_has_load_friction(const InerterDevice* device) {

@@ -25,6 +25,10 @@
     "speed at which viscous damping bends, v_k; 0: it does not")                                   \
   X(damping_beyond, "1", 1, 0, INFINITY, CLOSED, "",                                               \
     "slope of viscous damping beyond the knee, relative to that below")                            \
+  X(damping_knee_back, "m/s", NAN, 0, INFINITY, CLOSED, "",                                        \
+    "the knee while x shrinks; unset: damping_knee")                                               \
+  X(damping_beyond_back, "1", NAN, 0, INFINITY, CLOSED, "",                                        \
+    "the slope beyond it while x shrinks; unset: damping_beyond")                                  \
   X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "", "force per x^3, k3")             \
   X(force_offset, "N", 0, -INFINITY, INFINITY, CLOSED, "", "constant force")                       \
   X(load_friction, "1", 0, 0, 1, CLOSED, "", "friction per inertance force, mu")                   \

@@ -115,8 +115,12 @@ class DeviceInModel:
 
     def _bends(self) -> bool:
         known = self.device
-        return known.damping_asymmetry != 0 or (
-            known.damping_knee > 0 and known.damping_beyond != 1
+        bends = (
+            (known.damping_knee, known.damping_beyond),
+            (known.damping_knee_back, known.damping_beyond_back),
+        )
+        return known.damping_asymmetry != 0 or any(
+            knee > 0 and beyond != 1 for knee, beyond in bends
         )
 
     def stated(self, model: mujoco.MjModel) -> dict[str, float | str]:

@@ -54,6 +54,11 @@ DEVICES: dict[str, tuple[dict[str, Any], float]] = {
          "friction_gradient": 0.5, **SMOOTH},
         1e-7,
     ),
+    "damper that bends in each direction by itself": (
+        {"viscous": 5.0, "damping_asymmetry": 0.3, "damping_knee": 0.1, "damping_beyond": 0.3,
+         "damping_knee_back": 0.03, "damping_beyond_back": 2.0},
+        1e-7,
+    ),
     "series": ({**SOFT, "series_hardening": 3.0}, 1e-6),
     "dashpot": ({"series_damping": 3.0}, 1e-8),
     "series, load friction": ({**SOFT, "load_friction": 0.2, **SMOOTH}, 1e-6),

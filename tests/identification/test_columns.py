@@ -38,6 +38,11 @@ SHAFT = {"series_frequency": 15.0, "series_loss": 0.3}
 BESIDE = {
     "asymmetric damping": ("none", {"damping_asymmetry": 0.4}),
     "bent damping": ("none", {"damping_knee": 0.05, "damping_beyond": 0.3}),
+    "damping that bends in each direction by itself": (
+        "none",
+        {"damping_knee": 0.05, "damping_beyond": 0.3, "damping_knee_back": 0.1,
+         "damping_beyond_back": 0.6},
+    ),
     "asymmetric friction": ("coulomb", {"friction_asymmetry": 0.3}),
     "friction along x": ("dahl", {"friction_gradient": 10.0, "friction_curvature": 300.0}),
     "inertance along x": ("none", {"inertance_gradient": 5.0, "inertance_curvature": 100.0}),

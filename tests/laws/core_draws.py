@@ -104,6 +104,9 @@ def draw_branches(rng: np.random.Generator, wide: float = 1.0) -> Parameters:
     drawn["damping_asymmetry"] = float(shape.uniform(-0.9, 0.9)) * float(shape.random() < 0.5)
     drawn["damping_knee"] = around(shape, 0.1, wide) * float(shape.random() < 0.5)
     drawn["damping_beyond"] = float(shape.uniform(0.0, 3.0))
+    if shape.random() < 0.5:
+        drawn["damping_knee_back"] = around(shape, 0.1, wide) * float(shape.random() < 0.7)
+        drawn["damping_beyond_back"] = float(shape.uniform(0.0, 3.0))
     return drawn
 
 

@@ -226,11 +226,15 @@ class Telling:
         load = share * abs(carried[0]), abs(share) * carried[1]
         spring = term(p["stiffness"] * x), term(p["stiffness_cubic"] * x**3)
         side = 1.0 + p["damping_asymmetry"] * np.sign(v)
-        knee, beyond = p["damping_knee"], p["damping_beyond"]
-        bend = knee / np.sqrt(knee**2 + v**2) if knee else np.ones_like(v)
+        knee, beyond = (
+            np.where((v < 0) & ~np.isnan(p[f"{name}_back"]), p[f"{name}_back"], p[name])
+            for name in ("damping_knee", "damping_beyond")
+        )
+        bent = knee > 0
+        bend = np.where(bent, knee / np.sqrt(knee**2 + v**2 + ~bent), 1.0)
         own_damper = (
-            term(p["viscous"] * side * v * (beyond if knee else 0.0)),
-            term(p["viscous"] * side * v * bend * (1.0 - beyond if knee else 1.0)),
+            term(p["viscous"] * side * v * np.where(bent, beyond, 0.0)),
+            term(p["viscous"] * side * v * bend * np.where(bent, 1.0 - beyond, 1.0)),
             term(p["quadratic_damping"] * side * v * abs(v)),
         )
         rubbing = add(friction, load)

@@ -200,7 +200,8 @@ def test_mirrored_motion_gives_the_mirrored_force(law: str) -> None:
     for _ in range(20):
         p = draw_friction(rng, law) | draw_branches(rng)
         uneven = ("rest_length", "force_offset", "inertance_gradient", "damping_asymmetry")
-        device = Device(**(p | dict.fromkeys(uneven, 0.0)))
+        even = {name: value for name, value in p.items() if not name.endswith("_back")}
+        device = Device(**(even | dict.fromkeys(uneven, 0.0)))
         x, v, a, z = draw_points(rng, 100, reach(p))
         one, other = device.evaluate(x, v, a, z), device.evaluate(-x, -v, -a, -z)
         for name in ("total", "inertance", "friction", "state_rate"):

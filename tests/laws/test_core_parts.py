@@ -82,6 +82,9 @@ def test_mirrored_devices_have_mirrored_forces() -> None:
         for name in [name for name in p if name.startswith("gas")]:
             del p[name]
         mirror = p | {name: -p.get(name, 0.0) for name in turned}
+        for name in ("damping_knee", "damping_beyond"):
+            back = p.get(f"{name}_back", p[name])
+            mirror |= {name: back, f"{name}_back": p[name]}
         lower, upper = p.get("stop_lower"), p.get("stop_upper")
         for name, place in (("stop_lower", upper), ("stop_upper", lower)):
             mirror.pop(name, None)

@@ -49,6 +49,21 @@ def test_without_a_knee_and_with_an_equal_slope_it_is_the_straight_line() -> Non
         np.testing.assert_array_equal(force(viscous=70.0, **values), plain)
 
 
+def test_each_direction_bends_by_itself() -> None:
+    both = {"viscous": 600.0, "damping_knee": 0.2, "damping_beyond": 0.4}
+    back = {"damping_knee": 0.05, "damping_beyond": 2.0}
+    found = force(**both, damping_knee_back=0.05, damping_beyond_back=2.0)
+    forth, other = force(**both), force(**(both | back))
+    np.testing.assert_array_equal(found, np.where(SPEEDS < 0, other, forth))
+    # what is not given is as in the other direction
+    knee_alone = force(**both, damping_knee_back=0.05)
+    other = force(**(both | {"damping_knee": 0.05}))
+    np.testing.assert_array_equal(knee_alone, np.where(SPEEDS < 0, other, forth))
+    # 0: while x shrinks it does not bend
+    straight = force(**both, damping_knee_back=0.0)
+    np.testing.assert_array_equal(straight, np.where(SPEEDS < 0, 600.0 * SPEEDS, forth))
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
     rng = np.random.default_rng([28, seed])
@@ -57,6 +72,10 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
         "damping_asymmetry": float(rng.uniform(-0.99, 0.99)),
         "damping_knee": around(rng, 0.1, 1.0), "damping_beyond": float(rng.uniform(0, 4)),
     }  # fmt: skip
+    if seed % 2:
+        values["damping_knee_back"] = around(rng, 0.1, 1.0)
+    if seed % 3:
+        values["damping_beyond_back"] = float(rng.uniform(0, 4))
     found = force(**values)
     reference = ReferenceDevice(**values)  # pyright: ignore[reportArgumentType]
     expected = [reference.force(0.0, v, 0.0) for v in SPEEDS]
@@ -68,8 +87,12 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("damping_asymmetry", 1.5), ("damping_knee", -0.1), ("damping_beyond", -1)]
-)
+    ("name", "value"),
+    [
+        ("damping_asymmetry", 1.5), ("damping_knee", -0.1), ("damping_beyond", -1),
+        ("damping_knee_back", -0.1), ("damping_beyond_back", -1),
+    ],
+)  # fmt: skip
 def test_a_value_out_of_range_is_refused_by_name(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=name):
         Device(**{"viscous": 10.0, name: value})  # pyright: ignore[reportArgumentType]

@@ -9,6 +9,7 @@ from inerter.reference import ReferenceDevice
 from scipy.integrate import solve_ivp
 
 SHAPE = {"damping_asymmetry": 0.4, "damping_knee": 0.2, "damping_beyond": 0.3}
+BACK = {"damping_knee_back": 0.05, "damping_beyond_back": 1.5}
 DEVICE = {"inertance": 3.0, "viscous": 40.0, "stiffness": 800.0}
 
 
@@ -38,8 +39,8 @@ def end(model: mujoco.MjModel, time: float = 0.5) -> float:
     return float(data.qpos[0])
 
 
-def exact(time: float = 0.5) -> float:
-    device = ReferenceDevice(**(DEVICE | SHAPE | {"inertance": 0.0}))  # pyright: ignore[reportArgumentType]
+def exact(shape: dict[str, float] = SHAPE, time: float = 0.5) -> float:
+    device = ReferenceDevice(**(DEVICE | shape | {"inertance": 0.0}))  # pyright: ignore[reportArgumentType]
 
     def rate(_: float, y: np.ndarray) -> list[float]:
         return [y[1], -float(device.force(y[0], y[1], 0.0)) / 5.0]
@@ -58,6 +59,15 @@ def test_first_order_towards_the_solution(integrator: str) -> None:
 
 def test_rk4() -> None:
     assert end(mass("RK4", 1e-3, DEVICE | SHAPE)) == pytest.approx(exact(), abs=1e-6)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "discrete", "RK4"])
+def test_each_direction_bends_by_itself(integrator: str) -> None:
+    step, tolerance = (1e-3, 1e-6) if integrator == "RK4" else (5e-5, 2e-4)
+    for shape in (SHAPE | BACK, BACK):
+        found = end(mass(integrator, step, DEVICE | shape))
+        assert found == pytest.approx(exact(shape), abs=tolerance)
+        assert abs(found - exact()) > 2e-3
 
 
 def test_the_engine_holds_none_of_it() -> None:

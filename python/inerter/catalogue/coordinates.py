@@ -12,12 +12,11 @@ is the combination that the data see:
     gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
     gas_reach_above  the same of a gas that is compressed as the device lengthens               [m]
-    branch_time_1, _2  branch_damping / branch_stiffness, in which a branch relaxes              [s]
+    branch_time_1, _2, _3  branch_damping / branch_stiffness, in which a branch relaxes              [s]
     friction_place  where in the free play before the friction a run begins, where its first force
                     does not tell: -1 ... 1 of half the play   [-], not a device parameter
 
-What the force channel does (see `identify.channel`) has coordinates of its own, which are no
-parameters.
+What the force channel does (see `identify.channel`) has coordinates of its own, no parameters.
 """
 
 from __future__ import annotations
@@ -61,6 +60,22 @@ def _low_pass(channel: str) -> tuple[Coordinate, ...]:
         ),
         Coordinate(name=f"{name}_order", unit="1", belongs_to="channel", none=None),
         Coordinate(name=f"{name}_bessel", unit="1", belongs_to="channel", none=None),
+    )  # fmt: skip
+
+
+def _bend(side: str, where: str = "") -> tuple[Coordinate, ...]:
+    """Where a damping bends, and how; of one direction."""
+    knee, beyond = f"damping_knee{side}", f"damping_beyond{side}"
+    return (
+        Coordinate(
+            name=knee, unit="m/s", words={knee: f"knee of the damping v_k{where}"}, none=None,
+            size=lambda s: s.velocity, lower=lambda s: 0.1 * s.velocity,
+            upper=lambda s: 3 * s.velocity, logarithmic=True,
+        ),
+        Coordinate(
+            name=beyond, unit="1", words={beyond: f"slope beyond the knee{where}"},
+            lower=_zero, upper=lambda s: 20.0, none=1.0,
+        ),
     )  # fmt: skip
 
 
@@ -117,15 +132,7 @@ _ALL = (
         name="damping_asymmetry", unit="1", words={"damping_asymmetry": "asymmetry of the damping"},
         lower=lambda s: -0.95, upper=lambda s: 0.95,
     ),
-    Coordinate(
-        name="damping_knee", unit="m/s", words={"damping_knee": "knee of the damping v_k"},
-        size=lambda s: s.velocity, lower=lambda s: 0.1 * s.velocity,
-        upper=lambda s: 3 * s.velocity, logarithmic=True, none=None,
-    ),
-    Coordinate(
-        name="damping_beyond", unit="1", words={"damping_beyond": "slope beyond the knee"},
-        lower=_zero, upper=lambda s: 20.0, none=1.0,
-    ),
+    *_bend(""), *_bend("_back", " while x shrinks"),
     # friction
     Coordinate(
         name="coulomb_force", unit="N", words={"coulomb_force": "sliding level f_c"},
@@ -265,9 +272,8 @@ _ALL = (
         of_device=lambda d: np.sqrt(d.series_stiffness / d.inertance) / (2 * np.pi),
     ),
     Coordinate(
-        name="series_loss", unit="1", words={"series_damping": "series damping c_s"},
+        name="series_loss", unit="1", words={"series_damping": "series damping c_s"}, start=(0.01, 1.0),
         size=lambda s: 0.1, lower=lambda s: 1e-4, upper=lambda s: 1e2, logarithmic=True, none=None,
-        start=(0.01, 1.0),
         of_device=lambda d: d.series_damping / (2 * np.sqrt(d.series_stiffness * d.inertance)),
     ),
     Coordinate(
@@ -285,9 +291,7 @@ _ALL = (
         upper=lambda s: 2 * s.displacement, logarithmic=True, jumps=True,
         start=(1e-3, 0.3), start_unit=lambda s: s.displacement,
     ),
-    *_branch(1),
-    *_branch(2),
-    *_branch(3),
+    *_branch(1), *_branch(2), *_branch(3),
     *along_stroke.COORDINATES,
     # stops
     Coordinate(
@@ -393,7 +397,7 @@ NOT_OF_DEVICE = tuple(each.name for each in _ALL if each.belongs_to != "device")
 """Coordinates of the record: of its force channel, of where its runs begin."""
 NUISANCES = tuple(each.name for each in _ALL if each.nuisance)
 """Coordinates that name no effect."""
-_BENT = ("damping_asymmetry", "damping_knee", "damping_beyond")
+_BENT = ("damping_asymmetry", *(each.name for each in (*_bend(""), *_bend("_back"))))
 ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
     "inertance": (
         *(each.name for each in _ALL if each.entangled),

@@ -275,7 +275,10 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         last = 3 if "branch_time_3" in model.free else 2
         return [model.without((f"branch_stiffness_{last}", f"branch_time_{last}")), without]
     if effect in (*_LEVELS, *_DAMPERS):
-        # the variation of the level, the bend of the damping alone
+        # the variation of the level, the bend of the damping alone, which may be one for both ways
+        back = ("damping_knee_back", "damping_beyond_back")
+        if effect == "digressive_damping" and set(back) <= set(model.free):
+            return [model.without(back), without]
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
 

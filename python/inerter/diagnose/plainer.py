@@ -14,6 +14,7 @@ from inerter.catalogue.friction import LAW_COORDINATES
 from inerter.diagnose.composition import level_and_distance
 from inerter.diagnose.statistics import Array
 from inerter.identify.model import Model
+from inerter.identify.transient import RELAXING
 
 _SHAFT = EFFECTS["series_elasticity"].coordinates
 _FORCE = next(each for each in QUANTITIES if each.name == "force")
@@ -78,7 +79,7 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         if swings < frequency:
             stiffness = model.values["inertance"] * (2 * np.pi * swings) ** 2
             found.append(_with_spring(rigid.holding(inertance=0.0), stiffness, 0.0))
-    for number in (1, 2):
+    for number in range(1, len(RELAXING) + 1):
         stiffness, time = f"branch_stiffness_{number}", f"branch_time_{number}"
         if stiffness not in model.free:
             continue
@@ -110,7 +111,7 @@ def as_weight(model: Model) -> list[Model]:
 def _as_one_that_bends_less(model: Model) -> list[Model]:
     """For damping that bends: quadratic damping, Coulomb friction, each with a damper, too."""
     bends = EFFECTS["digressive_damping"].coordinates
-    if not set(bends) <= set(model.free):
+    if "damping_knee" not in model.free:
         return []
     damping, knee, beyond = (
         model.values[name] for name in ("viscous", "damping_knee", "damping_beyond")
@@ -165,12 +166,14 @@ def _as_gas(bare: Model, places: Array, forces: Array) -> list[Model]:
 
 
 def _without_branch(model: Model, number: int) -> Model:
-    """A model without one of its branches; the second takes the place of the first."""
-    first, second = (tuple(f"branch_{name}_{i}" for name in ("stiffness", "time")) for i in (1, 2))
-    if number == 1 and second[0] in model.free:
-        moved = {a: model.values[b] for a, b in zip(first, second, strict=True)}
-        return model.without((*first, *second)).adding(None, **moved)
-    return model.without(first if number == 1 else second)
+    """A model without one of its branches; every later one takes the place before it."""
+    this, following = (
+        tuple(f"branch_{name}_{i}" for name in ("stiffness", "time")) for i in (number, number + 1)
+    )
+    if following[0] not in model.free:
+        return model.without(this)
+    moved = {a: model.values[b] for a, b in zip(this, following, strict=True)}
+    return _without_branch(model.holding(**moved), number + 1)
 
 
 def _with_spring(model: Model, stiffness: float, offset: float) -> Model:

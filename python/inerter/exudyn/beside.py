@@ -39,12 +39,19 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     return total
 
 
+def _bent(f: Functions, v: Value, knee: float, beyond: float) -> Value:
+    """Velocity [m/s] that viscous damping is in proportion to."""
+    if knee == 0.0:
+        return v
+    ratio = v / knee
+    return v * (beyond + (1.0 - beyond) / f.sqrt(1.0 + ratio * ratio))
+
+
 def _damper(f: Functions, p: Parameters, x: Value, v: Value) -> Value | None:
     """Force of the dampers [N], None without any."""
-    total, bent = None, v
-    if p.damping_knee != 0.0:
-        ratio = v / p.damping_knee
-        bent = v * (p.damping_beyond + (1.0 - p.damping_beyond) / f.sqrt(1.0 + ratio * ratio))
+    total, bent = None, _bent(f, v, p.damping_knee, p.damping_beyond)
+    if (p.damping_knee_back, p.damping_beyond_back) != (p.damping_knee, p.damping_beyond):
+        bent = f.choose(v < 0.0, _bent(f, v, p.damping_knee_back, p.damping_beyond_back), bent)
     if p.viscous != 0.0:
         total = p.viscous * bent
     if stroke.there(p, "viscous"):

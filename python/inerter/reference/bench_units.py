@@ -81,6 +81,11 @@ def _digressive(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) 
         damping_beyond=rounded(draw.uniform(0.1, 0.4)),
     )
     names = ("viscous", "damping_knee", "damping_beyond")
+    if draw.random() < 1.0 / 3.0:
+        # the valve of the other direction opens at another speed
+        ratio = draw.uniform(1.6, 2.5) ** draw.choice([-1.0, 1.0])
+        unit = replace(unit, damping_knee_back=rounded(unit.damping_knee * ratio))
+        names += ("damping_knee_back",)
     return Unit(device=unit, channel=Channel(), scaling=("viscous",), names=names)
 
 

@@ -368,8 +368,12 @@ class ReferenceDevice(DeviceStates):
         viscous = self.viscous
         if "viscous" in self.along:
             viscous = viscous + self.along["viscous"](stretch)
-        shape = self.damping_asymmetry, self.damping_knee, self.damping_beyond
-        return parallel.damping_force(v, viscous, self.quadratic_damping, *shape)
+        forth = self.damping_knee, self.damping_beyond
+        back = self.damping_knee_back, self.damping_beyond_back
+        back = tuple(a if np.isnan(b) else b for a, b in zip(forth, back, strict=True))
+        return parallel.damping_force(
+            v, viscous, self.quadratic_damping, self.damping_asymmetry, forth, back
+        )
 
     def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
         """T [N] without friction."""

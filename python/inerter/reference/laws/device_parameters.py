@@ -56,6 +56,12 @@ class DeviceParameters(FrictionParameters):
     damping_beyond: float = parameter(
         1.0, "-", "its slope beyond, relative to that below", at_least=0.0
     )
+    damping_knee_back: float = parameter(
+        UNSET, "m/s", "the same speed while x shrinks, damping_knee where not given", at_least=0.0
+    )
+    damping_beyond_back: float = parameter(
+        UNSET, "-", "the same slope while x shrinks, damping_beyond where not given", at_least=0.0
+    )
     stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
     stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
     rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")
