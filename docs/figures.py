@@ -236,9 +236,13 @@ def dampers() -> None:
         "damping_knee 0.1, damping_beyond 0.2": Device(
             viscous=1000, damping_knee=0.1, damping_beyond=0.2
         ),
-        "all three, damping_knee_back 0.25": Device(
-            viscous=1000, damping_asymmetry=0.4, damping_knee=0.1, damping_beyond=0.2,
+        "all three, damping_knee_back 0.25, damping_sharpness 8": Device(
+            viscous=1000,
+            damping_asymmetry=0.4,
+            damping_knee=0.1,
+            damping_beyond=0.2,
             damping_knee_back=0.25,
+            damping_sharpness=8,
         ),
     }
     figure = Figure(figsize=(8, 3.2), layout="constrained")

@@ -183,7 +183,7 @@ def parameters(rng: np.random.Generator, mass: float, h: float) -> dict[str, flo
         keys["viscous"] = heavy * 10.0 ** rng.uniform(-3, -1) / h
         if rng.random() < 0.3:
             keys |= {"damping_asymmetry": rng.uniform(-0.9, 0.9), "damping_knee": 0.1}
-            keys |= {"damping_beyond": rng.uniform(0.1, 2.0), "damping_knee_back": 0.3}
+            keys |= {"damping_beyond": rng.uniform(0.1, 2.0), "damping_sharpness": 5.0}
     if rng.random() < 0.25:
         keys["series_stiffness"] = heavy * (10.0 ** rng.uniform(-1.5, 0.5) / h) ** 2
         keys["series_damping"] = 2 * 0.1 * np.sqrt(keys["series_stiffness"] * heavy)

@@ -1,24 +1,35 @@
 // A damper whose force is no straight line over the velocity: bump, rebound and a valve that opens.
 //
 //   F = (1 + kappa sgn(v)) (c D(v) + c2 v |v|)
-//   D(v) = r v + (1 - r) v / sqrt(1 + (v / v_k)^2)
+//   D(v) = r v + (1 - r) v / (1 + |v / v_k|^n)^(1 / n)
 //
 // kappa damping_asymmetry, positive: stronger while x grows (rebound of a strut); v_k [m/s]
 // damping_knee, 0: D = v; r damping_beyond, slope beyond the knee over that below: less than 1
-// digressive, more progressive; for v < 0 damping_knee_back and damping_beyond_back, a valve of its
-// own; c [N s/m] viscous (c(x) along the stroke), c2 quadratic_damping.
-// Passive for |kappa| < 1, r >= 0. The force is continuous, its slope jumps at v = 0 with kappa.
-// Not modelled: hysteresis of the valve, cavitation.
+// digressive, more progressive; n damping_sharpness, 2: gently, the larger the nearer to a corner
+// at v_k between two straight lines; for v < 0 damping_knee_back and damping_beyond_back, a valve
+// of its own; c [N s/m] viscous (c(x) along the stroke), c2 quadratic_damping. Passive for |kappa|
+// < 1, r >= 0. The force is continuous, its slope jumps at v = 0 with kappa. Not modelled:
+// hysteresis of the valve, cavitation.
 
 #include "laws.h"
+
+// v where it is small, +-knee where it is large
+static double bend(const InerterDevice* p, double knee, double v) {
+  double ratio = fabs(v) / knee, n = p->damping_sharpness;
+  if (n == 2) {
+    return v / sqrt(1 + ratio * ratio);
+  }
+  // of the larger one no power: it may be none that there is a number for
+  return ratio <= 1 ? v * pow(1 + pow(ratio, n), -1 / n)
+                    : copysign(knee, v) * pow(1 + pow(ratio, -n), -1 / n);
+}
 
 double damper_shaped(const InerterDevice* p, double viscous, double v) {
   double knee = v < 0 ? p->damping_knee_back : p->damping_knee;
   double bent = v;
   if (knee > 0) {
     double beyond = v < 0 ? p->damping_beyond_back : p->damping_beyond;
-    double ratio = v / knee;
-    bent = beyond * v + (1 - beyond) * v / sqrt(1 + ratio * ratio);
+    bent = beyond * v + (1 - beyond) * bend(p, knee, v);
   }
   double force = viscous * bent + p->quadratic_damping * fabs(v) * v;
   double side = v < 0 ? -p->damping_asymmetry : p->damping_asymmetry;

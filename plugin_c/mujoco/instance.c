@@ -102,6 +102,7 @@ static InerterDevice matter_of(const InerterDevice* share) {
   matter.damping_asymmetry = share->damping_asymmetry;
   matter.damping_knee = share->damping_knee;
   matter.damping_beyond = share->damping_beyond;
+  matter.damping_sharpness = share->damping_sharpness;
   matter.damping_knee_back = share->damping_knee_back;
   matter.damping_beyond_back = share->damping_beyond_back;
   matter.damping_held = share->damping_held;

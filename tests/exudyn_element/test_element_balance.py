@@ -56,7 +56,7 @@ DEVICES: dict[str, tuple[dict[str, Any], float]] = {
     ),
     "damper that bends in each direction by itself": (
         {"viscous": 5.0, "damping_asymmetry": 0.3, "damping_knee": 0.1, "damping_beyond": 0.3,
-         "damping_knee_back": 0.03, "damping_beyond_back": 2.0},
+         "damping_knee_back": 0.03, "damping_beyond_back": 2.0, "damping_sharpness": 5.0},
         1e-7,
     ),
     "series": ({**SOFT, "series_hardening": 3.0}, 1e-6),

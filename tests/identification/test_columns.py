@@ -41,7 +41,7 @@ BESIDE = {
     "damping that bends in each direction by itself": (
         "none",
         {"damping_knee": 0.05, "damping_beyond": 0.3, "damping_knee_back": 0.1,
-         "damping_beyond_back": 0.6},
+         "damping_beyond_back": 0.6, "damping_sharpness": 4.0},
     ),
     "asymmetric friction": ("coulomb", {"friction_asymmetry": 0.3}),
     "friction along x": ("dahl", {"friction_gradient": 10.0, "friction_curvature": 300.0}),

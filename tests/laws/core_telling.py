@@ -231,7 +231,9 @@ class Telling:
             for name in ("damping_knee", "damping_beyond")
         )
         bent = knee > 0
-        bend = np.where(bent, knee / np.sqrt(knee**2 + v**2 + ~bent), 1.0)
+        n, most = p["damping_sharpness"], np.maximum(knee, abs(v))
+        above, below = np.where(bent, (knee, abs(v)) / (most + ~bent), ((1.0,), (0.0,)))
+        bend = above / (above**n + below**n) ** (1.0 / n)
         own_damper = (
             term(p["viscous"] * side * v * np.where(bent, beyond, 0.0)),
             term(p["viscous"] * side * v * bend * np.where(bent, 1.0 - beyond, 1.0)),

@@ -64,6 +64,21 @@ def test_each_direction_bends_by_itself() -> None:
     np.testing.assert_array_equal(straight, np.where(SPEEDS < 0, 600.0 * SPEEDS, forth))
 
 
+@pytest.mark.parametrize("beyond", [0.2, 3.0])
+def test_a_sharp_knee_is_a_corner(beyond: float) -> None:
+    bend = {"viscous": 800.0, "damping_knee": 0.1, "damping_beyond": beyond}
+    corner = 800.0 * (beyond * SPEEDS + (1 - beyond) * np.clip(SPEEDS, -0.1, 0.1))
+    deviation = [
+        np.max(abs(force(**bend, damping_sharpness=n) - corner)) for n in (1.0, 2.0, 8.0, 64.0)
+    ]
+    # at the knee (1 - 2^(-1 / n)) of what bends is missing, elsewhere less
+    most = [800.0 * abs(1 - beyond) * 0.1 * (1 - 0.5 ** (1 / n)) for n in (1.0, 2.0, 8.0, 64.0)]
+    assert np.all(np.array(deviation) <= 1.001 * np.array(most))
+    assert deviation[3] < 0.02 * deviation[0]
+    # gently as by default, bit for bit
+    np.testing.assert_array_equal(force(**bend, damping_sharpness=2.0), force(**bend))
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
     rng = np.random.default_rng([28, seed])
@@ -74,6 +89,8 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
     }  # fmt: skip
     if seed % 2:
         values["damping_knee_back"] = around(rng, 0.1, 1.0)
+    if seed % 5:
+        values["damping_sharpness"] = float(rng.uniform(1.0, 64.0))
     if seed % 3:
         values["damping_beyond_back"] = float(rng.uniform(0, 4))
     found = force(**values)
@@ -90,7 +107,8 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
     ("name", "value"),
     [
         ("damping_asymmetry", 1.5), ("damping_knee", -0.1), ("damping_beyond", -1),
-        ("damping_knee_back", -0.1), ("damping_beyond_back", -1),
+        ("damping_knee_back", -0.1), ("damping_beyond_back", -1), ("damping_sharpness", 0.5),
+        ("damping_sharpness", 65),
     ],
 )  # fmt: skip
 def test_a_value_out_of_range_is_refused_by_name(name: str, value: float) -> None:

@@ -9,7 +9,7 @@ from inerter.reference import ReferenceDevice
 from scipy.integrate import solve_ivp
 
 SHAPE = {"damping_asymmetry": 0.4, "damping_knee": 0.2, "damping_beyond": 0.3}
-BACK = {"damping_knee_back": 0.05, "damping_beyond_back": 1.5}
+BACK = {"damping_knee_back": 0.05, "damping_beyond_back": 1.5, "damping_sharpness": 8}
 DEVICE = {"inertance": 3.0, "viscous": 40.0, "stiffness": 800.0}
 
 

@@ -120,6 +120,7 @@ def meant(draw: st.DrawFn) -> Values:
             "damping_asymmetry": draw(st.floats(-0.999, 0.999)),
             "damping_knee": draw(st.floats(0.0, 10.0)),
             "damping_beyond": draw(st.floats(0.0, 10.0)),
+            "damping_sharpness": draw(st.floats(1.0, 64.0)),
             "damping_knee_back": draw(st.floats(0.0, 10.0)),
             "damping_beyond_back": draw(st.floats(0.0, 10.0)),
             "stiffness": draw(st.floats(0.0, 2e4)),

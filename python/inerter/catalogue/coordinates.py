@@ -12,7 +12,7 @@ is the combination that the data see:
     gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
     gas_reach_above  the same of a gas that is compressed as the device lengthens               [m]
-    branch_time_1, _2, _3  branch_damping / branch_stiffness, in which a branch relaxes              [s]
+    branch_time_1, _2, _3  branch_damping / branch_stiffness, in which a branch relaxes          [s]
     friction_place  where in the free play before the friction a run begins, where its first force
                     does not tell: -1 ... 1 of half the play   [-], not a device parameter
 
@@ -27,7 +27,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from inerter.catalogue import along_stroke, combinations
+from inerter.catalogue import along_stroke, combinations, damper_shape
 from inerter.catalogue.combinations import Values
 from inerter.catalogue.coordinate import Coordinate
 from inerter.catalogue.scales import Range, Scales
@@ -60,22 +60,6 @@ def _low_pass(channel: str) -> tuple[Coordinate, ...]:
         ),
         Coordinate(name=f"{name}_order", unit="1", belongs_to="channel", none=None),
         Coordinate(name=f"{name}_bessel", unit="1", belongs_to="channel", none=None),
-    )  # fmt: skip
-
-
-def _bend(side: str, where: str = "") -> tuple[Coordinate, ...]:
-    """Where a damping bends, and how; of one direction."""
-    knee, beyond = f"damping_knee{side}", f"damping_beyond{side}"
-    return (
-        Coordinate(
-            name=knee, unit="m/s", words={knee: f"knee of the damping v_k{where}"}, none=None,
-            size=lambda s: s.velocity, lower=lambda s: 0.1 * s.velocity,
-            upper=lambda s: 3 * s.velocity, logarithmic=True,
-        ),
-        Coordinate(
-            name=beyond, unit="1", words={beyond: f"slope beyond the knee{where}"},
-            lower=_zero, upper=lambda s: 20.0, none=1.0,
-        ),
     )  # fmt: skip
 
 
@@ -128,11 +112,7 @@ _ALL = (
         size=lambda s: s.force / s.velocity**2, lower=_zero,
         begin=lambda s: 0.01 * s.force / s.velocity**2, column=lambda x, v, a, t: v * np.abs(v),
     ),
-    Coordinate(
-        name="damping_asymmetry", unit="1", words={"damping_asymmetry": "asymmetry of the damping"},
-        lower=lambda s: -0.95, upper=lambda s: 0.95,
-    ),
-    *_bend(""), *_bend("_back", " while x shrinks"),
+    *damper_shape.COORDINATES,
     # friction
     Coordinate(
         name="coulomb_force", unit="N", words={"coulomb_force": "sliding level f_c"},
@@ -272,8 +252,9 @@ _ALL = (
         of_device=lambda d: np.sqrt(d.series_stiffness / d.inertance) / (2 * np.pi),
     ),
     Coordinate(
-        name="series_loss", unit="1", words={"series_damping": "series damping c_s"}, start=(0.01, 1.0),
+        name="series_loss", unit="1", words={"series_damping": "series damping c_s"},
         size=lambda s: 0.1, lower=lambda s: 1e-4, upper=lambda s: 1e2, logarithmic=True, none=None,
+        start=(0.01, 1.0),
         of_device=lambda d: d.series_damping / (2 * np.sqrt(d.series_stiffness * d.inertance)),
     ),
     Coordinate(
@@ -311,8 +292,8 @@ _ALL = (
         upper=lambda s: 1e6 * s.force / s.displacement,
     ),
     Coordinate(
-        name="stop_stiffness_cubic", unit="N/m^3",
-        words={"stop_stiffness_cubic": "rise of the stop stiffness k_e3"}, jumps=True,
+        name="stop_stiffness_cubic", unit="N/m^3", jumps=True,
+        words={"stop_stiffness_cubic": "rise of the stop stiffness k_e3"},
         size=lambda s: 100 * s.force / s.displacement**3, lower=_zero,
     ),
     Coordinate(
@@ -397,7 +378,7 @@ NOT_OF_DEVICE = tuple(each.name for each in _ALL if each.belongs_to != "device")
 """Coordinates of the record: of its force channel, of where its runs begin."""
 NUISANCES = tuple(each.name for each in _ALL if each.nuisance)
 """Coordinates that name no effect."""
-_BENT = ("damping_asymmetry", *(each.name for each in (*_bend(""), *_bend("_back"))))
+_BENT = tuple(each.name for each in damper_shape.COORDINATES)
 ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
     "inertance": (
         *(each.name for each in _ALL if each.entangled),

@@ -341,17 +341,18 @@ _ALL = (
     Effect(
         name="digressive_damping", rank=12, kind="damper",
         coordinates=(
-            "damping_knee", "damping_beyond", "damping_knee_back", "damping_beyond_back"
+            "damping_knee", "damping_beyond", "damping_knee_back", "damping_beyond_back",
+            "damping_sharpness",
         ),
         telling=(),
         reported=(
             "viscous", "damping_knee", "damping_beyond", "damping_knee_back",
-            "damping_beyond_back",
+            "damping_beyond_back", "damping_sharpness",
         ),
         far=True,
         plain="damping that bends with the speed",
         meaning="c v up to a speed v_k, beyond it less for every further m/s, or more",
-        cause="a valve that opens, in each direction another, shear thinning of the oil",
+        cause="a valve that opens, one for each direction, shear thinning of the oil",
         taken_for="Coulomb with viscous friction",
         experiment="run slow strokes, there the force goes with the speed and friction does not",
         rivals=("coulomb_friction", "stribeck_friction", "quadratic_damping"),

@@ -183,17 +183,21 @@ def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A damper's shape, with the damping that has it where there is none.
 
-    Where it bends alike in both directions, it may bend in each by itself.
+    Where it bends, it may bend more sharply, and in each direction by itself.
     """
     if all(name in model.free for name in effect.coordinates):
         return
     if "damping_knee" in effect.coordinates and "damping_knee" in model.free:
-        knee, beyond = (model.values[name] for name in ("damping_knee", "damping_beyond"))
-        starts = tuple(
-            model.adding(None, damping_knee_back=ratio * knee, damping_beyond_back=beyond)
-            for ratio in (1.0, 0.3)
-        )
-        yield Candidate(effect.name, "directions", starts)
+        if "damping_knee_back" not in model.values:
+            knee, beyond = (model.values[name] for name in ("damping_knee", "damping_beyond"))
+            starts = tuple(
+                model.adding(None, damping_knee_back=ratio * knee, damping_beyond_back=beyond)
+                for ratio in (1.0, 0.3)
+            )
+            yield Candidate(effect.name, "directions", starts)
+        if "damping_sharpness" not in model.values:
+            sharper = tuple(model.adding(None, damping_sharpness=n) for n in (3.0, 8.0))
+            yield Candidate(effect.name, "sharp", sharper)
         return
     linear = model.values.get("viscous", 0.0) or 0.5 * sizes.force / sizes.velocity
     starts = [{"viscous": linear, effect.coordinates[0]: 0.0}]

@@ -275,10 +275,9 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         last = 3 if "branch_time_3" in model.free else 2
         return [model.without((f"branch_stiffness_{last}", f"branch_time_{last}")), without]
     if effect in (*_LEVELS, *_DAMPERS):
-        # the variation of the level, the bend of the damping alone, which may be one for both ways
-        back = ("damping_knee_back", "damping_beyond_back")
-        if effect == "digressive_damping" and set(back) <= set(model.free):
-            return [model.without(back), without]
+        # the variation of the level, the bend of the damping alone, which may be less of one
+        if effect == "digressive_damping" and (fewer := _less_of_a_bend(model)):
+            return [*fewer, without]
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
 
@@ -290,6 +289,12 @@ def _less_of_a_stop(model: Model) -> list[Model]:
     return [
         model.without((name,)) for name in (*names, "stop_stiffness_cubic") if name in model.free
     ]
+
+
+def _less_of_a_bend(model: Model) -> list[Model]:
+    """The model with damping that bends alike in both directions, and gently."""
+    parts = ("damping_knee_back", "damping_beyond_back"), ("damping_sharpness",)
+    return [model.without(names) for names in parts if names[0] in model.free]
 
 
 def _fewer_periods(model: Model, effect: str) -> list[Model]:

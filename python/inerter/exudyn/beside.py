@@ -39,19 +39,29 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     return total
 
 
-def _bent(f: Functions, v: Value, knee: float, beyond: float) -> Value:
+def _bent(f: Functions, p: Parameters, v: Value, knee: float, beyond: float) -> Value:
     """Velocity [m/s] that viscous damping is in proportion to."""
     if knee == 0.0:
         return v
-    ratio = v / knee
-    return v * (beyond + (1.0 - beyond) / f.sqrt(1.0 + ratio * ratio))
+    ratio, n = v / knee, p.damping_sharpness
+    if n == 2.0:
+        return v * (beyond + (1.0 - beyond) / f.sqrt(1.0 + ratio * ratio))
+    speed = f.abs(ratio)
+    slow, fast = f.least(speed, 1.0), f.greatest(speed, 1.0)
+    below = f.power(1.0 + f.power(slow, n), -1.0 / n)
+    above = f.power(1.0 + f.power(fast, -n), -1.0 / n) / fast
+    return v * (beyond + (1.0 - beyond) * f.choose(speed < 1.0, below, above))
 
 
 def _damper(f: Functions, p: Parameters, x: Value, v: Value) -> Value | None:
     """Force of the dampers [N], None without any."""
-    total, bent = None, _bent(f, v, p.damping_knee, p.damping_beyond)
-    if (p.damping_knee_back, p.damping_beyond_back) != (p.damping_knee, p.damping_beyond):
-        bent = f.choose(v < 0.0, _bent(f, v, p.damping_knee_back, p.damping_beyond_back), bent)
+    forth, back = (
+        (getattr(p, f"damping_knee{side}"), getattr(p, f"damping_beyond{side}"))
+        for side in ("", "_back")
+    )
+    total, bent = None, _bent(f, p, v, *forth)
+    if back != forth:
+        bent = f.choose(v < 0.0, _bent(f, p, v, *back), bent)
     if p.viscous != 0.0:
         total = p.viscous * bent
     if stroke.there(p, "viscous"):

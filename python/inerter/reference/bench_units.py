@@ -86,6 +86,8 @@ def _digressive(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) 
         ratio = draw.uniform(1.6, 2.5) ** draw.choice([-1.0, 1.0])
         unit = replace(unit, damping_knee_back=rounded(unit.damping_knee * ratio))
         names += ("damping_knee_back",)
+    if draw.random() < 1.0 / 3.0:
+        unit = replace(unit, damping_sharpness=rounded(draw.uniform(4.0, 20.0)))
     return Unit(device=unit, channel=Channel(), scaling=("viscous",), names=names)
 
 

@@ -371,9 +371,9 @@ class ReferenceDevice(DeviceStates):
         forth = self.damping_knee, self.damping_beyond
         back = self.damping_knee_back, self.damping_beyond_back
         back = tuple(a if np.isnan(b) else b for a, b in zip(forth, back, strict=True))
-        return parallel.damping_force(
-            v, viscous, self.quadratic_damping, self.damping_asymmetry, forth, back
-        )
+        quadratic, asymmetry = self.quadratic_damping, self.damping_asymmetry
+        bend = forth, back, self.damping_sharpness
+        return parallel.damping_force(v, viscous, quadratic, asymmetry, *bend)
 
     def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
         """T [N] without friction."""

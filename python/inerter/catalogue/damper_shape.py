@@ -1,0 +1,36 @@
+"""Coordinates of a damper whose force is no straight line over the velocity."""
+
+from __future__ import annotations
+
+from inerter.catalogue.coordinate import Coordinate
+
+
+def _bend(side: str, where: str = "") -> tuple[Coordinate, ...]:
+    """Where a damping bends, and how; of one direction."""
+    knee, beyond = f"damping_knee{side}", f"damping_beyond{side}"
+    return (
+        Coordinate(
+            name=knee, unit="m/s", words={knee: f"knee of the damping v_k{where}"}, none=None,
+            size=lambda s: s.velocity, lower=lambda s: 0.1 * s.velocity,
+            upper=lambda s: 3 * s.velocity, logarithmic=True,
+        ),
+        Coordinate(
+            name=beyond, unit="1", words={beyond: f"slope beyond the knee{where}"},
+            lower=lambda s: 0.0, upper=lambda s: 20.0, none=1.0,
+        ),
+    )  # fmt: skip
+
+
+COORDINATES = (
+    Coordinate(
+        name="damping_asymmetry", unit="1", words={"damping_asymmetry": "asymmetry of the damping"},
+        lower=lambda s: -0.95, upper=lambda s: 0.95,
+    ),
+    *_bend(""),
+    *_bend("_back", " while x shrinks"),
+    Coordinate(
+        name="damping_sharpness", unit="1", words={"damping_sharpness": "sharpness of the knee n"},
+        lower=lambda s: 1.0, upper=lambda s: 64.0, logarithmic=True, none=None,
+    ),
+)  # fmt: skip
+"""All of them."""
