@@ -369,8 +369,8 @@ class ReferenceDevice(DeviceStates):
         if "viscous" in self.along:
             viscous = viscous + self.along["viscous"](stretch)
         forth = self.damping_knee, self.damping_beyond
-        back = self.damping_knee_back, self.damping_beyond_back
-        back = tuple(a if np.isnan(b) else b for a, b in zip(forth, back, strict=True))
+        knee, beyond = self.damping_knee_back, self.damping_beyond_back
+        back = forth[0] if np.isnan(knee) else knee, forth[1] if np.isnan(beyond) else beyond
         quadratic, asymmetry = self.quadratic_damping, self.damping_asymmetry
         bend = forth, back, self.damping_sharpness
         return parallel.damping_force(v, viscous, quadratic, asymmetry, *bend)
