@@ -92,7 +92,7 @@ def diagnose(
         baseline = Device(**{k: v for k, v in baseline.given.items() if k != "rest_length"})
     known = _filters(device, filters)
     progress("reading the records")
-    read = read_records(records, others=False)
+    read = read_records(records)
     if where := model or (device if isinstance(device, Path) else None):
         refuse_other_motion(where, motion, read)
     tables = [record for record in read if isinstance(record, BenchTable)]

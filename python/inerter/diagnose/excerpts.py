@@ -215,9 +215,12 @@ def _evenly(records: Sequence[Record]) -> list[Record]:
 
 
 def _cut(record: Record, begin: int, end: int, part: Part) -> Record:
-    channels = {name: values[begin:end] for name, values in record.channels().items()}
+    channels, extra = (
+        {name: values[begin:end] for name, values in each.items()}
+        for each in (record.channels(), record.extra)
+    )
     return replace(
-        record, name=f"{record.name} from {record.time[begin]:.6g} s", part=part, extra={},
+        record, name=f"{record.name} from {record.time[begin]:.6g} s", part=part, extra=extra,
         time=record.time[begin:end], **channels,
     )  # fmt: skip
 
@@ -231,8 +234,11 @@ def _coarse(record: Record, every: int) -> Record:
     def mean(values: Array) -> Array:
         return values[: size * every].reshape(size, every).mean(axis=1)
 
-    channels = {name: mean(values) for name, values in record.channels().items()}
-    return replace(record, time=mean(record.time), extra={}, **channels)
+    channels, extra = (
+        {name: mean(values) for name, values in each.items()}
+        for each in (record.channels(), record.extra)
+    )
+    return replace(record, time=mean(record.time), extra=extra, **channels)
 
 
 def _possible(

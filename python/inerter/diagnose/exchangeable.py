@@ -228,7 +228,9 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     # it may be none, and so may be what stands in for it
     size = abs(found.value - exchange.none)
     error = float(np.clip(error, size / CRITERIA.distinction, max(size, found.stderr)))
-    share = finding.confidence / 2
+    # what was shared out between the two belongs to both
+    its = sum(each.confidence for each in finding.rivals if each.effect == exchange.counterpart)
+    share = min(finding.confidence + its, 1.0) / 2
     known = _with_error(finding.parameters, name, error)
     if exchange.alone:
         told = replace(finding, confidence=share, parameters=known)

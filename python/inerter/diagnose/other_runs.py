@@ -26,6 +26,8 @@ TIMES = 2.0
 SHARE = 0.1
 # the share of a stretch of a long record, and how many are told
 SHARE_OF_STRETCH, WORST = 0.05, 3
+# parts of a run, of which one is missed so many times as much as what is held out: a blow, say
+PARTS, TIMES_OF_PART = 10, 3.0
 
 
 def badly_missed(data: Data, errors: Sequence[Array], noise: float) -> dict[str, float]:
@@ -43,6 +45,26 @@ def badly_missed(data: Data, errors: Sequence[Array], noise: float) -> dict[str,
         if missed > TIMES * max(held, noise) and missed > SHARE * spread:
             found[run.name] = missed
     return found
+
+
+def badly_missed_parts(data: Data, errors: Sequence[Array], noise: float) -> dict[str, float]:
+    """The same of tenths of runs of which something is fitted, the worst ones.
+
+    What happens once is in no other part, so that no cause of it can be confirmed.
+    """
+    held = rms(errors, data.raw.masks)
+    found = {}
+    for i, (run, error) in enumerate(zip(data.whole, errors, strict=True)):
+        seen = np.flatnonzero(run.inner & ~data.full.holdout[i])
+        if seen.size < PARTS:
+            continue
+        least = max(TIMES_OF_PART * max(held, noise), SHARE * float(np.std(run.force[seen])))
+        for part in np.array_split(seen, PARTS):
+            missed = float(np.sqrt(np.mean(error[part] ** 2)))
+            if missed > least:
+                worst = part[np.argmax(np.abs(error[part]))]
+                found[f"{run.name} about {run.time[worst]:.4g} s"] = missed
+    return dict(sorted(found.items(), key=lambda each: -each[1])[:WORST])
 
 
 def badly_missed_stretches(

@@ -24,6 +24,7 @@ from inerter.diagnose.excerpts import Excerpts, excerpts
 from inerter.diagnose.exchangeable import exchanges, with_members
 from inerter.diagnose.other_runs import (
     badly_missed,
+    badly_missed_parts,
     badly_missed_stretches,
     missed_in_words,
     other_split,
@@ -31,6 +32,7 @@ from inerter.diagnose.other_runs import (
     swapped_in_words,
 )
 from inerter.diagnose.quantisation import steps_in_words, steps_of
+from inerter.diagnose.remainder.further import further_channels
 from inerter.diagnose.result import (
     Accuracy,
     Diagnosis,
@@ -190,7 +192,7 @@ def diagnosis_of(
     of_part = part.raw.errors(final) if long else errors
     remains = unexplained(
         part.runs, part.split, part.band.residual(final), floor, extended.rmse, part.whole,
-        of_part, judge.motion_noise(final),
+        of_part, judge.motion_noise(final), further_channels(part.records, part.runs),
     )  # fmt: skip
     remains = with_ceiling(
         part, of_part, floor, remains, judge.motion_noise(final), extended.rmse if long else None
@@ -205,6 +207,8 @@ def diagnosis_of(
     steps = steps_of(data, judge, final)
     again = repeats(data.whole, errors)
     missed = badly_missed(data, errors, floor)
+    if not long and not missed:
+        missed = badly_missed_parts(data, errors, floor)
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
     values = parameter_values(

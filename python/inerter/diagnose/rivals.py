@@ -148,9 +148,13 @@ def _takes_precedence(rival: Scored, final: Scored, effect: str, baseline: Model
 def _is_better(rival: Scored, final: Scored, baseline: Model) -> bool:
     """Whether a rival does better with no more parameters and no more causes.
 
-    What a search adds is the best beside what it has; effects found later can change that.
+    What a search adds is the best beside what it has; effects found later can change that. A level
+    of friction that varies is a level and a cause, as a level and a constant force are.
     """
-    causes = [len(effects_of(scored.model, baseline)) for scored in (rival, final)]
+    causes = [
+        sum(1 + (EFFECTS[name].kind == "level") for name, _ in effects_of(scored.model, baseline))
+        for scored in (rival, final)
+    ]
     return bool(
         rival.complexity <= final.complexity
         and causes[0] <= causes[1]

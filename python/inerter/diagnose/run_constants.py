@@ -137,13 +137,13 @@ def contradicting(runs: Sequence[BenchRun]) -> dict[str, str]:
 def explained(runs: Sequence[BenchRun], errors: Sequence[Array], name: str) -> bool:
     """Whether what was found explains a run that seemed to contradict the others.
 
-    It does where errors (n,) [N] per force are small there, or no more than some times those of the
-    others.
+    It does where errors (n,) [N] are no larger there than in another run, or per force small or no
+    more than some times those of the others.
     """
-    parts = {
-        run.name: _rms(error[run.inner]) / (_rms(run.force[run.inner]) or 1.0)
-        for run, error in zip(runs, errors, strict=True)
-    }
+    sizes = {r.name: _rms(e[r.inner]) for r, e in zip(runs, errors, strict=True)}
+    parts = {run.name: sizes[run.name] / (_rms(run.force[run.inner]) or 1.0) for run in runs}
+    if sizes.pop(name) <= max(sizes.values(), default=0.0):
+        return True
     return parts.pop(name) < max(SMALL, EXPLAINED * max(parts.values(), default=0.0))
 
 

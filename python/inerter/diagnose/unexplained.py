@@ -12,15 +12,23 @@ A formula may be proposed for it (`remainder/proposal.py`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter import motion_units
-from inerter.diagnose.remainder.battery import ORDER, Remainder, Tested, battery, columns_of
+from inerter.diagnose.remainder.battery import (
+    ORDER,
+    Remainder,
+    Tested,
+    battery,
+    columns_of,
+    in_order,
+)
 from inerter.diagnose.remainder.bursts import Bursts, bursts
 from inerter.diagnose.remainder.columns import sizes_of
+from inerter.diagnose.remainder.further import measured_by, test_of
 from inerter.diagnose.remainder.learning import LearntPart, gather
 from inerter.diagnose.remainder.lines import lines
 from inerter.diagnose.remainder.proposal import propose
@@ -69,6 +77,7 @@ def unexplained(
     whole: Sequence[BenchRun] = (),
     whole_residual: Sequence[Array] = (),
     motion: float = 0.0,
+    channels: Mapping[str, Sequence[Array]] | None = None,
 ) -> Unexplained:
     """Describe the residual of a model.
 
@@ -88,9 +97,11 @@ def unexplained(
     motion : float
         Part of the floor that the noise of the motion makes [N]. The motion itself tells something
         of it (along a sine the displacement tells the acceleration), which is no lack of the model.
+    channels : mapping
+        Further channels of the records by name, at the samples of `runs`.
     """
     fraction = max(0.0, 1 - (floor / raw) ** 2) if raw > 0 else 0.0
-    remainder = _remainder(runs, split, residual)
+    remainder = _remainder(runs, split, residual, channels or {})
     force = remainder.sizes.force
     least = max(NOISE_PART * floor, FORCE_PART * force)
     chosen, details, first, outcome = _depends(remainder, float(np.hypot(least, motion)))
@@ -192,12 +203,18 @@ def _shares(
     return shares
 
 
-def _remainder(runs: Sequence[BenchRun], split: Split, residual: Sequence[Array]) -> Remainder:
+def _remainder(
+    runs: Sequence[BenchRun],
+    split: Split,
+    residual: Sequence[Array],
+    channels: Mapping[str, Sequence[Array]],
+) -> Remainder:
     masks = [run.inner for run in runs]
     data = gather(
         residual, masks, split.holdout, [run.spacing for run in runs], [run.cutoff for run in runs]
     )
-    return Remainder(runs, residual, data, sizes_of(runs), [run.elapsed for run in on_clocks(runs)])
+    clock = [run.elapsed for run in on_clocks(runs)]
+    return Remainder(runs, residual, data, sizes_of(runs), clock, channels)
 
 
 def _depends(
@@ -228,7 +245,8 @@ def _depends(
         if not gains:
             break
         enough = PLAIN_ENOUGH * max(gains.values())
-        name = next(name for name in ORDER if gains.get(name, 0.0) >= enough)
+        order = in_order(remainder.channels)
+        name = next(name for name in order if gains.get(name, 0.0) >= enough)
         prediction = outcome.tests[name]
         chosen.append(
             (
@@ -238,6 +256,8 @@ def _depends(
                 ),
             )
         )
+        if name in map(test_of, remainder.channels):
+            details[name] = measured_by(name)
         if name in outcome.periods:
             details[name] = f"with a period of {1e3 * outcome.periods[name].length:.3g} {small}"
         if name == "frequency":

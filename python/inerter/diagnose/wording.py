@@ -324,7 +324,8 @@ def doubts_of_records(records: Sequence[RecordSummary]) -> str:
         if warning["code"] in _GRAVE
     ]
     more = f" (and {len(doubts) - 1} more like it)" if len(doubts) > 1 else ""
-    return f"Look at the records first: {doubts[0]}{more}. " if doubts else ""
+    end = "" if doubts and doubts[0].endswith("?") and not more else "."
+    return f"Look at the records first: {doubts[0]}{more}{end} " if doubts else ""
 
 
 def _less(before: float, after: float) -> str:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from inerter.identify.runs import BenchRun
 
 from . import columns as c
+from .further import columns_of_channels, test_of
 from .learning import LearntPart, Samples, predict, share
 from .lines import Lines, lines
 from .periodic import Period, along_stroke
@@ -35,6 +36,12 @@ ORDER = (
 )
 
 
+def in_order(channels: Iterable[str]) -> tuple[str, ...]:
+    """Names of all tests, the plainest first, where there are further channels."""
+    first = ORDER.index("acceleration") + 1
+    return (*ORDER[:first], *map(test_of, channels), *ORDER[first:])
+
+
 @dataclass(frozen=True)
 class Remainder:
     """Runs, what a model leaves of their force, and the samples that count.
@@ -45,6 +52,8 @@ class Remainder:
         Measured minus predicted force per run [N].
     clock : sequence of ndarray
         Time per run [s], from the beginning of the records where they share a clock.
+    channels : mapping
+        Further channels by name, of every run.
     """
 
     runs: Sequence[BenchRun]
@@ -52,6 +61,7 @@ class Remainder:
     data: Samples
     sizes: c.Sizes
     clock: Sequence[Array]
+    channels: Mapping[str, Sequence[Array]] = field(default_factory=dict)
 
     def flat(self, make: Callable[[BenchRun], Array]) -> Array:
         """A function of every run on the samples that count, (n,) or (n, m)."""
@@ -109,6 +119,7 @@ def columns_of(remainder: Remainder) -> dict[str, Array]:
         "state": np.column_stack(
             [both, along_v, along_a, remainder.flat(lambda run: c.powers(run, sizes))]
         ),
+        **columns_of_channels(linear, {n: data.flat(q) for n, q in remainder.channels.items()}),
         "_way": way,
         "_x": x,
     }

@@ -109,7 +109,7 @@ def summary(
     parts = []
     for name in depends:
         detail = f", {details[name]}" if name in details else ""
-        named = shown_as(motion, WORDS[name])
+        named = shown_as(motion, WORDS.get(name, name))
         part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
         parts.append(named + detail + part)
     # of bursts it is known when they come, not what they are

@@ -1,0 +1,77 @@
+"""Channels of the records beside motion and force: what a model leaves may go with one of them.
+
+A voltage, a pressure, a temperature or a load that sets a parameter of the device. A channel that
+is another measure of the motion or of the force says nothing of a cause, and is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identify.runs import BenchRun
+from inerter.records import Record
+
+Array = NDArray[np.float64]
+
+# least change of a channel, per its largest value, for anything to go with it
+_CHANGE = 0.02
+# share of a channel's power that motion and force may tell of it
+_ITS_OWN = 0.5
+# channels that are looked at, the first of a record
+_MOST = 12
+
+
+def further_channels(records: Sequence[Record], runs: Sequence[BenchRun]) -> dict[str, list[Array]]:
+    """By name, each channel that all records have at the samples of their runs, about 0 to 1."""
+    headers = [h for h in records[0].extra if all(h in record.extra for record in records)]
+    found = {}
+    for header in headers[:_MOST]:
+        name = header.partition("[")[0].strip()
+        values = [
+            np.interp(run.time, record.time, record.extra[header])
+            for run, record in zip(runs, records, strict=True)
+        ]
+        if not all(np.isfinite(each).all() for each in values):
+            continue
+        seen = np.concatenate([q[run.inner] for q, run in zip(values, runs, strict=True)])
+        low, spread = float(seen.min()), float(np.ptp(seen))
+        changes = spread > _CHANGE * float(np.abs(seen).max())
+        if name and changes and not _is_measured_otherwise(seen, runs):
+            found[name] = [(q - low) / spread for q in values]
+    return found
+
+
+def _is_measured_otherwise(seen: Array, runs: Sequence[BenchRun]) -> bool:
+    """Whether a channel (n,) is motion or force in other words."""
+    names = ("displacement", "velocity", "acceleration", "force")
+    known = np.column_stack(
+        [np.concatenate([getattr(run, name)[run.inner] for run in runs]) for name in names]
+    )
+    known = np.column_stack([known, np.sign(known[:, 1])])
+    known, seen = known - known.mean(axis=0), seen - seen.mean()
+    sizes = np.sqrt(np.mean(known**2, axis=0))
+    known = known[:, sizes > 0] / sizes[sizes > 0]
+    left = seen - known @ np.linalg.lstsq(known, seen, rcond=1e-9)[0]
+    return bool(np.mean(left**2) < (1.0 - _ITS_OWN) * np.mean(seen**2))
+
+
+def columns_of_channels(linear: Array, channels: Mapping[str, Array]) -> dict[str, Array]:
+    """Columns of a test of each: what is in proportion to the motion (n, m), and goes with it."""
+    return {
+        test_of(name): np.column_stack([linear * (q**k)[:, None] for k in range(3)])
+        for name, q in channels.items()
+    }
+
+
+def test_of(channel: str) -> str:
+    """The test's name, by which it is told too."""
+    return f"the channel {channel}"
+
+
+def measured_by(test: str) -> str:
+    """What measures the law behind a test."""
+    channel = test.removeprefix(test_of(""))
+    return f'see `inerter identify --scaled-by "{channel}"`'
