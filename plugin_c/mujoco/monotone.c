@@ -10,6 +10,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "mujoco/downhill.h"
 
@@ -167,6 +168,7 @@ int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
     Line line = {law, devices, n, &now, dy, u, &next};
     downhill_search(go, &line, mju_dot(u, now.y, n) - mju_dot(u, now.force, n));
     int last = !(largest(n, W, p, &now, u) > 1);
+    int flat = memcmp(now.force, next.force, sizeof(mjtNum) * (size_t)n) == 0;
     mju_copy(now.y, next.y, n);
     mju_copy(now.a, next.a, n);
     mju_copy(now.force, next.force, n);
@@ -174,6 +176,13 @@ int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
 
     // laws so steep that the rounding of a moves their force
     if (last) {
+      return round + 1;
+    }
+    // forces that are small beside what they are the sum of: what is left is less than its rounding
+    if (flat) {
+      mju_copy(now.y, now.force, n);
+      multiply(n, W, now.y, u);
+      mju_sub(a, p, u, n);
       return round + 1;
     }
   }

@@ -156,3 +156,35 @@ def test_a_bristle_rests_at_every_damping_and_step(
     # at rest, or settling as slowly as so strong a damper lets: sigma1 / sigma0 = 1 s
     assert abs(data.qvel[0]) < (1e-6 if damping == 1e4 else 1e-12)
     assert data.actuator_force[0] == pytest.approx(-0.05 * 9.81, rel=1e-5)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "discrete"])
+def test_friction_that_holds_beside_a_spring_is_soon_found(integrator: str) -> None:
+    # spring and friction of newtons cancel to nothing: less than their rounding tells no more
+    model = mujoco.MjModel.from_xml_string(f"""
+<mujoco>
+  <extension><plugin plugin="inerter.device"/></extension>
+  <option integrator="{integrator}" timestep="1e-3" gravity="0 0 0"/>
+  <worldbody>
+    <body><joint type="slide" axis="1 0 0"/><geom size="0.1" mass="3"/><site name="a"/></body>
+    <body pos="1 0 0"><joint type="slide" axis="1 0 0"/><geom size="0.1" mass="2"/><site name="b"/>
+    </body>
+  </worldbody>
+  <tendon><spatial name="t"><site site="a"/><site site="b"/></spatial></tendon>
+  <actuator>
+    <plugin name="one" plugin="inerter.device" tendon="t" actdim="2">
+      <config key="inertance" value="94.9"/>
+      <config key="series_stiffness" value="125"/>
+      <config key="rest_length" value="1"/>
+      <config key="friction" value="coulomb"/>
+      <config key="coulomb_force" value="4.24"/>
+    </plugin>
+  </actuator>
+</mujoco>""")
+    data = mujoco.MjData(model)
+    data.qvel[:] = 1.0, 0.5
+    mujoco.mj_step(model, data, 3000)
+    assert abs(data.qvel[0] - data.qvel[1]) < 1e-3
+    counts = inerter.solve_counts(model, data)["one"]
+    assert counts.solves == 3000
+    assert counts.stops < 0.1 * counts.solves

@@ -315,11 +315,9 @@ def plainest(judged: Sequence[J]) -> J:
     return min(judged, key=lambda s: (s.complexity, s.squares.sum()))
 
 
-def not_needed(without: Judged, whole: Judged, lost: float, astray: bool = False) -> bool:
-    """Whether a model does without an effect; astray: refitted to all it is a great deal worse."""
-    c = CRITERIA
-    unsure = lost < c.keeping_advantage and not astray
-    return unsure or loss(without, whole) < c.keeping_gain
+def not_needed(without: Judged, whole: Judged, lost: float) -> bool:
+    """Whether a model does without an effect."""
+    return lost < CRITERIA.keeping_advantage or loss(without, whole) < CRITERIA.keeping_gain
 
 
 def does_as_well(one: Judged, other: Judged, lost: float) -> bool:

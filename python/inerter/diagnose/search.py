@@ -42,7 +42,6 @@ from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
 from inerter.identify.split import Mask, Split, blocks, spread_folds
-from inerter.parallel_steps import parallel
 
 Progress = Callable[[str], None]
 Fitted = tuple[Candidate, Fit]
@@ -432,14 +431,17 @@ class Search:
                 for model in without_effect(current.model, effect, self.baseline)
                 if self.may_be(model)
             ]
-            simpler = []
-            fits = parallel(lambda pair: self.problem.fit(pair[1]), models)
-            pairs = zip(models, fits, strict=True)
-            for scored in self.scores([(effect, None, fit) for (effect, _), fit in pairs]):
+            simpler, limit = [], (1 + CRITERIA.too_much) * current.fit.rmse(masks)
+            # what cannot come so near is needed, however far its refit would get
+            fits = self.trials.refits([model for _, model in models], limit)
+            near = [
+                (effect, None, fit)
+                for (effect, _), fit in zip(models, fits, strict=True)
+                if fit.rmse(masks) <= limit
+            ]
+            for scored in self.scores(near):
                 lost = self.advantage(scored, current, scored.effect)
-                # a refit may go astray on one fold: nothing is sure of the errors there
-                astray = scored.fit.rmse(masks) > (1 + CRITERIA.too_much) * current.fit.rmse(masks)
-                if not_needed(scored, current, lost, astray):
+                if not_needed(scored, current, lost):
                     simpler.append(scored)
             if simpler:
                 current = min(simpler, key=lambda scored: scored.squares.sum())

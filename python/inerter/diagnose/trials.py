@@ -241,6 +241,10 @@ class Trials:
         ]
         return min(fits, key=lambda fit: fit.rmse(masks))
 
+    def refits(self, models: Sequence[Model], limit: float) -> list[Fit]:
+        """Fits of models, each given up where it cannot come down to a limit [N] at its pace."""
+        return parallel(lambda m: self.problem.fit(m, give_up=Pace(limit).hopeless), models)
+
     def fit_all(
         self,
         candidates: Sequence[Candidate],
