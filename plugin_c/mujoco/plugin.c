@@ -94,7 +94,6 @@ static int prepare(const mjModel* m, int instance, Instance* self,
       (compiling && command_range(m, self->actuator, &device, message))) {
     return -1;
   }
-  self->limited = attachment_limited(m, self->actuator);
 
   if (compiling && advice_on_content(m, instance, self, message)) {
     return -1;
@@ -241,6 +240,7 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   self->v = instance_velocity(m, d, self);
   self->solved = 0;
   self->disabled = instance_disabled(m, self);
+  self->limited = attachment_limited(m, self->actuator);
   if (instance_asleep(m, d, self)) {
     return;
   }

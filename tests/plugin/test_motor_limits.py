@@ -145,3 +145,21 @@ def test_without_springs_and_dampers_too(flags: str) -> None:
         paths.append(run(model, 0.3)[-1])
     np.testing.assert_allclose(paths[2], paths[0], rtol=1e-10)
     np.testing.assert_allclose(paths[3], paths[1], rtol=1e-9)
+
+
+@pytest.mark.parametrize("limit", LIMITS)
+def test_a_limit_that_is_set_later_is_none_of_a_device_either(limit: str) -> None:
+    free = model_of("none", 'tendon="both"', {"inertance": 5, "stiffness": 1e3}, 0, "Euler")
+    data = mujoco.MjData(free)
+    data.qpos[1] = 0.2
+    mujoco.mj_forward(free, data)
+    expected = data.qacc.copy()
+    limited = {
+        "joint": (free.jnt_actfrclimited, free.jnt_actfrcrange),
+        "tendon": (free.tendon_actfrclimited, free.tendon_actfrcrange),
+        "actuator": (free.actuator_forcelimited[1:], free.actuator_forcerange[1:]),
+    }
+    flags, ranges = limited[limit]
+    flags[:], ranges[:] = True, [-0.5, 0.5]
+    mujoco.mj_forward(free, data)
+    np.testing.assert_allclose(data.qacc, expected, rtol=1e-12)
