@@ -421,15 +421,14 @@ class Search:
 
     def _prune(self, current: Scored) -> Scored:
         """Take away what the others have made unnecessary, the least important first."""
-        masks = self.problem.masks
-        more = True
+        masks, more, needed = self.problem.masks, True, set[str]()
         while more:
             self.progress("checking that every effect is still needed")
             models = [
                 (effect, model)
                 for effect, _ in effects_of(current.model, self.baseline)
                 for model in without_effect(current.model, effect, self.baseline)
-                if self.may_be(model)
+                if effect not in needed and self.may_be(model)
             ]
             simpler, limit = [], (1 + CRITERIA.too_much) * current.fit.rmse(masks)
             # what cannot come so near is needed, however far its refit would get
@@ -439,6 +438,8 @@ class Search:
                 for (effect, _), fit in zip(models, fits, strict=True)
                 if fit.rmse(masks) <= limit
             ]
+            # nor does it become less so when something else is taken away
+            needed |= {effect for effect, _ in models} - {effect for effect, *_ in near}
             for scored in self.scores(near):
                 lost = self.advantage(scored, current, scored.effect)
                 if not_needed(scored, current, lost):
