@@ -177,3 +177,11 @@ def test_friction_of_runs_that_go_one_way_is_no_constant() -> None:
         return Record(name=name, time=TIME, displacement=x, force=force + noise)
 
     assert constants(thinned([spun("forward", 1.0), spun("back", -1.0)])) == {}
+
+
+def test_a_run_that_is_met_as_well_as_another_contradicts_none() -> None:
+    # of little force, so that its noise is much of it
+    runs = thinned([record(i) for i in range(4)])
+    errors = [0.02 * r.force for r in runs]
+    errors[2] = np.full(runs[2].force.size, 0.9 * float(np.sqrt(np.mean(errors[1] ** 2))))
+    assert explained(runs, errors, "run 2")

@@ -32,7 +32,7 @@ from inerter.diagnose.remainder.further import measured_by, test_of
 from inerter.diagnose.remainder.learning import LearntPart, gather
 from inerter.diagnose.remainder.lines import lines
 from inerter.diagnose.remainder.proposal import propose
-from inerter.diagnose.remainder.words import MORE, summary
+from inerter.diagnose.remainder.words import MORE, OF_MOTION, summary
 from inerter.diagnose.result import Unexplained
 from inerter.identify.runs import BenchRun, on_clocks
 from inerter.identify.split import Split
@@ -264,6 +264,7 @@ def _depends(
             line, last = outcome.lines, outcome
             details[name] = (
                 f"{line.frequency:.3g} Hz with an amplitude of {line.amplitude:.2g} {newton}"
+                f"{OF_MOTION if line.of_motion else ''}"
             )
         remainder = remainder.without(prediction.values)
         if remainder.data.power < FURTHER_SHARE * power:

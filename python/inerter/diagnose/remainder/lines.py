@@ -27,6 +27,8 @@ PADDING = 8
 # how near to a whole multiple of it a harmonic lies
 ONE_TONE = 0.9
 NEAR = 0.03
+# share of the simulated force's power at a line that makes it one of the motion
+OF_MOTION = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +43,8 @@ class Lines:
         Of the strongest line [Hz].
     multiple : int
         Which multiple of a motion of one tone that is; 0 for none.
+    of_motion : bool
+        Whether a motion of several tones has it.
     amplitude : float
         Of the strongest line [N].
     share, p : float
@@ -50,6 +54,7 @@ class Lines:
     values: list[Array]
     frequency: float
     multiple: int
+    of_motion: bool
     amplitude: float
     share: float
     p: float
@@ -80,7 +85,10 @@ def lines(
     predicted = np.concatenate([v[m] for v, m in zip(values, masks, strict=True)])
     p = chance(r, predicted, np.concatenate(numbers))
     if not strongest:
-        return Lines(values=values, frequency=0.0, multiple=0, amplitude=0.0, share=0.0, p=1.0)
+        return Lines(
+            values=values, frequency=0.0, multiple=0, of_motion=False, amplitude=0.0, share=0.0,
+            p=1.0,
+        )  # fmt: skip
     power, frequency, force, step, mask = max(strongest, key=lambda line: line[0])
     multiple = _multiple(frequency, force, step, mask)
     amplitude = float(np.sqrt(2 * power))
@@ -88,6 +96,7 @@ def lines(
         values=values,
         frequency=frequency,
         multiple=multiple,
+        of_motion=not multiple and _is_of_motion(frequency, force, step, mask),
         amplitude=amplitude,
         share=share(r, predicted),
         p=p,
@@ -131,11 +140,23 @@ def _amplitudes(found: Sequence[tuple[float, float, float]]) -> list[tuple[float
 
 def _multiple(frequency: float, force: Array, step: float, mask: Mask) -> int:
     """Which multiple of the one tone of a motion a frequency [Hz] is; 0 for none."""
-    spectrum = np.abs(rfft(np.where(mask, force, 0) * np.hanning(force.size))) ** 2
-    grid = rfftfreq(force.size, step)
+    grid, spectrum = _spectrum(force, step, mask)
     first = float(grid[int(np.argmax(spectrum))])
     near = np.abs(grid - first) <= 3 / (step * force.size)
     if first <= 0 or spectrum[near].sum() < ONE_TONE * spectrum.sum():
         return 0
     ratio = frequency / first
     return round(ratio) if abs(ratio - round(ratio)) < NEAR * max(ratio, 1) else 0
+
+
+def _is_of_motion(frequency: float, force: Array, step: float, mask: Mask) -> bool:
+    """Whether the simulated force has a line at a frequency [Hz] as well."""
+    grid, spectrum = _spectrum(force, step, mask)
+    near = np.abs(grid - frequency) <= 2 / (step * force.size)
+    return bool(spectrum[near].sum() > OF_MOTION * spectrum[1:].sum())
+
+
+def _spectrum(force: Array, step: float, mask: Mask) -> tuple[Array, Array]:
+    """Frequencies [Hz] and power of the simulated force."""
+    power = np.abs(rfft(np.where(mask, force, 0) * np.hanning(force.size))) ** 2
+    return np.asarray(rfftfreq(force.size, step), np.float64), power

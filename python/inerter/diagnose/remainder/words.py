@@ -25,6 +25,9 @@ WORDS = {
     "bursts": "certain moments, in bursts",
 }
 
+# what is added to a frequency that is none of its own
+OF_MOTION = ", which the motion has too"
+
 # times the noise from which on it is said that more remains
 MORE = 1.2
 
@@ -109,7 +112,8 @@ def summary(
     parts = []
     for name in depends:
         detail = f", {details[name]}" if name in details else ""
-        named = shown_as(motion, WORDS.get(name, name))
+        word = "one frequency" if detail.endswith(OF_MOTION) else WORDS.get(name, name)
+        named = shown_as(motion, word)
         part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
         parts.append(named + detail + part)
     # of bursts it is known when they come, not what they are
