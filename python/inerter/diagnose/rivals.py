@@ -149,17 +149,16 @@ def _is_better(rival: Scored, final: Scored, baseline: Model) -> bool:
     """Whether a rival does better with no more parameters and no more causes.
 
     What a search adds is the best beside what it has; effects found later can change that. A level
-    of friction that varies is a level and a cause, as a level and a constant force are.
+    of friction that varies is a level and a cause, as a level and a constant force are: which of
+    the two has to be sure.
     """
-    causes = [
-        sum(1 + (EFFECTS[name].kind == "level") for name, _ in effects_of(scored.model, baseline))
-        for scored in (rival, final)
-    ]
-    return bool(
-        rival.complexity <= final.complexity
-        and causes[0] <= causes[1]
-        and not _does_as_well(final, rival)
-    )
+    named = [[name for name, _ in effects_of(scored.model, baseline)] for scored in (rival, final)]
+    causes = [len(names) for names in named]
+    if rival.complexity > final.complexity or _does_as_well(final, rival):
+        return False
+    if causes[0] > causes[1] and advantage(final.squares, rival.squares) > CRITERIA.equal_advantage:
+        causes = [sum(1 + (EFFECTS[name].kind == "level") for name in names) for names in named]
+    return causes[0] <= causes[1]
 
 
 def _does_as_well(one: Scored, other: Scored) -> bool:
