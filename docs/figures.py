@@ -230,19 +230,13 @@ def damping_and_stiffness() -> None:
 
 def dampers() -> None:
     """Dampers of vehicles: force over speed, straight, uneven, digressive, progressive."""
+    bent = {"viscous": 1000, "damping_knee": 0.1, "damping_beyond": 0.2}
     devices = {
         "viscous": Device(viscous=1000),
         "damping_asymmetry 0.4": Device(viscous=1000, damping_asymmetry=0.4),
-        "damping_knee 0.1, damping_beyond 0.2": Device(
-            viscous=1000, damping_knee=0.1, damping_beyond=0.2
-        ),
-        "all three, damping_knee_back 0.25, damping_sharpness 8": Device(
-            viscous=1000,
-            damping_asymmetry=0.4,
-            damping_knee=0.1,
-            damping_beyond=0.2,
-            damping_knee_back=0.25,
-            damping_sharpness=8,
+        "damping_knee 0.1, damping_beyond 0.2": Device(**bent),
+        "the same, damping_asymmetry 0.4, damping_knee_back 0.25, damping_sharpness 8": Device(
+            **bent, damping_asymmetry=0.4, damping_knee_back=0.25, damping_sharpness=8
         ),
     }
     figure = Figure(figsize=(8, 3.2), layout="constrained")

@@ -228,9 +228,9 @@ def with_exchange(finding: Finding, exchange: Exchange | None) -> Finding:
     # it may be none, and so may be what stands in for it
     size = abs(found.value - exchange.none)
     error = float(np.clip(error, size / CRITERIA.distinction, max(size, found.stderr)))
-    # what was shared out between the two belongs to both
-    its = sum(each.confidence for each in finding.rivals if each.effect == exchange.counterpart)
-    share = min(finding.confidence + its, 1.0) / 2
+    # and whatever was shared out between the two
+    its = (each.confidence for each in finding.rivals if each.effect == exchange.counterpart)
+    share = min(sum(its, finding.confidence), 1.0) / 2
     known = _with_error(finding.parameters, name, error)
     if exchange.alone:
         told = replace(finding, confidence=share, parameters=known)
@@ -358,8 +358,7 @@ def with_delay(
     told.sort(key=lambda pair: pair[0] * late < 0)
     if not told:
         return finding
-    known = finding.parameters[cutoff]
-    delay, other = told[0]
+    known, (delay, other) = finding.parameters[cutoff], told[0]
     # a value without the delay, and none of it with the filter alone
     apart = abs(other - known.value) / CRITERIA.distinction
     parameters = _with_error(finding.parameters, cutoff, max(known.stderr, apart))
