@@ -190,11 +190,14 @@ def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if "damping_knee" in effect.coordinates and "damping_knee" in model.free:
         if "damping_knee_back" not in model.values:
             knee, beyond = (model.values[name] for name in ("damping_knee", "damping_beyond"))
-            starts = tuple(
-                model.adding(None, damping_knee_back=ratio * knee, damping_beyond_back=beyond)
-                for ratio in (1.0, 0.3)
-            )
-            yield Candidate(effect.name, "directions", starts)
+            places = [{"damping_knee_back": ratio * knee} for ratio in (1.0, 0.4, 2.5)]
+            opens = tuple(model.adding(None, **place) for place in places)
+            yield Candidate(effect.name, "knees", opens)
+            both = tuple(start.adding(None, damping_beyond_back=beyond) for start in opens)
+            yield Candidate(effect.name, "directions", both)
+        elif "damping_beyond_back" not in model.values:
+            beyond = model.adding(None, damping_beyond_back=model.values["damping_beyond"])
+            yield Candidate(effect.name, "slopes", (beyond,))
         if "damping_sharpness" not in model.values:
             sharper = tuple(model.adding(None, damping_sharpness=n) for n in (3.0, 8.0))
             yield Candidate(effect.name, "sharp", sharper)

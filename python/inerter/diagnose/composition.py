@@ -293,8 +293,9 @@ def _less_of_a_stop(model: Model) -> list[Model]:
 
 def _less_of_a_bend(model: Model) -> list[Model]:
     """The model with damping that bends alike in both directions, and gently."""
-    parts = ("damping_knee_back", "damping_beyond_back"), ("damping_sharpness",)
-    return [model.without(names) for names in parts if names[0] in model.free]
+    back = ("damping_knee_back", "damping_beyond_back")
+    parts = (back, back[1:], ("damping_sharpness",))
+    return [model.without(names) for names in parts if not {*names}.isdisjoint(model.free)]
 
 
 def _fewer_periods(model: Model, effect: str) -> list[Model]:

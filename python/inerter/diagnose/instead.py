@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 Fitted = list[tuple[Candidate, Fit]]
 
+# effects that another, which is there, may do in one of its forms: valves that open at other speeds
+_BY_FORM = {"asymmetric_damping": "digressive_damping"}
 # of those that do better, the best, which are checked on data left out
 _CHECKED = 2
 
@@ -31,7 +33,7 @@ def others(search: Search, found: Scored, effect: str, model: Model) -> list[Can
     law = effects[effect]
     # along one sine the shaft of a play is a damper and an inertance of another size
     blind = ("backlash",) if sizes.one_tone and "inertance" in found.model.free else ()
-    rest = [name for name in effects if name != effect]
+    rest = [name for name in effects if name not in (effect, _BY_FORM.get(effect))]
     return [
         candidate
         for candidate in candidates(model, sizes)
