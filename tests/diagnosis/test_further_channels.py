@@ -75,7 +75,7 @@ def test_a_blow_that_comes_once_is_told(effects_seed: int) -> None:
 
 def test_a_line_of_the_motion_is_none_of_its_own() -> None:
     rng = np.random.default_rng(3)
-    model = sum(30 * np.sin(2 * np.pi * f * TIME + f) for f in (0.7, 1.3, 2.2))
+    model = np.sum([30 * np.sin(2 * np.pi * f * TIME + f) for f in (0.7, 1.3, 2.2)], axis=0)
     mask = [np.ones(TIME.size, dtype=bool)]
     noise = 0.1 * rng.standard_normal(TIME.size)
     for frequency, of_motion in ((1.3, True), (1.75, False)):
