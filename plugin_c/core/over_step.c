@@ -189,9 +189,6 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
                         const double* z, double h, double mobility) {
   *step = (InerterStep){.device = device, .x = x, .v = v, .z = z, .h = h, .mobility = mobility};
   step->kind = STEP_GENERAL;
-  if (device->friction != INERTER_FRICTION_none && !has_bristle(device)) {
-    find_level(step, stretch_of(device, x));
-  }
   if (inerter_has_load_friction(device) || device->quadratic_damping != 0 ||
       has(device, PART_SERIES) || has(device, PART_STOPS) || has(device, PART_BRANCHES) ||
       has(device, PART_DAMPER)) {
@@ -214,6 +211,7 @@ void inerter_step_begin(InerterStep* step, const InerterDevice* device, double x
     step->kind = STEP_BRISTLE;
   } else if (device->friction != INERTER_FRICTION_none) {
     step->kind = STEP_FRICTION;
+    find_level(step, stretch);
   }
 }
 
@@ -261,23 +259,6 @@ static double state_force_with_slope(const InerterStep* step, double v1, double*
   return force;
 }
 
-// friction between the terminals that no load adds to, with its slope over v1: far steeper than all
-// beside it, so that no difference tells its slope; 0 where it is not apart
-static Tangent friction_apart(const InerterStep* step, double v1) {
-  const InerterDevice* p = step->device;
-  Tangent friction = {0, 0};
-  if (p->friction == INERTER_FRICTION_none || inerter_has_load_friction(p) ||
-      has(p, PART_WHEEL_FRICTION) || step->h == 0) {
-    return friction;
-  }
-  if (!has_bristle(p)) {
-    return sharp_friction(step, v1);
-  }
-  friction.value = state_force_with_slope(step, v1, &friction.slope);
-  friction.slope = fmax(0, friction.slope);
-  return friction;
-}
-
 double inerter_step_force(const InerterStep* step, double a, double* slope) {
   double line = step->start + step->rise * a;
   switch (step->kind) {
@@ -315,9 +296,6 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
   double beside =
       inerter_force_over_step(p, step->x, step->v, a + near, step->z, step->h, step->mobility, NULL)
           .total;
-  Tangent friction = friction_apart(step, step->v + step->h * a);
-  Tangent further = friction_apart(step, step->v + step->h * (a + near));
-  double rest = (beside - further.value) - (force - friction.value);
-  *slope = fmax(0, rest / near) + step->h * friction.slope;
+  *slope = fmax(0, (beside - force) / near);
   return force;
 }
