@@ -235,7 +235,7 @@ def dampers() -> None:
         "viscous": Device(viscous=1000),
         "damping_asymmetry 0.4": Device(viscous=1000, damping_asymmetry=0.4),
         "damping_knee 0.1, damping_beyond 0.2": Device(**bent),
-        "the same, damping_asymmetry 0.4, damping_knee_back 0.25, damping_sharpness 8": Device(
+        "all three, damping_knee_back 0.25, damping_sharpness 8": Device(
             **bent, damping_asymmetry=0.4, damping_knee_back=0.25, damping_sharpness=8
         ),
     }

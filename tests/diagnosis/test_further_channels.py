@@ -40,6 +40,7 @@ def test_a_voltage_that_sets_the_damping_is_named(effects_seed: int) -> None:
     found = diagnose_bench([record(draw, "one"), record(draw, "two")])
     assert found.unexplained.depends_on[0] == "the channel voltage"
     assert '--scaled-by "voltage"' in found.verdict
+    assert found.budget is None or "could be predicted from the motion but" not in found.verdict
 
 
 def test_channels_that_tell_nothing_of_their_own_are_left_out(effects_seed: int) -> None:
@@ -66,11 +67,9 @@ def test_a_blow_that_comes_once_is_told(effects_seed: int) -> None:
         for each in (0 * blow, blow)
     )
     assert not quiet.method["missed_runs"]
-    missed = struck.method["missed_runs"]
-    # it may have been in a part that is held out
-    held = abs(struck.extended.rmse - quiet.extended.rmse) > 2 * quiet.extended.rmse
-    assert held or list(missed) == ["run about 3.1 s"]
-    assert held or "run about 3.1 s" in struck.verdict
+    # in the third of ten blocks, which is none of those that are held out
+    assert list(struck.method["missed_runs"]) == ["run about 3.1 s"]
+    assert "run about 3.1 s" in struck.verdict
 
 
 def test_a_line_of_the_motion_is_none_of_its_own() -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
 from inerter.diagnose.cannot_tell import FEW, FEW_STROKES, ONE_SINE, CannotTell, of_a_tone
+from inerter.diagnose.remainder.further import channels_of
 from inerter.identify.channel_filter import filters_of
 from inerter.motion_units import TRANSLATION, Kind
 
@@ -299,6 +300,7 @@ class Diagnosis:
             self.motion,
             carried=kept["rmse_after"] if kept else None,
             foretold=self.unexplained.structure,
+            source=" and ".join(["the motion", *channels_of(self.unexplained.depends_on)]),
         )
 
     @property

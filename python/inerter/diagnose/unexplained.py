@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from inerter import motion_units
 from inerter.diagnose.remainder.battery import (
-    ORDER,
     Remainder,
     Tested,
     battery,
@@ -125,7 +124,7 @@ def unexplained(
         rest = _above(remainder, found, whole, whole_residual)
         louder = bursts(whole, rest, _held_at(whole, runs, split), remainder.sizes)
         tests.append(_row("bursts", louder.share, louder.share_held_out, louder.size, louder.p))
-        if _loud(louder, floor, force):
+        if _loud(louder, floor, force, len(first.tests)):
             shares["bursts"] = min((louder.size / raw) ** 2, 1.0)
             details["bursts"] = _burst_words(louder)
             structure = float(np.hypot(structure, louder.size))
@@ -359,10 +358,10 @@ def _usual(
     return usual if raw > BLOWS * 1.4826 * usual else None
 
 
-def _loud(louder: Bursts, floor: float, force: float) -> bool:
+def _loud(louder: Bursts, floor: float, force: float, tests: int) -> bool:
     return (
         louder.share > FURTHER_SHARE
-        and louder.p < FALSE_ALARM / (len(ORDER) + 1)
+        and louder.p < FALSE_ALARM / (tests + 1)
         and louder.size > max(BURST_NOISE_PART * floor, BURST_FORCE_PART * force)
     )
 

@@ -36,6 +36,8 @@ class Budget:
         What the device does; in rotation read N m for N.
     foretold : float
         What tests, one by one, foretell of the rest.
+    source : str
+        What could tell the predictable part.
     """
 
     baseline: float
@@ -46,6 +48,7 @@ class Budget:
     repeatability: float | None = None
     motion: Kind = TRANSLATION
     foretold: float = 0.0
+    source: str = "the motion"
 
     def parts(self) -> list[tuple[str, str, float]]:
         """Key, words and size [N] of each part."""
@@ -71,8 +74,8 @@ class Budget:
                 "displacement and velocity, fitted and without a cause"
             )
         more = (
-            f"{self.predictable:.3g} {newton} more could be predicted from the motion but has no "
-            "name"
+            f"{self.predictable:.3g} {newton} more could be predicted from {self.source} but has "
+            "no name"
             if self.predictable > min(LEAST * whole, TOLD * self.rest)
             else "nothing more was predictable"
             if self.foretold <= LEAST * whole
@@ -95,11 +98,13 @@ def budget_of(
     motion: Kind = TRANSLATION,
     carried: float | None = None,
     foretold: float = 0.0,
+    source: str = "the motion",
 ) -> Budget:
     """The budget of a held-out error [N] of the baseline, the extended model and the predictor.
 
     carried: that of the extended device with what it carries; None where it carries nothing.
-    foretold: what tests, one by one, foretell of what is left [N].
+    foretold: what tests, one by one, foretell of what is left [N]. source: what could tell the
+    predictable part.
     """
     kept = extended if carried is None else carried
     # a ceiling that is the extended model's own error differs from it by rounding
@@ -113,4 +118,5 @@ def budget_of(
         repeatability=repeatability,
         motion=motion,
         foretold=foretold,
+        source=source,
     )

@@ -75,3 +75,8 @@ def measured_by(test: str) -> str:
     """What measures the law behind a test."""
     channel = test.removeprefix(test_of(""))
     return f'see `inerter identify --scaled-by "{channel}"`'
+
+
+def channels_of(tests: Sequence[str]) -> list[str]:
+    """Those of some tests that are of further channels."""
+    return [test for test in tests if test.startswith(test_of(""))]
