@@ -229,8 +229,9 @@ def damping_and_stiffness() -> None:
 
 
 def dampers() -> None:
-    """Dampers of vehicles: force over speed, straight, uneven, digressive, progressive."""
+    """Dampers: force over speed, straight, uneven, digressive, falling, as a power."""
     bent = {"viscous": 1000, "damping_knee": 0.1, "damping_beyond": 0.2}
+    brake = bent | {"damping_beyond": 0}
     devices = {
         "viscous": Device(viscous=1000),
         "damping_asymmetry 0.4": Device(viscous=1000, damping_asymmetry=0.4),
@@ -238,11 +239,11 @@ def dampers() -> None:
         "all three, damping_knee_back 0.25, damping_sharpness 8": Device(
             **bent, damping_asymmetry=0.4, damping_knee_back=0.25, damping_sharpness=8
         ),
-    }
+    } | {f"damping_exponent {n}": Device(**brake, damping_exponent=n) for n in (-1, 0.35)}
     figure = Figure(figsize=(8, 3.2), layout="constrained")
     axes: Axes = figure.subplots()
     speeds = np.linspace(-0.5, 0.5, 401)
-    for (name, device), style in zip(devices.items(), ("-", "--", "-", "--"), strict=True):
+    for (name, device), style in zip(devices.items(), ("-", "--") * 3, strict=True):
         force = [float(np.ravel(device.evaluate(0.0, v, 0.0, 0.0)["total"])[0]) for v in speeds]
         axes.plot(speeds, force, style, label=name)
     axes.set_xlabel("velocity [m/s]")

@@ -1,27 +1,30 @@
 // A damper whose force is no straight line over the velocity: bump, rebound and a valve that opens.
 //
 //   F = (1 + kappa sgn(v)) (c D(v) + c2 v |v|)
-//   D(v) = r v + (1 - r) v / (1 + |v / v_k|^n)^(1 / n)
+//   D(v) = r v + (1 - r) v (1 + |v / v_k|^n)^((alpha - 1) / n)
 //
 // kappa damping_asymmetry, positive: stronger while x grows (rebound of a strut); v_k [m/s]
 // damping_knee, 0: D = v; r damping_beyond, slope beyond the knee over that below: less than 1
 // digressive, more progressive; n damping_sharpness, 2: gently, the larger the nearer to a corner
-// at v_k between two straight lines; for v < 0 damping_knee_back and damping_beyond_back, a valve
-// of its own; c [N s/m] viscous (c(x) along the stroke), c2 quadratic_damping. Passive for |kappa|
-// < 1, r >= 0. The force is continuous, its slope jumps at v = 0 with kappa. Not modelled:
-// hysteresis of the valve, cavitation.
+// at v_k between two straight lines; alpha damping_exponent: what bends grows as |v|^alpha beyond
+// the knee, 0: it levels off, 0.3, say: a silicone damper, -1: an eddy-current brake, whose force
+// falls; for v < 0 damping_knee_back and damping_beyond_back, a valve of its own; c [N s/m] viscous
+// (c(x) along the stroke), c2 quadratic_damping. Passive for |kappa| < 1, r >= 0. The force is
+// continuous, its slope jumps at v = 0 with kappa. With n = 2 and alpha = -1 the brake of Smythe
+// (1942), otherwise the viscosity of Carreau (1972) and Yasuda (1979). Not modelled: hysteresis of
+// the valve, cavitation.
 
 #include "laws.h"
 
-// v where it is small, +-knee where it is large
+// v where it is small, as |v|^alpha where it is large
 static double bend(const InerterDevice* p, double knee, double v) {
-  double ratio = fabs(v) / knee, n = p->damping_sharpness;
-  if (n == 2) {
+  double ratio = fabs(v) / knee, n = p->damping_sharpness, lost = 1 - p->damping_exponent;
+  if (n == 2 && lost == 1) {
     return v / sqrt(1 + ratio * ratio);
   }
   // of the larger one no power: it may be none that there is a number for
-  return ratio <= 1 ? v * pow(1 + pow(ratio, n), -1 / n)
-                    : copysign(knee, v) * pow(1 + pow(ratio, -n), -1 / n);
+  return ratio <= 1 ? v * pow(1 + pow(ratio, n), -lost / n)
+                    : copysign(knee, v) * pow(ratio, 1 - lost) * pow(1 + pow(ratio, -n), -lost / n);
 }
 
 double damper_shaped(const InerterDevice* p, double viscous, double v) {
@@ -34,6 +37,15 @@ double damper_shaped(const InerterDevice* p, double viscous, double v) {
   double force = viscous * bent + p->quadratic_damping * fabs(v) * v;
   double side = v < 0 ? -p->damping_asymmetry : p->damping_asymmetry;
   return force * (1 + side) - p->damping_held * v;
+}
+
+double damper_over_step(const InerterDevice* p, double viscous, double v, double v1) {
+  // where it falls with the speed, by the slope to where it is: the step has one solution
+  if (p->damping_exponent >= 0) {
+    return damper_shaped(p, viscous, v1);
+  }
+  double nearly = fabs(v) > 1e-100 ? v : copysign(1e-100, v1);
+  return damper_shaped(p, viscous, nearly) / nearly * v1;
 }
 
 // largest slope of D while x grows, or shrinks

@@ -218,8 +218,10 @@ static inline double damping_at(const InerterDevice* device, double stretch) {
              : device->viscous;
 }
 
-// damper.c: force at a velocity, with c(x); the steepest slope of c over it
+// damper.c: force at a velocity, with c(x); the same at the end v1 of a step from v; the steepest
+// slope of c over the velocity
 double damper_shaped(const InerterDevice* p, double viscous, double v);
+double damper_over_step(const InerterDevice* p, double viscous, double v, double v1);
 double damper_steepest(const InerterDevice* p);
 
 // force of the dampers between the terminals, at displacement `stretch`

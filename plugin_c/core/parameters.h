@@ -27,6 +27,8 @@
     "slope of viscous damping beyond the knee, relative to that below")                            \
   X(damping_sharpness, "1", 2, 1, 64, CLOSED, "",                                                  \
     "how sharply viscous damping bends at the knee, n; 2: gently, 64: a corner")                   \
+  X(damping_exponent, "1", 0, -1, 1, CLOSED, "",                                                   \
+    "power of the speed that what bends goes with beyond the knee; -1: an eddy-current brake")     \
   X(damping_knee_back, "m/s", NAN, 0, INFINITY, CLOSED, "",                                        \
     "the knee while x shrinks; unset: damping_knee")                                               \
   X(damping_beyond_back, "1", NAN, 0, INFINITY, CLOSED, "",                                        \

@@ -103,6 +103,7 @@ static InerterDevice matter_of(const InerterDevice* share) {
   matter.damping_knee = share->damping_knee;
   matter.damping_beyond = share->damping_beyond;
   matter.damping_sharpness = share->damping_sharpness;
+  matter.damping_exponent = share->damping_exponent;
   matter.damping_knee_back = share->damping_knee_back;
   matter.damping_beyond_back = share->damping_beyond_back;
   matter.damping_held = share->damping_held;

@@ -43,6 +43,10 @@ BESIDE = {
         {"damping_knee": 0.05, "damping_beyond": 0.3, "damping_knee_back": 0.1,
          "damping_beyond_back": 0.6, "damping_sharpness": 4.0},
     ),
+    "damping that goes with a power of the speed": (
+        "none",
+        {"damping_power_knee": 0.01, "damping_beyond": 0.0, "damping_exponent": 0.35},
+    ),
     "asymmetric friction": ("coulomb", {"friction_asymmetry": 0.3}),
     "friction along x": ("dahl", {"friction_gradient": 10.0, "friction_curvature": 300.0}),
     "inertance along x": ("none", {"inertance_gradient": 5.0, "inertance_curvature": 100.0}),

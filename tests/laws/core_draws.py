@@ -109,6 +109,8 @@ def draw_branches(rng: np.random.Generator, wide: float = 1.0) -> Parameters:
         drawn["damping_beyond_back"] = float(shape.uniform(0.0, 3.0))
     if shape.random() < 0.5:
         drawn["damping_sharpness"] = float(shape.uniform(1.0, 20.0))
+    if shape.random() < 0.5:
+        drawn["damping_exponent"] = float(shape.uniform(-1.0, 1.0))
     return drawn
 
 

@@ -233,7 +233,8 @@ class Telling:
         bent = knee > 0
         n, most = p["damping_sharpness"], np.maximum(knee, abs(v))
         above, below = np.where(bent, (knee, abs(v)) / (most + ~bent), ((1.0,), (0.0,)))
-        bend = above / (above**n + below**n) ** (1.0 / n)
+        lost = 1.0 - p["damping_exponent"]
+        bend = (above / (above**n + below**n) ** (1.0 / n)) ** np.where(bent, lost, 1.0)
         own_damper = (
             term(p["viscous"] * side * v * np.where(bent, beyond, 0.0)),
             term(p["viscous"] * side * v * bend * np.where(bent, 1.0 - beyond, 1.0)),

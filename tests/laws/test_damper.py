@@ -79,6 +79,20 @@ def test_a_sharp_knee_is_a_corner(beyond: float) -> None:
     np.testing.assert_array_equal(force(**bend, damping_sharpness=2.0), force(**bend))
 
 
+def test_an_eddy_current_brake_and_a_silicone_damper() -> None:
+    brake = force(viscous=50.0, damping_knee=0.2, damping_beyond=0.0, damping_exponent=-1.0)
+    np.testing.assert_allclose(brake, 50.0 * SPEEDS / (1.0 + (SPEEDS / 0.2) ** 2), rtol=1e-14)
+    # most at the knee, half of what the straight line has there
+    assert np.max(brake) == pytest.approx(0.5 * 50.0 * 0.2, rel=0.02)
+    # beyond the knee a power of the speed
+    oil = {"damping_knee": 1e-4, "damping_beyond": 0.0, "damping_exponent": 0.35}
+    fast = abs(SPEEDS) > 1e-2
+    power = 700.0 * 1e-4**0.65 * np.sign(SPEEDS) * abs(SPEEDS) ** 0.35
+    np.testing.assert_allclose(force(viscous=700.0, **oil)[fast], power[fast], rtol=1e-4)
+    straight = force(viscous=700.0, **(oil | {"damping_exponent": 1.0}))
+    np.testing.assert_allclose(straight, 700.0 * SPEEDS, rtol=1e-14)
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
     rng = np.random.default_rng([28, seed])
@@ -91,6 +105,8 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
         values["damping_knee_back"] = around(rng, 0.1, 1.0)
     if seed % 5:
         values["damping_sharpness"] = float(rng.uniform(1.0, 64.0))
+    if seed % 7:
+        values["damping_exponent"] = float(rng.uniform(-1.0, 1.0))
     if seed % 3:
         values["damping_beyond_back"] = float(rng.uniform(0, 4))
     found = force(**values)
@@ -108,7 +124,7 @@ def test_core_and_reference_agree_and_take_energy(seed: int) -> None:
     [
         ("damping_asymmetry", 1.5), ("damping_knee", -0.1), ("damping_beyond", -1),
         ("damping_knee_back", -0.1), ("damping_beyond_back", -1), ("damping_sharpness", 0.5),
-        ("damping_sharpness", 65),
+        ("damping_sharpness", 65), ("damping_exponent", -1.5), ("damping_exponent", 1.1),
     ],
 )  # fmt: skip
 def test_a_value_out_of_range_is_refused_by_name(name: str, value: float) -> None:

@@ -121,6 +121,7 @@ def meant(draw: st.DrawFn) -> Values:
             "damping_knee": draw(st.floats(0.0, 10.0)),
             "damping_beyond": draw(st.floats(0.0, 10.0)),
             "damping_sharpness": draw(st.floats(1.0, 64.0)),
+            "damping_exponent": draw(st.floats(-1.0, 1.0)),
             "damping_knee_back": draw(st.floats(0.0, 10.0)),
             "damping_beyond_back": draw(st.floats(0.0, 10.0)),
             "stiffness": draw(st.floats(0.0, 2e4)),

@@ -50,3 +50,7 @@ def bristle(values: Values) -> None:
     limit = distance ** -values.get("bw_exponent", 1.0)
     values["bw_stiffness"] = level / distance / (1 - values.get("bw_ratio", 0.0))
     values["bw_beta"], values["bw_gamma"] = shape * limit, (1 - shape) * limit
+
+
+def power_knee(values: Values) -> None:
+    values["damping_knee"] = values.pop("damping_power_knee")

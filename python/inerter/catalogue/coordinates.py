@@ -13,6 +13,7 @@ is the combination that the data see:
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
     gas_reach_above  the same of a gas that is compressed as the device lengthens               [m]
     branch_time_1, _2, _3  branch_damping / branch_stiffness, in which a branch relaxes          [s]
+    damping_power_knee  damping_knee where damping goes with a power of the speed beyond it  [m/s]
     friction_place  where in the free play before the friction a run begins, where its first force
                     does not tell: -1 ... 1 of half the play   [-], not a device parameter
 
@@ -367,7 +368,14 @@ COORDINATES: Mapping[str, Coordinate] = MappingProxyType({each.name: each for ea
 # a level that breaks away is told from the distance of a bristle before that is taken
 _CONVERTED = tuple(
     COORDINATES[name]
-    for name in ("gas_push", "series_frequency", "static_excess", "presliding", "branch_time_1")
+    for name in (
+        "gas_push",
+        "series_frequency",
+        "static_excess",
+        "presliding",
+        "branch_time_1",
+        "damping_power_knee",
+    )
 )
 
 CHANNEL_UNITS: Mapping[str, str] = MappingProxyType(

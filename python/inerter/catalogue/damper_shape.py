@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inerter.catalogue import combinations
 from inerter.catalogue.coordinate import Coordinate
 
 
@@ -31,6 +32,16 @@ COORDINATES = (
     Coordinate(
         name="damping_sharpness", unit="1", words={"damping_sharpness": "sharpness of the knee n"},
         lower=lambda s: 1.0, upper=lambda s: 64.0, logarithmic=True, none=None,
+    ),
+    Coordinate(
+        name="damping_power_knee", unit="m/s", words={"damping_knee": "knee of the damping v_k"},
+        none=None, size=lambda s: s.velocity, lower=lambda s: 2e-3 * s.velocity,
+        upper=lambda s: 5 * s.velocity, logarithmic=True, to_parameters=combinations.power_knee,
+    ),
+    Coordinate(
+        name="damping_exponent", unit="1",
+        words={"damping_exponent": "power of the speed beyond the knee"},
+        lower=lambda s: -1.0, upper=lambda s: 1.0, none=None,
     ),
 )  # fmt: skip
 """All of them."""

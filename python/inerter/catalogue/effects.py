@@ -342,17 +342,19 @@ _ALL = (
         name="digressive_damping", rank=12, kind="damper",
         coordinates=(
             "damping_knee", "damping_beyond", "damping_knee_back", "damping_beyond_back",
-            "damping_sharpness",
+            "damping_sharpness", "damping_power_knee", "damping_exponent",
         ),
         telling=(),
         reported=(
             "viscous", "damping_knee", "damping_beyond", "damping_knee_back",
-            "damping_beyond_back", "damping_sharpness",
+            "damping_beyond_back", "damping_sharpness", "damping_exponent",
         ),
         far=True,
         plain="damping that bends with the speed",
-        meaning="c v up to a speed v_k, beyond it less for every further m/s, or more",
-        cause="a valve that opens, one for each direction, shear thinning of the oil",
+        meaning="c v up to a speed v_k, beyond it less for every further m/s, or more; or a power "
+        "of the speed",
+        cause="a valve that opens, one for each direction, shear thinning of the oil, an "
+        "eddy-current brake",
         taken_for="Coulomb with viscous friction",
         experiment="run slow strokes, there the force goes with the speed and friction does not",
         rivals=("coulomb_friction", "stribeck_friction", "quadratic_damping"),

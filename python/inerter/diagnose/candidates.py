@@ -24,6 +24,7 @@ from inerter.catalogue.friction import (
     FrictionLaw,
 )
 from inerter.catalogue.scales import Scales
+from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import carries, has_series, width
 from inerter.diagnose.stated import shafts, stated_candidates
@@ -181,36 +182,18 @@ def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 
 def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    """A damper's shape, with the damping that has it where there is none.
-
-    Where it bends, it may bend more sharply, and in each direction by itself.
-    """
+    """A damper's shape, with the damping that has it where there is none."""
     if all(name in model.free for name in effect.coordinates):
         return
-    if "damping_knee" in effect.coordinates and "damping_knee" in model.free:
-        if "damping_knee_back" not in model.values:
-            knee, beyond = (model.values[name] for name in ("damping_knee", "damping_beyond"))
-            places = [{"damping_knee_back": ratio * knee} for ratio in (1.0, 0.4, 2.5)]
-            opens = tuple(model.adding(None, **place) for place in places)
-            yield Candidate(effect.name, "knees", opens)
-            both = tuple(start.adding(None, damping_beyond_back=beyond) for start in opens)
-            yield Candidate(effect.name, "directions", both)
-        elif "damping_beyond_back" not in model.values:
-            beyond = model.adding(None, damping_beyond_back=model.values["damping_beyond"])
-            yield Candidate(effect.name, "slopes", (beyond,))
-        if "damping_sharpness" not in model.values:
-            sharper = tuple(model.adding(None, damping_sharpness=n) for n in (3.0, 8.0))
-            yield Candidate(effect.name, "sharp", sharper)
+    if effect.name == bent_damping.EFFECT and bent_damping.is_bent(model):
+        yield from bent_damping.bends_more(model)
         return
     linear = model.values.get("viscous", 0.0) or 0.5 * sizes.force / sizes.velocity
-    starts = [{"viscous": linear, effect.coordinates[0]: 0.0}]
-    if effect.name == "digressive_damping":
-        starts = [
-            {"viscous": slope * linear, "damping_knee": knee * sizes.velocity,
-             "damping_beyond": beyond}
-            for slope, knee, beyond in ((3.0, 0.25, 0.2), (1.5, 1.0, 0.3), (0.7, 1.0, 3.0))
-        ]  # fmt: skip
-    yield Candidate(effect.name, None, tuple(model.adding(None, **each) for each in starts))
+    if effect.name == bent_damping.EFFECT:
+        yield from bent_damping.bends(model, linear, sizes)
+        return
+    start = {"viscous": linear, effect.coordinates[0]: 0.0}
+    yield Candidate(effect.name, None, (model.adding(None, **start),))
 
 
 _OF_KIND: dict[str, Build] = {

@@ -20,6 +20,7 @@ from inerter.catalogue.friction import (
     PLAY_COORDINATES,
 )
 from inerter.catalogue.scales import Scales
+from inerter.diagnose.bent_damping import bends_less
 from inerter.diagnose.decision import CRITERIA
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
@@ -81,7 +82,12 @@ def distinction(effect: str, fit: Fit, baseline: Model) -> float:
         return 0.0
     if effect == "digressive_damping":
         # with a knee that is passed at once it is friction, and no damping below it is known
-        return _per_error(*parameter_errors(fit).get("viscous", (1.0, 0.0)))
+        found = [_per_error(*parameter_errors(fit).get("viscous", (1.0, 0.0)))]
+        if "damping_exponent" in (errors := _errors(fit)):
+            # unless the power is known to be another than that of friction, and of a straight line
+            power = fit.model.values["damping_exponent"]
+            found.append(_per_error(min(abs(power), abs(1 - power)), errors["damping_exponent"]))
+        return float(max(found))
     if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
         return _per_error(*parameter_errors(fit).get("series_stiffness", (1.0, 0.0)))
@@ -276,7 +282,7 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         return [model.without((f"branch_stiffness_{last}", f"branch_time_{last}")), without]
     if effect in (*_LEVELS, *_DAMPERS):
         # the variation of the level, the bend of the damping alone, which may be less of one
-        if effect == "digressive_damping" and (fewer := _less_of_a_bend(model)):
+        if effect == "digressive_damping" and (fewer := bends_less(model)):
             return [*fewer, without]
         return [model.without(EFFECTS[effect].coordinates), without]
     return [without]
@@ -289,13 +295,6 @@ def _less_of_a_stop(model: Model) -> list[Model]:
     return [
         model.without((name,)) for name in (*names, "stop_stiffness_cubic") if name in model.free
     ]
-
-
-def _less_of_a_bend(model: Model) -> list[Model]:
-    """The model with damping that bends alike in both directions, and gently."""
-    back = ("damping_knee_back", "damping_beyond_back")
-    parts = (back, back[1:], ("damping_sharpness",))
-    return [model.without(names) for names in parts if not {*names}.isdisjoint(model.free)]
 
 
 def _fewer_periods(model: Model, effect: str) -> list[Model]:

@@ -11,6 +11,7 @@ import numpy as np
 from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES
+from inerter.diagnose.bent_damping import is_bent, knee_of
 from inerter.diagnose.composition import level_and_distance
 from inerter.diagnose.statistics import Array
 from inerter.identify.model import Model
@@ -111,11 +112,10 @@ def as_weight(model: Model) -> list[Model]:
 def _as_one_that_bends_less(model: Model) -> list[Model]:
     """For damping that bends: quadratic damping, Coulomb friction, each with a damper, too."""
     bends = EFFECTS["digressive_damping"].coordinates
-    if "damping_knee" not in model.free:
+    if not is_bent(model):
         return []
-    damping, knee, beyond = (
-        model.values[name] for name in ("viscous", "damping_knee", "damping_beyond")
-    )
+    damping, beyond = (model.values[name] for name in ("viscous", "damping_beyond"))
+    knee = knee_of(model)
     bare = model.without((*bends, "viscous"))
     if beyond > 1.0:
         if "quadratic_damping" in model.values:

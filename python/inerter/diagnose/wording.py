@@ -241,8 +241,23 @@ def evidence(finding: Finding) -> str:
     if likely:
         others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
         text += f"; {others} would explain these data nearly as well"
-    guesses = (_of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack)
+    guesses = (_of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack, _of_a_power)
     return in_digits(f"{text}{''.join(guess(finding) for guess in guesses)}.")
+
+
+def _of_a_power(finding: Finding) -> str:
+    """What damping that goes with a power of the speed is far beyond its knee."""
+    names = ("viscous", "damping_knee", "damping_exponent")
+    if not {*names} <= finding.parameters.keys() or "damping_beyond" in finding.parameters:
+        return ""
+    viscous, knee, power = (finding.parameters[name].value for name in names)
+    newton, speed = words(finding.motion, "N"), words(finding.motion, "m/s")
+    level = viscous * knee ** (1 - power)
+    falls = " (an eddy-current brake has -1)" if power < 0 else ""
+    return (
+        f"; far beyond the knee it is {level:.3g} {newton} at 1 {speed} and goes with the speed to "
+        f"the power of {power:.3g}{falls}"
+    )
 
 
 def _of_a_gear(finding: Finding) -> str:

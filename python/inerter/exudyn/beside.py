@@ -43,13 +43,13 @@ def _bent(f: Functions, p: Parameters, v: Value, knee: float, beyond: float) -> 
     """Velocity [m/s] that viscous damping is in proportion to."""
     if knee == 0.0:
         return v
-    ratio, n = v / knee, p.damping_sharpness
-    if n == 2.0:
+    ratio, n, lost = v / knee, p.damping_sharpness, 1.0 - p.damping_exponent
+    if n == 2.0 and lost == 1.0:
         return v * (beyond + (1.0 - beyond) / f.sqrt(1.0 + ratio * ratio))
     speed = f.abs(ratio)
     slow, fast = f.least(speed, 1.0), f.greatest(speed, 1.0)
-    below = f.power(1.0 + f.power(slow, n), -1.0 / n)
-    above = f.power(1.0 + f.power(fast, -n), -1.0 / n) / fast
+    below = f.power(1.0 + f.power(slow, n), -lost / n)
+    above = f.power(1.0 + f.power(fast, -n), -lost / n) * f.power(fast, -lost)
     return v * (beyond + (1.0 - beyond) * f.choose(speed < 1.0, below, above))
 
 

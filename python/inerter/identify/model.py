@@ -101,6 +101,9 @@ class Model:
         the low-pass of the measured force takes some of that away.
         """
         known, rough = parameters(), {*JUMPS, *BENDS, "gas_law", *lists()}
+        if "damping_exponent" in self.values:
+            # a slope at rest that may be many times what the motion meets
+            rough.add("viscous")
         return self._part(lambda n: n not in rough and not (n in known and known[n].laws))
 
     @cached_property

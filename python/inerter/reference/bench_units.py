@@ -81,6 +81,12 @@ def _digressive(draw: Generator, ideal: ReferenceDevice, runs: list[Situation]) 
         damping_beyond=rounded(draw.uniform(0.1, 0.4)),
     )
     names = ("viscous", "damping_knee", "damping_beyond")
+    if draw.random() < 1.0 / 4.0:
+        # oil that thins, or an eddy-current brake
+        power = draw.choice([-1.0, rounded(draw.uniform(0.25, 0.6))])
+        unit = replace(unit, damping_beyond=0.0, damping_exponent=float(power))
+        names = ("viscous", "damping_knee", "damping_exponent")
+        return Unit(device=unit, channel=Channel(), scaling=("viscous",), names=names)
     if draw.random() < 1.0 / 3.0:
         # the valve of the other direction opens at another speed
         ratio = draw.uniform(1.6, 2.5) ** draw.choice([-1.0, 1.0])

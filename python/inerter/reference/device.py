@@ -372,7 +372,7 @@ class ReferenceDevice(DeviceStates):
         knee, beyond = self.damping_knee_back, self.damping_beyond_back
         back = forth[0] if np.isnan(knee) else knee, forth[1] if np.isnan(beyond) else beyond
         quadratic, asymmetry = self.quadratic_damping, self.damping_asymmetry
-        bend = forth, back, self.damping_sharpness
+        bend = forth, back, self.damping_sharpness, self.damping_exponent
         return parallel.damping_force(v, viscous, quadratic, asymmetry, *bend)
 
     def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:

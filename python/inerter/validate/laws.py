@@ -76,6 +76,8 @@ LAWS = {
         _law("damper_each_way", "corner", viscous=2e3, damping_asymmetry=0.4, damping_knee=0.1,
              damping_beyond=0.25, damping_knee_back=0.2, damping_beyond_back=1.5,
              damping_sharpness=6.0),
+        _law("eddy_current_brake", "smooth", viscous=2e3, damping_knee=0.1, damping_beyond=0.0,
+             damping_exponent=-1.0),
         _law("speed_inertance", "corner", inertance_speed_gradient=1.0),
         _law("channel", "corner", piston_area=1.649e-3, channel_area=2.827e-5, channel_length=1.34,
              fluid_density=998.0, fluid_viscosity=1e-3, channel_roughness=1e-5, minor_loss=2.5),

@@ -9,6 +9,7 @@ import numpy as np
 
 from inerter.diagnose.along_stroke import is_drawn
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
+from inerter.diagnose.bent_damping import is_bent
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     DRIVE,
@@ -200,7 +201,7 @@ def _behind_low_pass(
     scales, model = start.data.band.scales, final.model
     named, stated = effects_of(model, start.baseline), filters_of(start.baseline.values)
     # without a jump it is no more than late
-    jumps = model.friction != "none" or "damping_knee" in model.free
+    jumps = model.friction != "none" or is_bent(model)
     if not scales.one_tone or not named or not jumps or "backlash" in model.free or stated:
         return search, final
     start.given.progress("one sine: searching once more, from a low-pass of the force on")

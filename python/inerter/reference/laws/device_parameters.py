@@ -59,6 +59,9 @@ class DeviceParameters(FrictionParameters):
     damping_sharpness: float = parameter(
         2.0, "-", "how sharply it bends there: 2 gently, 64 a corner", at_least=1.0, at_most=64.0
     )
+    damping_exponent: float = parameter(
+        0.0, "-", "power of the speed beyond it of what bends", at_least=-1.0, at_most=1.0
+    )
     damping_knee_back: float = parameter(
         UNSET, "m/s", "the same speed while x shrinks, damping_knee where not given", at_least=0.0
     )

@@ -1,11 +1,11 @@
 """The branches beside inertance and friction: dampers, springs, offset.
 
     F = (1 + kappa sgn v) (c D(v) + c2 v |v|) + k (x - l0) + k3 (x - l0)^3 + f0
-    D(v) = r v + (1 - r) v / (1 + |v / v_k|^n)^(1 / n), v without a knee, v_k and r by the sign of v
+    D(v) = r v + (1 - r) v (1 + |v / v_k|^n)^((alpha - 1) / n), v without a knee; v_k, r by sgn(v)
 
 Symbols: c `viscous` [N s/m], c2 `quadratic_damping` [N s^2/m^2], kappa `damping_asymmetry`,
 v_k `damping_knee` [m/s], r `damping_beyond` (v < 0: `damping_knee_back`, `damping_beyond_back`,
-where given), n `damping_sharpness`, k `stiffness` [N/m],
+where given), n `damping_sharpness`, alpha `damping_exponent`, k `stiffness` [N/m],
 k3 `stiffness_cubic` [N/m^3], l0 `rest_length` [m], f0 `force_offset` [N].
 Sign: tension positive.
 Range: passive for c, c2 >= 0; the offset is work done from outside and counts as neither
@@ -33,14 +33,16 @@ def spring_energy(extension: Quantity, stiffness: float, stiffness_cubic: float)
     return (0.5 * stiffness + 0.25 * stiffness_cubic * square) * square
 
 
-def _bent(velocity: Quantity, knee: float, beyond: float, sharpness: float) -> Quantity:
+def _bent(
+    velocity: Quantity, knee: float, beyond: float, sharpness: float, exponent: float
+) -> Quantity:
     """D [m/s] at the velocity [m/s]."""
     if not knee:
         return velocity
     speed = abs(velocity)
     larger, smaller = np.maximum(speed, knee), np.minimum(speed, knee)
     size = larger * (1.0 + (smaller / larger) ** sharpness) ** (1.0 / sharpness)
-    return velocity * (beyond + (1.0 - beyond) * knee / size)
+    return velocity * (beyond + (1.0 - beyond) * (knee / size) ** (1.0 - exponent))
 
 
 def damping_force(
@@ -51,10 +53,11 @@ def damping_force(
     forth: tuple[float, float] = (0.0, 1.0),
     back: tuple[float, float] | None = None,
     sharpness: float = 2.0,
+    exponent: float = 0.0,
 ) -> Quantity:
     """Damper force [N] at the velocity [m/s]; knee [m/s] and slope beyond it, forth and back."""
-    bent = _bent(velocity, *forth, sharpness)
+    bent = _bent(velocity, *forth, sharpness, exponent)
     if back is not None and back != forth:
-        bent = np.where(np.less(velocity, 0.0), _bent(velocity, *back, sharpness), bent)
+        bent = np.where(np.less(velocity, 0.0), _bent(velocity, *back, sharpness, exponent), bent)
     force = viscous * bent + quadratic_damping * abs(velocity) * velocity
     return force + asymmetry * abs(force)

@@ -1,0 +1,94 @@
+"""Damping that bends with the speed, where a search begins with it, and how it may bend more.
+
+Two straight lines, of one valve or of one for each direction, gently or in a corner; or a power of
+the speed beyond the knee, of oil that thins and of brakes whose force falls. The knee of a power
+may be far below the speeds of the motion: there it is what rounds the corner of a true power.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from inerter.catalogue.effects import EFFECTS
+from inerter.catalogue.scales import Scales
+from inerter.diagnose.candidate import Candidate
+from inerter.identify.model import Model
+
+EFFECT = EFFECTS["digressive_damping"].name
+_LINE, _POWER = "damping_knee", "damping_power_knee"
+_BACK = ("damping_knee_back", "damping_beyond_back")
+# slope at rest over that of a straight line, knee over a typical speed, power
+_POWERS = ((20.0, 0.01, 0.35), (3.0, 0.2, 0.5), (2.0, 0.5, -0.8), (1.0, 1.5, -0.8))
+
+
+def is_bent(model: Model) -> bool:
+    """Whether damping bends already."""
+    return not {_LINE, _POWER}.isdisjoint(model.free)
+
+
+def knee_of(model: Model) -> float:
+    """Its knee [m/s]."""
+    return model.values[_POWER if _POWER in model.values else _LINE]
+
+
+def bends(model: Model, linear: float, sizes: Scales) -> Iterator[Candidate]:
+    """Of damping that is straight, about what it has for all of it [N s/m]."""
+    lines = tuple(
+        model.adding(
+            None, viscous=slope * linear, damping_knee=knee * sizes.velocity, damping_beyond=beyond
+        )
+        for slope, knee, beyond in ((3.0, 0.25, 0.2), (1.5, 1.0, 0.3), (0.7, 1.0, 3.0))
+    )
+    yield Candidate(EFFECT, None, lines)
+    bare = model.without(EFFECTS[EFFECT].coordinates).holding(damping_beyond=0.0)
+    powers = tuple(
+        bare.adding(
+            None, viscous=slope * linear, damping_power_knee=knee * sizes.velocity,
+            damping_exponent=power,
+        )
+        for slope, knee, power in _POWERS
+    )  # fmt: skip
+    yield Candidate(EFFECT, "power", powers)
+
+
+def bends_more(model: Model) -> Iterator[Candidate]:
+    """Of damping that bends: sharply, in each direction by itself, with a power, to a line."""
+    values = model.values
+    knee, beyond = knee_of(model), values["damping_beyond"]
+    if _POWER in values:
+        if "damping_beyond" not in model.free:
+            yield Candidate(EFFECT, "beyond", (model.adding(None, damping_beyond=0.1),))
+        return
+    if "damping_sharpness" not in values:
+        sharper = tuple(model.adding(None, damping_sharpness=n) for n in (3.0, 8.0))
+        yield Candidate(EFFECT, "sharp", sharper)
+    if "damping_knee_back" not in values:
+        opens = tuple(
+            model.adding(None, damping_knee_back=ratio * knee) for ratio in (1.0, 0.4, 2.5)
+        )
+        yield Candidate(EFFECT, "knees", opens)
+        both = tuple(start.adding(None, damping_beyond_back=beyond) for start in opens)
+        yield Candidate(EFFECT, "directions", both)
+        bare = model.without((_LINE, "damping_sharpness"))
+        powers = tuple(
+            bare.adding(None, damping_power_knee=knee, damping_exponent=power)
+            for power in (0.4, -0.6)
+        )
+        yield Candidate(EFFECT, "power", powers)
+    elif "damping_beyond_back" not in values:
+        slopes = model.adding(None, damping_beyond_back=beyond)
+        yield Candidate(EFFECT, "slopes", (slopes,))
+
+
+def bends_less(model: Model) -> list[Model]:
+    """The model with damping that bends alike in both directions, gently, to a straight line."""
+    parts = (_BACK, _BACK[1:], ("damping_sharpness",))
+    less = [model.without(names) for names in parts if not {*names}.isdisjoint(model.free)]
+    if _POWER not in model.free:
+        return less
+    knee, beyond = model.values[_POWER], model.values["damping_beyond"]
+    line = model.without((_POWER, "damping_exponent"))
+    less.append(line.adding(None, damping_knee=knee, damping_beyond=beyond))
+    if "damping_beyond" in model.free:
+        less.append(model.without(("damping_beyond",)).holding(damping_beyond=0.0))
+    return less
