@@ -42,6 +42,13 @@ from inerter.diagnose.result import (
     RunCurves,
 )
 from inerter.diagnose.run_constants import constants_in_words, explained
+from inerter.diagnose.run_scales import (
+    is_met_better,
+    odd_scale,
+    scales_in_words,
+    together,
+    without_scale,
+)
 from inerter.diagnose.shape_of_stop import as_shape_of_stop
 from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
 from inerter.diagnose.standstill import without_standstill
@@ -121,6 +128,8 @@ def diagnose_bench(
     quiet = np.errstate(over="ignore", invalid="ignore")
     with helped(), threadpool_limits(limits=1, user_api="blas"), quiet:
         stands, long = _stood(given)
+        if not long:
+            given, stands = _with_scale(given, stands)
         other = None if time.is_over() else other_split_of(stands)
         if other and not long and not given.holdout:
             better = _with_other_split(given, stands, *other)
@@ -142,6 +151,31 @@ def _with_other_split(given: Given, stands: Confirmed, name: str, effect: str) -
         for each in (stands, again)
     )
     return again if after < (1 - CRITERIA.gain) * before else None
+
+
+def _with_scale(given: Given, stands: Confirmed) -> tuple[Given, Confirmed]:
+    """What stands without another scale of a run's force, where one shows; what was given for it.
+
+    What was found beside it may have made up for a part of it: it is looked for twice.
+    """
+    for _ in range(2):
+        final = stands.fit.model
+        errors, noise = stands.data.raw.errors(final), stands.judge.noise_left(final)
+        odd = odd_scale(stands.data.whole, errors, noise)
+        if not odd or given.time.is_over():
+            break
+        given.progress(f"the force of {next(iter(odd))} has another scale: without that")
+        records = without_scale(given.records, odd)
+        scaled = replace(given, records=records, scales=together(given.scales, odd))
+        again = confirmed(settled(searched(prepared(scaled))))
+        after = again.data.raw.errors(again.fit.model)
+        before, after = (
+            rms(each, [run.inner for run in stands.data.whole]) for each in (errors, after)
+        )
+        if not is_met_better(before, after, given.scales):
+            break
+        given, stands = scaled, again
+    return given, stands
 
 
 def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
@@ -257,12 +291,18 @@ def diagnosis_of(
         parameters=values,
         method=_method(stands)
         | {"run_constants": dict(stands.searched.prepared.constants)}
-        | {"missed_runs": missed, "other_split": other, "steps": steps},
+        | {
+            "missed_runs": missed,
+            "other_split": other,
+            "steps": steps,
+            "run_scales": dict(given.scales),
+        },
         notes=[
             note
             for note in (
                 constants_in_words(stands.searched.prepared.constants, motion),
                 missed_in_words(missed, extended.rmse, motion),
+                scales_in_words(given.scales, motion),
                 about_split,
                 steps_in_words(steps, motion),
                 given.left_out,

@@ -44,6 +44,8 @@ class Given:
         What of the records was left out before, in a sentence.
     time
         How long to search.
+    scales
+        Scales that were taken off the forces of runs, and their standard errors.
     """
 
     records: Sequence[Record]
@@ -54,6 +56,7 @@ class Given:
     carry: Carrying = "any"
     left_out: str = ""
     time: TimeLimit = field(default_factory=TimeLimit)
+    scales: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -197,6 +197,11 @@ def _tell(
                 "dry friction": "strokes at several speeds, a slow one among them",
             }[name],
         )
+    if value < 0 and stderr < SURE * abs(value) and name.endswith("friction"):
+        return Tell(
+            **base, verdict="not told", reason="a linear model makes it negative, other laws act",
+            motion="the laws of `inerter diagnose`",
+        )  # fmt: skip
     if stderr < SURE * abs(value):
         return Tell(**base, verdict="told")
     if name == "inertance":

@@ -39,7 +39,10 @@ LEAST_SHOWN = 0.05
 # times the extended model's error from which an engine's is another
 STRAYS = 1.1
 # entries of `method` that have a place of their own on the page
-_PLACED = ("cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants")
+_PLACED = (
+    "cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants",
+    "run_scales",
+)  # fmt: skip
 _METHOD_WORDS = {
     "cutoff": "smoothing cut-off [Hz]",
     "channels": "motion taken from",

@@ -1,0 +1,95 @@
+"""A run whose force has another scale than that of the others: another range or calibration.
+
+Whatever acts in a device, a wrong scale multiplies all of it in one run alike, and leaves the other
+runs as they are. It shows in what was found for all of them, which may have causes that are none
+to make up for it: without it all is found anew, and it stands where that is met better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.identify.runs import BenchRun
+from inerter.measured_text import measured
+from inerter.motion_units import TRANSLATION, Kind, force_word
+from inerter.records import Record
+
+Array = NDArray[np.float64]
+Scales = Mapping[str, tuple[float, float]]
+
+# a scale is tried from so many standard errors on, this deviation, so many times the spread of the
+# others, and where it takes this share of what is missed of the run beyond the noise
+SURE, LEAST, TIMES, SHARE = 5.0, 0.003, 4.0, 0.1
+# stretches of a run that count as independent; runs that it takes to tell which is the odd one
+STRETCHES, RUNS = 12, 3
+# it stands where all runs are met so much better without it
+BETTER = 0.85
+
+
+def odd_scale(runs: Sequence[BenchRun], errors: Sequence[Array], noise: float) -> Scales:
+    """Scale of a run's force over that of the others, and its standard error; at most one run.
+
+    errors: measured minus predicted force of every run (n,) [N]; noise: rms [N].
+    """
+    if len(runs) < RUNS or any(run.part or run.inner.sum() < 10 * STRETCHES for run in runs):
+        return {}
+    found = [_scale(run, error) for run, error in zip(runs, errors, strict=True)]
+    scales, stderrs = np.array(found).T
+    odd = int(np.argmax(abs(scales - np.median(scales))))
+    others = np.delete(scales, odd)
+    about, spread = float(np.mean(others)), float(np.std(others, ddof=1))
+    apart = scales[odd] - about
+    if not (about > 0 and abs(apart) > max(SURE * stderrs[odd], LEAST, TIMES * spread)):
+        return {}
+    run, missed = runs[odd], errors[odd]
+    left = missed - apart * (run.force - missed)
+    before, after = (float(np.var(e[run.inner])) - noise**2 for e in (missed, left))
+    if not after < (1.0 - SHARE) * before:
+        return {}
+    return {run.name: (float(scales[odd] / about), float(np.hypot(stderrs[odd], spread)) / about)}
+
+
+def without_scale(records: Sequence[Record], scales: Scales) -> list[Record]:
+    """Records with the force of a run divided by its scale."""
+    return [
+        replace(r, force=r.force / scales[r.name][0]) if r.name in scales else r for r in records
+    ]
+
+
+def together(known: Scales, more: Scales) -> Scales:
+    """Scales of runs from which some were taken before."""
+    before = {name: value for name, (value, _) in known.items()}
+    return dict(known) | {n: (v * before.get(n, 1.0), e) for n, (v, e) in more.items()}
+
+
+def is_met_better(before: float, after: float, known: Scales) -> bool:
+    """Whether errors of all runs [N] say that a scale is one; it may be refined by little."""
+    return after < (1.0 if known else BETTER) * before
+
+
+def scales_in_words(scales: Scales, motion: Kind = TRANSLATION) -> str:
+    """A sentence about the run with another scale; empty where there is none."""
+    return " ".join(
+        f"The {force_word(motion)} of {name} is {measured(value, error)} times what the other runs "
+        "tell, all of it alike, as of another range or calibration: that is no cause in the "
+        "device, and it was divided by that."
+        for name, (value, error) in scales.items()
+    )
+
+
+def _scale(run: BenchRun, error: Array) -> tuple[float, float]:
+    """Measured over predicted force of a run, with the standard error over its stretches."""
+    force = run.force[run.inner]
+    predicted = force - error[run.inner]
+    predicted, force = predicted - predicted.mean(), force - force.mean()
+    square = float(predicted @ predicted)
+    if square <= 0:
+        return 1.0, np.inf
+    scale = float(predicted @ force) / square
+    left = predicted * (force - scale * predicted)
+    scores = [float(part.sum()) for part in np.array_split(left, STRETCHES)]
+    return scale, float(np.sqrt(np.sum(np.square(scores)))) / square
