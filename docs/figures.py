@@ -236,7 +236,7 @@ def dampers() -> None:
         "viscous": Device(viscous=1000),
         "damping_asymmetry 0.4": Device(viscous=1000, damping_asymmetry=0.4),
         "damping_knee 0.1, damping_beyond 0.2": Device(**bent),
-        "all three, damping_knee_back 0.25, damping_sharpness 8": Device(
+        "the three, knee_back 0.25, sharpness 8": Device(
             **bent, damping_asymmetry=0.4, damping_knee_back=0.25, damping_sharpness=8
         ),
     } | {f"damping_exponent {n}": Device(**brake, damping_exponent=n) for n in (-1, 0.35)}
@@ -248,7 +248,7 @@ def dampers() -> None:
         axes.plot(speeds, force, style, label=name)
     axes.set_xlabel("velocity [m/s]")
     axes.set_ylabel("force [N]")
-    axes.legend()
+    axes.legend(loc="upper left", bbox_to_anchor=(1, 1), fontsize="small")
     _save(figure, "dampers")
 
 
