@@ -95,7 +95,7 @@ def missed_in_words(found: dict[str, float], held: float, motion: Kind = TRANSLA
     newton = words(motion, "N")
     runs = " and ".join(f"{name} by {error:.3g} {newton} rms" for name, error in found.items())
     return (
-        f"What is held out is met better than what was fitted ({held:.3g} {newton} rms): the "
+        f"Held-out data are met to {held:.3g} {newton} rms, but not all that was fitted: the "
         f"extended model misses {runs}."
     )
 

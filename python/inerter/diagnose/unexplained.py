@@ -12,7 +12,7 @@ A formula may be proposed for it (`remainder/proposal.py`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,8 +115,10 @@ def unexplained(
         found = np.zeros_like(found)
         details.clear()
     power = remainder.data.power
-    shares = _shares(remainder.data.residual[held_out], held_out, chosen, raw)
-    tests = _rows(first, power)
+    # as in the table of the report: by each alone, of all data
+    by_each = {name: max(first.tests[name].share, each.share) for name, each in chosen}
+    shares = {name: float(np.clip(share, 0.0, 1.0)) for name, share in by_each.items()}
+    tests = _rows(first, power, by_each)
     predicted = structure
 
     # what oscillates without a phase, above the band too
@@ -125,7 +127,7 @@ def unexplained(
         louder = bursts(whole, rest, _held_at(whole, runs, split), remainder.sizes)
         tests.append(_row("bursts", louder.share, louder.share_held_out, louder.size, louder.p))
         if _loud(louder, floor, force, len(first.tests)):
-            shares["bursts"] = min((louder.size / raw) ** 2, 1.0)
+            shares["bursts"] = float(np.clip(louder.share, 0.0, 1.0))
             details["bursts"] = _burst_words(louder)
             structure = float(np.hypot(structure, louder.size))
     depends = ["harmonics" if n == "frequency" and outcome.lines.multiple else n for n in shares]
@@ -164,6 +166,7 @@ def unexplained(
         above,
         (left, min(run.cutoff for run in runs)) if left < BELOW * raw else None,
         predicted,
+        None if depends else _too_small(first, power, remainder.channels),
     )
     return Unexplained(
         significant=significant,
@@ -185,21 +188,6 @@ def _taken(residual: Array, predicted: Array) -> float:
     if not residual.size:
         return 0.0
     return float(np.sqrt(max(np.mean(residual**2 - (residual - predicted) ** 2), 0.0)))
-
-
-def _shares(
-    residual: Array,
-    held_out: NDArray[np.bool_],
-    chosen: Sequence[tuple[str, LearntPart]],
-    raw: float,
-) -> dict[str, float]:
-    """Share of the square of what remains, `raw` [N] rms, that each takes away after the others."""
-    shares = {}
-    for name, prediction in chosen:
-        values = prediction.values[held_out]
-        shares[name] = min((_taken(residual, values) / raw) ** 2, 1.0) if raw > 0 else 0.0
-        residual = residual - values
-    return shares
 
 
 def _remainder(
@@ -287,12 +275,30 @@ def _row(name: str, share: float, held_out: float, size: float, p: float) -> dic
     }
 
 
-def _rows(outcome: Tested, power: float) -> list[dict[str, float | str]]:
-    rows = [
-        _row(name, p.share, p.share_held_out, float(np.sqrt(max(p.share, 0.0) * power)), p.p)
-        for name, p in outcome.tests.items()
-    ]
+def _rows(outcome: Tested, power: float, told: Mapping[str, float]) -> list[dict[str, float | str]]:
+    """Of each test; `told`: shares of what was found, beside what was found before."""
+    rows = []
+    for name, p in outcome.tests.items():
+        share = told.get(name, p.share)
+        size = float(np.sqrt(max(share, 0.0) * power))
+        rows.append(_row(name, share, p.share_held_out, size, p.p))
     return sorted(rows, key=lambda row: -float(row["share"]))
+
+
+def _too_small(
+    outcome: Tested, power: float, channels: Collection[str]
+) -> tuple[str, float] | None:
+    """The test that predicts most for sure, though too little to count, and how much, rms [N]."""
+    sure = {
+        name: p.share
+        for name, p in outcome.tests.items()
+        if _real(p, len(outcome.tests)) and min(p.share, p.share_held_out) > FIRST_SHARE
+    }
+    if not sure:
+        return None
+    enough = PLAIN_ENOUGH * max(sure.values())
+    name = next(name for name in in_order(channels) if sure.get(name, 0.0) >= enough)
+    return name, float(np.sqrt(sure[name] * power))
 
 
 def _above(

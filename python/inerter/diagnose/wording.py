@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 
-from inerter.catalogue.along_stroke import FORMS, PERIODS, node_of
+from inerter.catalogue.along_stroke import FORMS, node_of
 from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
 from inerter.diagnose.cannot_tell import FEW, FEW_IN_WORDS, IN_WORDS
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import by_weight, descriptions, note, stand_ins, warning
+from inerter.diagnose.guesses import what_it_could_be
 from inerter.diagnose.result import (
     Diagnosis,
     Finding,
@@ -20,7 +20,6 @@ from inerter.diagnose.result import (
     Rival,
     StatedValue,
 )
-from inerter.diagnose.tone import of_mains
 from inerter.identify.channel_filter import USUAL_ORDER
 from inerter.measured_text import measured
 from inerter.motion_units import Kind, force_word, words
@@ -239,71 +238,14 @@ def evidence(finding: Finding) -> str:
         )
     likely = [r for r in finding.other_rivals if r.confidence >= CRITERIA.rival_told]
     if likely:
-        others = " or ".join(_rival_in_words(rival) for rival in likely[:2])
-        text += f"; {others} would explain these data nearly as well"
-    guesses = (_of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack, _of_a_power)
-    return in_digits(f"{text}{''.join(guess(finding) for guess in guesses)}.")
-
-
-def _of_a_power(finding: Finding) -> str:
-    """What damping that goes with a power of the speed is far beyond its knee."""
-    names = ("viscous", "damping_knee", "damping_exponent")
-    if not {*names} <= finding.parameters.keys() or "damping_beyond" in finding.parameters:
-        return ""
-    viscous, knee, power = (finding.parameters[name].value for name in names)
-    newton, speed = words(finding.motion, "N"), words(finding.motion, "m/s")
-    level = viscous * knee ** (1 - power)
-    falls = " (an eddy-current brake has -1)" if power < 0 else ""
-    return (
-        f"; far beyond the knee it is {level:.3g} {newton} at 1 {speed} and goes with the speed to "
-        f"the power of {power:.3g}{falls}"
-    )
-
-
-def _of_a_gear(finding: Finding) -> str:
-    """What a length that the ratio repeats with could be."""
-    length = finding.parameters.get("inertance_period_1")
-    if length is None:
-        return ""
-    millimetres = 1e3 * length.value
-    return (
-        f"; {millimetres:.3g} mm is one turn of a gear of {millimetres / (2 * math.pi):.3g} mm "
-        "radius or of a screw of that lead, or the pitch of its teeth"
-    )
-
-
-def _of_a_weight(finding: Finding) -> str:
-    """What a torque that is told to repeat with every turn could be."""
-    told = finding.parameters.keys()
-    turns = (
-        f"force_amplitude_{i}" in told and f"force_period_{i}" not in told
-        for i in range(1, PERIODS + 1)
-    )
-    if any(turns):
-        return "; once a turn: a weight that is out of balance about the axis"
-    return ""
-
-
-def _of_what_goes_slack(finding: Finding) -> str:
-    """That a force with a limit at 0 is no end of a channel's range."""
-    limits = [finding.parameters.get(name) for name in ("force_minimum", "force_maximum")]
-    if any(limit is not None and abs(limit.value) < 3 * limit.stderr for limit in limits):
-        return (
-            "; a limit at no force is no end of a channel's range: the device goes slack, or a "
-            "contact opens"
+        others = " or ".join(
+            "another form of it"
+            if (rival.effect, rival.law) == (finding.effect, None)
+            else _rival_in_words(rival)
+            for rival in likely[:2]
         )
-    return ""
-
-
-def _of_the_mains(finding: Finding) -> str:
-    """That a tone is hum, where it lies at a multiple of the frequency of the mains."""
-    tone = finding.parameters.get("disturbance_frequency")
-    found = of_mains(tone.value) if tone else None
-    if found is None:
-        return ""
-    times, mains = found
-    what = "the frequency" if times == 1 else f"{times} times the frequency"
-    return f"; this is {what} of the mains ({mains:g} Hz): hum, and no part of the device"
+        text += f"; {others} would explain these data nearly as well"
+    return in_digits(f"{text}{what_it_could_be(finding)}.")
 
 
 def is_right(diagnosis: Diagnosis) -> bool:
@@ -372,7 +314,11 @@ def _verdict(diagnosis: Diagnosis) -> str:
             f"held-out data, and no effect tried improves that. {diagnosis.unexplained.summary}"
         )
     first, *rest = by_weight(diagnosis.findings)
-    others = [effect_in_words(finding) for finding in rest]
+    # what its members share is sure
+    others = [
+        ("perhaps " if each.confidence < 0.5 and not each.members else "") + effect_in_words(each)
+        for each in rest
+    ]
     text = (
         f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
         f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause "

@@ -38,10 +38,12 @@ from inerter.report.subject import subject
 LEAST_SHOWN = 0.05
 # times the extended model's error from which an engine's is another
 STRAYS = 1.1
+# from this confidence on it is said that nothing else explains the data
+SURE = 0.9
 # entries of `method` that have a place of their own on the page
 _PLACED = (
     "cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants",
-    "run_scales",
+    "run_scales", "steps",
 )  # fmt: skip
 _METHOD_WORDS = {
     "cutoff": "smoothing cut-off [Hz]",
@@ -168,6 +170,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         "name": text.finding_name(finding),
         "key": finding.effect,
         "looks_like": finding.looks_like,
+        "sure": finding.confidence >= SURE and not finding.members,
         "both_ways": finding.law == "flanks",
         "confidence": text.confidence(finding.confidence),
         "parameters": [
@@ -334,7 +337,7 @@ def _strays(diagnosis: Diagnosis) -> list[str]:
 def _method(method: dict[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for key, value in method.items():
-        if key in _PLACED:
+        if key in _PLACED or value is None:
             continue
         if isinstance(value, bool):
             shown = "yes" if value else "no"

@@ -51,6 +51,7 @@ def summary(
     above: tuple[float, float, float] | None = None,
     beyond: tuple[float, float] | None = None,
     predicted: float | None = None,
+    too_small: tuple[str, float] | None = None,
 ) -> str:
     """One paragraph.
 
@@ -79,6 +80,8 @@ def summary(
         lies above it.
     predicted
         Rms of what the other data predict, value for value [N]; all of the structure if not given.
+    too_small
+        The test that predicts something for sure, though too little to count, and how much [N].
     """
     newton, force = words(motion, "N"), force_word(motion)
     blows = "" if usual is None else f" in blows, half of the time below {usual:.2g} {newton}"
@@ -107,7 +110,7 @@ def summary(
             )
         return (
             f"{start} {more}shows no dependence on position, velocity, acceleration, time, "
-            "frequency or what went before that is of any size."
+            f"frequency or what went before that is of any size{_small(too_small, motion)}."
         )
     parts = []
     for name in depends:
@@ -136,3 +139,14 @@ def summary(
     if proposal:
         text += f" A formula that fits, proposed by regression and no cause: {proposal}."
     return text
+
+
+def _small(too_small: tuple[str, float] | None, motion: Kind) -> str:
+    if too_small is None:
+        return ""
+    name, size = too_small
+    return (
+        f" ({size:.2g} {words(motion, 'N')} rms of it go with "
+        f"{shown_as(motion, WORDS.get(name, name))}, no more than noise of the motion and "
+        "smoothing leave)"
+    )
