@@ -79,17 +79,24 @@ static int tie_constraint(const mjModel* m, const mjData* d, int* parent, int ro
 
 //------------------------------ groups ------------------------------------------------------------
 
+// Rows of constraints. With all actuation disabled the discrete integrator has made their Jacobian
+// and not yet their softness where the plugin is asked (smooth.c): there is nothing to answer with.
+static int known_rows(const mjModel* m, const mjData* d) {
+  int early = m->opt.integrator == mjINT_DISCRETE && m->opt.disableflags & mjDSBL_ACTUATION;
+  return early ? 0 : d->nefc;
+}
+
 // so few devices and dofs are solved for at once sooner than they are told apart
 enum { FEW = 4, FEW_DOFS = 30 };
 
 // one group of all
-static int group_of_all(const mjModel* m, mjData* d, int n, Group* groups) {
-  int size = mjMAX(n, mjMAX(m->nv, d->nefc));
+static int group_of_all(const mjModel* m, mjData* d, int n, int nefc, Group* groups) {
+  int size = mjMAX(n, mjMAX(m->nv, nefc));
   int* all = mj_stackAllocInt(d, size);
   for (int i = 0; i < size; i++) {
     all[i] = i;
   }
-  groups[0] = (Group){n, all, m->nv, all, d->nefc, all};
+  groups[0] = (Group){n, all, m->nv, all, nefc, all};
   return 1;
 }
 
@@ -110,14 +117,14 @@ static int** places(mjData* d, int count, const int* size) {
 
 int groups_find(const mjModel* m, mjData* d, const Metric* metric, int n, const int* moment,
                 Group* groups) {
-  int tied = d->nefc || metric->kind == METRIC_DISCRETE;
+  int nefc = known_rows(m, d), tied = nefc || metric->kind == METRIC_DISCRETE;
   if (m->ntree == 1 || (!tied && n <= FEW && m->nv <= FEW_DOFS)) {
-    return group_of_all(m, d, n, groups);
+    return group_of_all(m, d, n, nefc, groups);
   }
   int* parent = mj_stackAllocInt(d, m->ntree);
   int* group = mj_stackAllocInt(d, m->ntree);
   int* of = mj_stackAllocInt(d, n);
-  int* tree_of_row = mj_stackAllocInt(d, d->nefc + 1);
+  int* tree_of_row = mj_stackAllocInt(d, nefc + 1);
   for (int tree = 0; tree < m->ntree; tree++) {
     parent[tree] = tree;
     group[tree] = -1;
@@ -129,7 +136,7 @@ int groups_find(const mjModel* m, mjData* d, const Metric* metric, int n, const 
   if (metric->kind == METRIC_DISCRETE) {
     tie_metric(m, d, parent);
   }
-  for (int i = 0; i < d->nefc; i++) {
+  for (int i = 0; i < nefc; i++) {
     tree_of_row[i] = tie_constraint(m, d, parent, i);
   }
 
@@ -157,7 +164,7 @@ int groups_find(const mjModel* m, mjData* d, const Metric* metric, int n, const 
       ndof[group[tree]] += m->tree_dofnum[tree];
     }
   }
-  for (int i = 0; i < d->nefc; i++) {
+  for (int i = 0; i < nefc; i++) {
     tree_of_row[i] = tree_of_row[i] < 0 ? -1 : group[tree_of_row[i]];
     if (tree_of_row[i] >= 0) {
       nrow[tree_of_row[i]]++;
@@ -177,7 +184,7 @@ int groups_find(const mjModel* m, mjData* d, const Metric* metric, int n, const 
       *dofs[g]++ = dof;
     }
   }
-  for (int i = 0; i < d->nefc; i++) {
+  for (int i = 0; i < nefc; i++) {
     if (tree_of_row[i] >= 0) {
       *rows[tree_of_row[i]]++ = i;
     }
