@@ -1,7 +1,7 @@
 // Forces of devices found together with those of constraints: see constrained.h.
 //
 // Each round takes the constraints as the springs that they are at q,
-//   K = A + J_c' S J_c,  K x = f + J_c' (f_c + S J_c q) - P' F(Y x + bias),
+//   K = A + J_c' S J_c,  K x = f + J_c' (f_c + S J_c q) - P' F(P x + bias),
 // and solves that for x with the devices' laws as they are (monotone.h). Where the springs are the
 // same at x the round was the last. Else q goes towards x as far as it leads downhill.
 
@@ -33,8 +33,8 @@ typedef struct Part_ {
   int* first;  // first column of each row of K that can hold anything
   mjtNum* K;   // n x n, then its factor
   mjtNum* f;
-  mjtNum *P, *Y;  // k x n
-  mjtNum* X;      // K^-1 P' (k x n)
+  mjtNum* P;  // k x n
+  mjtNum* X;  // K^-1 P' (k x n)
   Rows rows;
   // along the devices and the rows
   mjtNum *q, *x, *gradient, *step, *product;     // n
@@ -71,24 +71,16 @@ static void gather_discrete(const mjModel* m, mjData* d, Part* part, const Group
   mj_freeStack(d);
 }
 
-// A, or H where it is asked for
 static void gather_matrix(const mjModel* m, mjData* d, Part* part, const Metric* metric,
-                          const Group* group, const int* place, int of_step) {
-  part->nentry = 0;
+                          const Group* group, const int* place) {
   if (metric->kind == METRIC_DISCRETE) {
     gather_discrete(m, d, part, group, place);
     return;
   }
-  int lu = of_step && metric->kind == METRIC_LU;
-  const mjtNum* M = of_step && metric->matrix ? metric->matrix : d->M;
   for (int i = 0; i < group->ndof; i++) {
-    int dof = group->dof[i];
-    int start = lu ? m->D_rowadr[dof] : m->M_rowadr[dof];
-    int end = start + (lu ? m->D_rownnz[dof] : m->M_rownnz[dof]);
-    for (int e = start; e < end; e++) {
-      // of a matrix that is not symmetric the symmetric half
-      int column = lu ? m->D_colind[e] : m->M_colind[e];
-      add_entry(part, place[dof], place[column], lu && column != dof ? 0.5 * M[e] : M[e]);
+    int dof = group->dof[i], end = m->M_rowadr[dof] + m->M_rownnz[dof];
+    for (int e = m->M_rowadr[dof]; e < end; e++) {
+      add_entry(part, place[dof], place[m->M_colind[e]], d->M[e]);
     }
   }
 }
@@ -112,38 +104,14 @@ static void find_profile(Part* part) {
   }
 }
 
-static void multiply(const Part* part, const mjtNum* x, mjtNum* product);
-
-// P, and Y = P H^-1 A
-static void gather_devices(const mjModel* m, mjData* d, Part* part, const Metric* metric,
-                           const Group* group, const Constrained* problem, const int* place,
-                           int of_step) {
-  int n = part->n, moves = metric_moves_qacc(metric) && !of_step;
-  part->Y = moves ? part->Y : part->P;
-  mju_zero(part->P, part->k * n);
-  mj_markStack(d);
-  mjtNum* arms = mj_stackAllocNum(d, moves ? m->nv : 1);
-  mjtNum* moved = mj_stackAllocNum(d, moves ? m->nv : 1);
-  mjtNum* local = mj_stackAllocNum(d, n);
+static void gather_devices(const mjData* d, Part* part, const int* moment, const int* place) {
+  mju_zero(part->P, part->k * part->n);
   for (int i = 0; i < part->k; i++) {
-    int start = d->moment_rowadr[problem->moment[i]];
-    int end = start + d->moment_rownnz[problem->moment[i]];
+    int start = d->moment_rowadr[moment[i]], end = start + d->moment_rownnz[moment[i]];
     for (int e = start; e < end; e++) {
-      part->P[i * n + place[d->moment_colind[e]]] = d->actuator_moment[e];
+      part->P[i * part->n + place[d->moment_colind[e]]] = d->actuator_moment[e];
     }
-    if (!moves) {
-      continue;
-    }
-    for (int c = 0; c < n; c++) {
-      arms[group->dof[c]] = part->P[i * n + place[group->dof[c]]];
-    }
-    metric_solve_transposed(m, d, metric, group->ndof, group->dof, arms, moved);
-    for (int c = 0; c < n; c++) {
-      local[place[group->dof[c]]] = moved[group->dof[c]];
-    }
-    multiply(part, local, part->Y + i * n);
   }
-  mj_freeStack(d);
 }
 
 static int* places(const mjModel* m, mjData* d, const Group* group) {
@@ -160,9 +128,8 @@ static Part allocate(mjData* d, const Group* group, int k, int nentry) {
   part.A = mj_stackAllocByte(d, (size_t)nentry * sizeof(Entry), _Alignof(Entry));
   part.first = mj_stackAllocInt(d, n);
   part.K = mj_stackAllocNum(d, n * n);
-  part.P = mj_stackAllocNum(d, 3 * k * n);
-  part.Y = part.P + k * n;
-  part.X = part.Y + k * n;
+  part.P = mj_stackAllocNum(d, 2 * k * n);
+  part.X = part.P + k * n;
   part.f = mj_stackAllocNum(d, 6 * n);
   part.q = part.f + n;
   part.x = part.q + n;
@@ -192,8 +159,7 @@ static int most_entries(const mjModel* m, const Metric* metric, const Group* gro
   }
   int count = 0;
   for (int i = 0; i < group->ndof; i++) {
-    int dof = group->dof[i];
-    count += metric->kind == METRIC_LU ? m->D_rownnz[dof] : m->M_rownnz[dof];
+    count += m->M_rownnz[group->dof[i]];
   }
   return count;
 }
@@ -204,7 +170,8 @@ int constrained_fits(const mjModel* m, const mjData* d, const Group* group, int 
     entries += (size_t)(mj_isSparse(m) ? d->efc_J_rownnz[group->row[i]] : m->nv);
   }
   size_t matrices = dofs * dofs * (1 + sizeof(Entry) / sizeof(mjtNum)) + 3 * devices * dofs;
-  size_t lists = 16 * dofs + 48 * rows + 2 * entries + devices * (devices + 20) + 4 * (size_t)m->nv;
+  size_t lists =
+      16 * dofs + 48 * rows + 2 * entries + devices * (2 * devices + 20) + 4 * (size_t)m->nv;
   size_t left = (size_t)d->narena - d->parena - d->pstack;
   return (matrices + lists) * sizeof(mjtNum) + 4096 < left;
 }
@@ -259,11 +226,11 @@ static int solve_springs(Part* part, const Constrained* problem, mjtNum* a, mjtN
   for (int i = 0; i < k; i++) {
     mju_copy(part->X + i * n, part->P + i * n, n);
     profile_solve(n, part->first, part->K, part->X + i * n);
-    part->p[i] = profile_dot(part->Y + i * n, part->x, n) + problem->bias[i];
+    part->p[i] = profile_dot(part->P + i * n, part->x, n) + problem->bias[i];
   }
   for (int i = 0; i < k; i++) {
     for (int c = 0; c < k; c++) {
-      W[i * k + c] = profile_dot(part->Y + i * n, part->X + c * n, n);
+      W[i * k + c] = profile_dot(part->P + i * n, part->X + c * n, n);
     }
   }
   int rounds = monotone_solve(problem->law, problem->devices, k, W, part->p, a, force, scratch);
@@ -344,22 +311,21 @@ static double search(Part* part, const mjData* d, const Constrained* problem) {
   mju_subFrom(line.start, part->reference, part->rows.n);
   rows_multiply(&part->rows, part->step, line.change);
   for (int i = 0; i < part->k; i++) {
-    line.along[i] = profile_dot(part->Y + i * n, part->q, n) + problem->bias[i];
-    line.turn[i] = profile_dot(part->Y + i * n, part->step, n);
+    line.along[i] = profile_dot(part->P + i * n, part->q, n) + problem->bias[i];
+    line.turn[i] = profile_dot(part->P + i * n, part->step, n);
     line.pull[i] = profile_dot(part->P + i * n, part->step, n);
   }
   return downhill_search(slope_at, &line, slope_at(&line, 0));
 }
 
-// Rounds until it fits; downhill: whether there is a function to descend. Returns the number of
-// rounds, negative if it stopped at its bound.
+// Rounds until it fits. Returns their number, negative if it stopped at its bound.
 static int descend(const mjData* d, Part* part, const Constrained* problem, const mjtNum* start,
                    mjtNum* a, mjtNum* force, mjtNum* W, mjtNum* scratch) {
   int n = part->n;
   mju_copy(part->q, start, n);
   for (int i = 0; i < part->k; i++) {
     mjtNum rise;
-    a[i] = profile_dot(part->Y + i * n, start, n) + problem->bias[i];
+    a[i] = profile_dot(part->P + i * n, start, n) + problem->bias[i];
     force[i] = problem->law(problem->devices, i, a[i], &rise);
   }
   double before = INFINITY;
@@ -397,23 +363,14 @@ int constrained_solve(const mjModel* m, mjData* d, const Metric* metric, const G
     start[place[group->dof[i]]] = d->qacc_warmstart[group->dof[i]];
     part.f[place[group->dof[i]]] = smooth[group->dof[i]];
   }
-  gather_matrix(m, d, &part, metric, group, place, 0);
+  gather_matrix(m, d, &part, metric, group, place);
   find_profile(&part);
-  gather_devices(m, d, &part, metric, group, problem, place, 0);
-  int moves = part.Y != part.P;
+  gather_devices(d, &part, problem->moment, place);
   int rounds = descend(d, &part, problem, start, a, force, W, scratch);
 
   // the engine's solver starts from the solution, and so ends there however soon it stops
   for (int i = 0; rounds >= 0 && i < n; i++) {
     d->qacc_warmstart[group->dof[i]] = part.x[place[group->dof[i]]];
-  }
-
-  // no function to descend: the step in the metric H has one
-  if (rounds < 0 && moves) {
-    gather_matrix(m, d, &part, metric, group, place, 1);
-    find_profile(&part);
-    gather_devices(m, d, &part, metric, group, problem, place, 1);
-    descend(d, &part, problem, start, a, force, W, scratch);
   }
   mj_freeStack(d);
   return rounds;

@@ -11,10 +11,15 @@
 #include <math.h>
 
 #include "mujoco/constrained.h"
+#include "mujoco/damped.h"
 #include "mujoco/engine_fit.h"
 #include "mujoco/joints.h"
 #include "mujoco/smooth.h"
 #include "mujoco/solution.h"
+
+// worst misfit of the acceleration of a step, over the size of its terms; of a velocity, its
+// rounding over that
+static const double kMisfit = 1e-6, kVelocityRounding = 1e-8;
 
 //------------------------------ laws --------------------------------------------------------------
 
@@ -78,31 +83,11 @@ static void collect(const mjModel* m, const mjData* d, int last, Solution* s) {
       continue;
     }
     Instance* self = instance_of(d, k);
-    s->all[s->n].self = self;
+    s->all[s->n] = (Coupled){.self = self};
     s->moment[s->n] = m->actuator_outadr[self->actuator];
     s->bias[s->n] = self->bias;
     s->n++;
   }
-}
-
-// W of the metric alone
-static void find_mobilities(const mjModel* m, mjData* d, const Solution* part, const Group* group,
-                            mjtNum* W) {
-  int n = part->n;
-  mj_markStack(d);
-  mjtNum* J = mj_stackAllocNum(d, m->nv);
-  mjtNum* x = mj_stackAllocNum(d, m->nv);
-  for (int j = 0; j < n; j++) {
-    for (int c = 0; c < group->ndof; c++) {
-      J[group->dof[c]] = 0;
-    }
-    instance_add_moment(m, d, part->all[j].self, 1, J);
-    metric_solve(m, d, &part->metric, group->ndof, group->dof, J, x);
-    for (int i = 0; i < n; i++) {
-      W[i * n + j] = instance_along(m, d, part->all[i].self, x);
-    }
-  }
-  mj_freeStack(d);
 }
 
 static void begin_all(const mjModel* m, const Solution* part, const mjtNum* W) {
@@ -130,7 +115,7 @@ static const mjtNum* last_acceleration(const mjModel* m, mjData* d, const Soluti
 
 static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* group, mjtNum* W) {
   int n = part->n;
-  find_mobilities(m, d, part, group, W);
+  solution_mobilities(m, d, part, group, W);
   begin_all(m, part, W);
 
   // without the forces, and where the last step was
@@ -178,7 +163,7 @@ static int solve_constrained(const mjModel* m, mjData* d, Solution* part, const 
     asked |= asks_mobility(part->all + i);
   }
   if (asked) {
-    find_mobilities(m, d, part, group, W);
+    solution_mobilities(m, d, part, group, W);
   }
   begin_all(m, part, asked ? W : NULL);
   Constrained problem = {part->n, part->all, solution_law, part->moment, part->bias};
@@ -190,7 +175,7 @@ static int solve_constrained(const mjModel* m, mjData* d, Solution* part, const 
   // the engine is asked from the last step on
   part->large = 1;
   if (!asked) {
-    find_mobilities(m, d, part, group, W);
+    solution_mobilities(m, d, part, group, W);
   }
   for (int i = 0; i < part->n; i++) {
     mjtNum rise;
@@ -212,10 +197,32 @@ static void solve_groups(const mjModel* m, mjData* d, Solution* s) {
     s->constrained |= group->nrow > 0;
     s->large |= part.large;
     for (int i = 0; i < part.n; i++) {
-      part.all[i].self->solves++;
-      part.all[i].self->stops += rounds < 0;
+      part.all[i].constrained = group->nrow > 0;
+      part.all[i].stopped = rounds < 0;
     }
     solution_take(&part, group, s);
+    mj_freeStack(d);
+  }
+}
+
+// From the forces that constraints feel to those of the step, where its damping is in between.
+static void take_damped_step(const mjModel* m, mjData* d, Solution* s) {
+  for (int g = 0; g < s->ngroup; g++) {
+    const Group* group = s->groups + g;
+    mj_markStack(d);
+    Solution part = solution_part(d, s, group);
+    if (group->nrow && !part.all[0].stopped) {
+      for (int i = 0; i < part.n; i++) {
+        part.a[i] = s->a[group->device[i]];
+        part.force[i] = s->force[group->device[i]];
+      }
+      int rounds = damped_step(m, d, &part, group, s->W[g]);
+      for (int i = 0; i < part.n; i++) {
+        part.all[i].stopped = rounds < 0;
+        part.all[i].constrained = 0;
+      }
+      solution_take(&part, group, s);
+    }
     mj_freeStack(d);
   }
 }
@@ -265,6 +272,39 @@ static Solution prepare(const mjModel* m, mjData* d, int last) {
   return s;
 }
 
+static void count_misfit(const mjModel* m, Instance* self) {
+  self->misfits++;
+  self->misfit = 1;
+  const char* text =
+      "force and acceleration of a step did not fit each other as well as they should, because the "
+      "engine's constraint solver stopped before its end; raise <option iterations>, lower "
+      "tolerance, or shorten the timestep";
+  if (m->opt.disableflags & mjDSBL_ACTUATION) {
+    text =
+        "force and acceleration of a step did not fit each other as well as they should: with all "
+        "actuation disabled it is asked for its force before the engine knows what constraints "
+        "answer; disable actuators by their groups, or take integrator RK4 or Euler without joint "
+        "damping";
+  }
+  instance_complain(m, self, COMPLAINT_FIT, text);
+}
+
+void coupled_check(const mjModel* m, const mjData* d, Instance* self) {
+  // trees that fall asleep stop
+  int known = self->solved && m->opt.integrator != mjINT_RK4;
+  if (!known || self->misfit || !d->nefc || m->opt.enableflags & mjENBL_SLEEP) {
+    return;
+  }
+  mjtNum h = m->opt.timestep;
+  mjtNum a = (instance_velocity(m, d, self) - self->v) / h + self->bias;
+  mjtNum size = fabs(self->bias) + instance_along_size(m, d, self, d->qacc) +
+                instance_along_size(m, d, self, d->qacc_smooth) +
+                kVelocityRounding * instance_along_size(m, d, self, d->qvel) / h;
+  if (fabs(a - self->acceleration) > kMisfit * size) {
+    count_misfit(m, self);
+  }
+}
+
 void coupled_solve(const mjModel* m, mjData* d, int last) {
   int asked = 0;
   for (int k = 0; k <= last; k++) {
@@ -274,19 +314,28 @@ void coupled_solve(const mjModel* m, mjData* d, int last) {
     return;
   }
   mj_markStack(d);
+  Instance* keeper = instance_of(d, last);
+  if (keeper->shifted) {
+    mj_referenceConstraint(m, d);
+    keeper->shifted = 0;
+  }
   Solution s = prepare(m, d, last);
   solve_groups(m, d, &s);
   int fits = !s.large && engine_fit_is_exact(m, &s) ? 1 : engine_fit(m, d, &s);
+  keeper->shifted = s.constrained && metric_moves_qacc(&s.metric);
+  if (keeper->shifted) {
+    take_damped_step(m, d, &s);
+    fits = !s.large && engine_fit_is_exact(m, &s) ? 1 : engine_fit(m, d, &s);
+  }
   for (int i = 0; i < s.n; i++) {
     Instance* self = s.all[i].self;
+    self->solves++;
+    self->stops += s.all[i].stopped;
     self->acceleration = s.a[i];
     instance_pull(m, d, self, s.force[i]);
+    self->misfit = 0;
     if (!fits) {
-      self->misfits++;
-      instance_complain(m, self, COMPLAINT_FIT,
-                        "force and acceleration of a step did not fit each other as well as they "
-                        "should, because the engine's constraint solver stopped before its end; "
-                        "raise <option iterations>, lower tolerance, or shorten the timestep");
+      count_misfit(m, self);
     }
   }
   mj_freeStack(d);

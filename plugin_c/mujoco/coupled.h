@@ -15,8 +15,8 @@
 //     no step is too long for them (core: inerter_force_over_step).
 //
 // Why not the acceleration of the last step: it diverges as soon as the inertance exceeds the
-// effective mass. With constraints the engine's own solver is asked what they answer, until force
-// and acceleration fit.
+// effective mass. What constraints answer is solved for too (constrained.h); where the metric of
+// the step is not theirs, they feel the force that goes with their acceleration (damped.h).
 
 #ifndef INERTER_MUJOCO_COUPLED_H_
 #define INERTER_MUJOCO_COUPLED_H_
@@ -29,6 +29,10 @@ int coupled_needed(const mjModel* m, const Instance* self);
 // Solve for the forces of all devices marked `solved` among the instances up to the last one, and
 // add them to actuator_force.
 void coupled_solve(const mjModel* m, mjData* d, int last);
+
+// At the end of a step: count where its acceleration is not the one that the force was found with,
+// as the engine's solver stopped elsewhere.
+void coupled_check(const mjModel* m, const mjData* d, Instance* self);
 
 // The force of a device marked `solved`, with its parts, at the acceleration that was found. What
 // the engine holds of the inertance is in it only where the share holds it too.

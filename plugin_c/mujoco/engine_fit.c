@@ -54,20 +54,22 @@ static void respond(const mjModel* m, mjData* d, const Solution* s, const mjtNum
     mju_subFrom(d->qfrc_smooth, s->shift, nv);
   }
   mj_fwdConstraint(m, d);
-  const mjtNum* found = d->qacc;
+  const mjtNum* moved = d->qacc;
   if (moves) {
     mju_add(pull, d->qfrc_smooth, d->qfrc_constraint, nv);
     metric_solve(m, d, &s->metric, nv, all, pull, qacc);
-    found = qacc;
+    moved = qacc;
   }
   // a body in free fall accelerates its joints by the rounding of its own acceleration alone
   mjtNum largest = 0;
   for (int i = 0; i < nv; i++) {
-    largest = mju_max(largest, fabs(found[i]));
+    largest = mju_max(largest, mju_max(fabs(moved[i]), fabs(d->qacc[i])));
   }
   mju_fill(pull, kRounding * largest, nv);
   for (int i = 0; i < s->n; i++) {
+    // constraints feel the force that goes with qacc (damped.h)
     const Instance* self = s->all[i].self;
+    const mjtNum* found = s->all[i].constrained ? d->qacc : moved;
     a[i] = instance_along(m, d, self, found) + self->bias;
     size[i] = instance_along_size(m, d, self, found) + fabs(self->bias) +
               instance_along_size(m, d, self, pull);
@@ -159,5 +161,9 @@ int engine_fit(const mjModel* m, mjData* d, Solution* s) {
   }
   mju_copy(s->a, best, n);
   mju_copy(s->force, best + n, n);
+  if (metric_moves_qacc(&s->metric)) {
+    respond(m, d, s, s->force, answered, size);
+    mju_copy(d->qacc_warmstart, d->qacc, m->nv);
+  }
   return least <= kLooseFit;
 }

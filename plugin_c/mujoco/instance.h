@@ -46,6 +46,7 @@ typedef struct Instance_ {
   int last;            // 1: the last instance of the plugin in the model
   int probing;         // 1: the engine is asked what it does without the forces (coupled.c)
   int disabled;        // 1: its actuator is, so that only matter is left
+  int shifted;         // 1: constraints were told to rest elsewhere (damped.h); kept by the last
   int nlive;           // number of live parameters
   LiveParameter live[NLIVE];
 
@@ -60,6 +61,7 @@ typedef struct Instance_ {
   mjtNum detour;           // force that stands in mjData.qfrc_passive
   int solved;              // 1: the force was found together with the acceleration (coupled.h)
   double acceleration;     // which one [m/s^2]
+  int misfit;              // 1: one that it does not fit, which has been counted
   double mobility;         // acceleration of the terminals per force [1/kg]
   double power[MAXSTAGE];  // dissipated power at the last evaluations, newest last [W]
   int complained;          // reasons (Complaint) for which it has said once what is wrong

@@ -17,4 +17,10 @@
 INERTER_API int inerter_device_force(const mjModel* m, mjData* d, const mjtNum* qacc, mjtNum* force,
                                      mjtNum* qfrc, char message[INERTER_MESSAGE_SIZE]);
 
+// The acceleration felt (nv) at which constraints answer, where mj_forward ends with qacc: qacc,
+// but another one where the devices have one force for the constraints and one for the step
+// (damped.h). Returns as above; nothing of d changes.
+INERTER_API int inerter_felt_acceleration(const mjModel* m, mjData* d, const mjtNum* qacc,
+                                          mjtNum* felt, char message[INERTER_MESSAGE_SIZE]);
+
 #endif  // INERTER_MUJOCO_INVERSE_H_

@@ -356,6 +356,7 @@ static void advance(const mjModel* m, mjData* d, int instance) {
     return;
   }
   Instance* self = instance_of(d, instance);
+  coupled_check(m, d, self);
   int resting = !self->device.nstate && !self->device.parts && !self->sensed;
   if (resting || instance_idle(m, d, self)) {
     return;

@@ -14,8 +14,8 @@ extern "C" {
 #endif
 
 // How often the force of an actuator's device was solved for since the last reset: counts[0]; how
-// often that stopped at its bound: counts[1]; how often the engine's solver, told to stop early,
-// left force and acceleration apart: counts[2]. Returns 0, or -1 if the actuator carries no device
+// often that stopped at its bound: counts[1]; how often the engine left force and acceleration of
+// an evaluation or a step apart: counts[2]. Returns 0, or -1 if the actuator carries no device
 // here.
 INERTER_API int inerter_solve_counts(const mjModel* m, const mjData* d, int actuator,
                                      int64_t counts[3]);

@@ -9,6 +9,25 @@ double solution_law(const void* devices, int i, double a, double* rise) {
   return force;
 }
 
+void solution_mobilities(const mjModel* m, mjData* d, const Solution* part, const Group* group,
+                         mjtNum* W) {
+  int n = part->n;
+  mj_markStack(d);
+  mjtNum* J = mj_stackAllocNum(d, m->nv);
+  mjtNum* x = mj_stackAllocNum(d, m->nv);
+  for (int j = 0; j < n; j++) {
+    for (int c = 0; c < group->ndof; c++) {
+      J[group->dof[c]] = 0;
+    }
+    instance_add_moment(m, d, part->all[j].self, 1, J);
+    metric_solve(m, d, &part->metric, group->ndof, group->dof, J, x);
+    for (int i = 0; i < n; i++) {
+      W[i * n + j] = instance_along(m, d, part->all[i].self, x);
+    }
+  }
+  mj_freeStack(d);
+}
+
 // all devices in one group: nothing to sort
 static int is_whole(const Solution* s, const Group* group) {
   return group->n == s->n;

@@ -12,6 +12,8 @@
 typedef struct Coupled_ {
   Instance* self;
   mjtNum constant;  // inertance that the engine's matrix holds already [kg]
+  int constrained;  // 1: constraints act on its group
+  int stopped;      // 1: the search for its force stopped at its bound
   InerterStep step;
 } Coupled;
 
@@ -41,5 +43,10 @@ double solution_law(const void* devices, int i, double a, double* rise);
 // found of them back to the whole.
 Solution solution_part(mjData* d, const Solution* s, const Group* group);
 void solution_take(const Solution* part, const Group* group, Solution* s);
+
+// How the accelerations of a group fall with its forces in the metric of the step, without
+// constraints.
+void solution_mobilities(const mjModel* m, mjData* d, const Solution* part, const Group* group,
+                         mjtNum* W);
 
 #endif  // INERTER_MUJOCO_SOLUTION_H_

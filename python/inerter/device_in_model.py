@@ -252,6 +252,7 @@ def plugin_library() -> ctypes.CDLL:
     at = ctypes.c_void_p
     library.inerter_live_address.argtypes = [at, ctypes.c_int, ctypes.c_int]
     library.inerter_device_force.argtypes = [at, at, at, at, at, ctypes.c_char_p]
+    library.inerter_felt_acceleration.argtypes = [at, at, at, at, ctypes.c_char_p]
     return library
 
 

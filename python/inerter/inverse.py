@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import mujoco
@@ -27,6 +28,16 @@ class DeviceForces:
     qfrc: NDArray[np.float64]
 
 
+def _ask(
+    function: Callable[..., int], model: mujoco.MjModel, data: mujoco.MjData,
+    *arrays: NDArray[np.float64],
+) -> None:  # fmt: skip
+    message = ctypes.create_string_buffer(_MESSAGE_SIZE)
+    addresses = (array.ctypes.data for array in arrays)
+    if function(model._address, data._address, *addresses, message):
+        raise ValueError(message.value.decode())
+
+
 def device_force(model: mujoco.MjModel, data: mujoco.MjData, qacc: ArrayLike) -> DeviceForces:
     """The devices' forces at an acceleration, for inverse dynamics.
 
@@ -37,8 +48,10 @@ def device_force(model: mujoco.MjModel, data: mujoco.MjData, qacc: ArrayLike) ->
         mujoco.mj_inverse(model, data)
         torque = data.qfrc_inverse - device_force(model, data, data.qacc).qfrc
 
-    which `inverse_dynamics` does. Under integrators other than RK4 the forces are those of the step
-    that begins here, as the engine's own are.
+    which `inverse_dynamics` does; in contact it takes more, since under Euler with joint damping,
+    `implicit` and `implicitfast` constraints feel another force of a device between two branches
+    than the step does. Under integrators other than RK4 the forces are those of the step that
+    begins here, as the engine's own are.
 
     Parameters
     ----------
@@ -66,15 +79,7 @@ def device_force(model: mujoco.MjModel, data: mujoco.MjData, qacc: ArrayLike) ->
         )
     found = sorted(devices_of(model), key=lambda each: each.instance)
     force, qfrc = np.zeros(max(1, len(found))), np.zeros(model.nv)
-    message = ctypes.create_string_buffer(_MESSAGE_SIZE)
-    bad = plugin_library().inerter_device_force(
-        model._address,
-        data._address,
-        *(array.ctypes.data for array in (given, force, qfrc)),
-        message,
-    )
-    if bad:
-        raise ValueError(message.value.decode())
+    _ask(plugin_library().inerter_device_force, model, data, given, force, qfrc)
     names = [each.name or f"actuator {each.actuator}" for each in found]
     return DeviceForces(dict(zip(names, force.tolist(), strict=False)), qfrc)
 
@@ -103,6 +108,11 @@ def inverse_dynamics(
         As `device_force`.
     """
     work = copy.copy(data)
-    work.qacc[:] = np.asarray(qacc, dtype=np.float64)
+    work.qacc[:] = given = np.array(qacc, dtype=np.float64)
     mujoco.mj_inverse(model, work)
-    return work.qfrc_inverse - device_force(model, work, qacc).qfrc
+    missing = device_force(model, work, given).qfrc
+    _ask(plugin_library().inerter_felt_acceleration, model, work, given, work.qacc)
+    inertia = np.zeros(model.nv)
+    mujoco.mj_mulM(model, work, inertia, given - work.qacc)
+    mujoco.mj_inverse(model, work)
+    return work.qfrc_inverse + inertia - missing

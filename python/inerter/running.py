@@ -49,13 +49,13 @@ class SolveCounts:
         Evaluations in which force and acceleration were found together; 0 for a device whose
         force needs no solution.
     stops
-        Of these, solves that stopped at their bound: the force is that of a step in which the
-        constraints act in the metric of the integrator, and may differ from the acceleration that
-        it goes with. It is bounded and passive, but where a law falls with the velocity over the
-        step (the level of LuGre).
+        Of these, solves that stopped at their bound: the force may differ from the one that goes
+        with the acceleration, by rounding or, with constraints, by more, which `misfits` counts.
     misfits
-        Evaluations in which force and acceleration were left more than 1e-6 apart, because the
-        engine's constraint solver was told to stop early (noslip, no warm start).
+        Evaluations in which force and acceleration were left more than 1e-6 apart, and steps
+        (integrators other than RK4) that ended with another acceleration than the force was found
+        with: the engine's constraint solver stopped before its end (noslip, no warm start, PGS), or
+        all actuation is disabled.
     """
 
     solves: int
