@@ -366,10 +366,13 @@ int constrained_solve(const mjModel* m, mjData* d, const Metric* metric, const G
   gather_matrix(m, d, &part, metric, group, place);
   find_profile(&part);
   gather_devices(d, &part, problem->moment, place);
+  mju_copy(part.x, start, n);
   int rounds = descend(d, &part, problem, start, a, force, W, scratch);
 
-  // the engine's solver starts from the solution, and so ends there however soon it stops
-  for (int i = 0; rounds >= 0 && i < n; i++) {
+  // the engine's solver starts from the solution, and so ends there however soon it stops; a step
+  // with damping of its own (damped.h) goes on from the last round
+  int goes_on = rounds >= 0 || metric_moves_qacc(metric);
+  for (int i = 0; goes_on && i < n; i++) {
     d->qacc_warmstart[group->dof[i]] = part.x[place[group->dof[i]]];
   }
   mj_freeStack(d);

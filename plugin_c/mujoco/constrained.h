@@ -32,8 +32,8 @@ int constrained_fits(const mjModel* m, const mjData* d, const Group* group, int 
 
 // Solve. smooth: f as a vector of the model; a: acceleration along the devices; force: F; W (n x
 // n): how the acceleration falls with the force there, constraints answering. q becomes the
-// engine's warm start. Returns the number of rounds, negative if it stopped at its bound: then the
-// warm start stays.
+// engine's warm start. Returns the number of rounds, negative if it stopped at its bound; then the
+// warm start stays, or is the last round's where a step with damping of its own goes on from it.
 int constrained_solve(const mjModel* m, mjData* d, const Metric* metric, const Group* group,
                       const Constrained* problem, const mjtNum* smooth, mjtNum* a, mjtNum* force,
                       mjtNum* W);

@@ -211,14 +211,14 @@ static void take_damped_step(const mjModel* m, mjData* d, Solution* s) {
     const Group* group = s->groups + g;
     mj_markStack(d);
     Solution part = solution_part(d, s, group);
-    if (group->nrow && !part.all[0].stopped) {
+    if (group->nrow) {
       for (int i = 0; i < part.n; i++) {
         part.a[i] = s->a[group->device[i]];
         part.force[i] = s->force[group->device[i]];
       }
       int rounds = damped_step(m, d, &part, group, s->W[g]);
       for (int i = 0; i < part.n; i++) {
-        part.all[i].stopped = rounds < 0;
+        part.all[i].stopped |= rounds < 0;
         part.all[i].constrained = 0;
       }
       solution_take(&part, group, s);
