@@ -2,6 +2,7 @@
 
 #include "mujoco/attachment.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "mujoco/instance.h"
@@ -16,6 +17,40 @@ int attachment_wrapped_geom(const mjModel* m, int tendon) {
     if (m->wrap_type[k] == mjWRAP_SPHERE || m->wrap_type[k] == mjWRAP_CYLINDER) {
       return m->wrap_objid[k];
     }
+  }
+  return -1;
+}
+
+int attachment_find(const mjModel* m, int instance, int* actuator,
+                    char message[INERTER_MESSAGE_SIZE]) {
+  int count;
+  *actuator = instance_actuator(m, instance, &count);
+  if (count == 1) {
+    return 0;
+  }
+  for (int body = 0; body < m->nbody; body++) {
+    if (m->body_plugin[body] == instance) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "body \"%.60s\" refers to it, but a device acts between two points: take <plugin> "
+               "out of the body, and write <actuator><plugin plugin=\"inerter.device\" "
+               "tendon=\"...\"/></actuator> with a tendon from one to the other",
+               attachment_name(m, mjOBJ_BODY, body));
+      return -1;
+    }
+  }
+  if (count) {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "%d actuators refer to it; give every actuator an instance of its own", count);
+  } else if (instance_sensed(m, instance) && !mj_id2name(m, mjOBJ_PLUGIN, instance)) {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "it names no instance, so that it reads a device of its own; configure the device as "
+             "<extension><plugin plugin=\"inerter.device\"><instance name=\"NAME\">, and write "
+             "instance=\"NAME\" in its actuator and in this sensor");
+  } else {
+    snprintf(message, INERTER_MESSAGE_SIZE,
+             "no actuator refers to it; add <actuator><plugin plugin=\"inerter.device\" "
+             "instance=\"...\" tendon=\"...\"/></actuator>, or take it out (where an MjSpec "
+             "has lost the actuator: inerter.remove_device)");
   }
   return -1;
 }
@@ -84,6 +119,10 @@ static int check_moves(const mjModel* m, int actuator, char message[INERTER_MESS
     snprintf(message, INERTER_MESSAGE_SIZE, "gear is 0: the device would do nothing; give another");
     return -1;
   }
+  if (!isfinite(gear[0])) {
+    snprintf(message, INERTER_MESSAGE_SIZE, "gear is %g; give a number that is finite", gear[0]);
+    return -1;
+  }
   for (int k = 1; k < 6; k++) {
     if (gear[k] != 0) {
       snprintf(message, INERTER_MESSAGE_SIZE,
@@ -104,8 +143,7 @@ static int check_moves(const mjModel* m, int actuator, char message[INERTER_MESS
   return 0;
 }
 
-// refuse trees that may fall asleep one without the other
-static int check_sleep(const mjModel* m, int actuator, char message[INERTER_MESSAGE_SIZE]) {
+int attachment_check_sleep(const mjModel* m, int actuator, char message[INERTER_MESSAGE_SIZE]) {
   int tendon = m->actuator_trnid[2 * actuator];
   if (!(m->opt.enableflags & mjENBL_SLEEP) || m->actuator_trntype[actuator] != mjTRN_TENDON) {
     return 0;
@@ -162,7 +200,7 @@ int attachment_check(const mjModel* m, int actuator, const InerterDevice* device
     return -1;
   }
   return check_transmission(m, actuator, device, live, message) ||
-                 check_moves(m, actuator, message) || check_sleep(m, actuator, message)
+                 check_moves(m, actuator, message) || attachment_check_sleep(m, actuator, message)
              ? -1
              : 0;
 }

@@ -22,4 +22,11 @@ int attachment_wrapped_geom(const mjModel* m, int tendon);
 // Name of an element of the model, or "(unnamed)".
 const char* attachment_name(const mjModel* m, mjtObj type, int id);
 
+// The one actuator that carries a device. Returns 0, or -1 with a message.
+int attachment_find(const mjModel* m, int instance, int* actuator,
+                    char message[INERTER_MESSAGE_SIZE]);
+
+// Refuse trees that may fall asleep one without the other. Returns as above.
+int attachment_check_sleep(const mjModel* m, int actuator, char message[INERTER_MESSAGE_SIZE]);
+
 #endif  // INERTER_MUJOCO_ATTACHMENT_H_

@@ -62,25 +62,7 @@ static int prepare(const mjModel* m, int instance, Instance* self,
     return -1;
   }
 
-  // one actuator carries the device
-  int count;
-  self->actuator = instance_actuator(m, instance, &count);
-  if (count != 1) {
-    if (count) {
-      snprintf(message, INERTER_MESSAGE_SIZE,
-               "%d actuators refer to it; give every actuator an instance of its own", count);
-    } else if (instance_sensed(m, instance) && !mj_id2name(m, mjOBJ_PLUGIN, instance)) {
-      snprintf(
-          message, INERTER_MESSAGE_SIZE,
-          "it names no instance, so that it reads a device of its own; configure the device as "
-          "<extension><plugin plugin=\"inerter.device\"><instance name=\"NAME\">, and write "
-          "instance=\"NAME\" in its actuator and in this sensor");
-    } else {
-      snprintf(message, INERTER_MESSAGE_SIZE,
-               "no actuator refers to it; add <actuator><plugin plugin=\"inerter.device\" "
-               "instance=\"...\" tendon=\"...\"/></actuator>, or take it out (where an MjSpec "
-               "has lost the actuator: inerter.remove_device)");
-    }
+  if (attachment_find(m, instance, &self->actuator, message)) {
     return -1;
   }
   int compiling = placement_is_new(m, self->actuator);
@@ -233,6 +215,15 @@ static void act_dot(const mjModel* m, mjData* d, int instance) {
   }
 }
 
+// sleep may have been enabled since the model was compiled
+static void refuse_sleep(const mjModel* m, const Instance* self) {
+  char message[INERTER_MESSAGE_SIZE];
+  if (attachment_check_sleep(m, self->actuator, message)) {
+    mju_error("inerter.device, actuator \"%.60s\": %s",
+              attachment_name(m, mjOBJ_ACTUATOR, self->actuator), message);
+  }
+}
+
 // force of one device, or a note that it has to be solved for
 static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   live_update(m, self);
@@ -241,6 +232,9 @@ static void compute_force(const mjModel* m, mjData* d, Instance* self) {
   self->solved = 0;
   self->disabled = instance_disabled(m, self);
   self->limited = attachment_limited(m, self->actuator);
+  if (m->opt.enableflags & mjENBL_SLEEP) {
+    refuse_sleep(m, self);
+  }
   if (instance_asleep(m, d, self)) {
     return;
   }

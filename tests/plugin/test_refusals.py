@@ -241,6 +241,34 @@ def test_an_instance_needs_one_actuator() -> None:
     assert "no actuator refers to it" in refusal(xml)
 
 
+def test_a_plugin_of_a_body_is_told_what_it_is() -> None:
+    body = '<plugin plugin="inerter.device"><config key="inertance" value="2"/></plugin></body>'
+    text = refusal(space("").replace("</body>", body, 1))
+    assert "refers to it, but a device acts between two points" in text
+
+
+@pytest.mark.parametrize("gear", ["nan", "inf"])
+def test_a_gear_that_is_no_number_is_refused(gear: str) -> None:
+    device = plugin_actuator({"inertance": 2}, 'joint="wheel"', attributes=f'gear="{gear}"')
+    assert f"gear is {gear}" in refusal(space(device))
+
+
+def test_sleep_that_is_enabled_later_is_refused() -> None:
+    xml = f"""<mujoco><extension><plugin plugin="inerter.device"/></extension>
+      <worldbody>
+        <body sleep="allowed"><freejoint/><geom size="0.1"/><site name="a"/></body>
+        <body sleep="allowed" pos="1 0 0"><freejoint/><geom size="0.1"/><site name="b"/></body>
+      </worldbody>
+      <tendon><spatial name="strut"><site site="a"/><site site="b"/></spatial></tendon>
+      <actuator>{plugin_actuator({"inertance": 2})}</actuator></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(xml)
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_SLEEP
+    with pytest.raises(mujoco.FatalError, match=r'actuator "strut": sleep is enabled and body'):
+        mujoco.mj_step(model, data)
+
+
 def test_an_unknown_key_is_the_compilers_error() -> None:
     with pytest.raises(ValueError, match="inertence"):
         mujoco.MjModel.from_xml_string(quarter_car_xml(plugin_actuator({"inertence": 1})))
