@@ -42,11 +42,13 @@ from inerter.diagnose.result import (
     RunCurves,
 )
 from inerter.diagnose.run_constants import constants_in_words, explained
+from inerter.diagnose.run_inertances import inertances_in_words, run_inertances
 from inerter.diagnose.run_scales import (
     is_met_better,
     odd_scale,
     scales_in_words,
     together,
+    turned_round,
     without_scale,
 )
 from inerter.diagnose.shape_of_stop import as_shape_of_stop
@@ -120,9 +122,10 @@ def diagnose_bench(
     for name, known in (filters or {}).items():
         channel |= named(name, known)
     moving, left_out = without_standstill(records)
+    moving, scales = turned_round(moving)
     given = Given(
-        records=moving, left_out=left_out, device=device, holdout=holdout, progress=progress,
-        channel=channel, carry=carry, time=time,
+        records=moving, scales=scales, left_out=left_out, device=device, holdout=holdout,
+        progress=progress, channel=channel, carry=carry, time=time,
     )  # fmt: skip
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
@@ -245,6 +248,7 @@ def diagnosis_of(
         missed = badly_missed_parts(data, errors, floor)
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
+    inertances = {} if long else run_inertances(data.whole, errors, floor, final)
     values = parameter_values(
         stands.fit,
         given.device,
@@ -296,6 +300,7 @@ def diagnosis_of(
             "other_split": other,
             "steps": steps,
             "run_scales": dict(given.scales),
+            "run_inertances": inertances,
         },
         notes=[
             note
@@ -303,6 +308,7 @@ def diagnosis_of(
                 constants_in_words(stands.searched.prepared.constants, motion),
                 missed_in_words(missed, extended.rmse, motion),
                 scales_in_words(given.scales, motion),
+                inertances_in_words(inertances, motion),
                 about_split,
                 steps_in_words(steps, motion),
                 given.left_out,

@@ -1,4 +1,4 @@
-"""A run whose force has another scale than that of the others: another range or calibration.
+"""A run whose force has another scale or sign than that of the others: range, calibration, wires.
 
 Whatever acts in a device, a wrong scale multiplies all of it in one run alike, and leaves the other
 runs as they are. It shows in what was found for all of them, which may have causes that are none
@@ -24,6 +24,8 @@ Scales = Mapping[str, tuple[float, float]]
 # a scale is tried from so many standard errors on, this deviation, so many times the spread of the
 # others, and where it takes this share of what is missed of the run beyond the noise
 SURE, LEAST, TIMES, SHARE = 5.0, 0.003, 4.0, 0.1
+# the warning of a force that pushes where an inerter pulls
+SIGN = "sign_flip"
 # stretches of a run that count as independent; runs that it takes to tell which is the odd one
 STRETCHES, RUNS = 12, 3
 # it stands where all runs are met so much better without it
@@ -60,6 +62,23 @@ def without_scale(records: Sequence[Record], scales: Scales) -> list[Record]:
     ]
 
 
+def turned_round(records: Sequence[Record]) -> tuple[list[Record], Scales]:
+    """Records with the force of some turned round that alone have the wrong sign, and their scales.
+
+    Those of fewer than half of the runs: of more, what they are called has the wrong sign.
+    """
+    wrong = {r.name for r in records if any(w.code == SIGN for w in r.warnings)}
+    if not wrong or 2 * len(wrong) >= len(records):
+        return list(records), {}
+    turned = [
+        replace(r, force=-r.force, warnings=tuple(w for w in r.warnings if w.code != SIGN))
+        if r.name in wrong
+        else r
+        for r in records
+    ]
+    return turned, dict.fromkeys(sorted(wrong), (-1.0, 0.0))
+
+
 def together(known: Scales, more: Scales) -> Scales:
     """Scales of runs from which some were taken before."""
     before = {name: value for name, (value, _) in known.items()}
@@ -68,17 +87,26 @@ def together(known: Scales, more: Scales) -> Scales:
 
 def is_met_better(before: float, after: float, known: Scales) -> bool:
     """Whether errors of all runs [N] say that a scale is one; it may be refined by little."""
-    return after < (1.0 if known else BETTER) * before
+    refined = any(error > 0 for _, error in known.values())
+    return after < (1.0 if refined else BETTER) * before
 
 
 def scales_in_words(scales: Scales, motion: Kind = TRANSLATION) -> str:
     """A sentence about the run with another scale; empty where there is none."""
-    return " ".join(
-        f"The {force_word(motion)} of {name} is {measured(value, error)} times what the other runs "
-        "tell, all of it alike, as of another range or calibration: that is no cause in the "
-        "device, and it was divided by that."
-        for name, (value, error) in scales.items()
-    )
+    force, told = force_word(motion), []
+    for name, (value, error) in scales.items():
+        if value < 0:
+            told.append(
+                f"The {force} of {name} has the other sign than that of the other runs, or its "
+                "displacement has, and was turned round."
+            )
+        if error > 0:
+            told.append(
+                f"The {force} of {name} is {measured(abs(value), error)} times what the other runs "
+                "tell, all of it alike, as of another range or calibration: that is no cause in "
+                "the device, and it was divided by that."
+            )
+    return " ".join(told)
 
 
 def _scale(run: BenchRun, error: Array) -> tuple[float, float]:
