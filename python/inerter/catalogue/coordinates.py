@@ -105,6 +105,11 @@ _ALL = (
         size=lambda s: s.force / s.displacement**3, column=lambda x, v, a, t: x**3,
     ),
     Coordinate(
+        name="rest_length", unit="m", words={"rest_length": "length at rest"},
+        size=lambda s: s.displacement, lower=lambda s: 2 * s.travel[0] - s.travel[1],
+        upper=lambda s: 2 * s.travel[1] - s.travel[0],
+    ),
+    Coordinate(
         name="force_offset", unit="N", words={"force_offset": "offset"},
         size=lambda s: s.force, column=lambda x, v, a, t: np.ones_like(v),
     ),

@@ -182,8 +182,8 @@ _ALL = (
     ),
     Effect(
         name="hardening_stiffness", rank=14,
-        coordinates=("stiffness_cubic",), local=True,
-        unlike_friction=True, plain="a stiffness that grows with the stroke", meaning="k3 x^3",
+        coordinates=("stiffness_cubic", "rest_length"), telling=("stiffness_cubic",), local=True,
+        unlike_friction=True, plain="a stiffness that grows with the stroke", meaning="k3 x^3, or k3 (x - l0)^3 about a place l0",
         cause="rubber, guides that bind, a spring that stacks", taken_for="an end stop",
         experiment="repeat with half the stroke, k3 x^3 falls to an eighth", rivals=("end_stop",),
     ),

@@ -287,6 +287,26 @@ def _stiffness(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidat
         yield from _term(effect, model, sizes)
 
 
+def _hardening(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """About the middle, or about another place, where a spring that is straight may not be there.
+
+    Of a motion's zero nobody knows that it is the spring's.
+    """
+    yield from _free(effect.name, ("stiffness_cubic",), model, sizes)
+    if "rest_length" in model.values or sizes.one_tone or not np.isfinite(sizes.travel).all():
+        return
+    low, high = sizes.travel
+    cubic = sizes.force / sizes.displacement**3
+    about = tuple(
+        model.adding(None, stiffness=sign * 0.3 * cubic * sizes.displacement**2,
+                     stiffness_cubic=model.values.get("stiffness_cubic", cubic),
+                     rest_length=middle)
+        for middle in (low + 0.35 * (high - low), low + 0.65 * (high - low))
+        for sign in (1.0, -1.0)
+    )  # fmt: skip
+    yield Candidate(effect.name, "about", about)
+
+
 def _inertance(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     if "inertance" not in model.free:
         start = model.values.get("inertance") or sizes.force / sizes.acceleration
@@ -342,6 +362,7 @@ _SPECIAL: dict[str, Build] = {
     "parallel_stiffness": _stiffness,
     "variable_inertance": _variable_inertance,
     "end_stop": _end_stop,
+    "hardening_stiffness": _hardening,
     "gas_spring": _gas,
     "sensor_saturation": _saturation,
     "periodic_disturbance": _by_the_search,

@@ -275,6 +275,8 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
             return [model.without(speed), model.without(along), without]
     if EFFECTS[effect].kind != "level" and (fewer := _fewer_periods(model, effect)):
         return [*fewer, without]
+    if effect == "hardening_stiffness" and "rest_length" in model.free:
+        return [model.without(("rest_length",)), without]
     if effect == "end_stop" and (fewer := _less_of_a_stop(model)):
         return [*fewer, without]
     if effect == "viscoelasticity" and "branch_time_2" in model.free:

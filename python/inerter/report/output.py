@@ -33,7 +33,9 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         name: f"{value.unit} (standard error {value.stderr:.2g})".removeprefix("1 ")
         for name, value in diagnosis.parameters.items()
     } | _carried_comment(diagnosis)
-    rest_length = {"rest_length": diagnosis.rest_length} if diagnosis.rest_length else {}
+    # what the user states, and where a spring was found to rest beside it
+    shift = {"rest_length": device.rest_length + diagnosis.rest_length}
+    rest_length = shift if diagnosis.rest_length else {}
     toml = device_text(
         device.replace(**rest_length),
         comments,
