@@ -183,7 +183,8 @@ _ALL = (
     Effect(
         name="hardening_stiffness", rank=14,
         coordinates=("stiffness_cubic", "rest_length"), telling=("stiffness_cubic",), local=True,
-        unlike_friction=True, plain="a stiffness that grows with the stroke", meaning="k3 x^3, or k3 (x - l0)^3 about a place l0",
+        unlike_friction=True, plain="a stiffness that grows with the stroke",
+        meaning="k3 x^3, or k3 (x - l0)^3 about a place l0",
         cause="rubber, guides that bind, a spring that stacks", taken_for="an end stop",
         experiment="repeat with half the stroke, k3 x^3 falls to an eighth", rivals=("end_stop",),
     ),
@@ -304,7 +305,7 @@ _ALL = (
         cause="filters or clocks that differ between the channels; of a fluid inerter a leak past "
         "the piston, whose force is late by the inertance over the leak's damping",
         taken_for="series elasticity and viscous friction",
-        experiment="they change with amplitude or with frequency, a delay does not",
+        experiment="what a shaft or a damper does changes with amplitude or frequency, a delay not",
         rivals=("series_elasticity", "viscous_friction"),
     ),
     Effect(

@@ -14,7 +14,7 @@ def what_it_could_be(finding: Finding) -> str:
     """Clauses that begin with a semicolon each; empty where the figures say nothing more."""
     guesses = (
         _of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack, _of_a_stop_at_rest,
-        _of_a_power,
+        _of_a_power, _of_a_loop,
     )  # fmt: skip
     return "".join(guess(finding) for guess in guesses)
 
@@ -98,3 +98,21 @@ def _of_the_mains(finding: Finding) -> str:
     times, mains = found
     what = "the frequency" if times == 1 else f"{times} times the frequency"
     return f"; this is {what} of the mains ({mains:g} Hz): hum, and no part of the device"
+
+
+def _of_a_loop(finding: Finding) -> str:
+    """Where a Bouc-Wen loop yields, which its parameters tell together and none of them alone."""
+    values = {name: each.value for name, each in finding.parameters.items()}
+    names = ("bw_stiffness", "bw_beta", "bw_gamma")
+    if not {*names} <= values.keys():
+        return ""
+    stiffness, beta, gamma = (values[name] for name in names)
+    exponent, ratio = values.get("bw_exponent", 1.0), values.get("bw_ratio", 0.0)
+    if beta + gamma <= 0.0 or not 0.0 <= ratio < 1.0:
+        return ""
+    distance = (beta + gamma) ** (-1.0 / exponent)
+    metre, newton = words(finding.motion, "m"), words(finding.motion, "N")
+    return (
+        f"; these together say that it yields at {(1.0 - ratio) * stiffness * distance:.3g} "
+        f"{newton}, over {distance:.2g} {metre}"
+    )
