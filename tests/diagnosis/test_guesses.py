@@ -39,6 +39,7 @@ def finding(effect: str, motion: Kind, **values: tuple[float, float]) -> Finding
             {"viscous": (900.0, 1), "damping_knee": (0.1, 0.01), "damping_exponent": (-1.0, 0.01)},
             "an eddy-current brake has -1",
         ),
+        ("parallel_stiffness", "translation", {"stiffness": (-400.0, 3.0)}, "snaps through"),
         (
             "hysteretic_friction", "translation",
             {"bw_stiffness": (1e5, 1), "bw_beta": (3e5, 1), "bw_gamma": (1e5, 1),

@@ -14,7 +14,7 @@ def what_it_could_be(finding: Finding) -> str:
     """Clauses that begin with a semicolon each; empty where the figures say nothing more."""
     guesses = (
         _of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack, _of_a_stop_at_rest,
-        _of_a_power, _of_a_loop,
+        _of_a_power, _of_a_loop, _of_a_push,
     )  # fmt: skip
     return "".join(guess(finding) for guess in guesses)
 
@@ -115,4 +115,17 @@ def _of_a_loop(finding: Finding) -> str:
     return (
         f"; these together say that it yields at {(1.0 - ratio) * stiffness * distance:.3g} "
         f"{newton}, over {distance:.2g} {metre}"
+    )
+
+
+def _of_a_push(finding: Finding) -> str:
+    """What a spring that pushes away from its middle could be."""
+    stiffness = finding.parameters.get("stiffness")
+    if finding.effect != "parallel_stiffness" or finding.members or stiffness is None:
+        return ""
+    if stiffness.value > -3 * stiffness.stderr:
+        return ""
+    return (
+        "; below zero: it pushes away from its middle, as a spring that snaps through, magnets or "
+        "a weight above its pivot do"
     )

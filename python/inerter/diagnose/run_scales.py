@@ -103,8 +103,8 @@ def scales_in_words(scales: Scales, motion: Kind = TRANSLATION) -> str:
         if error > 0:
             told.append(
                 f"The {force} of {name} is {measured(abs(value), error)} times what the other runs "
-                "tell, all of it alike, as of another range or calibration: that is no cause in "
-                "the device, and it was divided by that."
+                "tell, all of it alike: another range or calibration, or something that all of "
+                "it goes with, as friction of seals with a pressure. It was divided by that."
             )
     return " ".join(told)
 
