@@ -20,11 +20,19 @@ SCHEMA = "inerter.diagnosis/1"
 
 @dataclass(frozen=True)
 class ParameterValue:
-    """An identified value with its standard error."""
+    """An identified value with its standard error; at_limit: as far as it may go."""
 
     value: float
     stderr: float
     unit: str
+    at_limit: bool = field(default=False, kw_only=True)
+
+    def json(self) -> dict[str, Any]:
+        """As in the contract; that it is at its limit is said where it is."""
+        told = dict(vars(self))
+        if not told.pop("at_limit"):
+            return told
+        return told | {"at_limit": True}
 
 
 @dataclass(frozen=True)
@@ -99,7 +107,7 @@ class Finding:
                 "effect": self.effect,
                 "law": self.law,
                 "confidence": round(self.confidence, 4),
-                "parameters": {name: vars(value) for name, value in self.parameters.items()},
+                "parameters": {name: value.json() for name, value in self.parameters.items()},
                 "rmse_before": self.rmse_before,
                 "rmse_after": self.rmse_after,
                 "gain": self.gain,
@@ -325,7 +333,7 @@ class Diagnosis:
                 "baseline": self.baseline.json(),
                 "findings": [finding.json() for finding in self.findings],
                 "extended": self.extended.json(),
-                "parameters": {name: vars(value) for name, value in self.parameters.items()},
+                "parameters": {name: value.json() for name, value in self.parameters.items()},
                 "gain": {"value": self.gain, "interval": self.gain_interval},
                 "noise": {"rmse_floor": self.noise_floor, "repeatability": self.repeatability},
                 "unexplained": self.unexplained.json(),

@@ -254,6 +254,7 @@ def diagnosis_of(
         given.device,
         stands.searched.prepared.baseline.values.get("delay", 0.0),
         motion,
+        stands.searched.search.problem.scales,
     )
     same = exchanges(
         stands.searched.search,

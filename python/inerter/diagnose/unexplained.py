@@ -58,6 +58,8 @@ TONE_SHARE, MOST_SAMPLES = 0.2, 60_000
 # of the best test's share, what a plainer one must reach to be named instead
 PLAIN_ENOUGH = 0.85
 MOST = 3
+# of what time tells, what a further channel must tell to be named beside it
+OF_TIME = 0.5
 # more than this many times the noise, and this share of the force, is no noise whatever it is
 EXCESS = 2.0
 EXCESS_PART = 0.05
@@ -118,6 +120,8 @@ def unexplained(
     # as in the table of the report: by each alone, of all data
     by_each = {name: max(first.tests[name].share, each.share) for name, each in chosen}
     shares = {name: float(np.clip(share, 0.0, 1.0)) for name, share in by_each.items()}
+    if "time" in shares and (told := _as_time_does(first, shares["time"], remainder.channels)):
+        details["time"] = told
     tests = _rows(first, power, by_each)
     predicted = structure
 
@@ -283,6 +287,19 @@ def _rows(outcome: Tested, power: float, told: Mapping[str, float]) -> list[dict
         size = float(np.sqrt(max(share, 0.0) * power))
         rows.append(_row(name, share, p.share_held_out, size, p.p))
     return sorted(rows, key=lambda row: -float(row["share"]))
+
+
+def _as_time_does(outcome: Tested, share: float, channels: Collection[str]) -> str:
+    """The channel that tells much of what time tells, of which `share`; empty without one."""
+    shares = {
+        name: outcome.tests[name].share
+        for name in map(test_of, channels)
+        if name in outcome.tests and _real(outcome.tests[name], len(outcome.tests))
+    }
+    name = max(shares, key=lambda each: shares[each], default="")
+    if not name or shares[name] < OF_TIME * share:
+        return ""
+    return f"and {name} tells {100 * shares[name]:.0f} % too, {measured_by(name)}"
 
 
 def _too_small(

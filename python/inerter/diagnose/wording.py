@@ -274,11 +274,11 @@ _GRAVE = ("sign_flip", "unit_suspect", "contradicts_others")
 
 def doubts_of_records(records: Sequence[RecordSummary]) -> str:
     """What has to be looked at before anything else; empty where there is nothing."""
+    # the first of each record, whose others follow from it
     doubts = [
-        f"{record.name}: {warning['text']}"
+        f"{record.name}: {texts[0]}"
         for record in records
-        for warning in record.warnings
-        if warning["code"] in _GRAVE
+        if (texts := [each["text"] for each in record.warnings if each["code"] in _GRAVE])
     ]
     more = f" (and {len(doubts) - 1} more like it)" if len(doubts) > 1 else ""
     end = "" if doubts and doubts[0].endswith("?") and not more else "."

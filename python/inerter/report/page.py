@@ -223,8 +223,11 @@ def _notes(finding: Finding) -> dict[str, str]:
     return notes
 
 
-def _vague(value: ParameterValue) -> bool:
-    return value.stderr > 0.5 * abs(value.value)
+def _vague(value: ParameterValue) -> str:
+    """Why a value tells little; empty where it tells."""
+    if value.at_limit:
+        return "at the limit of what is searched"
+    return "poorly determined" if value.stderr > 0.5 * abs(value.value) else ""
 
 
 def _run_label(run: RunCurves) -> dict[str, Any]:
@@ -264,7 +267,7 @@ def _parameters(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 else "as set"
                 if new is not None
                 else "left out",
-                "vague": found is not None and _vague(found),
+                "vague": _vague(found) if found else "",
             }
         )
     return rows
