@@ -164,7 +164,7 @@ def _with_scale(given: Given, stands: Confirmed) -> tuple[Given, Confirmed]:
     for _ in range(2):
         final = stands.fit.model
         errors, noise = stands.data.raw.errors(final), stands.judge.noise_left(final)
-        odd = odd_scale(stands.data.whole, errors, noise)
+        odd = odd_scale(stands.data.whole, errors, noise, final.device().inertance)
         if not odd or given.time.is_over():
             break
         given.progress(f"the force of {next(iter(odd))} has another scale: without that")

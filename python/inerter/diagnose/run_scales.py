@@ -26,16 +26,23 @@ Scales = Mapping[str, tuple[float, float]]
 SURE, LEAST, TIMES, SHARE = 5.0, 0.003, 4.0, 0.1
 # the warning of a force that pushes where an inerter pulls
 SIGN = "sign_flip"
+# the share of a scale that each part of the force has to have, and the least part, per the larger
+# one, that tells one
+ALIKE, PART = 0.4, 0.1
 # stretches of a run that count as independent; runs that it takes to tell which is the odd one
 STRETCHES, RUNS = 12, 3
 # it stands where all runs are met so much better without it
 BETTER = 0.85
 
 
-def odd_scale(runs: Sequence[BenchRun], errors: Sequence[Array], noise: float) -> Scales:
+def odd_scale(
+    runs: Sequence[BenchRun], errors: Sequence[Array], noise: float, inertance: float
+) -> Scales:
     """Scale of a run's force over that of the others, and its standard error; at most one run.
 
-    errors: measured minus predicted force of every run (n,) [N]; noise: rms [N].
+    errors: measured minus predicted force of every run (n,) [N]; noise: rms [N]; inertance: of the
+    model [kg]. Its force and all others have to have that scale: where one part alone differs, it
+    is another inertance, or other friction.
     """
     if len(runs) < RUNS or any(run.part or run.inner.sum() < 10 * STRETCHES for run in runs):
         return {}
@@ -51,6 +58,9 @@ def odd_scale(runs: Sequence[BenchRun], errors: Sequence[Array], noise: float) -
     left = missed - apart * (run.force - missed)
     before, after = (float(np.var(e[run.inner])) - noise**2 for e in (missed, left))
     if not after < (1.0 - SHARE) * before:
+        return {}
+    parts = (_of_parts(run, missed, inertance) - about) / apart
+    if not np.all(parts > ALIKE):
         return {}
     return {run.name: (float(scales[odd] / about), float(np.hypot(stderrs[odd], spread)) / about)}
 
@@ -107,6 +117,18 @@ def scales_in_words(scales: Scales, motion: Kind = TRANSLATION) -> str:
                 "it goes with, as friction of seals with a pressure. It was divided by that."
             )
     return " ".join(told)
+
+
+def _of_parts(run: BenchRun, error: Array, inertance: float) -> Array:
+    """Measured over predicted, of the inertance's force and of all others; 0 of too small a one."""
+    force = run.force[run.inner]
+    carried = inertance * run.acceleration[run.inner]
+    parts = np.column_stack([carried, force - error[run.inner] - carried])
+    parts, force = parts - parts.mean(axis=0), force - force.mean()
+    sizes = np.sqrt(np.mean(parts**2, axis=0))
+    if sizes.min() < PART * sizes.max():
+        return np.zeros(2)
+    return np.asarray(np.linalg.lstsq(parts / sizes, force, rcond=1e-9)[0] / sizes)
 
 
 def _scale(run: BenchRun, error: Array) -> tuple[float, float]:
