@@ -162,10 +162,9 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       friction = friction_over_step(device, stretch, v, v1, h, share, load, next);
     }
     double spring = spring_force(device, stretch);
-    double damper =
-        has(device, PART_DAMPER)
-            ? damper_over_step(device, damping_at(device, stretch), v, v1)
-            : damper_force(device, stretch, v1);
+    double damper = has(device, PART_DAMPER)
+                        ? damper_over_step(device, damping_at(device, stretch), v, v1)
+                        : damper_force(device, stretch, v1);
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
     if (has(device, PART_FORCE_MAP)) {
       Tangent map = map_force(device, stretch, v);
