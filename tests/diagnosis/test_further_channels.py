@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from inerter.diagnose import diagnose_bench
-from inerter.diagnose.remainder.further import further_channels
+from inerter.diagnose.remainder.further import further_channels, measured_by
 from inerter.diagnose.remainder.lines import lines
+from inerter.diagnose.remainder.words import summary
 from inerter.identify.runs import whole
 from inerter.records import Record
 from inerter.records.preparation import prepare
@@ -83,3 +84,11 @@ def test_a_line_of_the_motion_is_none_of_its_own() -> None:
         assert abs(found.frequency - frequency) < 0.03
         assert found.of_motion is of_motion
         assert found.multiple == 0
+
+
+def test_a_channel_that_tells_what_time_tells_is_named_beside_it() -> None:
+    detail = f"and the channel oil tells 44 % too, {measured_by('the channel oil')}"
+    text = summary(["time"], {"time": detail}, {"time": 0.66}, 3.0, 1.0, 2.0, False, None)
+    assert "record (66 %), and the channel oil tells 44 % too, see `inerter identify" in text
+    small = summary([], {}, {}, 1.1, 1.0, 0.0, False, None, too_small=("state", 0.4))
+    assert "of any size (0.4 N rms of it go with position, velocity and acceleration" in small

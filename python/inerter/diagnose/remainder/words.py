@@ -118,7 +118,8 @@ def summary(
         word = "one frequency" if detail.endswith(OF_MOTION) else WORDS.get(name, name)
         named = shown_as(motion, word)
         part = f" ({100 * shares[name]:.0f} %)" if name in shares else ""
-        parts.append(named + detail + part)
+        # of time the detail is of another channel, with a share of its own
+        parts.append(named + part + detail if name == "time" else named + detail + part)
     # of bursts it is known when they come, not what they are
     if predicted is None:
         predicted = 0.0 if list(depends) == ["bursts"] else structure
