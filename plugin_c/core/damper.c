@@ -24,7 +24,8 @@ static double bend(const InerterDevice* p, double knee, double v) {
   }
   // of the larger one no power: it may be none that there is a number for
   return ratio <= 1 ? v * pow(1 + pow(ratio, n), -lost / n)
-                    : copysign(knee, v) * pow(ratio, 1 - lost) * pow(1 + pow(ratio, -n), -lost / n);
+                    : copysign(knee, v) * pow(ratio, p->damping_exponent) *
+                          pow(1 + pow(ratio, -n), -lost / n);
 }
 
 double damper_shaped(const InerterDevice* p, double viscous, double v) {

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from inerter.diagnose import diagnose_bench
 from inerter.records import Record
+from sines import moved
 
 TIME = np.arange(0, 10, 1 / 250)
 
@@ -17,12 +18,7 @@ def corner(v: np.ndarray, slope: float, knee: float, beyond: float) -> np.ndarra
 
 def record(draw: np.random.Generator, name: str, size: float) -> Record:
     """30 kg; 2400 N s/m up to 0.12 m/s and then 600, the other way 1100 up to 0.08 and then 380."""
-    x, v, a = np.zeros((3, TIME.size))
-    for frequency in (0.6, 1.1, 1.7, 2.6):
-        w, phase = 2 * np.pi * frequency, draw.uniform(0, 6)
-        x += size * np.sin(w * TIME + phase)
-        v += size * w * np.cos(w * TIME + phase)
-        a -= size * w**2 * np.sin(w * TIME + phase)
+    x, v, a = moved(draw, TIME, (0.6, 1.1, 1.7, 2.6), size)
     damper = np.where(v > 0, corner(v, 2400, 0.12, 600), -corner(-v, 1100, 0.08, 380))
     return Record(
         name=name, time=TIME, displacement=x + 1e-6 * draw.standard_normal(TIME.size),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from inerter.diagnose import diagnose_bench
 from inerter.records import Record
+from sines import moved
 
 TIME = np.arange(0, 10, 1 / 250)
 
@@ -16,12 +17,7 @@ def record(
     draw: np.random.Generator, name: str, size: float, law: Callable[[np.ndarray], np.ndarray]
 ) -> Record:
     """20 kg beside a damper that follows a law of the speed [m/s]."""
-    x, v, a = np.zeros((3, TIME.size))
-    for frequency in (0.4, 1.1, 1.7, 2.6):
-        w, phase = 2 * np.pi * frequency, draw.uniform(0, 6)
-        x += size * np.sin(w * TIME + phase)
-        v += size * w * np.cos(w * TIME + phase)
-        a -= size * w**2 * np.sin(w * TIME + phase)
+    x, v, a = moved(draw, TIME, (0.4, 1.1, 1.7, 2.6), size)
     return Record(
         name=name, time=TIME, displacement=x + 1e-6 * draw.standard_normal(TIME.size),
         force=20 * a + law(v) + 0.5 * draw.standard_normal(TIME.size),

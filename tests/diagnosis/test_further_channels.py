@@ -10,19 +10,14 @@ from inerter.diagnose.remainder.words import summary
 from inerter.identify.runs import whole
 from inerter.records import Record
 from inerter.records.preparation import prepare
+from sines import moved
 
 TIME = np.arange(0, 12, 1 / 400)
 
 
 def motion(draw: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Displacement, velocity and acceleration of four sines."""
-    x, v, a = np.zeros((3, TIME.size))
-    for frequency in (0.7, 1.3, 2.2, 3.1):
-        w, phase = 2 * np.pi * frequency, draw.uniform(0, 6)
-        x += 4e-3 * np.sin(w * TIME + phase)
-        v += 4e-3 * w * np.cos(w * TIME + phase)
-        a -= 4e-3 * w**2 * np.sin(w * TIME + phase)
-    return x, v, a
+    return moved(draw, TIME, (0.7, 1.3, 2.2, 3.1), 4e-3)
 
 
 def record(draw: np.random.Generator, name: str, **extra: np.ndarray) -> Record:

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
+from inerter.device_file import read_device
 from inerter.diagnose import diagnose_bench
 from inerter.records import Record
+from inerter.report.output import write_outputs
+from sines import moved
 
 TIME = np.arange(0, 8, 1 / 250)
 
 
 @pytest.mark.parametrize("stiffness", [-4000.0, 5000.0])
-def test_place_and_stiffnesses_are_measured(stiffness: float, effects_seed: int) -> None:
+def test_place_and_stiffnesses_are_measured(
+    stiffness: float, effects_seed: int, tmp_path: Path
+) -> None:
     draw = np.random.default_rng([effects_seed, 11])
     place, cubic = float(draw.choice([-1, 1]) * draw.uniform(2e-3, 5e-3)), 6e7
 
     def record(name: str) -> Record:
-        x, v, a = np.zeros((3, TIME.size))
-        for frequency in (0.5, 1.1, 2.3):
-            w, phase = 2 * np.pi * frequency, draw.uniform(0, 6)
-            size = draw.uniform(4e-3, 7e-3)
-            x += size * np.sin(w * TIME + phase)
-            v += size * w * np.cos(w * TIME + phase)
-            a -= size * w**2 * np.sin(w * TIME + phase)
+        x, v, a = moved(draw, TIME, (0.5, 1.1, 2.3), draw.uniform(4e-3, 7e-3, 3))
         spring = stiffness * (x - place) + cubic * (x - place) ** 3
         noise = draw.standard_normal((2, TIME.size))
         return Record(
@@ -39,3 +41,7 @@ def test_place_and_stiffnesses_are_measured(stiffness: float, effects_seed: int)
     assert values["stiffness_cubic"] == pytest.approx(cubic, rel=0.02)
     assert values["stiffness"] == pytest.approx(stiffness, abs=100)
     assert values["inertance"] == pytest.approx(30, rel=0.01)
+    # a user's own length at rest counts from where his displacement does
+    write_outputs(replace(found, rest_length=0.4), tmp_path)
+    written = read_device(tmp_path / "device.toml").rest_length
+    assert written == pytest.approx(0.4 + values["rest_length"], rel=1e-12)

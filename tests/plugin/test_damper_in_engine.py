@@ -102,6 +102,33 @@ def test_stable_at_any_step() -> None:
         assert np.all(np.diff(np.abs([2.0, *speeds])) <= 1e-12), integrator
 
 
+BRAKE = {"damping_knee": 0.2, "damping_beyond": 0.0, "damping_exponent": -1.0}
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicit", "implicitfast", "discrete"])
+def test_a_force_that_falls_with_the_speed(integrator: str) -> None:
+    # passes its knee on the way down from 2 m/s
+    errors = [
+        end(mass(integrator, step, DEVICE | BRAKE)) - exact(BRAKE) for step in (1e-3, 5e-4, 2.5e-4)
+    ]
+    assert errors[0] / errors[1] == pytest.approx(2, rel=0.05)
+    assert errors[1] / errors[2] == pytest.approx(2, rel=0.05)
+    # far beyond the step in which it could be followed it still only brakes
+    model = mass(integrator, 1e-2, {"viscous": 1e5, "inertance": 0.0} | BRAKE)
+    data = mujoco.MjData(model)
+    data.qvel[0] = 2.0
+    speeds = [2.0]
+    for _ in range(200):
+        mujoco.mj_step(model, data)
+        speeds.append(float(data.qvel[0]))
+    assert np.all(np.diff(speeds) <= 1e-12)
+    assert 0.0 <= speeds[-1] < 1e-6
+
+
+def test_a_force_that_falls_under_rk4() -> None:
+    assert end(mass("RK4", 1e-3, DEVICE | BRAKE)) == pytest.approx(exact(BRAKE), abs=1e-6)
+
+
 def test_dampers_that_are_disabled_damp_no_more() -> None:
     model = mass("implicitfast", 1e-3, DEVICE | SHAPE)
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_DAMPER

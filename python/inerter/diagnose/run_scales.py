@@ -19,7 +19,7 @@ from inerter.motion_units import TRANSLATION, Kind, force_word
 from inerter.records import Record
 
 Array = NDArray[np.float64]
-Scales = Mapping[str, tuple[float, float]]
+RunScales = Mapping[str, tuple[float, float]]
 
 # a scale is tried from so many standard errors on, this deviation, so many times the spread of the
 # others, and where it takes this share of what is missed of the run beyond the noise
@@ -37,7 +37,7 @@ BETTER = 0.85
 
 def odd_scale(
     runs: Sequence[BenchRun], errors: Sequence[Array], noise: float, inertance: float
-) -> Scales:
+) -> RunScales:
     """Scale of a run's force over that of the others, and its standard error; at most one run.
 
     errors: measured minus predicted force of every run (n,) [N]; noise: rms [N]; inertance: of the
@@ -65,14 +65,14 @@ def odd_scale(
     return {run.name: (float(scales[odd] / about), float(np.hypot(stderrs[odd], spread)) / about)}
 
 
-def without_scale(records: Sequence[Record], scales: Scales) -> list[Record]:
+def without_scale(records: Sequence[Record], scales: RunScales) -> list[Record]:
     """Records with the force of a run divided by its scale."""
     return [
         replace(r, force=r.force / scales[r.name][0]) if r.name in scales else r for r in records
     ]
 
 
-def turned_round(records: Sequence[Record]) -> tuple[list[Record], Scales]:
+def turned_round(records: Sequence[Record]) -> tuple[list[Record], RunScales]:
     """Records with the force of some turned round that alone have the wrong sign, and their scales.
 
     Those of fewer than half of the runs: of more, what they are called has the wrong sign.
@@ -89,19 +89,19 @@ def turned_round(records: Sequence[Record]) -> tuple[list[Record], Scales]:
     return turned, dict.fromkeys(sorted(wrong), (-1.0, 0.0))
 
 
-def together(known: Scales, more: Scales) -> Scales:
+def together(known: RunScales, more: RunScales) -> RunScales:
     """Scales of runs from which some were taken before."""
     before = {name: value for name, (value, _) in known.items()}
     return dict(known) | {n: (v * before.get(n, 1.0), e) for n, (v, e) in more.items()}
 
 
-def is_met_better(before: float, after: float, known: Scales) -> bool:
+def is_met_better(before: float, after: float, known: RunScales) -> bool:
     """Whether errors of all runs [N] say that a scale is one; it may be refined by little."""
     refined = any(error > 0 for _, error in known.values())
     return after < (1.0 if refined else BETTER) * before
 
 
-def scales_in_words(scales: Scales, motion: Kind = TRANSLATION) -> str:
+def scales_in_words(scales: RunScales, motion: Kind = TRANSLATION) -> str:
     """A sentence about the run with another scale; empty where there is none."""
     force, told = force_word(motion), []
     for name, (value, error) in scales.items():
@@ -113,8 +113,8 @@ def scales_in_words(scales: Scales, motion: Kind = TRANSLATION) -> str:
         if error > 0:
             told.append(
                 f"The {force} of {name} is {measured(abs(value), error)} times what the other runs "
-                "tell, all of it alike: another range or calibration, or something that all of "
-                "it goes with, as friction of seals with a pressure. It was divided by that."
+                "tell, the inertance's part and the rest alike: another range or calibration. It "
+                "was divided by that."
             )
     return " ".join(told)
 
