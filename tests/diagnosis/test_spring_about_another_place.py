@@ -11,6 +11,7 @@ from inerter.device_file import read_device
 from inerter.diagnose import diagnose_bench
 from inerter.records import Record
 from inerter.report.output import write_outputs
+from inerter.report.page import render_report
 from sines import moved
 
 TIME = np.arange(0, 8, 1 / 250)
@@ -45,3 +46,5 @@ def test_place_and_stiffnesses_are_measured(
     write_outputs(replace(found, rest_length=0.4), tmp_path)
     written = read_device(tmp_path / "device.toml").rest_length
     assert written == pytest.approx(0.4 + values["rest_length"], rel=1e-12)
+    page = render_report(found, "", "")
+    assert ("as a spring that snaps through" in page) == (stiffness < 0)

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
 from inerter.diagnose.doubt import about_its_value, by_weight, reason
+from inerter.diagnose.guesses import what_it_could_be
 from inerter.diagnose.remainder.words import WORDS
 from inerter.diagnose.result import (
     Diagnosis,
@@ -26,7 +27,7 @@ from inerter.diagnose.wording import curves_in_words, departure, is_right
 from inerter.motion_units import force_word
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import to_script
-from inerter.printable import upright
+from inerter.printable import in_digits, upright
 from inerter.report import text
 from inerter.report.other_plots import carried_plots, cutoff_plot, table_plots
 from inerter.report.run_plots import LOOP_CYCLES, run_plots
@@ -192,6 +193,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
             for r in finding.other_rivals
         ],
         "notes": _notes(finding),
+        "guess": in_digits(what_it_could_be(finding).removeprefix("; ")),
         "doubt": reason(finding, diagnosis.unexplained.structure),
         "own_value": about_its_value(finding),
         "evidence": finding.evidence,
