@@ -23,7 +23,11 @@ _RESOLVED, _SHORT = 0.2, 0.1
 
 
 def device_mjcf(
-    device: Device, name: str = "device", timestep: float = 1e-3, motion: Kind = TRANSLATION
+    device: Device,
+    name: str = "device",
+    timestep: float = 1e-3,
+    motion: Kind = TRANSLATION,
+    before: float = 0.0,
 ) -> str:
     """A complete model in MJCF: the device on the test rig, ready to load.
 
@@ -37,6 +41,8 @@ def device_mjcf(
         Time step [s].
     motion : str
         In rotation the table turns on a hinge and the device acts on that.
+    before : float
+        Mass [kg] that moves with the terminal before the device's shaft: a second inerter.
 
     Returns
     -------
@@ -51,16 +57,32 @@ def device_mjcf(
 
     # what the user stated, and the number of states that follows
     instance = _only(root, "extension/plugin/instance")
-    instance[:] = [
-        ElementTree.Element("config", key=key, value=str(value))
-        for key, value in device.given.items()
-    ]
+    instance[:] = _configuration(device)
     if device.nstate:
         _only(root, "actuator/plugin").set("actdim", str(device.nstate))
+    if before:
+        _beside(root, "before_the_shaft", Device(friction="none", inertance=before))
     if motion == ROTATION:
         _turning(root)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _beside(root: ElementTree.Element, name: str, device: Device) -> None:
+    """Put a second device between the same terminals."""
+    whole = ElementTree.Element("instance", name=name)
+    whole[:] = _configuration(device)
+    _only(root, "extension/plugin").append(whole)
+    for path in ("actuator", "sensor"):
+        parent, there = _only(root, path), _only(root, f"{path}/plugin")
+        acting = {k: v for k, v in there.attrib.items() if k != "actdim"}
+        parent.append(ElementTree.Element("plugin", {**acting, "name": name, "instance": name}))
+
+
+def _configuration(device: Device) -> list[ElementTree.Element]:
+    """What the user stated of a device."""
+    given = device.given.items()
+    return [ElementTree.Element("config", key=key, value=str(value)) for key, value in given]
 
 
 def _turning(root: ElementTree.Element) -> None:

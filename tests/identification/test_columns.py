@@ -92,6 +92,7 @@ BESIDE = {
     "tone": ("none", {"disturbance_amplitude": 5.0, "disturbance_frequency": 7.0}),
     "viscous drift": ("none", {"viscous_drift": 0.3}),
     "friction drift": ("dahl", {"friction_drift": 0.3}),
+    "a mass before the shaft": ("none", {**SHAFT, "grip_mass": 6.0}),
 }  # fmt: skip
 OF_CHANNEL = [
     name for name, (_, values) in BESIDE.items()

@@ -258,6 +258,9 @@ def parameter_errors(case: HiddenCase, diagnosis: Diagnosis) -> list[ParameterEr
     `gas_reach` V0 / A [m]. Bouc-Wen's parameters are left out.
     """
     found: list[ParameterError] = []
+    if case.chain and "grip_mass" in diagnosis.extended.channels:
+        # told from the inertance, which it is a part of elsewhere
+        case = replace(case, chain=replace(case.chain, grip_mass=0.0))
     shown = shown_parameters(case)
     for effect in case.effects:
         finding = next((f for f in diagnosis.findings if f.effect == effect), None)

@@ -341,6 +341,11 @@ _ALL = (
         size=lambda s: s.force / s.elapsed, column=lambda x, v, a, t: t,
     ),
     Coordinate(
+        name="grip_mass", unit="kg", words={"grip_mass": "mass before the shaft"}, lower=_zero,
+        belongs_to="channel", size=lambda s: s.force / s.acceleration, column=lambda x, v, a, t: a,
+        begin=lambda s: 0.01 * s.force / s.acceleration,
+    ),
+    Coordinate(
         name="force_maximum", unit="N", words={"force_maximum": "upper limit"},
         belongs_to="channel", size=lambda s: s.force,
     ),

@@ -404,6 +404,16 @@ _ALL = (
         rivals=("inertance_error", "sensor_delay"),
     ),
     Effect(
+        name="grip_mass", rank=20, smooth=True, coordinates=("grip_mass",), unlike_friction=True,
+        plain="a mass before the shaft", meaning="m a at the terminal, before a shaft or a play",
+        cause="a grip or an adapter between load cell and device; a nut, a coupling, a rotor "
+        "before the shaft",
+        taken_for="a stiffer shaft, or inertance",
+        experiment="weigh what moves with the terminal, or repeat above the shaft's resonance, "
+        "where this mass alone is felt",
+        rivals=("series_elasticity",),
+    ),
+    Effect(
         name="inertance_error", rank=1,
         smooth=True, coordinates=("inertance",), telling=(), on_table=True,
         plain="an inertance other than stated", meaning="b differs from what is stated",

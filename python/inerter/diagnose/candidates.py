@@ -26,7 +26,7 @@ from inerter.catalogue.friction import (
 from inerter.catalogue.scales import Scales
 from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
-from inerter.diagnose.composition import carries, has_series, width
+from inerter.diagnose.composition import carries, width
 from inerter.diagnose.stated import shafts, stated_candidates
 from inerter.identify.model import Model
 from inerter.identify.transient import RELAXING
@@ -161,9 +161,19 @@ def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 def _shaft(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     # along one sine a shaft is an inertance of another size
-    if not has_series(model) and not (sizes.one_tone and "inertance" in model.free):
+    if not model.has_series and not (sizes.one_tone and "inertance" in model.free):
         starts = tuple(model.adding(None, **shaft) for shaft in shafts(sizes))
         yield Candidate(effect.name, None, starts)
+        # what is felt above the resonance of a shaft is what moves before it
+        mass = 0.3 * model.values.get("inertance", sizes.force / sizes.acceleration)
+        before = tuple(start.adding(None, grip_mass=mass) for start in starts)
+        yield Candidate(effect.name, "behind a mass", before)
+
+
+def _grip(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    # of a device that does not give it is inertance
+    if model.has_series and not sizes.one_tone:
+        yield from _term(effect, model, sizes)
 
 
 def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
@@ -171,7 +181,7 @@ def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
         return
     x, slow = sizes.displacement, sizes.frequency
     contacts: list[dict[str, float]] = [{}]
-    if not has_series(model):
+    if not model.has_series:
         contacts = [{"series_frequency": ratio * slow, "series_loss": 0.3} for ratio in (5, 20)]
     starts = tuple(
         model.adding(None, backlash=ratio * x, **contact)
@@ -355,6 +365,7 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 _SPECIAL: dict[str, Build] = {
     "sensor_filter": _filter,
+    "grip_mass": _grip,
     "position_force": _by_the_search,
     "friction_play": _play_of_friction,
     "viscoelasticity": _relaxing,

@@ -93,8 +93,11 @@ def is_hidden(effects: Set[str], model: Model, sizes: Scales, strokes: int) -> b
     Along one sine a shaft is an inertance of another size, and a low-pass with a delay is as late
     as the one that it takes back; one that turns the only frequency by much makes a damper of an
     inertance. Along few strokes what changes with the time changes with the
-    place. Two stops with no room between them are a spring.
+    place. Two stops with no room between them are a spring. A mass before a device that neither
+    gives nor has play is inertance.
     """
+    if "grip_mass" in effects and (sizes.one_tone or not model.has_series):
+        return True
     if sizes.one_tone:
         shaft = "series_elasticity" in effects and "inertance" in model.free
         found = filters_of(model.values).values() if "sensor_filter" in effects else ()

@@ -38,12 +38,6 @@ _NO_INERTANCE = 1e-6
 _KNOWN = {"gas_exponent": 0.7 / np.sqrt(12)}
 
 
-def has_series(model: Model) -> bool:
-    """Whether a model has a series element."""
-    names = ("series_frequency", "series_stiffness", "series_damping")
-    return any(name in model.values for name in names)
-
-
 def is_local(effect: str) -> bool:
     """Whether an effect may show in few stretches, or in one run alone."""
     return effect in EFFECTS and EFFECTS[effect].local
@@ -167,7 +161,7 @@ def _contradicts(effect: str, model: Model, baseline: Model) -> bool:
     if known.kind == "law" and model.friction != baseline.friction:
         return False
     if known.kind == "shaft":
-        return has_series(baseline)
+        return baseline.has_series
     names = (*known.coordinates, *known.stated_as)
     return any(name in baseline.values and name not in baseline.free for name in names)
 

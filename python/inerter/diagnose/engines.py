@@ -16,11 +16,10 @@ from inerter.identify.between import about_samples, between, quintics
 from inerter.identify.channel import through_channel
 from inerter.identify.model import Model
 from inerter.identify.prediction import (
+    begin,
     bristle_reach,
-    first_state,
-    lateness,
+    felt_beside,
     settled,
-    warming,
     with_friction_drift,
     with_late_motion,
 )
@@ -86,7 +85,7 @@ def _error(
             continue
         moved, values = with_late_motion(model, run)
 
-        begins = first_state(device, moved, late=lateness(values))
+        begins = begin(device, moved, values)
 
         def forces(each: Device, run: BenchRun = moved, begins: Any = begins) -> dict[str, Array]:
             found = along(each, from_first(run), begins)
@@ -94,7 +93,8 @@ def _error(
 
         drift = values.get("friction_drift", 0.0)
         force = with_friction_drift(device, drift, forces, run.elapsed)
-        force = force + warming(device, values, moved.velocity, run.elapsed)
+        motion = moved.displacement, moved.velocity, moved.acceleration
+        force = force + felt_beside(device, values, motion, run.elapsed)
         if not np.all(np.isfinite(force)):
             raise ValueError("the force is not finite")
         shown = through_channel(values, force, run.elapsed, run.spacing)

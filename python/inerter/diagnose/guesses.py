@@ -14,7 +14,7 @@ def what_it_could_be(finding: Finding) -> str:
     """Clauses that begin with a semicolon each; empty where the figures say nothing more."""
     guesses = (
         _of_the_mains, _of_a_gear, _of_a_weight, _of_what_goes_slack, _of_a_stop_at_rest,
-        _of_a_power, _of_a_loop, _of_a_push,
+        _of_a_power, _of_a_loop, _of_a_push, _of_a_mass,
     )  # fmt: skip
     return "".join(guess(finding) for guess in guesses)
 
@@ -128,4 +128,15 @@ def _of_a_push(finding: Finding) -> str:
     return (
         "; below zero: it pushes away from its middle, as a spring that snaps through, magnets or "
         "a weight above its pivot do"
+    )
+
+
+def _of_a_mass(finding: Finding) -> str:
+    """Whose a mass before a shaft may be."""
+    if finding.effect != "grip_mass":
+        return ""
+    return (
+        "; no record tells whose this is: weigh the grip and what else is between load cell and "
+        "device. The rest is the device's own (a nut, a coupling), in a model a second inerter "
+        "beside it"
     )

@@ -24,7 +24,7 @@ from inerter.catalogue.along_stroke import QUANTITIES, curves_of_nodes
 from inerter.catalogue.friction import FRICTION
 from inerter.identify.channel import clips
 from inerter.identify.model import Model
-from inerter.identify.prediction import first_state, lateness, with_late_motion
+from inerter.identify.prediction import begin, with_late_motion
 from inerter.identify.runs import BenchRun, forces_along
 
 Array = NDArray[np.float64]
@@ -66,8 +66,7 @@ class Response:
         def friction(rise: Array) -> Array:
             values = {n: model.values[n] + r for n, r in zip(nodes, rise.tolist(), strict=True)}
             device = replace(model, values={**model.values, **values}).device()
-            place = model.values.get("friction_place", 0.0)
-            state = first_state(device, run, place, late=lateness(shown))
+            state = begin(device, run, shown)
             if fine:
                 return run.at_measured_rate(device, state)["friction"]
             along = forces_along(device, run.spacing, run.followed, state, run.force.size)

@@ -9,9 +9,11 @@
     disturbance_amplitude, disturbance_frequency   a tone from outside                     [N], [Hz]
     friction_drift           friction level times 1 + friction_drift (elapsed time)        [1/s]
     viscous_drift            viscous damping times 1 + viscous_drift (elapsed time)        [1/s]
+    grip_mass                moves with the terminal, before a shaft or a free play        [kg]
 
-The last two are the device's own, but change with time as no device of a simulator does: the level
-of its friction law, Bouc-Wen's too, and not what friction adds that goes with the load. Elapsed
+The drifts of friction and damping are the device's own, but change with time as no device of a
+simulator does: the level of the friction law, Bouc-Wen's too, and not what friction adds that goes
+with the load. So may the mass be, of a nut say: beside the device it is a second inerter. Elapsed
 time counts from the beginning of a run, or of the first run where all share one clock. The phase of
 a tone is nobody's to predict and is read off each run.
 """

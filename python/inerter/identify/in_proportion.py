@@ -154,7 +154,7 @@ def _few(which: Sequence[int], size: int) -> list[Sequence[int]]:
 
 
 def first_shares(rows: Rows, run: BenchRun) -> Array:
-    """What one of each coordinate is of a run's first force, (m,); 0 of one of the channel."""
+    """What one of each coordinate is of a run's first force, (m,); 0 of one that begins later."""
 
     def shares(missing: list[int]) -> list[Array]:
         at = slice(run.first, run.first + 1)
@@ -162,7 +162,7 @@ def first_shares(rows: Rows, run: BenchRun) -> Array:
 
     keys = [(run.identity, "first", *key) for key in column_keys(rows)]
     found = _OF_RUNS.all_found(keys, shares)[:, 0]
-    return np.where([COORDINATES[name].belongs_to == "device" for name, _ in rows], found, 0.0)
+    return np.where([name != "force_drift" for name, _ in rows], found, 0.0)
 
 
 def _bends(name: str, run: BenchRun) -> bool:

@@ -162,6 +162,11 @@ class Model:
         return stiffness / (math.pi * critical), device.series_damping / critical
 
     @property
+    def has_series(self) -> bool:
+        """Whether there is a series element."""
+        return not _SERIES.isdisjoint(self.values)
+
+    @property
     def complexity(self) -> int:
         """Number of free coordinates that say something about the device."""
         return sum(name not in NUISANCES for name in self.free)
@@ -177,8 +182,13 @@ class Model:
         return Model(self.friction, {**self.values, **values}, self.free, self.texts)
 
     def without(self, names: Sequence[str], friction: str | None = None) -> Model:
-        """The model without some coordinates."""
+        """The model without some coordinates, and what goes with them.
+
+        Where nothing gives any more, a mass before what gave is inertance.
+        """
         law = friction or self.friction
+        if _SERIES.isdisjoint(self.values.keys() - set(names)):
+            names = (*names, "grip_mass")
         free = tuple(name for name in self.free if name not in names)
         values = {name: value for name, value in self.values.items() if name not in names}
         return Model(law, values, _useful(free, law), self.texts)
@@ -186,6 +196,7 @@ class Model:
 
 # what says where a device is along its stroke
 _OF_PLACES = {"rest_length", "curve_lower", "curve_upper"}
+_SERIES = {"series_frequency", "series_stiffness", "series_damping"}
 # lists of forces that nothing else multiplies
 _OF_FORCE = {"force_curve", "force_periods"}
 _OF_FRICTION = {

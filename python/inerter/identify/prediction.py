@@ -51,18 +51,25 @@ _MOST_TWIST = 10.0
 
 
 def first_state(
-    device: Device, run: BenchRun, place: float = 0.0, pressed: float = 0.0, late: float = 0.0
+    device: Device,
+    run: BenchRun,
+    place: float = 0.0,
+    pressed: float = 0.0,
+    late: float = 0.0,
+    mass: float = 0.0,
 ) -> float | Array:
     """State at a run's sample `first`, read off the force, within what the friction law can hold.
 
-    A force near 0 does not tell where in a free play before the friction a run begins: that is
+    A force near 0 does not tell where in a free play before the friction a run begins: that is the
     `place`, -1 ... 1 of half the play. A number for a device with at most one state, else an array
-    (nstate,). `pressed` [N] is added to the force, which the channel shows so `late` [s].
+    (nstate,). `pressed` [N] is added to the force, which the channel shows so `late` [s], and with
+    it that of a `mass` [kg] before the device.
     """
     if device.nstate == 0:
         return 0.0
     i = run.first
     force = run.first_force + pressed + (run.force_later(late) if late else 0.0)
+    force -= mass * float(run.acceleration[i])
     state = device.state_of_force(run.displacement[i], run.velocity[i], run.acceleration[i], force)
     if device.series_stiffness:
         state = _twisted(device, run, np.atleast_1d(state))
@@ -72,6 +79,14 @@ def first_state(
     told = min(1.0, abs(bent) / (_TELLING * _held(device)))
     found = bent + device.friction_backlash * (told * side + (1.0 - told) * place)
     return np.array([found, *np.atleast_1d(state)[1:]]) if device.nstate > 1 else found
+
+
+def begin(
+    device: Device, run: BenchRun, values: Mapping[str, float], pressed: float = 0.0
+) -> float | Array:
+    """`first_state` as these coordinates have it."""
+    place, mass = values.get("friction_place", 0.0), values.get("grip_mass", 0.0)
+    return first_state(device, run, place, pressed, lateness(values), mass)
 
 
 def _twisted(device: Device, run: BenchRun, states: Array) -> Array:
@@ -122,8 +137,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     """
     device = model.device()
     run, values = with_late_motion(model, run)
-    place, late = values.get("friction_place", 0.0), lateness(values)
-    state = first_state(device, run, place, pressed, late)
+    state, motion = begin(device, run, values, pressed), _motion_of(run)
     rough = model.has_jumps or device.friction != "none" or device.has_load_friction
     drift = values.get("friction_drift", 0.0)
     if np.isinf(run.cutoff) or not rough:
@@ -135,7 +149,7 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
             total = with_friction_drift(device, drift, along, run.elapsed)
         else:
             total = run.thinned_force(device, state)
-        total = total + warming(device, values, run.velocity, run.elapsed)
+        total = total + felt_beside(device, values, motion, run.elapsed)
         return through_channel(values, total, run.elapsed, run.spacing)
 
     if is_sum(model):
@@ -143,15 +157,15 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
         if not np.isfinite(sharp[-1]):
             # hysteresis that hardens without end
             return np.full(run.force.size, np.inf)
-        warmed = warming(device, values, run.velocity, run.elapsed)
-        smooth = smooth_force(model, run, state) + warmed
+        beside = felt_beside(device, values, motion, run.elapsed)
+        smooth = smooth_force(model, run, state) + beside
         if not model.has_jumps:
             return through_channel(values, smooth + sharp, run.elapsed, run.spacing)
         return through_channel(values, smooth, run.elapsed, run.spacing) + sharp
 
     rest, part = states_of(model.smooth_part, model, state), model.smooth_part.device
     smooth = forces_along(part, run.spacing, run.followed, rest, run.force.size)["total"]
-    smooth = smooth + warming(device, values, run.velocity, run.elapsed)
+    smooth = smooth + felt_beside(device, values, motion, run.elapsed)
     found = run.at_measured_rate(device, state)
     if not abs(found["friction"][-1]) < RUNAWAY:
         # hysteresis that hardens without end: nothing that could be low-passed
@@ -169,8 +183,8 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     plain, less = without_limits(values), run.at_measured_rate(part, rest)["total"]
     if clips(values):
         if run.measured is not None:
-            warmed = warming(device, values, run.measured[1], times)
-            total, less = total + warmed, less + warmed
+            beside = felt_beside(device, values, run.measured, times)
+            total, less = total + beside, less + beside
         added = through_channel(values, total, times, spacing)
         added = added - through_channel(plain, less, times, spacing)
     else:
@@ -182,18 +196,18 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
 def beyond_limits(model: Model, run: BenchRun) -> NDArray[np.bool_]:
     """Where a channel that clips shows a limit, at the rate at which the force passes it, (m,)."""
     device, (run, values) = model.device(), with_late_motion(model, run)
-    state = first_state(device, run, values.get("friction_place", 0.0), late=lateness(values))
-    velocity, elapsed, spacing = run.velocity, run.elapsed, run.spacing
+    state = begin(device, run, values)
+    motion, elapsed, spacing = _motion_of(run), run.elapsed, run.spacing
     fine = run.measured if np.isfinite(run.cutoff) else None
     if fine is not None:
-        velocity, elapsed, spacing = fine[1], run.fine_elapsed, run.fine_spacing
+        motion, elapsed, spacing = fine, run.fine_elapsed, run.fine_spacing
 
     def along(each: Device) -> dict[str, Array]:
         return run.along(each, state) if fine is None else run.at_measured_rate(each, state)
 
     drift = values.get("friction_drift", 0.0)
     total = with_friction_drift(device, drift, along, elapsed)
-    total = total + warming(device, values, velocity, elapsed)
+    total = total + felt_beside(device, values, motion, elapsed)
     shown = through_channel(without_limits(values), total, elapsed, spacing)
     upper, lower = (values.get(name, limit) for name, limit in zip(LIMITS, _NO_LIMITS, strict=True))
     return (shown > upper) | (shown < lower)
@@ -294,12 +308,22 @@ def with_friction_drift(
     return found["total"] + drift * elapsed * law["friction"]
 
 
-def warming(
-    device: Device, values: Mapping[str, float], velocity: Array, elapsed: Array
+def felt_beside(
+    device: Device, values: Mapping[str, float], motion: Sequence[Array], elapsed: Array
 ) -> Array | float:
-    """What viscous damping that changes with time adds to the force [N], shape (n,)."""
-    drift = values.get("viscous_drift", 0.0)
-    return drift * elapsed * device.viscous * velocity if drift else 0.0
+    """What is felt beside a device that does not change with time [N], shape (n,).
+
+    That is of viscous damping what time adds, and a mass that moves with the terminal; `motion` is
+    displacement, velocity and acceleration.
+    """
+    drift, mass = values.get("viscous_drift", 0.0), values.get("grip_mass", 0.0)
+    _, velocity, acceleration = motion
+    added = drift * elapsed * device.viscous * velocity if drift else 0.0
+    return added + mass * acceleration if mass else added
+
+
+def _motion_of(run: BenchRun) -> tuple[Array, Array, Array]:
+    return run.displacement, run.velocity, run.acceleration
 
 
 def _without_load(device: Device) -> Device:

@@ -44,7 +44,8 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         diagnosis.motion,
         diagnosis.extended.filters,
     )
-    model = device_mjcf(device, "identified_device", motion=diagnosis.motion)
+    before = diagnosis.extended.channels.get("grip_mass", 0.0)
+    model = device_mjcf(device, "identified_device", motion=diagnosis.motion, before=before)
     write_files(
         folder,
         {
@@ -63,7 +64,12 @@ def _only_in_the_record(diagnosis: Diagnosis) -> str:
         for name, value in diagnosis.extended.channels.items()
         if name != "delay" and "_filter" not in name
     ]
-    return f"\nbeside this device the record shows: {', '.join(found)}" if found else ""
+    if not found:
+        return ""
+    text = f"\nbeside this device the record shows: {', '.join(found)}"
+    if "grip_mass" in diagnosis.extended.channels:
+        text += "\n(grip_mass: a second inerter between the same terminals, as in model.xml)"
+    return text
 
 
 def _carried_comment(diagnosis: Diagnosis) -> dict[str, str]:

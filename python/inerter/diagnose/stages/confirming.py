@@ -9,7 +9,6 @@ from inerter.diagnose.chain import Link, Parts, chain_of, tone_link, weakest, wi
 from inerter.diagnose.composition import (
     DRIVE,
     effects_of,
-    has_series,
 )
 from inerter.diagnose.data import Data
 from inerter.diagnose.decision import CRITERIA
@@ -111,7 +110,7 @@ def _searched_on(
     weights and data of its own, and is not taken further.
     """
     baseline = found.prepared.baseline
-    if has_series(final.model) or found.prepared.given.time.is_over():
+    if final.model.has_series or found.prepared.given.time.is_over():
         return None
     left = frozenset(name for name, _ in effects_of(final.model, baseline))
     search = replace(found.search, found=[], excluded=frozenset({*dropped, *DRIVE}))

@@ -14,7 +14,6 @@ from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import (
     DRIVE,
     effects_of,
-    has_series,
     simpler_laws,
     submodel,
 )
@@ -232,7 +231,7 @@ def _play(found: Searched) -> Model | None:
     """The model with free play fitted to the force as measured, if it has one or needs one."""
     baseline, model = found.prepared.baseline, found.final.model
     starts: list[Model] = []
-    if not has_series(baseline):
+    if not baseline.has_series:
         kept = [name for name, _ in effects_of(model, baseline) if name not in DRIVE]
         rigid = submodel(model, kept, baseline)
         starts = [rigid] if rigid.free == baseline.free else [rigid, baseline]
