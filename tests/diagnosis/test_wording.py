@@ -164,3 +164,30 @@ def test_a_limit_at_no_force_is_called_slack(lower: float, slack: bool) -> None:
         rivals=[],
     )
     assert ("goes slack" in evidence(finding)) == slack
+
+
+def test_a_level_that_is_there_in_any_case_is_named_first() -> None:
+    values = {
+        "coulomb_force": ParameterValue(25.0, 0.03, "N"),
+        "friction_asymmetry": ParameterValue(0.32, 0.06, "1"),
+        "force_offset": ParameterValue(8.0, 1.5, "N"),
+    }
+    either = Finding(
+        effect="asymmetric_friction", law=None, confidence=0.5, parameters=values,
+        evidence="", rmse_before=30.0, rmse_after=3.0, rivals=[],
+        members=("asymmetric_friction", "force_offset"),
+    )  # fmt: skip
+    assert effect_in_words(either).startswith("Coulomb friction, larger one way or beside a")
+    assert "Coulomb friction = 25.00 ± 0.03 N, and beside it friction that is 32 %" in evidence(
+        either
+    )
+
+
+def test_what_only_looks_like_a_cause_is_not_said_to_be_lacking(
+    spring_and_damper: Diagnosis,
+) -> None:
+    first, second = by_weight(spring_and_damper.findings)
+    described = replace(spring_and_damper, findings=[first, replace(second, looks_like=True)])
+    name = effect_in_words(second)
+    assert f"it also lacks {name}" in verdict(spring_and_damper)
+    assert f"it also lacks what looks like {name}" in verdict(described)

@@ -62,6 +62,8 @@ def effect_in_words(finding: Finding) -> str:
     other = finding.effect != "inertance_error" and _is_stated(finding)
     if _is_level_at_least(finding):
         return f"{EFFECTS[finding.effect].plain} (or rate-and-state friction)"
+    if _is_level_and_more(finding):
+        return "Coulomb friction, larger one way or beside a constant force"
     if finding.members:
         between = ", with or without " if _is_filter_at_least(finding) else " or "
         return between.join(EFFECTS[member].plain for member in finding.members)
@@ -76,6 +78,12 @@ def _is_filter_at_least(finding: Finding) -> bool:
 def _is_level_at_least(finding: Finding) -> bool:
     """Whether a friction level is there in any case, which perhaps goes with the speed."""
     return finding.members[1:] == ("rate_state_friction",)
+
+
+def _is_level_and_more(finding: Finding) -> bool:
+    """Whether a friction level is there in any case, with something that differs one way."""
+    pair = ("asymmetric_friction", "force_offset")
+    return finding.members[:2] == pair and "coulomb_force" in finding.parameters
 
 
 def _is_stated(finding: Finding) -> bool:
@@ -181,10 +189,14 @@ def either_in_words(finding: Finding) -> str:
             f"{EFFECTS[finding.effect].plain}, or a force of the place that is the same along this "
             f"stroke, such as {others}"
         )
+    beside = ""
+    if _is_level_and_more(finding):
+        level = value_in_words("Coulomb friction", finding.parameters["coulomb_force"])
+        beside = f"{level}, and beside it "
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     if "displacement_filter" in finding.parameters:
         coordinates["sensor_filter"] = "displacement_filter"
-    return " or ".join(
+    return beside + " or ".join(
         amount_in_words(member, finding.parameters[name].value, finding.motion)
         for member, name in coordinates.items()
     )
@@ -291,6 +303,14 @@ def _less(before: float, after: float) -> str:
     return f", {percent:.0f} % less" if percent >= 0.5 else ""
 
 
+def _how_surely(finding: Finding) -> str:
+    """What stands before the name of a finding in a sentence on what is lacking."""
+    if finding.looks_like:
+        return "what looks like "
+    # what its members share is sure
+    return "perhaps " if finding.confidence < 0.5 and not finding.members else ""
+
+
 def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
     force, newton = force_word(diagnosis.motion), words(diagnosis.motion, "N")
@@ -314,11 +334,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
             f"held-out data, and no effect tried improves that. {diagnosis.unexplained.summary}"
         )
     first, *rest = by_weight(diagnosis.findings)
-    # what its members share is sure
-    others = [
-        ("perhaps " if each.confidence < 0.5 and not each.members else "") + effect_in_words(each)
-        for each in rest
-    ]
+    others = [_how_surely(each) + effect_in_words(each) for each in rest]
     text = (
         f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
         f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause "
