@@ -50,6 +50,23 @@ def test_another_force_of_the_place_stays(force: np.ndarray, stops: dict[str, fl
     assert as_shape_of_stop(FINDING, model(force, **stops)) == FINDING
 
 
+@pytest.mark.parametrize("between", [0.0, 0.02])
+def test_a_ratio_that_changes_beyond_a_stop_alone_is_the_stop(between: float) -> None:
+    """In both directions, as of a bumper that damps as oil does."""
+    ratio = {
+        f"inertance{back}_node_{i + 1}": size * float(place > 0.013) + between * np.sin(900 * place)
+        for back, size in (("", 0.15), ("_back", -0.2))
+        for i, place in enumerate(PLACES)
+    }
+    bare = Model("none", {"inertance": 80.0}, ("inertance",))
+    drawn = bare.holding(curve_lower=-0.02, curve_upper=0.02).adding(None, **ratio)
+    upper = {name: value for name, value in BOTH.items() if name != "stop_lower"}
+    finding = replace(FINDING, effect="variable_inertance", law="flanks")
+    told = as_shape_of_stop(finding, drawn.adding(None, **upper))
+    assert (told.rivals[0].effect == "end_stop") is (between == 0.0)
+    assert (told == finding) is (between > 0.0)
+
+
 def test_other_findings_stay() -> None:
     other = replace(FINDING, effect="coulomb_friction", law=None)
     assert as_shape_of_stop(other, model(BEYOND, **BOTH)) == other
