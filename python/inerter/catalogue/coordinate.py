@@ -91,7 +91,8 @@ class Coordinate:
 
     def range(self, sizes: Scales) -> Range:
         """How it is searched, given the sizes of the data's channels."""
-        return Range(self.size(sizes), self.lower(sizes), self.upper(sizes), self.logarithmic)
+        upper = self.upper(sizes)
+        return Range(self.size(sizes), min(self.lower(sizes), upper), upper, self.logarithmic)
 
     def neutral(self, sizes: Scales) -> float | None:
         """Where it has no effect, within its bounds; None where it takes another to say so."""

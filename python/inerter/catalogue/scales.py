@@ -6,11 +6,24 @@ import functools
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
+
+def size_of(values: NDArray[np.float64], from_zero: bool = False) -> float:
+    """Typical size of a channel, rms about its mean; 1 where nothing is there.
+
+    What counts `from_zero`, a speed, is as large as its mean where it varies less than that: of a
+    machine that only runs up it is not what it varies by.
+    """
+    if not values.size:
+        return 1.0
+    spread, middle = float(np.std(values)), abs(float(np.mean(values)))
+    return (middle if from_zero and middle > spread else spread) or 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Scales:
-    """Typical sizes of a data set's channels: rms about the mean, SI units; cut-off [Hz].
+    """Typical sizes of a data set's channels (see `size_of`), SI units; cut-off [Hz].
 
     one_tone: the motion is so nearly one sine that displacement and acceleration are proportional.
     travel, force_range: least and largest displacement [m] and measured force [N]; middle: of the

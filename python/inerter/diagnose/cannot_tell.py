@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.catalogue.along_stroke import TURN
 from inerter.catalogue.scales import Scales
@@ -72,6 +73,68 @@ FEW_IN_WORDS = (
 )
 
 
+ONE_WAY = CannotTell(
+    (
+        "coulomb_friction", "force_offset", "asymmetric_friction", "asymmetric_damping",
+        "hysteretic_friction", "friction_play",
+    ),
+    "dry friction, and where the acceleration hardly changes an inertance of another size",
+    "strokes there and back",
+)  # fmt: skip
+RUN_UP = CannotTell(
+    (
+        "viscous_friction", "force_drift", "friction_drift", "viscous_drift", "backlash",
+        "series_elasticity", "grip_mass", "viscoelasticity", "rate_state_friction",
+        "sensor_delay", "sensor_filter",
+    ),
+    "damping and an inertance of another size",
+    "a speed that rises and falls, quickly and slowly",
+)  # fmt: skip
+"""Of a speed that only rises or only falls: with it everything does that goes with time."""
+ONE_WAY_IN_WORDS = (
+    "The motion never turns back. Along it dry friction is a constant force and, where the "
+    "acceleration hardly changes, either is an inertance of another size: strokes there and back "
+    "would tell. "
+)
+RUN_UP_IN_WORDS = (
+    "The speed only rises or only falls. What goes with the time, lags or gives goes with the "
+    "speed then, and was not looked for; damping, friction and inertance may be shared out "
+    "otherwise: a speed that rises and falls, quickly and slowly, would tell. "
+)
+# share of the range of a speed by which it goes back where it only rises
+_BACK = 0.05
+
+
+def goes_one_way(runs: Iterable[BenchRun]) -> bool:
+    """Whether the device moves in the same direction in all of some runs."""
+    speeds = [run.velocity[run.inner] for run in runs]
+    v = np.concatenate(speeds) if speeds else np.empty(0)
+    slow = _MOVING * np.max(np.abs(v), initial=0.0)
+    return bool(v.size and (v.min() >= -slow or v.max() <= slow))
+
+
+def runs_up(runs: Sequence[BenchRun]) -> bool:
+    """Whether the speed only rises, or only falls, in every run, in the same direction."""
+
+    def only_rises(speed: NDArray[np.float64]) -> bool:
+        back = np.maximum.accumulate(speed) - speed
+        return bool(back.max() < _BACK * np.ptp(speed))
+
+    speeds = [np.abs(run.velocity[run.inner]) for run in runs if run.inner.any()]
+    monotone = all(only_rises(speed) or only_rises(-speed) for speed in speeds)
+    return bool(speeds) and monotone and goes_one_way(runs)
+
+
+def hidden_by(runs: Sequence[BenchRun]) -> frozenset[str]:
+    """Effects that are not looked for along some runs, for others do the same there.
+
+    Of dry friction and a constant force the one that real devices have is.
+    """
+    hidden = {*ONE_WAY.effects} - {"coulomb_friction"} if goes_one_way(runs) else set()
+    hidden |= {*RUN_UP.effects} - {"viscous_friction"} if runs_up(runs) else set()
+    return frozenset(hidden)
+
+
 def strokes_of(runs: Iterable[BenchRun]) -> int:
     """In how many strokes some runs go: one each, and one more where they turn back.
 
@@ -87,15 +150,19 @@ def strokes_of(runs: Iterable[BenchRun]) -> int:
     return count
 
 
-def is_hidden(effects: Set[str], model: Model, sizes: Scales, strokes: int) -> bool:
+def is_hidden(
+    effects: Set[str], model: Model, sizes: Scales, strokes: int, also: Iterable[str] = ()
+) -> bool:
     """Whether a motion hides one of a model's effects, or has another one do the same.
 
     Along one sine a shaft is an inertance of another size, and a low-pass with a delay is as late
     as the one that it takes back; one that turns the only frequency by much makes a damper of an
     inertance. Along few strokes what changes with the time changes with the
     place. Two stops with no room between them are a spring. A mass before a device that neither
-    gives nor has play is inertance.
+    gives nor has play is inertance. What is hidden `also` is hidden whatever the model.
     """
+    if not effects.isdisjoint(also):
+        return True
     if "grip_mass" in effects and (sizes.one_tone or not model.has_series):
         return True
     if sizes.one_tone:

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.diagnose.budget.words import Budget, budget_of
-from inerter.diagnose.cannot_tell import FEW, FEW_STROKES, ONE_SINE, CannotTell, of_a_tone
+from inerter.diagnose.cannot_tell import (
+    FEW,
+    FEW_STROKES,
+    ONE_SINE,
+    ONE_WAY,
+    RUN_UP,
+    CannotTell,
+    of_a_tone,
+)
 from inerter.diagnose.remainder.further import channels_of
 from inerter.identify.channel_filter import filters_of
 from inerter.motion_units import TRANSLATION, Kind
@@ -290,9 +298,11 @@ class Diagnosis:
     def cannot_tell(self) -> tuple[CannotTell, ...]:
         """What the motion cannot tell, whatever is found."""
         sine = ONE_SINE if self.method.get("one_tone") else ()
+        way = (ONE_WAY,) if self.method.get("one_way") else ()
+        way += (RUN_UP,) if self.method.get("runs_up") else ()
         few = (FEW,) if self.method.get("strokes", FEW_STROKES) < FEW_STROKES else ()
         tone = self.unexplained.tone_above
-        return (*sine, *few, *(() if tone is None else (of_a_tone(tone),)))
+        return (*sine, *way, *few, *(() if tone is None else (of_a_tone(tone),)))
 
     @property
     def budget(self) -> Budget | None:

@@ -15,6 +15,7 @@ from inerter.diagnose import wording
 from inerter.diagnose.budget.carried import Carrying, carried
 from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
+from inerter.diagnose.cannot_tell import goes_one_way, runs_up
 from inerter.diagnose.composition import distinction
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
@@ -408,6 +409,8 @@ def _method(stands: Confirmed) -> dict:
         "channels": ["displacement", *band.channels],
         "one_tone": data.band.scales.one_tone,
         "strokes": stands.searched.search.strokes,
+        "one_way": goes_one_way(stands.searched.search.runs),
+        "runs_up": runs_up(stands.searched.search.runs),
         "split": data.split.description,
         "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
         # where it ended the search

@@ -85,7 +85,7 @@ def _standing(search: Search, final: Scored, effect: str) -> Standing:
     instead = [
         s
         for s, share in pairs
-        if s.effect not in (effect, *search.excluded)
+        if s.effect not in (effect, *search.excluded, *search.hidden)
         and (
             _takes_precedence(s, final, effect, baseline)
             or (share > CRITERIA.preferred and _is_better(s, final, baseline))

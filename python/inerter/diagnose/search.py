@@ -18,7 +18,7 @@ from inerter.diagnose import along_stroke
 from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.cannot_tell import is_hidden, strokes_of
+from inerter.diagnose.cannot_tell import hidden_by, is_hidden, strokes_of
 from inerter.diagnose.composition import (
     effects_of,
     is_blur,
@@ -37,7 +37,7 @@ from inerter.diagnose.play import is_felt
 from inerter.diagnose.statistics import Array, block_squares
 from inerter.diagnose.time_limit import OverTimeError, TimeLimit
 from inerter.diagnose.tone import Witness, is_harmonic, tone_candidate
-from inerter.diagnose.trials import Trials
+from inerter.diagnose.trials import Trials, plain_beside, shortlist_of
 from inerter.identify.fit import Fit, Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, scales
@@ -107,7 +107,7 @@ class Search:
     time: TimeLimit = field(default_factory=TimeLimit)
 
     def __post_init__(self) -> None:
-        self.strokes = strokes_of(self.runs)
+        self.strokes, self.hidden = strokes_of(self.runs), hidden_by(self.runs)
         self._divide()
         # what the last step without a result came upon
         self._refused: list[Scored] = []
@@ -255,15 +255,11 @@ class Search:
         fitted = sorted(
             [*fitted, *where_late(self, current, fitted)], key=lambda p: p[1].rmse(masks)
         )
-        floor, worth = fitted[0][1].rmse(masks), (1 - self.least) * current.fit.rmse(masks)
+        worth = (1 - self.least) * current.fit.rmse(masks)
         worthy = [pair for pair in fitted if pair[1].rmse(masks) < worth]
         if not worthy:
             return None
-
-        # simpler candidates that are nearly as good must have their chance
-        near = floor * (1 + 5 * CRITERIA.tolerated_loss)
-        shortlist = worthy[: CRITERIA.shortlist]
-        shortlist += [pair for pair in worthy[CRITERIA.shortlist :] if pair[1].rmse(masks) < near]
+        shortlist = shortlist_of(worthy, fitted[0][1].rmse(masks), masks)
         names = ", ".join(dict.fromkeys(candidate.effect for candidate, _ in shortlist))
         self.progress(f"effect {len(self.found) + 1}: checking {names} on data left out")
 
@@ -273,11 +269,9 @@ class Search:
             current = self.score(current.effect, current.law, current.fit, folds)
         else:
             folds = self._folds
-        # what stands on a friction level must not keep the level alone from being asked
-        level = [p for p in worthy if p[0].effect == "coulomb_friction" and p not in shortlist]
         there: list[Scored] = []
         good: list[Scored] = []
-        for pairs in (shortlist, level):
+        for pairs in (shortlist, *plain_beside(shortlist, worthy, current.complexity)):
             there += self.that_are_there(pairs, folds, current.fit, fitted)
             good = [s for s in there if self.better(*self._weighed_for(s, [current, s]))]
             if good:
@@ -404,7 +398,7 @@ class Search:
     def may_be(self, model: Model) -> bool:
         """Whether a model has no effect excluded, all kept, and none that the motion hides."""
         names = {name for name, _ in effects_of(model, self.baseline)}
-        if is_hidden(names, model, self.problem.scales, self.strokes):
+        if is_hidden(names, model, self.problem.scales, self.strokes, self.hidden):
             return False
         return self.kept <= names and not (self.excluded - self.kept) & names
 

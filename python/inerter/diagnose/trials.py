@@ -17,7 +17,7 @@ from inerter.diagnose.promise import Known, Promise
 from inerter.diagnose.sized import Sized
 from inerter.diagnose.time_limit import TimeLimit
 from inerter.estimation.solution import NotFiniteError
-from inerter.identify.fit import Fit, Problem, rms
+from inerter.identify.fit import Fit, Masks, Problem, rms
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
 
@@ -45,6 +45,8 @@ AT_LEAST = 1.5
 FORETOLD = 0.5
 # how many times what a step foretells a candidate may take of the square of an error
 AT_BEST = 3.0
+# plain effects that are asked where nothing of a shortlist is there
+PLAIN = 3
 # coordinates of a model from which on starting points are compared beside it
 MANY = 10
 # errors this near belong to the same fit
@@ -85,6 +87,34 @@ def within_shortlist(errors: Sequence[float]) -> float:
     """The largest error of candidates that would be checked, if none came down any more."""
     near = (1 + 5 * CRITERIA.tolerated_loss) * min(errors, default=np.inf)
     return max(sorted(errors)[: CRITERIA.shortlist][-1], near) if errors else np.inf
+
+
+def shortlist_of(
+    worthy: Sequence[tuple[Candidate, Fit]], floor: float, masks: Masks
+) -> list[tuple[Candidate, Fit]]:
+    """The best of fitted candidates, and those that come near the least error of all [N].
+
+    Simpler ones that are nearly as good must have their chance.
+    """
+    near = floor * (1 + 5 * CRITERIA.tolerated_loss)
+    best, rest = worthy[: CRITERIA.shortlist], worthy[CRITERIA.shortlist :]
+    return [*best, *(pair for pair in rest if pair[1].rmse(masks) < near)]
+
+
+def plain_beside(
+    shortlist: Sequence[tuple[Candidate, Fit]],
+    worthy: Sequence[tuple[Candidate, Fit]],
+    complexity: int,
+) -> tuple[list[tuple[Candidate, Fit]], list[tuple[Candidate, Fit]]]:
+    """What is asked where nothing of a shortlist is there: plain effects that it has kept out.
+
+    First the friction level alone, on which others stand; then the best of those that add one
+    coordinate to a model of this complexity: that a curve is not there says nothing of a damper.
+    """
+    rest = [pair for pair in worthy if not any(pair is each for each in shortlist)]
+    level = [pair for pair in rest if pair[0].effect == "coulomb_friction"]
+    one = [pair for pair in rest if pair[1].model.complexity == complexity + 1]
+    return level, [pair for pair in one if not any(pair is each for each in level)][:PLAIN]
 
 
 def _at_best(foretold: float, current: float) -> float:

@@ -8,7 +8,13 @@ from inerter.catalogue.along_stroke import FORMS, node_of
 from inerter.catalogue.coordinates import NUISANCES, PARAMETER_WORDS
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import FRICTION
-from inerter.diagnose.cannot_tell import FEW, FEW_IN_WORDS, IN_WORDS
+from inerter.diagnose.cannot_tell import (
+    FEW,
+    FEW_IN_WORDS,
+    IN_WORDS,
+    ONE_WAY_IN_WORDS,
+    RUN_UP_IN_WORDS,
+)
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import by_weight, descriptions, note, stand_ins, warning
 from inerter.diagnose.guesses import what_it_could_be
@@ -273,6 +279,8 @@ def is_right(diagnosis: Diagnosis) -> bool:
 def verdict(diagnosis: Diagnosis) -> str:
     """One paragraph in plain words."""
     tone = IN_WORDS if diagnosis.method.get("one_tone") else ""
+    tone += ONE_WAY_IN_WORDS if diagnosis.method.get("one_way") else ""
+    tone += RUN_UP_IN_WORDS if diagnosis.method.get("runs_up") else ""
     tone += FEW_IN_WORDS if FEW in diagnosis.cannot_tell else ""
     notes = "".join(f" {note}" for note in diagnosis.notes)
     budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""

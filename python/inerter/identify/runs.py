@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.catalogue.scales import Scales
+from inerter.catalogue.scales import Scales, size_of
 from inerter.checked_motion import checked_motion
 from inerter.core import Device
 from inerter.identify.between import about_samples, between
@@ -409,7 +409,7 @@ def scales(runs: Sequence[BenchRun]) -> Scales:
     def size(channel: str) -> float:
         # across a gap the motion is a guess, and may swing far out
         values = np.concatenate([getattr(run, channel)[run.inner] for run in runs])
-        return float(np.std(values)) or 1.0 if values.size else 1.0
+        return size_of(values, channel in ("velocity", "acceleration"))
 
     x, a = (
         np.concatenate([getattr(run, name)[run.inner] for run in runs])

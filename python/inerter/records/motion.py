@@ -48,8 +48,8 @@ _QUIET, _LINE = 0.3, 5.0
 # something sudden in each
 _SHORTER, _CALMER = 16, 0.7
 # share of a velocity's power within so much of one frequency, or so many bins of a windowed line,
-# from which it has no other; samples below which a run tells nothing of it
-_ONE_LINE, _WITHIN, _MAIN_LOBE, _FEWEST = 0.99, 0.1, 2.5, 16
+# from which it has no other; samples below which a run tells nothing of it; periods in it, at least
+_ONE_LINE, _WITHIN, _MAIN_LOBE, _FEWEST, _SWINGS = 0.99, 0.1, 2.5, 16, 1.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -299,6 +299,9 @@ def has_one_line(runs: Sequence[Moving], noises: Sequence[float] = ()) -> bool:
         return False
     frequency, power = max(spectra, key=lambda pair: float(pair[1].max()))
     line = frequency[np.argmax(power)]
+    if line < _SWINGS * frequency[1]:
+        # a machine that runs up or down swings nowhere
+        return False
     near = everything = 0.0
     for frequency, power in spectra:
         width = max(_WITHIN * line, _MAIN_LOBE * frequency[1])
