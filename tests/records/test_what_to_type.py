@@ -80,3 +80,12 @@ def test_volts_are_asked_for_by_the_columns_name(tmp_path: Path) -> None:
     path = written(tmp_path / "run.csv", **{"time": TIME, "displacement": X, "Force [V]": A})
     with pytest.raises(RecordError, match=r"force='200 N/V \* Force'"):
         one(path)
+
+
+def test_a_formula_that_is_none_is_told_how_one_is_written(tmp_path: Path) -> None:
+    path = written(tmp_path / "run.csv", time=TIME, displacement=X, current_mA=A)
+    with pytest.raises(RecordError, match=r"--column force='0.05 \* current_mA'"):
+        one(path, "force=current_mA / 1000 * 50")
+    with pytest.raises(RecordError, match=r"correct the statement$"):
+        one(path, "force=current")
+    np.testing.assert_allclose(one(path, "force=0.05 * current_mA").force, 0.05 * A)

@@ -234,7 +234,19 @@ def column_of(stated: Statement, header: tuple[str, ...], name: str, path: Any) 
             )
     raise RecordError(
         f"{path}: {name} is stated as column {wanted!r}, which is not there (found: "
-        f"{listed(header)}); correct the statement"
+        f"{listed(header)}); correct the statement{_as_a_formula(wanted, header, name)}"
+    )
+
+
+def _as_a_formula(wanted: str, header: tuple[str, ...], name: str) -> str:
+    """How a calibration is written, where what is called a column has one in it and a sign."""
+    inside = [bare_name(text) for text in header if bare_name(text) and bare_name(text) in wanted]
+    if not inside or not set(wanted) & set("*/+-"):
+        return ""
+    column = max(inside, key=len)
+    return (
+        f". A calibration is a number with its unit, times the column: --column {name}="
+        f"'0.05 * {column}', or '-200 N/V * ({column} + 0.115 V)'"
     )
 
 
