@@ -214,6 +214,27 @@ def test_a_bench_without_filters_shows_its_mass_and_drift_with_those_hidden() ->
     )
 
 
+def test_a_mass_that_is_not_told_makes_a_shaft_stiffer_and_a_ratio_more_even() -> None:
+    case = realistic("series_elasticity", grip_mass=2.0)
+    device, told = case.device, shown_parameters(case)
+    s = 2j * np.pi * 0.02 * np.sqrt(device.series_stiffness / device.inertance) / (2 * np.pi)
+
+    def per_acceleration(b: float, k: float, c: float) -> complex:
+        return b * (k + c * s) / (b * s**2 + c * s + k)
+
+    true = 2.0 + per_acceleration(device.inertance, device.series_stiffness, device.series_damping)
+    alone = [told[name] for name in ("series_stiffness", "series_damping")]
+    seen = per_acceleration(device.inertance + 2.0, *alone)
+    assert abs(seen - true) < 1e-3 * abs(true - device.inertance - 2.0)
+
+    drawn = (hide_effect(seed, "variable_inertance", realistic=True) for seed in range(30))
+    case = next(each for each in drawn if "inertance_gradient" in each.parameters)
+    case = replace(case, chain=Chain(grip_mass=2.0))
+    b, hidden, told = case.device.inertance, case.parameters, shown_parameters(case)
+    gradient = "inertance_gradient"
+    assert (b + 2.0) * told[gradient] == pytest.approx(b * hidden[gradient])
+
+
 def test_what_has_no_value_of_its_own_on_a_bench_is_not_counted() -> None:
     assert "force_offset" not in shown_parameters(realistic("force_offset", drift=0.5))
     late = {"force_filter": 50.0, "order": 2.0}

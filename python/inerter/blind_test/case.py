@@ -283,11 +283,19 @@ def parameter_errors(case: HiddenCase, diagnosis: Diagnosis) -> list[ParameterEr
     return found
 
 
+# what the inertance gains per that of the device
+_OF_INERTANCE = (
+    "inertance_gradient", "inertance_curvature", "inertance_speed_gradient", "inertance_amplitude",
+)  # fmt: skip
+
+
 def shown_parameters(case: HiddenCase) -> dict[str, float]:
     """The hidden parameters as the records of a bench show them, whoever reads them.
 
     A mass m between load cell and device is inertance, the drift of the cell adds to one that is
-    hidden, and friction mu |b a| is mu b / (b + m) of the inertance force that is measured. Of a
+    hidden, and friction mu |b a| is mu b / (b + m) of the inertance force that is measured, as what
+    the inertance gains along the stroke is. Behind a shaft b^2 / k is what bends it: where the mass
+    is not told from b, k and c are larger by (1 + m / b)^2 (to third order in the frequency). Of a
     tone a filter of the force leaves less, whether the displacement has the same one or not. What
     the bench does to the same channel as a hidden delay or filter, and a drift to a constant
     force, has no value of its own in such a sum, and is left out.
@@ -303,8 +311,12 @@ def shown_parameters(case: HiddenCase) -> dict[str, float]:
         low_pass = Filter(kind, int(chain.order), chain.force_filter)
         gain = low_pass.response(np.array([shown["disturbance_frequency"]]))
         shown["disturbance_amplitude"] *= float(np.abs(gain[0]))
-    if "load_friction" in shown:
-        shown["load_friction"] *= inertance / (inertance + chain.grip_mass)
+    share = inertance / (inertance + chain.grip_mass)
+    for name in shown:
+        if name == "load_friction" or name.startswith(_OF_INERTANCE):
+            shown[name] *= share
+        elif name in ("series_stiffness", "series_damping") and not case.device.backlash:
+            shown[name] /= share**2
     mixed = {"force_offset"} if chain.drift else set()
     if chain.force_filter != chain.displacement_filter:
         mixed |= {"delay", "force_filter"}
