@@ -43,7 +43,6 @@ from inerter.diagnose.result import (
     RunCurves,
 )
 from inerter.diagnose.run_constants import constants_in_words, explained
-from inerter.diagnose.run_inertances import inertances_in_words, run_inertances
 from inerter.diagnose.run_scales import (
     is_met_better,
     odd_scale,
@@ -52,6 +51,7 @@ from inerter.diagnose.run_scales import (
     turned_round,
     without_scale,
 )
+from inerter.diagnose.run_values import RunValues, run_values
 from inerter.diagnose.shape_of_stop import as_shape_of_stop
 from inerter.diagnose.stages import Confirmed, confirmed, searched, settled
 from inerter.diagnose.standstill import without_standstill
@@ -249,7 +249,7 @@ def diagnosis_of(
         missed = badly_missed_parts(data, errors, floor)
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
-    inertances = {} if long else run_inertances(data.whole, errors, floor, final)
+    own = RunValues() if long else run_values(data.whole, errors, floor, final)
     values = parameter_values(
         stands.fit,
         given.device,
@@ -302,7 +302,7 @@ def diagnosis_of(
             "other_split": other,
             "steps": steps,
             "run_scales": dict(given.scales),
-            "run_inertances": inertances,
+            **own.method,
         },
         notes=[
             note
@@ -310,7 +310,7 @@ def diagnosis_of(
                 constants_in_words(stands.searched.prepared.constants, motion),
                 missed_in_words(missed, extended.rmse, motion),
                 scales_in_words(given.scales, motion),
-                inertances_in_words(inertances, motion),
+                own.in_words(motion),
                 about_split,
                 steps_in_words(steps, motion),
                 given.left_out,

@@ -44,7 +44,7 @@ SURE = 0.9
 # entries of `method` that have a place of their own on the page
 _PLACED = (
     "cutoffs_tried", "force_error_at_cutoffs", "missed_runs", "other_split", "run_constants",
-    "run_scales", "run_inertances", "steps",
+    "run_scales", "run_inertances", "run_levels", "run_dampings", "steps",
 )  # fmt: skip
 _METHOD_WORDS = {
     "cutoff": "smoothing cut-off [Hz]",
