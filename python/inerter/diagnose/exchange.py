@@ -26,6 +26,7 @@ from inerter.diagnose.plainer import (
     with_own_spring,
 )
 from inerter.diagnose.trials import FAR
+from inerter.diagnose.where_friction_acts import on_the_other_side
 from inerter.identify.fit import Fit
 from inerter.identify.model import Model
 from inerter.motion_units import ROTATION
@@ -37,10 +38,26 @@ if TYPE_CHECKING:
 
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
-    for other in (other_filter, _plainer_law, _spring_beside, plain_part, _weight, _one_cause):
+    for other in (
+        _other_side, other_filter, _plainer_law, _spring_beside, plain_part, _weight, _one_cause
+    ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
     return current
+
+
+def _other_side(search: Search, current: Scored) -> Scored | None:
+    """The same friction on the other side of the shaft, where that is nearer to the data."""
+    masks = search.problem.masks
+    limit = (1 - CRITERIA.gain) * current.fit.rmse(masks)
+    for model in on_the_other_side(current.model, search.baseline):
+        trial = Candidate("exchange", None, (model,))
+        fit = search.trials.fit(trial, (FAR * limit, np.inf), limit)
+        if fit.rmse(masks) < limit:
+            scored = search.score("exchange", None, fit)
+            if loss(scored, current) < -CRITERIA.gain:
+                return scored
+    return None
 
 
 def _plainer_law(search: Search, current: Scored) -> Scored | None:

@@ -19,6 +19,8 @@ from inerter.identify.transient import RELAXING
 
 _SHAFT = EFFECTS["series_elasticity"].coordinates
 _FORCE = next(each for each in QUANTITIES if each.name == "force")
+# a power of the speed that is next to none
+_NO_POWER = 0.3
 # between slow (1) and quick (1.4)
 _EXPONENT = 1.3
 
@@ -110,7 +112,10 @@ def as_weight(model: Model) -> list[Model]:
 
 
 def _as_one_that_bends_less(model: Model) -> list[Model]:
-    """For damping that bends: quadratic damping, Coulomb friction, each with a damper, too."""
+    """For damping that bends: quadratic damping, Coulomb friction, each with a damper, too.
+
+    For a power of the speed that is hardly one Stribeck friction as well.
+    """
     bends = EFFECTS["digressive_damping"].coordinates
     if not is_bent(model):
         return []
@@ -126,7 +131,15 @@ def _as_one_that_bends_less(model: Model) -> list[Model]:
         return []
     level = damping * knee * max(1.0 - beyond, 0.1)
     friction = bare.adding("coulomb", coulomb_force=level, transition_velocity=0.1 * knee)
-    return [friction, friction.adding(None, viscous=damping * beyond)]
+    found = [friction, friction.adding(None, viscous=damping * beyond)]
+    if abs(model.values.get("damping_exponent", 1.0)) < _NO_POWER:
+        # about as large at any speed, and more near rest
+        peak = {"coulomb_force": 0.85 * level, "static_excess": 0.3 * level}
+        found += [
+            bare.adding("stribeck", **peak, stribeck_velocity=ratio * knee)
+            for ratio in (30.0, 300.0)
+        ]
+    return found
 
 
 def _as_law_of_the_place(model: Model) -> list[Model]:

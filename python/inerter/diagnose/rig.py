@@ -60,6 +60,7 @@ from inerter.diagnose.statistics import gain_interval
 from inerter.diagnose.time_limit import TimeLimit
 from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
+from inerter.diagnose.where_friction_acts import with_side
 from inerter.identify.channel import channel_values
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of, named
 from inerter.identify.fit import rms
@@ -272,7 +273,7 @@ def diagnosis_of(
             finding, same.get(finding.effect), searched.search, stands.fit, searched.covered
         )
         told = with_own_value(told, finding.confidence, errors > CRITERIA.own_value)
-        told = as_shape_of_stop(told, final)
+        told = with_side(as_shape_of_stop(told, final), final)
         return doubted(as_sure_as_its_value(told, errors), remains.structure)
 
     findings = [weighed(finding) for finding in _findings(stands, values)]

@@ -298,6 +298,9 @@ class Search:
         without: what they were added to; fitted: all that were.
         """
         sizes = self.problem.scales
+        if self.found:
+            # what comes first is worth waiting for
+            self.time.check()
         scored = self.scores([(each.effect, each.law, fit) for each, fit in pairs], folds)
         there = [
             s

@@ -311,12 +311,23 @@ def _less(before: float, after: float) -> str:
     return f", {percent:.0f} % less" if percent >= 0.5 else ""
 
 
-def _how_surely(finding: Finding) -> str:
-    """What stands before the name of a finding in a sentence on what is lacking."""
+def _seems(finding: Finding) -> str:
     if finding.looks_like:
-        return "what looks like "
-    # what its members share is sure
-    return "perhaps " if finding.confidence < 0.5 and not finding.members else ""
+        return "looks like"
+    return "is perhaps" if is_doubtful(finding) else "is"
+
+
+def how_surely(finding: Finding) -> str:
+    """What stands before the name of a finding in a sentence on what is lacking."""
+    if is_doubtful(finding):
+        return "perhaps "
+    return "what looks like " if finding.looks_like else ""
+
+
+def is_doubtful(finding: Finding) -> bool:
+    """Whether a finding is more likely not there than there."""
+    # what its members share is sure, and each of two has half of the confidence
+    return finding.confidence < (0.25 if finding.members else 0.5)
 
 
 def _verdict(diagnosis: Diagnosis) -> str:
@@ -342,11 +353,11 @@ def _verdict(diagnosis: Diagnosis) -> str:
             f"held-out data, and no effect tried improves that. {diagnosis.unexplained.summary}"
         )
     first, *rest = by_weight(diagnosis.findings)
-    others = [_how_surely(each) + effect_in_words(each) for each in rest]
+    others = [how_surely(each) + effect_in_words(each) for each in rest]
     text = (
         f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
         f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause "
-        f"{'looks like' if first.looks_like else 'is'} {effect_in_words(first)}"
+        f"{_seems(first)} {effect_in_words(first)}"
     )
     if others:
         text += "; it also lacks " + ", ".join(others[:-1])

@@ -80,7 +80,8 @@ class Model:
         """What a file of the device has to state: no width of sign(v) where nothing reads it."""
         given = dict(self._device.given)
         if self.friction == "none" and not self._device.has_load_friction:
-            given.pop("transition_velocity", None)
+            for unread in ("transition_velocity", "friction_side"):
+                given.pop(unread, None)
         return given
 
     # worked out once, for all runs
@@ -135,7 +136,14 @@ class Model:
         device = self._device
         along = any(n in lists() and not n.startswith("friction") for n in self._stated)
         jumps = bool(device.backlash or device.stop_stiffness)
-        return clips(self.values) or along or jumps or self._bends
+        return clips(self.values) or along or jumps or self._bends or self.rubs_behind
+
+    @cached_property
+    def rubs_behind(self) -> bool:
+        """Whether friction acts on a flywheel behind a series element, and sets it swinging."""
+        device = self._device
+        behind = device.friction_side != "terminals" and self.has_series
+        return bool(behind and (self.friction != "none" or device.has_load_friction))
 
     @cached_property
     def _bends(self) -> bool:

@@ -18,6 +18,7 @@ from inerter.motion_units import ROTATION, words
 
 from .duplicates import find_duplicate_records
 from .even_clock import even_spacing
+from .jumps import find_displacement_jumps
 from .record import Array, Columns, Record, TimeRecord
 
 R = TypeVar("R", bound=Columns)
@@ -39,6 +40,7 @@ def _check(record: R) -> R:
         checked = find_clipping(checked)
         checked = find_unit_suspect(checked)
     if isinstance(checked, Record):
+        checked = find_displacement_jumps(checked)
         checked = find_inconsistent_motion(checked)
         checked = find_sign_flip(checked)
     return cast(R, checked)

@@ -23,7 +23,13 @@ from inerter.diagnose.result import (
     RunCurves,
     TablePoints,
 )
-from inerter.diagnose.wording import curves_in_words, departure, is_right
+from inerter.diagnose.wording import (
+    curves_in_words,
+    departure,
+    how_surely,
+    is_doubtful,
+    is_right,
+)
 from inerter.motion_units import force_word
 from inerter.pictures.palette import DARK, LIGHT
 from inerter.pictures.plotting import to_script
@@ -131,7 +137,10 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"The simulation misses the {force}, and no known effect explains it"
     if not diagnosis.findings:
         return "No lack of the simulation is to be seen in these data"
-    names = [text.finding_name(finding) for finding in by_weight(diagnosis.findings)]
+    found = by_weight(diagnosis.findings)
+    if diagnosis.unexplained.significant and all(map(is_doubtful, found)):
+        return "The simulation lacks something that no known effect explains"
+    names = [how_surely(finding) + text.finding_name(finding) for finding in found]
     return f"The simulation lacks {text.listed(names)}"
 
 

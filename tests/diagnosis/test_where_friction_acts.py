@@ -1,0 +1,88 @@
+"""Friction on the flywheel's side of a shaft, as of a device in a frame that gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bench_runs import measured
+from inerter.diagnose import diagnose_bench
+from inerter.diagnose.result import Finding
+from inerter.diagnose.where_friction_acts import on_the_other_side, with_side
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
+from inerter.identify.prediction import force_along
+from inerter.identify.runs import thin
+from inerter.records.preparation import prepare
+from inerter.reference import ReferenceDevice, sum_of_sines
+
+TIME = np.arange(0, 8, 1 / 250)
+SHAFT = {"inertance": 90.0, "series_stiffness": 4e5, "series_damping": 400.0}
+# at rest in the beginning, and hardly accelerated: the flywheel stands where it is
+QUARTER = np.pi / 2
+MOTIONS = [
+    sum_of_sines([0.008, 0.002, 4.59e-4], [0.9, 2.3, 6.1], [QUARTER, QUARTER, -QUARTER]),
+    sum_of_sines([0.009, 0.003, 5.43e-4], [0.7, 1.9, 5.3], [-QUARTER, -QUARTER, QUARTER]),
+]
+FRICTION = {"friction": "coulomb", "coulomb_force": 40.0, "transition_velocity": 1e-3}
+
+
+def bare(**values: float) -> Model:
+    known = {"inertance": 90.0, "transition_velocity": 1e-3, **values}
+    return Model("none", known, ("inertance", *values))
+
+
+def test_its_force_is_that_of_the_flywheel_that_it_holds() -> None:
+    """Behind a low-pass too: the force of the friction alone is not what it does."""
+    device = ReferenceDevice(**SHAFT, **FRICTION, friction_side="flywheel")
+    records = measured(device, MOTIONS, TIME, force_noise=0.3)
+    runs = [thin(motion) for motion in prepare(records).motions]
+    known = {"series_stiffness": 4e5, "series_damping": 400.0, "coulomb_force": 40.0}
+    terminals = Model("coulomb", {"inertance": 90.0, "transition_velocity": 1e-3, **known}, ())
+    (behind,) = on_the_other_side(terminals, bare())
+    assert behind.rubs_behind
+    assert not terminals.rubs_behind
+    problem = Problem(runs, [np.ones(run.force.size, dtype=bool) for run in runs])
+    near, far = (problem.fit(model).rmse(problem.masks) for model in (behind, terminals))
+    assert np.isfinite(force_along(behind, runs[0])).all()
+    assert near < 1.0 < 5.0 < far
+
+
+def test_it_goes_to_the_other_side_and_back() -> None:
+    shaft = bare(series_frequency=10.0, series_loss=0.03)
+    assert on_the_other_side(shaft, bare()) == []
+    assert on_the_other_side(bare().adding("coulomb", coulomb_force=9.0), bare()) == []
+    terminals = shaft.adding("coulomb", coulomb_force=9.0)
+    (behind,) = on_the_other_side(terminals, bare())
+    (back,) = on_the_other_side(behind, bare())
+    assert not back.rubs_behind
+    # where the user says it stays
+    stated = Model("none", dict(bare().values), (), {"friction_side": "terminals"})
+    assert on_the_other_side(terminals, stated) == []
+    # without friction there is no side
+    assert "friction_side" not in behind.without(("coulomb_force",), "none").stated()
+
+
+def test_the_findings_say_where() -> None:
+    behind = bare(series_frequency=10.0, series_loss=0.03).adding("coulomb", coulomb_force=9.0)
+    (behind,) = on_the_other_side(behind, bare())
+    found = Finding(
+        effect="coulomb_friction", law=None, confidence=1.0, parameters={}, rmse_before=2.0,
+        rmse_after=1.0, evidence="It takes half.", rivals=[],
+    )  # fmt: skip
+    assert with_side(found, behind).evidence.endswith("on the flywheel.")
+    assert with_side(found, bare()) == found
+
+
+@pytest.mark.long
+def test_a_device_in_a_frame_that_gives_is_found(effects_seed: int) -> None:
+    device = ReferenceDevice(**SHAFT, **FRICTION, friction_side="flywheel")
+    found = diagnose_bench(measured(device, MOTIONS, TIME, effects_seed, force_noise=0.5))
+    assert {each.effect for each in found.findings} == {"series_elasticity", "coulomb_friction"}
+    assert found.extended.device["friction_side"] == "flywheel"
+    for name, true in (*SHAFT.items(), ("coulomb_force", 40.0)):
+        told = found.parameters[name]
+        assert told.value == pytest.approx(true, abs=max(4 * told.stderr, 0.02 * true))
+    shaft = next(each for each in found.findings if each.effect == "series_elasticity")
+    assert "a frame that gives" in shaft.evidence
+    told_by = [error for error in found.engines.values() if error is not None]
+    assert told_by == pytest.approx([found.extended.rmse] * len(told_by), rel=0.05)
