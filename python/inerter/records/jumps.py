@@ -29,10 +29,8 @@ def find_displacement_jumps(record: Record) -> Record:
         return record
     sizes = np.abs(np.diff(record.displacement)[rows])
     worst = int(np.argmax(sizes))
-    metre, places = (
-        words(record.motion, "m"),
-        "1 place" if rows.size == 1 else f"{rows.size} places",
-    )
+    metre = words(record.motion, "m")
+    places = "1 place" if rows.size == 1 else f"{rows.size} places"
     text = (
         f"'displacement' jumps at {places}, such as by {sizes[worst]:.3g} {metre} within a sample "
         f"at t = {record.time[rows[worst] + 1]:.6g} s: a sensor that loses its target, or its "
