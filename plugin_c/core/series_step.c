@@ -195,6 +195,10 @@ static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel
     return 0;
   }
   double fb = misfit(p, element, flywheel, rubbing, b);
+  if (fb == 0) {
+    // it slides, with a force that does not go with its velocity
+    return b;
+  }
   for (int i = 0; i < MOST_TURNS && fa * fb > 0; i++) {
     a = b;
     fa = fb;
