@@ -15,7 +15,7 @@ from inerter.diagnose import wording
 from inerter.diagnose.budget.carried import Carrying, carried
 from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
-from inerter.diagnose.cannot_tell import goes_one_way, runs_up
+from inerter.diagnose.clock_rate import on_one_clock
 from inerter.diagnose.composition import distinction
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
@@ -23,6 +23,7 @@ from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
 from inerter.diagnose.exchangeable import exchanges, with_members
+from inerter.diagnose.method import method_of
 from inerter.diagnose.other_runs import (
     badly_missed,
     badly_missed_parts,
@@ -125,9 +126,11 @@ def diagnose_bench(
         channel |= named(name, known)
     moving, left_out = without_standstill(records)
     moving, scales = turned_round(moving)
+    progress("asking whether both channels have one clock")
+    moving, clock = on_one_clock(moving)
     given = Given(
-        records=moving, scales=scales, left_out=left_out, device=device, holdout=holdout,
-        progress=progress, channel=channel, carry=carry, time=time,
+        records=moving, scales=scales, clock=clock, left_out=left_out, device=device,
+        holdout=holdout, progress=progress, channel=channel, carry=carry, time=time,
     )  # fmt: skip
     # predictions of models that are only tried may run away
     quiet = np.errstate(over="ignore", invalid="ignore")
@@ -296,7 +299,7 @@ def diagnosis_of(
         engines=simulate_engines(final, followed.whole, followed.raw.masks),
         verdict="",
         parameters=values,
-        method=_method(stands)
+        method=method_of(stands)
         | {"run_constants": dict(stands.searched.prepared.constants)}
         | {
             "missed_runs": missed,
@@ -315,6 +318,7 @@ def diagnosis_of(
                 about_split,
                 steps_in_words(steps, motion),
                 given.left_out,
+                given.clock.in_words() if given.clock else "",
                 long.in_words() if long else "",
                 given.time.in_words(sum(not finding.compared for finding in findings)),
             )
@@ -396,27 +400,6 @@ def _contradiction(stands: Confirmed) -> dict[str, list[dict[str, str]]]:
         name: [{"code": "contradicts_others", "text": text}]
         for name, text in said.items()
         if not explained(runs, errors, name)
-    }
-
-
-def _method(stands: Confirmed) -> dict:
-    data, given = stands.data, stands.searched.prepared.given
-    band = data.preparation
-    return {
-        "cutoff": band.cutoff,
-        "cutoffs_tried": [float(value) for value in band.cutoffs],
-        # infinite where too little of a short record is left to judge a cut-off by
-        "force_error_at_cutoffs": [float(value) for value in band.errors],
-        "channels": ["displacement", *band.channels],
-        "one_tone": data.band.scales.one_tone,
-        "strokes": stands.searched.search.strokes,
-        "one_way": goes_one_way(stands.searched.search.runs),
-        "runs_up": runs_up(stands.searched.search.runs),
-        "split": data.split.description,
-        "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
-        # where it ended the search
-        "time_limit": given.time.seconds if given.time.was_felt else None,
-        "searched_samples": sum(run.force.size for run in stands.searched.data.whole),
     }
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from inerter.core import Device
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.budget.carried import Carrying
+from inerter.diagnose.clock_rate import ClockRate
 from inerter.diagnose.data import Data, divided
 from inerter.diagnose.run_constants import constants, contradicting, without_constants
 from inerter.diagnose.time_limit import TimeLimit
@@ -46,6 +47,8 @@ class Given:
         How long to search.
     scales
         Scales that were taken off the forces of runs, and their standard errors.
+    clock
+        How fast the clock of the force was, which it is on no more.
     """
 
     records: Sequence[Record]
@@ -57,6 +60,7 @@ class Given:
     left_out: str = ""
     time: TimeLimit = field(default_factory=TimeLimit)
     scales: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    clock: ClockRate | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

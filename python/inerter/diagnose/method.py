@@ -1,0 +1,31 @@
+"""How a diagnosis was made: band, split, motion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from inerter.diagnose.cannot_tell import goes_one_way, runs_up
+from inerter.diagnose.stages import Confirmed
+
+
+def method_of(stands: Confirmed) -> dict[str, Any]:
+    """What was done, and along which motion, as `method` of diagnosis.json."""
+    data, given = stands.data, stands.searched.prepared.given
+    band = data.preparation
+    return {
+        "cutoff": band.cutoff,
+        "cutoffs_tried": [float(value) for value in band.cutoffs],
+        # infinite where too little of a short record is left to judge a cut-off by
+        "force_error_at_cutoffs": [float(value) for value in band.errors],
+        "channels": ["displacement", *band.channels],
+        "one_tone": data.band.scales.one_tone,
+        "strokes": stands.searched.search.strokes,
+        "one_way": goes_one_way(stands.searched.search.runs),
+        "runs_up": runs_up(stands.searched.search.runs),
+        "split": data.split.description,
+        "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
+        "clock_rate": (given.clock.value, given.clock.stderr) if given.clock else None,
+        # where it ended the search
+        "time_limit": given.time.seconds if given.time.was_felt else None,
+        "searched_samples": sum(run.force.size for run in stands.searched.data.whole),
+    }
