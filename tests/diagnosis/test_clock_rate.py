@@ -50,7 +50,8 @@ def test_its_rate_is_told_and_put_right(rate: float, effects_seed: int) -> None:
         missed, left = (float(np.std((r.force - each.force[: r.samples])[inner])) for r in (
             before, after,
         ))  # fmt: skip
-        assert left < 2.0 < missed
+        # a jump between two samples is not where it was
+        assert left < 0.1 * missed
 
 
 @pytest.mark.parametrize("frequencies", [(0.7, 1.9, 4.3), (1.9,)])
