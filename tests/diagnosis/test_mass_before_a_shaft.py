@@ -33,9 +33,9 @@ def record(seed: int, mass: float, noise: float = 0.5) -> Record:
     # of the flywheel's acceleration over the terminal's
     share = pull / (INERTANCE * s**2 + pull)
     rows = SIZES * np.exp(1j * (2 * np.pi * np.outer(TIME, FREQUENCIES) + phases))
-    a = rows.real.sum(axis=1)
-    force = (rows * (mass + INERTANCE * share)).real.sum(axis=1)
-    v, x = (rows / s).real.sum(axis=1), (rows / s**2).real.sum(axis=1)
+    a = np.real(rows).sum(axis=1)
+    force = np.real(rows * (mass + INERTANCE * share)).sum(axis=1)
+    v, x = np.real(rows / s).sum(axis=1), np.real(rows / s**2).sum(axis=1)
     assert np.allclose(np.gradient(v, TIME)[1:-1], a[1:-1], atol=0.02 * np.abs(a).max())
     force += COULOMB * np.tanh(v / 1e-3) + noise * draw.standard_normal(TIME.size)
     shown = x + 1e-7 * draw.standard_normal(TIME.size)
