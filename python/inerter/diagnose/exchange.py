@@ -27,7 +27,7 @@ from inerter.diagnose.plainer import (
 )
 from inerter.diagnose.trials import FAR
 from inerter.diagnose.where_friction_acts import on_the_other_side
-from inerter.identify.fit import Fit
+from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 from inerter.motion_units import ROTATION
 from inerter.parallel_steps import parallel
@@ -51,6 +51,10 @@ def _other_side(search: Search, current: Scored) -> Scored | None:
     masks = search.problem.masks
     limit = (1 - CRITERIA.gain) * current.fit.rmse(masks)
     for model in on_the_other_side(current.model, search.baseline):
+        # behind the shaft a step has to be solved for: a fit takes long, and where friction is on
+        # the wrong side one prediction tells
+        if rms(search.problem.residual(model), masks) > limit:
+            continue
         trial = Candidate("exchange", None, (model,))
         fit = search.trials.fit(trial, (FAR * limit, np.inf), limit)
         if fit.rmse(masks) < limit:
