@@ -321,6 +321,24 @@ def test_what_misses_a_fitted_run_is_not_called_right() -> None:
     assert headline(missed) == "The simulation misses the force, and no known effect explains it"
 
 
+def test_the_headline_is_as_sure_as_the_findings() -> None:
+    made = two_runs()
+    sure = replace(made.findings[0], confidence=0.99, members=(), looks_like=False)
+    half = replace(made.findings[-1], confidence=0.3, members=(), looks_like=False)
+    left = replace(made.unexplained, significant=True)
+    told = replace(made, findings=[sure, half], unexplained=left)
+    assert headline(told).startswith("The simulation lacks ")
+    assert "perhaps " in headline(told)
+    assert "what looks like " in headline(replace(told, findings=[replace(sure, looks_like=True)]))
+    # more likely not there than there, and most is unexplained
+    assert headline(replace(told, findings=[half])) == (
+        "The simulation lacks something that no known effect explains"
+    )
+    # each of two that are not told apart has half of what both have
+    either = replace(half, members=(half.effect, "sensor_delay"))
+    assert "perhaps " not in headline(replace(told, findings=[either]))
+
+
 def test_an_engine_that_strays_is_named() -> None:
     made = replace(two_runs(), engines={"mujoco": 1.1, "exudyn": 8.8, "reference": 1.11})
     assert "Exudyn cannot follow this device" in Reader(render_report(made, TOML, XML)).text

@@ -176,3 +176,20 @@ def test_damping_that_bends_upwards_may_be_quadratic() -> None:
     # beside friction, too, and beside quadratic damping not once more
     assert len(as_plain_part(model.adding("coulomb", coulomb_force=5.0), 20.0, 3.0)) == 2
     assert as_plain_part(model.adding(None, quadratic_damping=3.0), 20.0, 3.0) == []
+
+
+@pytest.mark.parametrize(("power", "stribeck"), [(-0.03, True), (0.5, False), (-1.0, False)])
+def test_a_power_of_the_speed_that_is_none_may_be_stribeck_friction(
+    power: float, stribeck: bool
+) -> None:
+    bent = BASELINE.holding(damping_beyond=0.0).adding(
+        None, viscous=2e5, damping_power_knee=1.3e-4, damping_exponent=power
+    )
+    plain = as_plain_part(bent, 20.0, 3.0)
+    assert "coulomb" in {each.friction for each in plain}
+    peaks = [each for each in plain if each.friction == "stribeck"]
+    assert bool(peaks) is stribeck
+    for each in peaks:
+        # about the force that the power has far beyond its knee
+        assert each.values["coulomb_force"] < 2e5 * 1.3e-4 < each.values["coulomb_force"] * 1.3
+        assert "damping_exponent" not in each.values

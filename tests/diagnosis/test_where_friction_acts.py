@@ -14,6 +14,7 @@ from inerter.identify.prediction import force_along
 from inerter.identify.runs import thin
 from inerter.records.preparation import prepare
 from inerter.reference import ReferenceDevice, sum_of_sines
+from inerter.report.page import render_report
 
 TIME = np.arange(0, 8, 1 / 250)
 SHAFT = {"inertance": 90.0, "series_stiffness": 4e5, "series_damping": 400.0}
@@ -55,6 +56,8 @@ def test_it_goes_to_the_other_side_and_back() -> None:
     (behind,) = on_the_other_side(terminals, bare())
     (back,) = on_the_other_side(behind, bare())
     assert not back.rubs_behind
+    # a drift is known of the force of the friction, not of what that does to the flywheel
+    assert on_the_other_side(terminals.adding(friction_drift=0.01), bare()) == []
     # where the user says it stays
     stated = Model("none", dict(bare().values), (), {"friction_side": "terminals"})
     assert on_the_other_side(terminals, stated) == []
@@ -69,7 +72,9 @@ def test_the_findings_say_where() -> None:
         effect="coulomb_friction", law=None, confidence=1.0, parameters={}, rmse_before=2.0,
         rmse_after=1.0, evidence="It takes half.", rivals=[],
     )  # fmt: skip
-    assert with_side(found, behind).evidence.endswith("on the flywheel.")
+    told = with_side(found, behind)
+    assert told.evidence == "It takes half. It acts behind the elasticity, on the flywheel."
+    assert told.remark == "It acts behind the elasticity, on the flywheel."
     assert with_side(found, bare()) == found
 
 
@@ -84,5 +89,6 @@ def test_a_device_in_a_frame_that_gives_is_found(effects_seed: int) -> None:
         assert told.value == pytest.approx(true, abs=max(4 * told.stderr, 0.02 * true))
     shaft = next(each for each in found.findings if each.effect == "series_elasticity")
     assert "a frame that gives" in shaft.evidence
+    assert "a frame that gives" in render_report(found, "", "")
     told_by = [error for error in found.engines.values() if error is not None]
     assert told_by == pytest.approx([found.extended.rmse] * len(told_by), rel=0.05)

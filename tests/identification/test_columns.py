@@ -124,6 +124,13 @@ def test_columns_are_differences_of_the_residual(
     assert errors.max() < 1e-4, dict(zip(LINEAR, errors, strict=True))
 
 
+def test_a_mass_before_a_play_has_its_column() -> None:
+    """It takes its share of the first force, by which the flywheel begins."""
+    values = {**LINEAR, **SHAFT, "backlash": 1e-3, "grip_mass": 6.0}
+    model = Model("none", values, ("grip_mass", "inertance"))
+    assert errors_of_columns(problem(), model).max() < 1e-4
+
+
 def test_every_coordinate_stands_beside_the_linear_ones() -> None:
     """Of curves along the stroke and of periods, one of a kind; nodes have tests of their own."""
     tried = {*LINEAR, *(name for law in LAWS.values() for name in law)}

@@ -149,6 +149,9 @@ def _bouc_wen(starts: Sequence[Model], bare: Model, sizes: Scales) -> tuple[Mode
 
 def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
+    if effect.name == "friction_drift" and model.rubs_behind:
+        # known at the terminals alone, see `where_friction_acts`
+        return
     along = effect.name == "position_dependent_friction"
     names = ("friction_gradient", "friction_curvature") if along else effect.coordinates
     zero = dict.fromkeys(names, 0.0)

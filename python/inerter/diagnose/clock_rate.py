@@ -30,6 +30,9 @@ STRETCHES, FEWEST, LATEST, TRIED = 10, 60, 0.08, 81
 SURE, SHIFTED, BETTER = 8.0, 3.0, 0.7
 # samples of all runs together, at most: smoothing more of them takes its time
 MOST = 200_000
+# samples of a smoothed motion that are one independent one: a guess, on which only the least error
+# rests, for what the stretches lie off a line by counts too
+_ALIKE = 10.0
 # stretches that it takes, of all runs; how often it is asked again of what was put right
 _TELLING, _AGAIN = 5, 2
 
@@ -191,8 +194,8 @@ def _stretches(motion: Motion, run: int) -> list[tuple]:
         if not curve[0] > 0:
             continue
         late, least = -curve[1] / (2 * curve[0]), max(float(squares[best]), 1e-12)
-        # the squares rise by their mean per independent sample, where the delay is off by one error
-        weight = curve[0] * rows.size / (least * 10.0)
+        # where the delay is off by one error the squares rise by their mean per independent sample
+        weight = curve[0] * rows.size / (least * _ALIKE)
         found.append((
             run, float(np.mean(times[rows])), float(late), float(weight),
             CubicSpline(delays, squares),

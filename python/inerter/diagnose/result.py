@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -74,6 +74,7 @@ class Finding:
     than every rival; gain_interval: 95 % interval of the gain, None where there are too few data;
     members: effects that these data cannot tell apart, this one among them; none where they can;
     compared: False where a time limit left no time to ask what else could explain the data;
+    remark: what the model says of it beside its figures, in sentences, at the end of the evidence;
     motion: what the device does, in rotation read N m for N.
     """
 
@@ -90,7 +91,13 @@ class Finding:
     members: tuple[str, ...] = ()
     looks_like: bool = False
     compared: bool = True
+    remark: str = ""
     motion: Kind = TRANSLATION
+
+    def remarked(self, remark: str) -> Finding:
+        """The finding with a remark."""
+        evidence = f"{self.evidence} {remark}"
+        return replace(self, remark=f"{self.remark} {remark}".strip(), evidence=evidence)
 
     @property
     def other_rivals(self) -> list[Rival]:

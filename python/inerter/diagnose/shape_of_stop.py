@@ -26,12 +26,10 @@ def as_shape_of_stop(finding: Finding, model: Model) -> Finding:
     share = finding.confidence / 2
     others = [rival for rival in finding.rivals if rival.effect != "end_stop"]
     stop = EFFECTS["end_stop"].plain
-    evidence = (
-        f"{finding.evidence} It acts beyond the stops alone: rather {stop} whose force rises in "
-        "another way, as of two materials or foam."
-    )
-    return replace(
-        finding, confidence=share, rivals=[Rival("end_stop", share), *others], evidence=evidence
+    told = replace(finding, confidence=share, rivals=[Rival("end_stop", share), *others])
+    return told.remarked(
+        f"It acts beyond the stops alone: rather {stop} whose force rises in another way, as of "
+        "two materials or foam."
     )
 
 

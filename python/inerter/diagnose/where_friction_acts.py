@@ -19,9 +19,11 @@ SIDE = "friction_side"
 def on_the_other_side(model: Model, baseline: Model) -> list[Model]:
     """The model with its friction on the other side of its shaft, if it has both.
 
-    Where the user states the side it stays.
+    Where the user states the side it stays. A level that drifts is known at the terminals alone:
+    what its change does to the flywheel is not the change of its force.
     """
-    if SIDE in baseline.texts or model.friction == "none" or not model.has_series:
+    drifts, stated = "friction_drift" in model.values, SIDE in baseline.texts
+    if stated or drifts or model.friction == "none" or not model.has_series:
         return []
     side = "terminals" if model.rubs_behind else "flywheel"
     return [replace(model, texts={**model.texts, SIDE: side})]
@@ -40,4 +42,4 @@ def with_side(finding: Finding, model: Model) -> Finding:
         )
     else:
         return finding
-    return replace(finding, evidence=f"{finding.evidence} {text}")
+    return finding.remarked(text)

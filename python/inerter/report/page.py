@@ -203,6 +203,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         ],
         "notes": _notes(finding),
         "guess": in_digits(what_it_could_be(finding).removeprefix("; ")),
+        "remark": finding.remark,
         "doubt": reason(finding, diagnosis.unexplained.structure),
         "own_value": about_its_value(finding),
         "evidence": finding.evidence,
