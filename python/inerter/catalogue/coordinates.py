@@ -268,9 +268,9 @@ _ALL = (
         lower=lambda s: -3 / s.displacement, upper=lambda s: 3 / s.displacement,
     ),
     Coordinate(
-        name="flywheel_viscous", unit="N*s/m", size=lambda s: s.force / s.velocity, lower=_zero,
-        start=(1e-3, 0.3), start_unit=lambda s: s.force / s.velocity, entangled=True,
-        proportional_to="inertance",
+        name="flywheel_viscous", unit="N*s/m", words={"flywheel_viscous": "c_w of the flywheel"},
+        size=lambda s: s.force / s.velocity, lower=_zero, start=(1e-3, 0.3),
+        start_unit=lambda s: s.force / s.velocity, entangled=True, proportional_to="inertance",
     ),
     Coordinate(
         name="backlash", unit="m", words={"backlash": "half of the free play eps"},

@@ -246,7 +246,8 @@ _ALL = (
         experiment="record with the device at rest",
     ),
     Effect(
-        name="viscous_friction", rank=3, smooth=True, coordinates=("viscous",), on_table=True,
+        name="viscous_friction", rank=3, smooth=True,
+        coordinates=("viscous", "flywheel_viscous"), on_table=True,
         plain="viscous friction", meaning="c v",
         cause="lubricant shear in bearings, screw and seals", taken_for="sensor delay",
         experiment=(

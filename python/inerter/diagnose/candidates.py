@@ -28,6 +28,7 @@ from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import carries, width
 from inerter.diagnose.stated import shafts, stated_candidates
+from inerter.diagnose.where_losses_act import may_damp_behind
 from inerter.identify.model import Model
 from inerter.identify.transient import RELAXING
 
@@ -150,7 +151,7 @@ def _bouc_wen(starts: Sequence[Model], bare: Model, sizes: Scales) -> tuple[Mode
 def _level(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A friction level that varies: on top of the present law, or with Coulomb friction."""
     if effect.name == "friction_drift" and model.rubs_behind:
-        # known at the terminals alone, see `where_friction_acts`
+        # known at the terminals alone, see `where_losses_act`
         return
     along = effect.name == "position_dependent_friction"
     names = ("friction_gradient", "friction_curvature") if along else effect.coordinates
@@ -171,6 +172,13 @@ def _shaft(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
         mass = 0.3 * model.values.get("inertance", sizes.force / sizes.acceleration)
         before = tuple(start.adding(None, grip_mass=mass) for start in starts)
         yield Candidate(effect.name, "behind a mass", before)
+
+
+def _viscous(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """Damping between the terminals, and behind a shaft that of the flywheel."""
+    yield from _free(effect.name, ("viscous",), model, sizes)
+    if may_damp_behind(model) and not sizes.one_tone:
+        yield from _free(effect.name, ("flywheel_viscous",), model, sizes)
 
 
 def _grip(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
@@ -367,6 +375,7 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 
 _SPECIAL: dict[str, Build] = {
+    "viscous_friction": _viscous,
     "sensor_filter": _filter,
     "grip_mass": _grip,
     "position_force": _by_the_search,

@@ -162,7 +162,7 @@ def _contradicts(effect: str, model: Model, baseline: Model) -> bool:
         return False
     if known.kind == "shaft":
         return baseline.has_series
-    names = (*known.coordinates, *known.stated_as)
+    names = (*(name for name in known.coordinates if name in model.free), *known.stated_as)
     return any(name in baseline.values and name not in baseline.free for name in names)
 
 
@@ -271,6 +271,9 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         return [*fewer, without]
     if effect == "hardening_stiffness" and "rest_length" in model.free:
         return [model.without(("rest_length",)), without]
+    if effect == "viscous_friction" and {*EFFECTS[effect].coordinates} <= {*model.free}:
+        # between the terminals alone, at the flywheel alone
+        return [*(model.without((each,)) for each in EFFECTS[effect].coordinates), without]
     if effect == "end_stop" and (fewer := _less_of_a_stop(model)):
         return [*fewer, without]
     if effect == "viscoelasticity" and "branch_time_2" in model.free:

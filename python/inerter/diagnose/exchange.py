@@ -26,7 +26,7 @@ from inerter.diagnose.plainer import (
     with_own_spring,
 )
 from inerter.diagnose.trials import FAR
-from inerter.diagnose.where_friction_acts import on_the_other_side
+from inerter.diagnose.where_losses_act import damped_on_the_other_side, rubbing_on_the_other_side
 from inerter.identify.fit import Fit, rms
 from inerter.identify.model import Model
 from inerter.motion_units import ROTATION
@@ -39,27 +39,34 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        _other_side, other_filter, _plainer_law, _spring_beside, plain_part, _weight, _one_cause
+        other_side, other_filter, _plainer_law, _spring_beside, plain_part, _weight, _one_cause
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
     return current
 
 
-def _other_side(search: Search, current: Scored) -> Scored | None:
-    """The same friction on the other side of the shaft, where that is nearer to the data."""
-    masks = search.problem.masks
-    limit = (1 - CRITERIA.gain) * current.fit.rmse(masks)
-    for model in on_the_other_side(current.model, search.baseline):
-        # behind the shaft a step has to be solved for: a fit takes long, and where friction is on
-        # the wrong side one prediction tells
-        if rms(search.problem.residual(model), masks) > limit:
-            continue
+def other_side(search: Search, current: Scored) -> Scored | None:
+    """The same loss on the other side of the shaft, where that is nearer to the data, or plainer.
+
+    Behind the shaft a step of friction has to be solved for: a fit takes long, and where friction
+    is on the wrong side one prediction tells.
+    """
+    masks, error = search.problem.masks, current.fit.rmse(search.problem.masks)
+    nearer, plainer = (1 - CRITERIA.gain) * error, (1 + CRITERIA.tolerated_loss) * error
+    rubbing = [
+        model
+        for model in rubbing_on_the_other_side(current.model, search.baseline)
+        if rms(search.problem.residual(model), masks) <= nearer
+    ]
+    for model in (*rubbing, *damped_on_the_other_side(current.model, search.baseline)):
+        fewer = model.complexity < current.model.complexity
+        limit = plainer if fewer else nearer
         trial = Candidate("exchange", None, (model,))
         fit = search.trials.fit(trial, (FAR * limit, np.inf), limit)
-        if fit.rmse(masks) < limit:
+        if fit.rmse(masks) < limit and search.may_be(fit.model):
             scored = search.score("exchange", None, fit)
-            if loss(scored, current) < -CRITERIA.gain:
+            if loss(scored, current) < (CRITERIA.exchange_loss if fewer else -CRITERIA.gain):
                 return scored
     return None
 

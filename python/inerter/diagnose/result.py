@@ -73,6 +73,8 @@ class Finding:
     confidence: share of resamples of the data in which it does better than without it and better
     than every rival; gain_interval: 95 % interval of the gain, None where there are too few data;
     members: effects that these data cannot tell apart, this one among them; none where they can;
+    side: of friction, where it acts: "terminals", "flywheel" (behind an elasticity) or "both"; else
+    empty;
     compared: False where a time limit left no time to ask what else could explain the data;
     remark: what the model says of it beside its figures, in sentences, at the end of the evidence;
     motion: what the device does, in rotation read N m for N.
@@ -92,6 +94,7 @@ class Finding:
     looks_like: bool = False
     compared: bool = True
     remark: str = ""
+    side: str = ""
     motion: Kind = TRANSLATION
 
     def remarked(self, remark: str) -> Finding:
@@ -114,10 +117,12 @@ class Finding:
         members = {"members": list(self.members)} if self.members else {}
         describes = {"looks_like": True} if self.looks_like else {}
         alone = {} if self.compared else {"compared": False}
+        side = {"side": self.side} if self.side else {}
         return (
             members
             | describes
             | alone
+            | side
             | {
                 "effect": self.effect,
                 "law": self.law,

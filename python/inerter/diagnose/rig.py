@@ -61,7 +61,7 @@ from inerter.diagnose.statistics import gain_interval
 from inerter.diagnose.time_limit import TimeLimit
 from inerter.diagnose.unexplained import unexplained
 from inerter.diagnose.values import parameter_values
-from inerter.diagnose.where_friction_acts import with_side
+from inerter.diagnose.where_losses_act import with_side
 from inerter.identify.channel import channel_values
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of, named
 from inerter.identify.fit import rms

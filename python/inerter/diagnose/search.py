@@ -28,7 +28,7 @@ from inerter.diagnose.composition import (
     without_effect,
 )
 from inerter.diagnose.decision import CRITERIA, as_good, better, loss, not_needed, plainest
-from inerter.diagnose.exchange import exchanged, plain_part
+from inerter.diagnose.exchange import exchanged, other_side, plain_part
 from inerter.diagnose.instead import instead
 from inerter.diagnose.left_out import Folds, left_out_errors
 from inerter.diagnose.low_passes import noise_taken, where_late
@@ -161,9 +161,9 @@ class Search:
         if any(is_local(effect) for effect, _ in effects_of(start, self.baseline)):
             self._folds = self._spread
         current = self.score("baseline", None, self.problem.fit(start))
-        # another band may tell that a part found before is a plain one
-        while plainer := plain_part(self, current):
-            current = plainer
+        # another band may tell that a part found before is a plain one, or on which side it acts
+        while other := plain_part(self, current) or other_side(self, current):
+            current = other
         current, seen = self._stepped(current, until, most), []
         # where another effect does better in the place of one, the search goes on from there
         with suppress(OverTimeError):

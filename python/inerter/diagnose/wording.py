@@ -67,7 +67,8 @@ def effect_in_words(finding: Finding) -> str:
     law = _law(finding.law)
     other = finding.effect != "inertance_error" and _is_stated(finding)
     if _is_level_at_least(finding):
-        return f"{EFFECTS[finding.effect].plain} (or rate-and-state friction)"
+        # what more it may be is said beside its value
+        return EFFECTS[finding.effect].plain
     if _is_level_and_more(finding):
         return "Coulomb friction, larger one way or beside a constant force"
     if finding.members:

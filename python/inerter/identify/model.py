@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -167,7 +167,8 @@ class Model:
         if not (inertance > 0 and stiffness > 0):
             return None
         critical = 2 * math.sqrt(stiffness * inertance)
-        return stiffness / (math.pi * critical), device.series_damping / critical
+        damping = device.series_damping + device.flywheel_viscous
+        return stiffness / (math.pi * critical), damping / critical
 
     @property
     def has_series(self) -> bool:
@@ -192,16 +193,33 @@ class Model:
     def without(self, names: Sequence[str], friction: str | None = None) -> Model:
         """The model without some coordinates, and what goes with them.
 
-        Where nothing gives any more, a mass before what gave is inertance.
+        Where nothing gives any more, a mass before what gave is inertance, and damping of the
+        flywheel is between the terminals.
         """
-        law = friction or self.friction
+        law, before = friction or self.friction, self
         if _SERIES.isdisjoint(self.values.keys() - set(names)):
             names = (*names, "grip_mass")
-        free = tuple(name for name in self.free if name not in names)
-        values = {name: value for name, value in self.values.items() if name not in names}
+            if BEHIND in self.free and BEHIND not in names:
+                before = self._renamed(BEHIND, "viscous")
+        free = tuple(name for name in before.free if name not in names)
+        values = {name: value for name, value in before.values.items() if name not in names}
         return Model(law, values, _useful(free, law), self.texts)
 
+    def damped_at(self, name: str) -> Model:
+        """The model with what one free coordinate damps at another place, `name`, alone or also."""
+        other = next(each for each in (BEHIND, "viscous") if each != name)
+        return self._renamed(other, name)
 
+    def _renamed(self, old: str, new: str) -> Model:
+        """The model whose coordinate has another name, or is added to that of this name."""
+        more = {new: self.values[old] + self.values.get(new, 0.0)}
+        values = {name: value for name, value in self.values.items() if name != old} | more
+        free = tuple(dict.fromkeys(new if name == old else name for name in self.free))
+        return replace(self, values=values, free=free)
+
+
+BEHIND = "flywheel_viscous"
+"""Damping of the flywheel, behind a shaft."""
 # what says where a device is along its stroke
 _OF_PLACES = {"rest_length", "curve_lower", "curve_upper"}
 _SERIES = {"series_frequency", "series_stiffness", "series_damping"}

@@ -32,6 +32,9 @@ TOLERANCE = 0.005
 STEP = 1.3
 HIGHEST = 200.0
 WIDEST = 8.0
+# cut-offs per sample rate: the highest that is always tried, and the highest of all, which leaves
+# nearly everything up to half of the rate
+USUAL, EVERYTHING = 0.2, 0.8
 # samples that every run must keep away from its ends: so many, and this share of what the highest
 # cut-off leaves
 SMALLEST = 50
@@ -55,6 +58,8 @@ class Preparation:
         Cut-offs tried [Hz] and the rms force error of a broad linear model on each [N].
     channels : tuple of str
         Measured channels used beside the displacement.
+    widest : float
+        The highest cut-off that may be tried [Hz].
     noise_floor : float
         Rms of the force channel's white noise [N].
     corner : float
@@ -70,6 +75,7 @@ class Preparation:
     cutoffs: Array
     errors: Array
     channels: tuple[str, ...]
+    widest: float
     noise_floor: float
     corner: float = np.inf
     force_band: float = 0.0
@@ -90,20 +96,27 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
     # of a run at rest, the dominant frequency is that of its noise
     moving = [r for r in records if np.std(r.displacement) > MOVES * white_noise(r.displacement)]
     dominant = max(dominant_frequency(record) for record in moving or records)
-    highest = min(0.2 * rate, max(HIGHEST, WIDEST * dominant))
+    limit = max(HIGHEST, WIDEST * dominant)
+    highest = min(USUAL * rate, limit)
     lowest = min(2 * dominant, highest / 2)
     count = int(np.ceil(np.log(highest / lowest) / np.log(STEP))) + 1
     cutoffs = np.geomspace(lowest, highest, count)
     measured = [name for name in ("velocity", "acceleration") if _usable(name, records)]
     choices = [use for count in range(len(measured) + 1) for use in combinations(measured, count)]
 
-    widest = [smooth(record, float(cutoffs[-1]), ()) for record in records]
-    one_line = has_one_line(widest, [motion.velocity_noise for motion in widest])
+    wide = [smooth(record, float(cutoffs[-1]), ()) for record in records]
+    one_line = has_one_line(wide, [motion.velocity_noise for motion in wide])
 
     def error(motions: Sequence[Motion], masks: Masks) -> float:
         return _force_error(motions, _both(masks, learnt), one_line)
 
-    errors = np.array([_errors(records, cutoffs, use, error) for use in choices])
+    widest = min(EVERYTHING * rate, limit)
+    rows = [_errors(records, cutoffs, use, error, widest) for use in choices]
+    cutoffs = max((tried for tried, _ in rows), key=lambda tried: tried.size)
+    # what was not tried is no better
+    errors = np.array(
+        [np.pad(r, (0, cutoffs.size - r.size), constant_values=np.inf) for _, r in rows]
+    )
     if not np.isfinite(errors).any():
         if learnt is not None:
             return prepare(records)
@@ -121,6 +134,7 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
         cutoff=cutoff,
         cutoffs=cutoffs,
         errors=row,
+        widest=widest,
         channels=use,
         noise_floor=float(np.sqrt(np.mean([force_noise(record.force) ** 2 for record in records]))),
         one_line=one_line,
@@ -192,15 +206,15 @@ def prepare_again(
     motion. `error` gives the model's force error [N] along motions over masked samples.
     """
     use = preparation.channels
-    errors = _errors(records, preparation.cutoffs, use, error)
+    cutoffs, errors = _errors(records, preparation.cutoffs, use, error, preparation.widest)
     if not np.isfinite(errors).any():
         return preparation
     best = float(np.nanmin(np.where(np.isfinite(errors), errors, np.nan)))
-    cutoff = float(preparation.cutoffs[np.flatnonzero(errors <= best * (1 + TOLERANCE))[0]])
+    cutoff = float(cutoffs[np.flatnonzero(errors <= best * (1 + TOLERANCE))[0]])
     if cutoff == preparation.cutoff:
         return preparation
     motions = [smooth(record, cutoff, use) for record in records]
-    return replace(preparation, motions=motions, cutoff=cutoff, errors=errors)
+    return replace(preparation, motions=motions, cutoff=cutoff, cutoffs=cutoffs, errors=errors)
 
 
 def _usable(name: str, records: Sequence[Record]) -> bool:
@@ -226,8 +240,12 @@ def _errors(
     cutoffs: Array,
     use: tuple[str, ...],
     error: Callable[[Sequence[Motion], Masks], float],
-) -> Array:
+    widest: float,
+) -> tuple[Array, Array]:
     """Errors at some cut-offs, all on the same samples; infinite where too few would be left.
+
+    Where the highest of them is the best, higher ones follow up to the `widest` [Hz], as long as
+    each is better: the motion fills what the sample rate leaves. Cut-offs tried, and their errors.
 
     The lower a cut-off, the more is unsure at the ends. Judged on what it leaves itself, a low one
     would look good for leaving out how the motion begins. The motions keep their own beginnings: a
@@ -239,17 +257,21 @@ def _errors(
 
     most = [int(motion.inner.sum()) for motion in smoothed(cutoffs[-1])]
     common: list[NDArray[np.bool_]] = []
-    found = np.full(cutoffs.size, np.inf)
-    for i, cutoff in enumerate(cutoffs):
+    tried, found = [float(cutoff) for cutoff in cutoffs], list[float]()
+    for cutoff in tried:
         motions = smoothed(cutoff)
         if not common:
             left = [int(motion.inner.sum()) for motion in motions]
             if any(n < max(SMALLEST, KEPT * m) for n, m in zip(left, most, strict=True)):
+                found.append(np.inf)
                 continue
             common = [motion.inner for motion in motions]
         same = [motion.inner & c for motion, c in zip(motions, common, strict=True)]
-        found[i] = error(motions, same)
-    return found
+        found.append(error(motions, same))
+        best = len(found) == len(tried) and np.isfinite(found[-1]) and found[-1] == min(found)
+        if best and STEP * cutoff <= widest:
+            tried.append(STEP * cutoff)
+    return np.array(tried), np.array(found)
 
 
 def _inside(force: Array) -> NDArray[np.bool_]:

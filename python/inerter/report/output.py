@@ -15,6 +15,9 @@ from inerter.motion_units import unit
 from inerter.report.page import render_report
 from inerter.rig import device_mjcf
 
+# confidence from which on a file of the device says no more of a value
+_SURE = 0.9
+
 
 def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
     """Write diagnosis.json, report.html, device.toml and model.xml.
@@ -29,10 +32,18 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         return
     device = Device(**diagnosis.written)
     names = ", ".join(record.name for record in diagnosis.records)
+    doubt = {
+        name: f"; confidence {finding.confidence:.2g}"
+        for finding in diagnosis.findings
+        for name in finding.parameters
+        if finding.confidence < _SURE
+    }
     comments = {
-        name: f"{value.unit} (standard error {value.stderr:.2g})".removeprefix("1 ")
+        name: f"{value.unit} (standard error {value.stderr:.2g}{doubt.get(name, '')})"
         for name, value in diagnosis.parameters.items()
-    } | _carried_comment(diagnosis)
+    }
+    comments = {name: text.removeprefix("1 ") for name, text in comments.items()}
+    comments |= _carried_comment(diagnosis)
     # what the user states, and where a spring was found to rest beside it
     shift = {"rest_length": device.rest_length + diagnosis.rest_length}
     rest_length = shift if diagnosis.rest_length else {}

@@ -1,4 +1,4 @@
-"""Friction on the flywheel's side of a shaft, as of a device in a frame that gives."""
+"""Friction and damping on the flywheel's side of a shaft, as of a device in a frame that gives."""
 
 from __future__ import annotations
 
@@ -7,7 +7,12 @@ import pytest
 from bench_runs import measured
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.result import Finding
-from inerter.diagnose.where_friction_acts import on_the_other_side, with_side
+from inerter.diagnose.where_losses_act import (
+    damped_on_the_other_side,
+    may_damp_behind,
+    rubbing_on_the_other_side,
+    with_side,
+)
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
@@ -39,7 +44,7 @@ def test_its_force_is_that_of_the_flywheel_that_it_holds() -> None:
     runs = [thin(motion) for motion in prepare(records).motions]
     known = {"series_stiffness": 4e5, "series_damping": 400.0, "coulomb_force": 40.0}
     terminals = Model("coulomb", {"inertance": 90.0, "transition_velocity": 1e-3, **known}, ())
-    (behind,) = on_the_other_side(terminals, bare())
+    (behind,) = rubbing_on_the_other_side(terminals, bare())
     assert behind.rubs_behind
     assert not terminals.rubs_behind
     problem = Problem(runs, [np.ones(run.force.size, dtype=bool) for run in runs])
@@ -50,24 +55,24 @@ def test_its_force_is_that_of_the_flywheel_that_it_holds() -> None:
 
 def test_it_goes_to_the_other_side_and_back() -> None:
     shaft = bare(series_frequency=10.0, series_loss=0.03)
-    assert on_the_other_side(shaft, bare()) == []
-    assert on_the_other_side(bare().adding("coulomb", coulomb_force=9.0), bare()) == []
+    assert rubbing_on_the_other_side(shaft, bare()) == []
+    assert rubbing_on_the_other_side(bare().adding("coulomb", coulomb_force=9.0), bare()) == []
     terminals = shaft.adding("coulomb", coulomb_force=9.0)
-    (behind,) = on_the_other_side(terminals, bare())
-    (back,) = on_the_other_side(behind, bare())
+    (behind,) = rubbing_on_the_other_side(terminals, bare())
+    (back,) = rubbing_on_the_other_side(behind, bare())
     assert not back.rubs_behind
     # a drift is known of the force of the friction, not of what that does to the flywheel
-    assert on_the_other_side(terminals.adding(friction_drift=0.01), bare()) == []
+    assert rubbing_on_the_other_side(terminals.adding(friction_drift=0.01), bare()) == []
     # where the user says it stays
     stated = Model("none", dict(bare().values), (), {"friction_side": "terminals"})
-    assert on_the_other_side(terminals, stated) == []
+    assert rubbing_on_the_other_side(terminals, stated) == []
     # without friction there is no side
     assert "friction_side" not in behind.without(("coulomb_force",), "none").stated()
 
 
 def test_the_findings_say_where() -> None:
     behind = bare(series_frequency=10.0, series_loss=0.03).adding("coulomb", coulomb_force=9.0)
-    (behind,) = on_the_other_side(behind, bare())
+    (behind,) = rubbing_on_the_other_side(behind, bare())
     found = Finding(
         effect="coulomb_friction", law=None, confidence=1.0, parameters={}, rmse_before=2.0,
         rmse_after=1.0, evidence="It takes half.", rivals=[],
@@ -76,6 +81,54 @@ def test_the_findings_say_where() -> None:
     assert told.evidence == "It takes half. It acts behind the elasticity, on the flywheel."
     assert told.remark == "It acts behind the elasticity, on the flywheel."
     assert with_side(found, bare()) == found
+
+
+def test_damping_goes_to_the_other_side_and_back() -> None:
+    shaft = bare(series_frequency=10.0, series_loss=0.03)
+    assert damped_on_the_other_side(shaft, bare()) == []
+    assert damped_on_the_other_side(bare(viscous=50.0), bare()) == []
+    terminals = shaft.adding(viscous=50.0)
+    (behind,) = damped_on_the_other_side(terminals, bare())
+    assert behind.free == ("inertance", "series_frequency", "series_loss", "flywheel_viscous")
+    assert behind.device().flywheel_viscous == 50.0
+    assert behind.device().viscous == 0.0
+    assert not may_damp_behind(behind)
+    (back,) = damped_on_the_other_side(behind, bare())
+    assert back == terminals
+    # a bend, and a late channel, may have stood in for it
+    assert damped_on_the_other_side(terminals.adding(damping_asymmetry=0.1), bare()) == [behind]
+    late = terminals.adding(delay=1e-3)
+    assert behind in damped_on_the_other_side(late, bare())
+    assert damped_on_the_other_side(terminals.holding(damping_asymmetry=0.1), bare()) == []
+    # what the user states stays
+    assert damped_on_the_other_side(terminals, bare(viscous=40.0)) == []
+    assert damped_on_the_other_side(behind.holding(viscous=40.0), bare(viscous=40.0)) == []
+    # without a shaft it is damping as any other, beside what there is
+    rigid = behind.adding(viscous=20.0).without(("series_frequency", "series_loss"))
+    assert rigid.free == ("inertance", "viscous")
+    assert rigid.values["viscous"] == 70.0
+
+
+@pytest.mark.parametrize("side", ["flywheel", "both"])
+def test_damping_behind_a_shaft_is_found(side: str, effects_seed: int) -> None:
+    """And not told as a low-pass of the force and a damped shaft."""
+    shaft = {"inertance": 40.0, "series_stiffness": 2e5, "series_damping": 60.0}
+    between = {"viscous": 120.0} if side == "both" else {}
+    known = {**shaft, **between, "flywheel_viscous": 400.0}
+    resonant = [
+        sum_of_sines([0.004, 5e-4, 1.5e-4], [1.1, 5.3, 11.7], [QUARTER, QUARTER, -QUARTER]),
+        sum_of_sines([0.003, 8e-4, 1.2e-4], [1.7, 6.1, 13.1], [-QUARTER, -QUARTER, QUARTER]),
+    ]
+    records = measured(ReferenceDevice(**known), resonant, TIME, effects_seed, force_noise=0.5)
+    found = diagnose_bench(records)
+    assert {each.effect for each in found.findings} == {"series_elasticity", "viscous_friction"}
+    damping = next(each for each in found.findings if each.effect == "viscous_friction")
+    assert damping.parameters.keys() == {"flywheel_viscous", *between}
+    assert "behind the elasticity, on the flywheel" in damping.evidence
+    for name, true in known.items():
+        told = found.parameters[name]
+        assert told.value == pytest.approx(true, abs=max(4 * told.stderr, 0.02 * true))
+    assert found.extended.device["flywheel_viscous"] == damping.parameters["flywheel_viscous"].value
 
 
 @pytest.mark.long
