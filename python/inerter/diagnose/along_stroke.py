@@ -70,8 +70,8 @@ def candidates(problem: Problem, fit: Fit, curves: bool = True) -> Iterator[Cand
         if effect is not None:
             shown = _Shown(x, v > 0, residual, effect, ends, fewest, least, finest)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
-            if quantity.name == "force" and problem.runs[0].motion == ROTATION and not one_tone:
-                yield from _weight(quantity, fit.model, shown)
+            if quantity.name == "force" and problem.runs[0].motion == ROTATION:
+                yield from _weight(quantity, fit.model, shown, one_tone)
             if curves and not one_tone:
                 yield from _curved(quantity, fit.model, shown)
 
@@ -149,13 +149,22 @@ def _periodic(
         yield Candidate(quantity.effect, "period", tuple(starts))
 
 
-def _weight(quantity: Quantity, model: Model, shown: _Shown) -> Iterator[Candidate]:
-    """One period a turn, as of a weight out of balance, however little of a turn is moved."""
+def _weight(quantity: Quantity, model: Model, shown: _Shown, one_tone: bool) -> Iterator[Candidate]:
+    """One period a turn, as of a weight out of balance, however little of a turn is moved.
+
+    Along one sine a constant is one of a load cell, and what goes with the angle is inertance:
+    there what is bent has to take some.
+    """
     names = quantity.period_of_a_turn(model.values)
     if names is None:
         return
     length, *amplitudes = names
-    gain, found = _gain(np.column_stack([np.cos(shown.x), np.sin(shown.x)]), shown.residual)
+    columns = np.column_stack([np.cos(shown.x), np.sin(shown.x)])
+    gain, found = _gain(columns, shown.residual)
+    if one_tone:
+        straight = np.linalg.qr(np.column_stack([np.ones_like(shown.x), shown.x]))[0]
+        bent, left = (each - straight @ (straight.T @ each) for each in (columns, shown.residual))
+        gain, _ = _gain(bent, left)
     if gain > _WORTH:
         begin = dict(zip(amplitudes, map(float, found), strict=True))
         start = model.holding(**{length: TURN}).adding(None, **begin)

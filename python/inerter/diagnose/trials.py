@@ -134,8 +134,11 @@ def of_each_size(starts: Sequence[Model], errors: Sequence[float]) -> list[Model
 
 
 def has_much(known: Known | None) -> TypeGuard[Known]:
-    """Whether what is known is of a model with so much free that it is not worked out at once."""
-    return known is not None and len(known.model.free) >= MANY
+    """Whether what is known is of a model that takes long: much is free, or friction behind a shaft.
+
+    There what a candidate adds is fitted beside it, and not all of it at once.
+    """
+    return known is not None and (len(known.model.free) >= MANY or known.model.rubs_behind)
 
 
 def _asked_for(candidate: Candidate, model: Model) -> bool:
