@@ -415,6 +415,20 @@ def test_a_device_file_tells_what_only_the_record_has(tmp_path: Path) -> None:
     assert set(read_filters(path)) == {"force"}
 
 
+def test_a_device_file_says_which_values_are_not_sure(tmp_path: Path) -> None:
+    made = two_runs()
+    first, *rest = made.findings
+    sure = [replace(each, confidence=0.95) for each in rest]
+    write_outputs(
+        replace(made, findings=[replace(first, confidence=0.46), *sure]), tmp_path / "one"
+    )
+    said = (tmp_path / "one" / "device.toml").read_text()
+    name = next(iter(first.parameters))
+    (line,) = [each for each in said.splitlines() if each.startswith(f"{name} = ")]
+    assert line.endswith("; confidence 0.46)")
+    assert said.count("confidence") == len(first.parameters)
+
+
 def test_why_a_value_that_may_be_none_is_not_sure_is_said_beside_it() -> None:
     made = two_runs()
     first, *rest = made.findings

@@ -185,3 +185,11 @@ def test_a_run_that_is_met_as_well_as_another_contradicts_none() -> None:
     errors = [0.02 * r.force for r in runs]
     errors[2] = np.full(runs[2].force.size, 0.9 * float(np.sqrt(np.mean(errors[1] ** 2))))
     assert explained(runs, errors, "run 2")
+
+
+def test_runs_at_places_apart_have_no_constants() -> None:
+    """A force of the place would be one of the run there; where both go, it is told."""
+    apart = [record(1, centre=-0.1), record(2, centre=0.1, offset=20.0)]
+    assert constants(thinned(apart)) == {}
+    here = constants(thinned([record(1), record(2, offset=20.0)]))
+    assert here["run 2"] - here["run 1"] == pytest.approx(20.0, abs=1.0)

@@ -41,3 +41,25 @@ def test_an_arm_that_swings_is_out_of_balance() -> None:
     device = diagnosis.extended.device
     periods = str(device["force_periods"]).split()
     assert float(periods[0]) == pytest.approx(2 * np.pi)
+
+
+def test_along_one_slow_sine_too() -> None:
+    """As a joint of a robot is swung: its weight is no damping that differs, and no friction."""
+    time = np.arange(0, 40, 1 / 50)
+    turn = 2 * np.pi * 0.1
+    q, v, a = (size * wave(turn * time) for size, wave in (
+        (1.2, np.sin), (1.2 * turn, np.cos), (-1.2 * turn**2, np.sin),
+    ))  # fmt: skip
+    random = np.random.default_rng(4)
+    torque = 2.0 * a + 3.0 * v + 6.0 * np.tanh(v / 1e-3) + 40.0 * np.sin(q - 0.6)
+    swung = Record(
+        name="joint", time=time, motion=ROTATION,
+        displacement=q + random.normal(0, 1e-5, time.size),
+        force=torque + random.normal(0, 0.3, time.size),
+    )  # fmt: skip
+    diagnosis = diagnose_bench([swung])
+    found = {finding.effect: finding for finding in diagnosis.findings}
+    assert set(found) == {"position_force", "coulomb_friction", "viscous_friction"}
+    weight = found["position_force"].parameters
+    assert weight["force_amplitude_1"].value == pytest.approx(40.0, rel=0.03)
+    assert diagnosis.extended.rmse < 0.4

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bench_runs import measured
@@ -80,7 +82,33 @@ def test_the_findings_say_where() -> None:
     told = with_side(found, behind)
     assert told.evidence == "It takes half. It acts behind the elasticity, on the flywheel."
     assert told.remark == "It acts behind the elasticity, on the flywheel."
-    assert with_side(found, bare()) == found
+    assert told.side == told.json()["side"] == "flywheel"
+    assert with_side(found, bare()) == replace(found, side="terminals")
+    offset = replace(found, effect="force_offset")
+    assert with_side(offset, behind) == offset
+    assert "side" not in offset.json()
+
+
+@pytest.mark.parametrize(
+    ("free", "side"),
+    [
+        ({"viscous": 9.0}, "terminals"),
+        ({"flywheel_viscous": 9.0}, "flywheel"),
+        ({"viscous": 9.0, "flywheel_viscous": 9.0}, "both"),
+    ],
+)
+def test_a_damper_says_where(free: dict[str, float], side: str) -> None:
+    found = Finding(
+        effect="viscous_friction", law=None, confidence=1.0, parameters={}, rmse_before=2.0,
+        rmse_after=1.0, evidence="It takes half.", rivals=[],
+    )  # fmt: skip
+    model = bare(series_frequency=10.0, series_loss=0.03, **free)
+    told = with_side(found, model)
+    assert told.side == side
+    assert bool(told.remark) == (side != "terminals")
+    shaft = with_side(replace(found, effect="series_elasticity"), model)
+    assert bool(shaft.remark) == (side != "terminals")
+    assert not shaft.side
 
 
 def test_damping_goes_to_the_other_side_and_back() -> None:

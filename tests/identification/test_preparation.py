@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from inerter.diagnose.cannot_tell import hidden_by_force
 from inerter.identify.runs import BenchRun
 from inerter.records import Record
 from inerter.records.motion import (
@@ -175,3 +176,52 @@ def test_along_one_sine_the_acceleration_chooses_the_cutoff(effects_seed: int) -
     (motion,) = prepare([record]).motions
     acceleration, force = motion.acceleration[motion.inner], motion.force[motion.inner]
     assert np.std(force - 62 * acceleration) < 1.0
+
+
+def test_a_motion_that_fills_what_the_rate_leaves() -> None:
+    """An oscillator driven up to a third of the sample rate: the cut-off goes on up to there."""
+    rate = 600.0
+    time = np.arange(0, 8, 1 / rate)
+    random = np.random.default_rng(3)
+    frequencies = np.linspace(3.0, 0.33 * rate, 60)
+    ratio = frequencies / 60.0
+    sizes = 2e-4 / np.abs(1 - ratio**2 + 0.06j * ratio)
+    angles = 2 * np.pi * frequencies[:, None] * time + random.uniform(0, 6, 60)[:, None]
+    x, v, a = (
+        (size @ wave(angles))
+        for size, wave in (
+            (sizes, np.sin),
+            (2 * np.pi * frequencies * sizes, np.cos),
+            (-((2 * np.pi * frequencies) ** 2) * sizes, np.sin),
+        )
+    )
+    force = 2.0 * a + 40.0 * v + 1e5 * x + random.normal(0, 1.0, time.size)
+    fast = Record(
+        name="fast", time=time, displacement=x + random.normal(0, 1e-7, time.size), force=force
+    )
+    found = prepare([fast])
+    assert found.cutoff > 0.3 * rate
+    assert found.cutoffs.size == found.errors.size
+    inner = found.motions[0].inner
+    missed = found.motions[0].acceleration[inner] - a[inner]
+    assert np.std(missed) < 0.1 * np.std(a)
+    # a slow one is tried up to a fifth of the rate alone
+    noise, whine = random.normal(0, 1.0, (2, time.size))
+    calm = Record(
+        name="calm", time=time, displacement=0.01 * np.sin(5.0 * time) + 2e-6 * noise,
+        force=-12.5 * np.sin(5.0 * time) + whine,
+    )  # fmt: skip
+    assert prepare([calm]).cutoffs[-1] <= 0.2 * rate * 1.001
+
+
+def test_a_force_that_is_switched_is_no_channel_that_clips() -> None:
+    """A cart that is pushed to and fro by the same force each way."""
+    time = np.arange(0, 10, 1 / 200)
+    force = 13.0 * np.sign(np.sin(2 * np.pi * 1.3 * time + 0.1))
+    velocity = np.cumsum(force) / 200 / 6.0
+    x = np.cumsum(velocity - velocity.mean()) / 200
+    pushed = Record(name="cart", time=time, displacement=x, force=force)
+    assert np.isfinite(prepare([pushed]).errors).all()
+    assert hidden_by_force([pushed]) == {"sensor_saturation"}
+    noisy = replace(pushed, force=force + np.random.default_rng(1).normal(0, 0.1, time.size))
+    assert hidden_by_force([noisy]) == set()

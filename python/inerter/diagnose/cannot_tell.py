@@ -15,6 +15,7 @@ from inerter.identify.channel_filter import filters_of
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 from inerter.motion_units import ROTATION
+from inerter.records import Record
 
 # strokes from which on time and place are told apart; share of the largest speed from which on a
 # device moves; share of the travel that is left between two stops; share of a period by which a
@@ -103,6 +104,8 @@ RUN_UP_IN_WORDS = (
 )
 # share of the range of a speed by which it goes back where it only rises
 _BACK = 0.05
+# values that a force has which is switched, at most
+_VALUES = 8
 
 
 def goes_one_way(runs: Iterable[BenchRun]) -> bool:
@@ -133,6 +136,15 @@ def hidden_by(runs: Sequence[BenchRun]) -> frozenset[str]:
     hidden = {*ONE_WAY.effects} - {"coulomb_friction"} if goes_one_way(runs) else set()
     hidden |= {*RUN_UP.effects} - {"viscous_friction"} if runs_up(runs) else set()
     return frozenset(hidden)
+
+
+def hidden_by_force(records: Sequence[Record]) -> frozenset[str]:
+    """Effects that are not looked for: a channel that clips, where the force was commanded.
+
+    A force that has a few values alone was switched between them, and nobody measured it.
+    """
+    commanded = all(np.unique(record.force).size <= _VALUES for record in records)
+    return frozenset({"sensor_saturation"}) if commanded else frozenset()
 
 
 def strokes_of(runs: Iterable[BenchRun]) -> int:

@@ -38,7 +38,7 @@ def others(search: Search, found: Scored, effect: str, model: Model) -> list[Can
         candidate
         for candidate in candidates(model, sizes)
         if (candidate.effect, candidate.law) != (effect, law)
-        and candidate.effect not in (*rest, *blind)
+        and candidate.effect not in (*rest, *blind, *search.never)
         and (law is not None or not candidate.is_rich)
     ]
 

@@ -125,7 +125,7 @@ def other_split(search: Search, data: Data, final: Model, doubt: bool) -> tuple[
     name = data.runs[min(others, key=lambda i: known[i])].name
     again = Search(
         search.runs, split(search.runs, [name]), search.baseline, search.progress,
-        witness=search.witness, one_tone=search.one_tone,
+        witness=search.witness, one_tone=search.one_tone, never=search.never,
     )  # fmt: skip
     effect = again.next_effect(final)
     present = [found for found, _ in effects_of(final, search.baseline)]

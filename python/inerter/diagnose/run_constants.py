@@ -33,6 +33,8 @@ STRETCHES = 12
 BENDS = 9
 # speed below which friction may be anything, per rms; width of sign(v)
 SLOW, WIDTH = 0.1, 0.02
+# share of its samples that every run has where all others go too, at least
+SHARED = 0.2
 # share of its moving samples that a run goes one way, from which on friction is a constant there
 ONE_WAY = 0.95
 # what a run that contradicts the others is missed by more than by itself, per its force, and how
@@ -59,7 +61,7 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     if len(runs) < 2 or any(run.part for run in runs):
         return {}
     runs = on_clocks(runs)
-    if any(_goes_one_way(run) for run in runs):
+    if any(_goes_one_way(run) for run in runs) or not _share_places(runs):
         return {}
     rows = [_rows(run, _bends(runs)) for run in runs]
     count = len(rows)
@@ -170,6 +172,13 @@ def _bends(runs: Sequence[BenchRun]) -> Array:
     """Places (m,) between which a force of the place is taken as straight: a stop is only there."""
     x = [run.displacement[run.inner] for run in runs]
     return np.linspace(min(map(np.min, x)), max(map(np.max, x)), BENDS + 2)[1:-1]
+
+
+def _share_places(runs: Sequence[BenchRun]) -> bool:
+    """Whether all runs go through the same places: elsewhere a force of the place is a constant."""
+    x = [run.displacement[run.inner] for run in runs]
+    low, high = max(map(np.min, x)), min(map(np.max, x))
+    return all(float(np.mean((low <= each) & (each <= high))) > SHARED for each in x)
 
 
 def _goes_one_way(run: BenchRun) -> bool:

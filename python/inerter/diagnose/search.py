@@ -87,8 +87,8 @@ def _silent(text: str) -> None:
 class Search:
     """A search over the fit data of a split.
 
-    Effects `excluded` are not added, those `kept` stay; one that is added takes at least the share
-    `least` of the error away.
+    Effects `excluded`, for good `never`, are not added, those `kept` stay; one that is added takes
+    at least the share `least` of the error away.
     A `witness` is asked whether a tone is of the motion, which may be known to be `one_tone`.
     It `draws` curves along the stroke, or none. When its `time` is over nothing is added.
     """
@@ -99,6 +99,7 @@ class Search:
     progress: Progress = _silent
     found: list[str] = field(default_factory=list)
     excluded: frozenset[str] = frozenset()
+    never: frozenset[str] = frozenset()
     kept: frozenset[str] = frozenset()
     least: float = CRITERIA.gain
     witness: Witness | None = None
@@ -107,7 +108,7 @@ class Search:
     time: TimeLimit = field(default_factory=TimeLimit)
 
     def __post_init__(self) -> None:
-        self.strokes, self.hidden = strokes_of(self.runs), hidden_by(self.runs)
+        self.strokes, self.hidden = strokes_of(self.runs), hidden_by(self.runs) | self.never
         self._divide()
         # what the last step without a result came upon
         self._refused: list[Scored] = []

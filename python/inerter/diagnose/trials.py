@@ -134,7 +134,7 @@ def of_each_size(starts: Sequence[Model], errors: Sequence[float]) -> list[Model
 
 
 def has_much(known: Known | None) -> TypeGuard[Known]:
-    """Whether what is known is of a model that takes long: much is free, or friction behind a shaft.
+    """Whether what is known is of a model that takes long: much is free, or rubs behind a shaft.
 
     There what a candidate adds is fitted beside it, and not all of it at once.
     """

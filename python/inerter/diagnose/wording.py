@@ -31,11 +31,20 @@ from inerter.measured_text import measured
 from inerter.motion_units import Kind, force_word, words
 from inerter.printable import in_digits
 
+# members of a finding that its name lists
+_LISTED = 2
+# standard errors per value from which on the data do not tell it
+_NOT_TOLD = 3.0
+
 
 def quantity(value: ParameterValue) -> str:
-    """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells."""
+    """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells.
+
+    Of a value that is a small part of its error it says that the data do not tell it.
+    """
     unit = "" if value.unit == "1" else f" {value.unit}"
-    return measured(value.value, value.stderr, least=3) + unit
+    told = "" if value.stderr <= _NOT_TOLD * abs(value.value) else " (not told)"
+    return measured(value.value, value.stderr, least=3) + unit + told
 
 
 def value_in_words(name: str, value: ParameterValue) -> str:
@@ -71,6 +80,10 @@ def effect_in_words(finding: Finding) -> str:
         return EFFECTS[finding.effect].plain
     if _is_level_and_more(finding):
         return "Coulomb friction, larger one way or beside a constant force"
+    if len(finding.members) > _LISTED:
+        # which they are is said beside their values
+        first, others = finding.members[0], len(finding.members) - 1
+        return f"{EFFECTS[first].plain} or one of {others} others that do the same here"
     if finding.members:
         between = ", with or without " if _is_filter_at_least(finding) else " or "
         return between.join(EFFECTS[member].plain for member in finding.members)

@@ -44,6 +44,8 @@ WRONG = ("sign_flip", "unit_suspect", "constant_channel")
 # share of its range within which a force is at the end of it: a channel that clips tells nothing
 # of the motion there
 AT_LIMIT = 1e-3
+# share of its samples that a force which is not switched has between these ends
+SWITCHED = 0.2
 # rms displacement of a run that moves, per noise
 MOVES = 10.0
 
@@ -166,7 +168,8 @@ def weighed(
     force = np.concatenate([lowpass(m.force, m.spacing, m.cutoff)[mask] for m, mask in pairs])
     inertance = abs(float(a @ force)) / float(a @ a)
     noise = inertance * np.sqrt(np.mean([white_noise(r.displacement) ** 2 for r in records]))
-    if not noise > 0:
+    if not (noise > 0 and preparation.noise_floor > 0):
+        # a force without noise is one that was commanded
         return preparation
     corner = float(np.sqrt(preparation.noise_floor / noise) / (2 * np.pi))
 
@@ -275,9 +278,13 @@ def _errors(
 
 
 def _inside(force: Array) -> NDArray[np.bool_]:
-    """Where a force is not at the ends of its range (n,)."""
+    """Where a force is not at the ends of its range (n,); everywhere, where it is there mostly.
+
+    Such is no channel that clips, but a force that is switched on and off.
+    """
     margin = AT_LIMIT * np.ptp(force)
-    return (force > force.min() + margin) & (force < force.max() - margin)
+    inside = (force > force.min() + margin) & (force < force.max() - margin)
+    return inside if inside.mean() > SWITCHED else np.ones(force.size, bool)
 
 
 def _force_error(

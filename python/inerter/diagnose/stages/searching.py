@@ -11,6 +11,7 @@ from inerter.diagnose.along_stroke import is_drawn
 from inerter.diagnose.band import best_band, force_band, narrower_band, wider_band
 from inerter.diagnose.bent_damping import is_bent
 from inerter.diagnose.candidates import candidates
+from inerter.diagnose.cannot_tell import hidden_by_force
 from inerter.diagnose.composition import (
     DRIVE,
     effects_of,
@@ -116,6 +117,7 @@ def search_in(start: Prepared, band: Preparation) -> Search:
     return Search(
         runs, parted, start.baseline, start.given.progress, witness=start.data.witness,
         one_tone=start.data.band.scales.one_tone, time=start.given.time,
+        never=hidden_by_force(start.data.records),
     )  # fmt: skip
 
 
@@ -256,6 +258,7 @@ def _with_play(found: Searched, play: Model) -> Searched:
     search = Search(
         learnt.runs, data.full, start.baseline, told, witness=data.witness,
         one_tone=start.data.band.scales.one_tone, time=start.given.time,
+        never=found.search.never,
     )  # fmt: skip
     return replace(found, data=data, search=search, final=search.run(play))
 
