@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import io
 import json
 import os
 import re
@@ -413,6 +414,18 @@ def test_a_device_file_tells_what_only_the_record_has(tmp_path: Path) -> None:
     assert read_device(path).given == usual.extended.device
     assert read_delay(path) == channels["delay"]
     assert set(read_filters(path)) == {"force"}
+
+
+def test_a_value_below_its_error_is_called_undetermined() -> None:
+    made = two_runs()
+    first, *rest = made.findings
+    name, value = next(iter(first.parameters.items()))
+    wide = {**first.parameters, name: replace(value, stderr=4 * abs(value.value))}
+    for told, parameters in ((0, first.parameters), (1, wide)):
+        seen = io.StringIO()
+        shown = replace(made, findings=[replace(first, parameters=parameters), *rest])
+        print_summary(shown, Console(width=400, file=seen))
+        assert seen.getvalue().count("(not determined)") == told
 
 
 def test_a_device_file_says_which_values_are_not_sure(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -142,7 +143,7 @@ def test_damping_behind_a_shaft_is_found(side: str, effects_seed: int) -> None:
     """And not told as a low-pass of the force and a damped shaft."""
     shaft = {"inertance": 40.0, "series_stiffness": 2e5, "series_damping": 60.0}
     between = {"viscous": 120.0} if side == "both" else {}
-    known = {**shaft, **between, "flywheel_viscous": 400.0}
+    known: dict[str, Any] = {**shaft, **between, "flywheel_viscous": 400.0}
     resonant = [
         sum_of_sines([0.004, 5e-4, 1.5e-4], [1.1, 5.3, 11.7], [QUARTER, QUARTER, -QUARTER]),
         sum_of_sines([0.003, 8e-4, 1.2e-4], [1.7, 6.1, 13.1], [-QUARTER, -QUARTER, QUARTER]),

@@ -12,7 +12,7 @@ from inerter import Device
 from inerter.diagnose import diagnose_bench
 from inerter.diagnose.doubt import by_weight
 from inerter.diagnose.result import Diagnosis, Finding, ParameterValue, Rival, StatedValue
-from inerter.diagnose.wording import departure, effect_in_words, evidence, quantity, verdict
+from inerter.diagnose.wording import departure, effect_in_words, evidence, verdict
 from inerter.printable import in_digits
 from inerter.records import Record
 from inerter.reference import ReferenceDevice, sum_of_sines
@@ -191,11 +191,6 @@ def test_what_only_looks_like_a_cause_is_not_said_to_be_lacking(
     name = effect_in_words(second)
     assert f"it also lacks {name}" in verdict(spring_and_damper)
     assert f"it also lacks what looks like {name}" in verdict(described)
-
-
-def test_what_the_data_do_not_tell_says_so() -> None:
-    assert quantity(ParameterValue(10.0, 360.0, "N*s/m")).endswith("(not told)")
-    assert not quantity(ParameterValue(10.0, 25.0, "N*s/m")).endswith("(not told)")
 
 
 def test_a_name_lists_two_members_and_counts_more() -> None:

@@ -33,18 +33,12 @@ from inerter.printable import in_digits
 
 # members of a finding that its name lists
 _LISTED = 2
-# standard errors per value from which on the data do not tell it
-_NOT_TOLD = 3.0
 
 
 def quantity(value: ParameterValue) -> str:
-    """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells.
-
-    Of a value that is a small part of its error it says that the data do not tell it.
-    """
+    """Such as "113.0 ± 0.2 kg": three digits at least, and as many as the standard error tells."""
     unit = "" if value.unit == "1" else f" {value.unit}"
-    told = "" if value.stderr <= _NOT_TOLD * abs(value.value) else " (not told)"
-    return measured(value.value, value.stderr, least=3) + unit + told
+    return measured(value.value, value.stderr, least=3) + unit
 
 
 def value_in_words(name: str, value: ParameterValue) -> str:

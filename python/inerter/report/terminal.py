@@ -65,7 +65,10 @@ def _findings(diagnosis: Diagnosis) -> Table:
         curves, others = curves_in_words(finding.parameters)
         values = "\n".join(
             [
-                *(f"{n} {text.with_error(v)}{_departure(v)}" for n, v in others.items()),
+                *(
+                    f"{n} {text.with_error(v)}{_departure(v)}{_unknown(v)}"
+                    for n, v in others.items()
+                ),
                 *curves.values(),
             ]
         )
@@ -80,6 +83,11 @@ def _findings(diagnosis: Diagnosis) -> Table:
             text.confidence(finding.confidence),
         )
     return table
+
+
+def _unknown(value: ParameterValue) -> str:
+    """That a value is smaller than its error, in brackets; empty where it is not."""
+    return " (not determined)" if value.stderr > abs(value.value) else ""
 
 
 def _departure(value: ParameterValue) -> str:
