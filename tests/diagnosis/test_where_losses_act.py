@@ -138,7 +138,7 @@ def test_damping_goes_to_the_other_side_and_back() -> None:
     assert rigid.values["viscous"] == 70.0
 
 
-@pytest.mark.parametrize("side", ["flywheel", "both"])
+@pytest.mark.parametrize("side", ["flywheel", pytest.param("both", marks=pytest.mark.long)])
 def test_damping_behind_a_shaft_is_found(side: str, effects_seed: int) -> None:
     """And not told as a low-pass of the force and a damped shaft."""
     shaft = {"inertance": 40.0, "series_stiffness": 2e5, "series_damping": 60.0}

@@ -104,3 +104,16 @@ def test_it_stops_when_told_and_when_all_is_spent() -> None:
     assert search(MOST, watch) == (told[-1], False)
     assert len(told) == 3
     assert search(7) == (7, False)
+
+
+def test_a_variable_at_its_bound_does_not_hold_the_others_back() -> None:
+    """As an inertance of nothing beside a constant force: a few evaluations are enough."""
+    time = np.linspace(0.0, 1.0, 50)
+    columns = np.column_stack([np.sin(9 * time), np.ones_like(time)])
+    truth = columns @ np.array([-0.01, 200.0])
+    bounds = (np.array([0.0, -np.inf]), np.array([np.inf, np.inf]))
+    found = trust_region(
+        lambda p: columns @ p - truth, lambda p: columns, np.array([1e-9, 0.0]), bounds,
+        Tolerances(1e-7, 1e-9, 1e-10), 12,
+    )  # fmt: skip
+    assert found.variables[1] == pytest.approx(200.0, rel=1e-3)

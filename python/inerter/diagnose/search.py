@@ -19,6 +19,7 @@ from inerter.diagnose.advantage import advantage_of
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.cannot_tell import hidden_by, is_hidden, strokes_of
+from inerter.diagnose.clipping import hides_nearly_all
 from inerter.diagnose.composition import (
     effects_of,
     is_blur,
@@ -308,6 +309,7 @@ class Search:
             for s in scored
             if is_distinct(s.effect, s.fit, self.baseline)
             and not self._is_shaft_alone(s)
+            and not hides_nearly_all(s.model, self.runs)
             and self.is_felt(s.model)
             and self.may_be(s.model)
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))

@@ -69,9 +69,9 @@ def trust_region(
         gradient = columns.T @ here
         room, slope = _room(point, gradient, bounds)
         if radius < 0:
-            # as wide as the start is far from 0; one beside a bound at 0 tells nothing
-            far = float(np.linalg.norm(point / np.sqrt(room)))
-            radius = far if far > _NOT_FAR else 1.0
+            # as wide as the start is far from 0; what is beside a bound at 0 tells nothing
+            away = np.where(np.abs(point) > _NOT_FAR, point, 0.0)
+            radius = float(np.linalg.norm(away / np.sqrt(room))) or 1.0
         steepest = float(np.max(np.abs(gradient * room), initial=0.0))
         ended = ended or steepest < tolerances.gradient
         if ended or done >= evaluations:
