@@ -193,6 +193,21 @@ def test_what_only_looks_like_a_cause_is_not_said_to_be_lacking(
     assert f"it also lacks what looks like {name}" in verdict(described)
 
 
+@pytest.mark.parametrize(
+    ("share", "text"),
+    [
+        (0.331, "(33.1 % of its variation)"),
+        (1.084, "(all of its variation)"),
+        (18.37, "(18 times its variation)"),
+    ],
+)
+def test_an_error_above_the_variation_is_no_per_cent(
+    spring_and_damper: Diagnosis, share: float, text: str
+) -> None:
+    made = spring_and_damper
+    assert text in verdict(replace(made, baseline=replace(made.baseline, nrmse=share)))
+
+
 def test_a_name_lists_two_members_and_counts_more() -> None:
     finding = Finding(
         effect="variable_inertance", law="polynomial", confidence=0.3, parameters={},

@@ -338,6 +338,13 @@ def is_doubtful(finding: Finding) -> bool:
     return finding.confidence < (0.25 if finding.members else 0.5)
 
 
+def _share(error: float) -> str:
+    """An error per standard deviation of the force in words: no per cent where it is more."""
+    if error < 1.0:
+        return f"{100 * error:.1f} % of its variation"
+    return "all of its variation" if error < 1.5 else f"{error:.2g} times its variation"
+
+
 def _verdict(diagnosis: Diagnosis) -> str:
     before, after = diagnosis.baseline, diagnosis.extended
     force, newton = force_word(diagnosis.motion), words(diagnosis.motion, "N")
@@ -351,20 +358,20 @@ def _verdict(diagnosis: Diagnosis) -> str:
         hint = " Mind the warnings: " + "; ".join(warnings) + "." if warnings else ""
         return (
             f"The simulation misses the {force} by {before.rmse:.3g} {newton} rms "
-            f"({100 * before.nrmse:.0f} % of its variation) on held-out data, and no effect tried "
+            f"({_share(before.nrmse)}) on held-out data, and no effect tried "
             f"explains that. {diagnosis.unexplained.summary}{hint}"
         )
     if not diagnosis.findings:
         return (
             f"The simulation is right as far as these data can tell: it misses the {force} by "
-            f"{before.rmse:.3g} {newton} rms ({100 * before.nrmse:.1f} % of its variation) on "
+            f"{before.rmse:.3g} {newton} rms ({_share(before.nrmse)}) on "
             f"held-out data, and no effect tried improves that. {diagnosis.unexplained.summary}"
         )
     first, *rest = by_weight(diagnosis.findings)
     others = [how_surely(each) + effect_in_words(each) for each in rest]
     text = (
         f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
-        f"({100 * before.nrmse:.1f} % of its variation) on held-out data. The main cause "
+        f"({_share(before.nrmse)}) on held-out data. The main cause "
         f"{_seems(first)} {effect_in_words(first)}"
     )
     if others:
