@@ -184,5 +184,6 @@ def test_a_stated_law_is_contradicted_as_a_whole() -> None:
     assert default.bristle_stiffness > 9e4
     diagnosis = diagnose_table([points], default)
     assert [(f.effect, f.law) for f in diagnosis.findings] == [("hysteretic_friction", "dahl")]
+    assert diagnosis.findings[0].json()["side"] == "terminals"
     assert diagnosis.parameters["bristle_stiffness"].value == pytest.approx(9e3, rel=0.05)
     assert diagnosis.parameters["coulomb_force"].value == pytest.approx(12.0, rel=0.05)

@@ -136,6 +136,8 @@ def test_damping_goes_to_the_other_side_and_back() -> None:
     rigid = behind.adding(viscous=20.0).without(("series_frequency", "series_loss"))
     assert rigid.free == ("inertance", "viscous")
     assert rigid.values["viscous"] == 70.0
+    bearing = behind.adding(viscous=20.0).without(("series_frequency", "series_loss", "viscous"))
+    assert bearing.values["viscous"] == 50.0
 
 
 @pytest.mark.parametrize("side", ["flywheel", pytest.param("both", marks=pytest.mark.long)])

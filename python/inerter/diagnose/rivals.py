@@ -9,6 +9,7 @@ import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.clipping import hides_nearly_all
 from inerter.diagnose.composition import effects_of, is_distinct, stripped
 from inerter.diagnose.decision import CRITERIA, does_as_well, plainest
 from inerter.diagnose.instead import fitted_instead, others
@@ -63,6 +64,7 @@ def _standing(search: Search, final: Scored, effect: str) -> Standing:
         for candidate, fit in fitted
         if fit.rmse(masks) < CRITERIA.beaten * error
         and is_distinct(candidate.effect, fit, baseline)
+        and not hides_nearly_all(fit.model, search.runs)
         and not search.is_blur(fit, without.fit, known)
     ]
     # a rival with more parameters has to win by more than such a one can by chance

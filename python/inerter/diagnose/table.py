@@ -36,6 +36,7 @@ from inerter.diagnose.result import (
 from inerter.diagnose.stated import stated_candidates
 from inerter.diagnose.statistics import win_shares
 from inerter.diagnose.values import parameter_values
+from inerter.diagnose.where_losses_act import with_side
 from inerter.estimation.least_squares import Tolerances, minimise
 from inerter.estimation.variables import Variables
 from inerter.identify.fit import Fit
@@ -359,7 +360,8 @@ def _findings(found: Searched, values: dict[str, ParameterValue]) -> list[Findin
             rmse_before=rmse(before), rmse_after=rmse(step.fit.model), evidence="",
             rivals=step.rivals, motion=found.prepared.table.motion,
         )  # fmt: skip
-        findings.append(replace(finding, evidence=wording.evidence(finding)))
+        told = replace(finding, evidence=wording.evidence(finding))
+        findings.append(with_side(told, step.fit.model))
     return sorted(findings, key=lambda finding: -finding.gain)
 
 

@@ -196,25 +196,20 @@ class Model:
         Where nothing gives any more, a mass before what gave is inertance, and damping of the
         flywheel is between the terminals.
         """
-        law, before = friction or self.friction, self
-        if _SERIES.isdisjoint(self.values.keys() - set(names)):
+        law, rigid = friction or self.friction, _SERIES.isdisjoint(self.values.keys() - set(names))
+        if rigid:
             names = (*names, "grip_mass")
-            if BEHIND in self.free and BEHIND not in names:
-                before = self._renamed(BEHIND, "viscous")
-        free = tuple(name for name in before.free if name not in names)
-        values = {name: value for name, value in before.values.items() if name not in names}
-        return Model(law, values, _useful(free, law), self.texts)
+        free = tuple(name for name in self.free if name not in names)
+        values = {name: value for name, value in self.values.items() if name not in names}
+        left = Model(law, values, _useful(free, law), self.texts)
+        return left.damped_at("viscous") if rigid and BEHIND in left.free else left
 
-    def damped_at(self, name: str) -> Model:
-        """The model with what one free coordinate damps at another place, `name`, alone or also."""
-        other = next(each for each in (BEHIND, "viscous") if each != name)
-        return self._renamed(other, name)
-
-    def _renamed(self, old: str, new: str) -> Model:
-        """The model whose coordinate has another name, or is added to that of this name."""
-        more = {new: self.values[old] + self.values.get(new, 0.0)}
-        values = {name: value for name, value in self.values.items() if name != old} | more
-        free = tuple(dict.fromkeys(new if name == old else name for name in self.free))
+    def damped_at(self, place: str) -> Model:
+        """The model with all viscous damping at one place: "viscous" (terminals), or `BEHIND`."""
+        other = BEHIND if place == "viscous" else "viscous"
+        more = {place: self.values[other] + self.values.get(place, 0.0)}
+        values = {name: value for name, value in self.values.items() if name != other} | more
+        free = tuple(dict.fromkeys(place if name == other else name for name in self.free))
         return replace(self, values=values, free=free)
 
 

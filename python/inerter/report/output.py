@@ -12,11 +12,8 @@ from inerter.diagnose.result import Diagnosis
 from inerter.diagnose.vehicle.outcome import SystemDiagnosis
 from inerter.folder import file_names, write_files
 from inerter.motion_units import unit
-from inerter.report.page import render_report
+from inerter.report.page import SURE, render_report
 from inerter.rig import device_mjcf
-
-# confidence from which on a file of the device says no more of a value
-_SURE = 0.9
 
 
 def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
@@ -36,7 +33,7 @@ def write_outputs(diagnosis: Diagnosis, folder: Path) -> None:
         name: f"; confidence {finding.confidence:.2g}"
         for finding in diagnosis.findings
         for name in finding.parameters
-        if finding.confidence < _SURE
+        if finding.confidence < SURE
     }
     comments = {
         name: f"{value.unit} (standard error {value.stderr:.2g}{doubt.get(name, '')})"
