@@ -117,3 +117,16 @@ def test_a_variable_at_its_bound_does_not_hold_the_others_back() -> None:
         Tolerances(1e-7, 1e-9, 1e-10), 12,
     )  # fmt: skip
     assert found.variables[1] == pytest.approx(200.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("apart", [1.0, 1e-3, 1e-6])
+@pytest.mark.parametrize("size", [1.0, 1e6])
+def test_columns_that_are_nearly_alike_are_told_apart(apart: float, size: float) -> None:
+    columns = np.column_stack([TIME, size * (TIME + apart * TIME**2), 0.0 * TIME])
+    truth = columns @ np.array([1.0, 2.0 / size, 0.0])
+    free = np.full(3, np.inf)
+    found = trust_region(
+        lambda p: columns @ p - truth, lambda p: columns, np.array([3.0, 1.0 / size, 0.5]),
+        (-free, free), Tolerances(1e-14, 1e-14, 1e-14), 60,
+    )  # fmt: skip
+    np.testing.assert_allclose(found.variables, [1.0, 2.0 / size, 0.5], rtol=1e-6)

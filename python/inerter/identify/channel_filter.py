@@ -25,6 +25,8 @@ from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 from scipy.signal import bessel, butter
 
+from inerter.identify.kept import Kept
+
 Array = NDArray[np.float64]
 
 CHANNELS = ("force", "displacement")
@@ -70,8 +72,13 @@ class Filter:
 
     def response(self, frequency: NDArray[np.floating]) -> NDArray[np.complex128]:
         """H at frequencies [Hz]."""
-        d = np.array(denominator(self.kind, self.order))
-        return d[-1] / np.polyval(d, 1j * frequency / self.cutoff)
+        d = denominator(self.kind, self.order)
+        angle = frequency / self.cutoff
+        square = -(angle**2)
+        # even and odd powers of i angle
+        even, odd = np.polyval(d[-1::-2][::-1], square), np.polyval(d[-2::-2][::-1], square)
+        odd = odd * angle
+        return (d[-1] / (even**2 + odd**2)) * (even - 1j * odd)
 
 
 @functools.cache
@@ -167,6 +174,16 @@ def stated_filters(given: Iterable[str]) -> dict[str, Filter]:
     return found
 
 
+# responses [bytes] that are kept in a process: a fit asks for that of one filter for many forces
+_RESPONSES: Kept[np.complex128] = Kept(2**23)
+
+
+def _response(by: Filter, half: int, spacing: float, inverse: bool) -> NDArray[np.complex128]:
+    """Of a filter, or of what takes it back, at the frequencies of 2 `half` samples."""
+    response = by.response(rfftfreq(2 * half, spacing))
+    return _inverted(response) if inverse else response
+
+
 def filtered(values: Array, spacing: float, by: Filter, inverse: bool = False) -> Array:
     """Channels (..., n) through a filter, or before it; samples `spacing` apart [s].
 
@@ -174,10 +191,9 @@ def filtered(values: Array, spacing: float, by: Filter, inverse: bool = False) -
     """
     n = values.shape[-1]
     half = int(next_fast_len(n - 1, real=True) or n - 1)
-    response = by.response(rfftfreq(2 * half, spacing))
-    lateness = by.lateness
-    if inverse:
-        response, lateness = _inverted(response), -lateness
+    key = by, half, spacing, inverse
+    response = _RESPONSES.found(key, lambda: _response(by, half, spacing, inverse))
+    lateness = -by.lateness if inverse else by.lateness
     # the line through both ends passes as it is, only later
     first, last = values[..., :1], values[..., -1:]
     slope = (last - first) / (n - 1)

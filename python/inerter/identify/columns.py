@@ -88,7 +88,7 @@ class Columns:
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self._kept = Kept(_MOST)
+        self._kept: Kept[np.float64] = Kept(_MOST)
         self._bases: dict[Hashable, Basis] = {}
         self._last_bent: tuple[float, list[tuple[Array, Array]]] = (0.0, [])
 

@@ -11,12 +11,12 @@ hangs together, friction at the flywheel or raised by a load, a channel that cli
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.channel import LINEAR, clips, through_channel
+from inerter.identify.channel import clips
 from inerter.identify.kept import Kept
 from inerter.identify.model import Model, Part
 from inerter.identify.runs import BenchRun
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 State = float | Array
 
 # forces of runs [bytes] that are kept in a process: those of some points of a fit
-_KEPT = Kept(2**24)
+_KEPT: Kept[np.float64] = Kept(2**24)
 # friction beyond this [N] is that of a state that has run away
 RUNAWAY = 1e30
 
@@ -51,40 +51,31 @@ def smooth_force(model: Model, run: BenchRun, state: State) -> Array:
 def sharp_force(model: Model, run: BenchRun, state: State, drift: float) -> Array:
     """Force of the other parts in a run's band [N], shape (n,), not finite if it has run away.
 
-    Where something beside friction is abrupt it is that which the channel shows. `drift` [1/s] is
-    that of the friction level.
+    `drift` [1/s] is that of the friction level.
     """
-    channel = {name: model.values[name] for name in LINEAR if name in model.values}
-    if not model.has_jumps:
-        channel = {}
     total = np.zeros(run.force.size)
     if model.friction != "none":
         law, bent = model.friction_part, states_of(model.friction_part, model, state)
-        key = ("friction", law.stated, _key(bent))
 
         def friction() -> Array:
             return run.force_at_measured_rate(law.device, bent, "friction")
 
-        total = total + _shown(run, key, channel, friction)
-        if drift and model.has_jumps:
-            total = total + drift * _shown(
-                run, ("drifting", *key), channel, lambda: run.fine_elapsed * friction()
-            )
-        elif drift:
+        total = total + _in_band(run, ("friction", law.stated, _key(bent)), friction)
+        if drift:
             total = total + drift * run.elapsed * total
     if model.has_jumps:
-        total = total + _abrupt(model, run, state, channel)
+        total = total + _abrupt(model, run, state)
     return total
 
 
-def _abrupt(model: Model, run: BenchRun, state: State, channel: Mapping[str, float]) -> Array:
+def _abrupt(model: Model, run: BenchRun, state: State) -> Array:
     alone = model.abrupt_part
     if alone is not None:
 
         def force() -> Array:
             return run.force_at_measured_rate(alone.device, 0.0, "total")
 
-        return _shown(run, ("abrupt", alone.stated), channel, force)
+        return _in_band(run, ("abrupt", alone.stated), force)
     # what changes along the stroke multiplies the rest; a play throws the flywheel about
     rest, part = model.frictionless_part, model.smooth_part
     before, smooth = (states_of(each, model, state) for each in (rest, part))
@@ -93,24 +84,19 @@ def _abrupt(model: Model, run: BenchRun, state: State, channel: Mapping[str, flo
         whole = run.force_at_measured_rate(rest.device, before, "total")
         return whole - run.force_at_measured_rate(part.device, smooth, "total")
 
-    return _shown(run, ("difference", rest.stated, _key(before)), channel, difference)
+    return _in_band(run, ("difference", rest.stated, _key(before)), difference)
 
 
-def _shown(
-    run: BenchRun,
-    key: tuple[Hashable, ...],
-    channel: Mapping[str, float],
-    fine: Callable[[], Array],
-) -> Array:
-    """A force at the measured rate as the channel shows it in the run's band, shape (n,)."""
+def _in_band(run: BenchRun, key: tuple[Hashable, ...], fine: Callable[[], Array]) -> Array:
+    """A force at the measured rate in the run's band, shape (n,)."""
 
     def shown() -> Array:
-        force = _found(run, key, fine) if channel else fine()
+        force = fine()
         if not abs(force[-1]) < RUNAWAY:
             return np.full(run.force.size, np.inf)
-        return run.in_band(through_channel(channel, force, run.fine_elapsed, run.fine_spacing))
+        return run.in_band(force)
 
-    return _found(run, ("shown", *key, *channel.items()), shown)
+    return _found(run, key, shown)
 
 
 def states_of(part: Part, model: Model, state: State) -> State:

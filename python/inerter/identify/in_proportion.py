@@ -8,7 +8,7 @@ that has the run.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,7 @@ from inerter.identify.runs import BenchRun, forces_along
 Array = NDArray[np.float64]
 
 # arrays [bytes] that are kept of all runs in a process: of use to every problem that has the run
-_OF_RUNS = Kept(2**26)
+_OF_RUNS: Kept[np.float64] = Kept(2**26)
 
 # samples that are worked on at once, of all coordinates together
 _AT_ONCE = 2**20
@@ -109,21 +109,15 @@ def shown_by(rows: Rows, run: BenchRun) -> Array:
     channel = {each: values[each] for each in LINEAR if each in values}
     plain = column_keys(rows)
 
-    def forces(of: Callable[[str, Model, BenchRun], Array], which: Sequence[int]) -> Array:
-        keys = [(run.identity, of, *plain[i]) for i in which]
-        return _OF_RUNS.all_found(keys, lambda new: [of(*rows[which[k]], run) for k in new])
-
     def shown(missing: list[int]) -> list[Array]:
-        sharp = [i for i in missing if _bends(rows[i][0], run)]
-        smooth = [i for i in missing if i not in sharp]
-        found: dict[int, Array] = {}
-        for some in _few(sharp, run.fine_elapsed.size):
-            found |= zip(some, through(channel, forces(_force_of, some), run), strict=True)
-        for some in _few(smooth, run.force.size):
-            columns = forces(_column_of, some)
-            columns = through_channel(channel, columns, run.elapsed, run.spacing)
-            found |= zip(some, columns, strict=True)
-        return [found[i] for i in missing]
+        found: list[Array] = []
+        for some in _few(missing, run.force.size):
+            columns = _OF_RUNS.all_found(
+                [(run.identity, _in_band_of, *plain[i]) for i in some],
+                lambda new, some=some: [_in_band_of(*rows[some[k]], run) for k in new],
+            )
+            found += list(through_channel(channel, columns, run.elapsed, run.spacing))
+        return found
 
     return _OF_RUNS.all_found([(run.identity, *key) for key in column_keys(rows, LINEAR)], shown)
 
@@ -173,6 +167,13 @@ def _bends(name: str, run: BenchRun) -> bool:
     return bool((curve_of(name) or name in BENDS) and np.isfinite(run.cutoff))
 
 
+def _in_band_of(name: str, model: Model, run: BenchRun) -> Array:
+    """What one of a coordinate adds to a device's force in a run's band, shape (n,)."""
+    if _bends(name, run):
+        return run.in_band(_force_of(name, model, run))
+    return _column_of(name, model, run)
+
+
 def _force_of(name: str, model: Model, run: BenchRun) -> Array:
     """What one of a coordinate adds to a device's force at the measured rate, (m,)."""
     column = COORDINATES[name].column
@@ -186,8 +187,8 @@ def _force_of(name: str, model: Model, run: BenchRun) -> Array:
 
 def through(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:
     """Forces that bend sharply, (..., m), as the channel shows them in a run's band, (..., n)."""
-    passed = _passed(channel, force, run)
-    return passed if np.isinf(run.cutoff) else run.in_band(passed)
+    shown = force if np.isinf(run.cutoff) else run.in_band(force)
+    return through_channel(channel, shown, run.elapsed, run.spacing)
 
 
 def _passed(channel: Mapping[str, float], force: Array, run: BenchRun) -> Array:

@@ -158,10 +158,8 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
             # hysteresis that hardens without end
             return np.full(run.force.size, np.inf)
         beside = felt_beside(device, values, motion, run.elapsed)
-        smooth = smooth_force(model, run, state) + beside
-        if not model.has_jumps:
-            return through_channel(values, smooth + sharp, run.elapsed, run.spacing)
-        return through_channel(values, smooth, run.elapsed, run.spacing) + sharp
+        total = smooth_force(model, run, state) + beside + sharp
+        return through_channel(values, total, run.elapsed, run.spacing)
 
     rest, part = states_of(model.smooth_part, model, state), model.smooth_part.device
     smooth = forces_along(part, run.spacing, run.followed, rest, run.force.size)["total"]
@@ -173,23 +171,23 @@ def force_along(model: Model, run: BenchRun, pressed: float = 0.0) -> Array:
     law = found["friction"]
     if drift and device.has_load_friction:
         law = run.at_measured_rate(_without_load(device), state)["friction"]
-    if not model.has_jumps:
-        total = smooth + run.in_band(found["friction"])
+    if not clips(values):
+        # such a channel is linear: what it does to the sum may wait until that is in the band
+        rough = found["friction"]
+        if model.has_jumps:
+            rough = found["total"] - run.at_measured_rate(part, rest)["total"]
+        total = smooth + run.in_band(rough)
         if drift:
             total = total + drift * run.elapsed * run.in_band(law)
         return through_channel(values, total, run.elapsed, run.spacing)
     times, spacing = run.fine_elapsed, run.fine_spacing
     total = found["total"] + drift * times * law if drift else found["total"]
     plain, less = without_limits(values), run.at_measured_rate(part, rest)["total"]
-    if clips(values):
-        if run.measured is not None:
-            beside = felt_beside(device, values, run.measured, times)
-            total, less = total + beside, less + beside
-        added = through_channel(values, total, times, spacing)
-        added = added - through_channel(plain, less, times, spacing)
-    else:
-        # such a channel is linear, and what goes with time alone is in both
-        added = through_channel({**plain, "force_drift": 0.0}, total - less, times, spacing)
+    if run.measured is not None:
+        beside = felt_beside(device, values, run.measured, times)
+        total, less = total + beside, less + beside
+    added = through_channel(values, total, times, spacing)
+    added = added - through_channel(plain, less, times, spacing)
     return through_channel(plain, smooth, run.elapsed, run.spacing) + run.in_band(added)
 
 
