@@ -45,6 +45,8 @@ _CURVES = (7, 17, NODES)
 # lines that are tried, and how far from a better one
 _TRIED = 2
 _APART = 1.0
+# samples that half of a motion goes through a period in, at least
+_STEPPED = 2.0
 # share of the rms speed within which a direction is not sure
 _BLUR = 0.02
 # share of the square of a residual from which on a fit is worth while
@@ -68,7 +70,7 @@ def candidates(problem: Problem, fit: Fit, curves: bool = True) -> Iterator[Cand
     for quantity in QUANTITIES:
         effect = _effect(quantity, fit.model, v, a, _BLUR * problem.scales.velocity)
         if effect is not None:
-            shown = _Shown(x, v > 0, residual, effect, ends, fewest, least, finest)
+            shown = _Shown(x, a, v > 0, residual, effect, ends, fewest, least, finest)
             yield from _periodic(quantity, fit.model, shown, problem.scales)
             if quantity.name == "force" and problem.runs[0].motion == ROTATION:
                 yield from _weight(quantity, fit.model, shown, one_tone)
@@ -82,11 +84,20 @@ def is_drawn(model: Model) -> bool:
     return not set(model.free).isdisjoint(nodes)
 
 
-def repeats(model: Model, sizes: Scales) -> bool:
-    """Whether every period that is fitted lies within the travel; a longer one is a curve."""
-    travel = sizes.travel[1] - sizes.travel[0]
-    lengths = {each.period(i)[0] for each in QUANTITIES for i in range(1, PERIODS + 1)}
-    return all(model.values[name] <= travel for name in lengths.intersection(model.free))
+def repeats(model: Model, problem: Problem) -> bool:
+    """Whether every period that is fitted lies within the travel; a longer one is a curve.
+
+    Nor is one that samples step over: it stands for another one, or for none.
+    """
+    travel = problem.scales.travel[1] - problem.scales.travel[0]
+    names = {each.period(i)[0] for each in QUANTITIES for i in range(1, PERIODS + 1)}
+    lengths = [model.values[name] for name in names.intersection(model.free)]
+    if not lengths:
+        return True
+    pairs = zip(problem.runs, problem.masks, strict=True)
+    paths = [np.abs(run.velocity[mask]) * run.sample_spacing for run, mask in pairs]
+    least = _STEPPED * float(np.median(np.concatenate(paths)))
+    return least <= min(lengths) and max(lengths) <= travel
 
 
 def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -> Effect | None:
@@ -112,6 +123,7 @@ class _Shown:
     """
 
     x: Array
+    a: Array
     forward: NDArray[np.bool_]
     residual: Array
     effect: Effect
@@ -161,12 +173,20 @@ def _weight(quantity: Quantity, model: Model, shown: _Shown, one_tone: bool) -> 
     length, *amplitudes = names
     columns = np.column_stack([np.cos(shown.x), np.sin(shown.x)])
     gain, found = _gain(columns, shown.residual)
+    begin = dict[str, float]()
     if one_tone:
         straight = np.linalg.qr(np.column_stack([np.ones_like(shown.x), shown.x]))[0]
         bent, left = (each - straight @ (straight.T @ each) for each in (columns, shown.residual))
         gain, _ = _gain(bent, left)
+    elif "inertance" in model.free:
+        # a weight that swings freely takes what its inertance adds: neither helps alone
+        alone, _ = _gain(shown.a[:, None], shown.residual)
+        both, together = _gain(np.column_stack([columns, shown.a]), shown.residual)
+        inertance = model.values["inertance"] + float(together[2])
+        if inertance > 0 and both - alone > gain:
+            gain, found, begin = both - alone, together[:2], {"inertance": inertance}
     if gain > _WORTH:
-        begin = dict(zip(amplitudes, map(float, found), strict=True))
+        begin |= dict(zip(amplitudes, map(float, found), strict=True))
         start = model.holding(**{length: TURN}).adding(None, **begin)
         yield Candidate(quantity.effect, "period", (start,))
 

@@ -72,6 +72,15 @@ FEW_IN_WORDS = (
     "drift of damping, friction or force was looked for: several strokes there and back would "
     "tell. "
 )
+SWEEP = CannotTell(
+    FEW.effects,
+    "damping and friction that change with the frequency",
+    "the same sweep in the other direction, or one frequency for as long",
+)
+SWEEP_IN_WORDS = (
+    "The frequency goes one way with the time. What changes with the time changes with the "
+    "frequency along such a sweep: one in the other direction would tell. "
+)
 
 
 ONE_WAY = CannotTell(
@@ -102,6 +111,9 @@ RUN_UP_IN_WORDS = (
     "speed then, and was not looked for; damping, friction and inertance may be shared out "
     "otherwise: a speed that rises and falls, quickly and slowly, would tell. "
 )
+# strokes of a sweep at least, how surely their lengths go one way (rank correlation), and by what
+# factor
+_OF_A_SWEEP, _ORDERED, _WIDE = 8, 0.95, 1.5
 # share of the range of a speed by which it goes back where it only rises
 _BACK = 0.05
 # values that a force has which is switched, at most
@@ -126,6 +138,29 @@ def runs_up(runs: Sequence[BenchRun]) -> bool:
     speeds = [np.abs(run.velocity[run.inner]) for run in runs if run.inner.any()]
     monotone = all(only_rises(speed) or only_rises(-speed) for speed in speeds)
     return bool(speeds) and monotone and goes_one_way(runs)
+
+
+def sweeps(runs: Sequence[BenchRun]) -> bool:
+    """Whether the strokes of every run grow ever shorter, or in every run ever longer."""
+    ways = [_way_of_strokes(run) for run in runs]
+    return bool(ways) and ways[0] != 0 and all(way == ways[0] for way in ways)
+
+
+def _way_of_strokes(run: BenchRun) -> int:
+    """1 where the strokes of a run grow longer with the time, -1 shorter, 0 neither."""
+    v = run.velocity[run.inner]
+    moving = np.flatnonzero(np.abs(v) > _MOVING * np.max(np.abs(v), initial=0.0))
+    turns = moving[1:][np.diff(np.sign(v[moving])) != 0]
+    lengths = np.diff(turns)
+    if lengths.size < _OF_A_SWEEP:
+        return 0
+    count = lengths.size // 4
+    first, last = float(np.median(lengths[:count])), float(np.median(lengths[-count:]))
+    if max(first, last) < _WIDE * min(first, last):
+        return 0
+    ranks = np.argsort(np.argsort(lengths, kind="stable"))
+    order = float(np.corrcoef(np.arange(lengths.size), ranks)[0, 1])
+    return int(np.sign(order)) if abs(order) > _ORDERED else 0
 
 
 def hidden_by(runs: Sequence[BenchRun]) -> frozenset[str]:

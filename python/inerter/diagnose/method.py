@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.diagnose.cannot_tell import goes_one_way, runs_up
+from inerter.diagnose.cannot_tell import goes_one_way, runs_up, sweeps
 from inerter.diagnose.stages import Confirmed
 
 
@@ -22,6 +22,7 @@ def method_of(stands: Confirmed) -> dict[str, Any]:
         "strokes": stands.searched.search.strokes,
         "one_way": goes_one_way(stands.searched.search.runs),
         "runs_up": runs_up(stands.searched.search.runs),
+        "sweeps": sweeps(stands.searched.search.runs),
         "split": data.split.description,
         "held_out_samples": sum(int(mask.sum()) for mask in data.raw.masks),
         "clock_rate": (given.clock.value, given.clock.stderr) if given.clock else None,

@@ -45,9 +45,18 @@ def steps_of(data: Data, judge: Judge, model: Model) -> Steps:
     return found
 
 
-def steps_in_words(found: Mapping[str, Mapping[str, float]], motion: Kind = TRANSLATION) -> str:
-    """A sentence about steps that are a good part of the noise; empty where there are none."""
-    told = {name: each for name, each in found.items() if each["share"] >= TOLD}
+def steps_in_words(
+    found: Mapping[str, Mapping[str, float]], motion: Kind = TRANSLATION, left: float = 0.0
+) -> str:
+    """A sentence about steps that are a good part of the noise, and of what is `left` [N].
+
+    Empty where there are none.
+    """
+    told = {
+        name: each
+        for name, each in found.items()
+        if each["share"] >= TOLD and each["noise"] ** 2 >= TOLD * left**2
+    }
     if not told:
         return ""
     unit = {"force": words(motion, "N"), "displacement": words(motion, "m")}

@@ -15,6 +15,7 @@ from inerter.diagnose.cannot_tell import (
     ONE_SINE,
     ONE_WAY,
     RUN_UP,
+    SWEEP,
     CannotTell,
     of_a_tone,
 )
@@ -313,6 +314,7 @@ class Diagnosis:
         way = (ONE_WAY,) if self.method.get("one_way") else ()
         way += (RUN_UP,) if self.method.get("runs_up") else ()
         few = (FEW,) if self.method.get("strokes", FEW_STROKES) < FEW_STROKES else ()
+        few += (SWEEP,) if self.method.get("sweeps") else ()
         tone = self.unexplained.tone_above
         return (*sine, *way, *few, *(() if tone is None else (of_a_tone(tone),)))
 

@@ -316,7 +316,7 @@ def diagnosis_of(
                 scales_in_words(given.scales, motion),
                 own.in_words(motion),
                 about_split,
-                steps_in_words(steps, motion),
+                steps_in_words(steps, motion, extended.rmse),
                 given.left_out,
                 given.clock.in_words() if given.clock else "",
                 long.in_words() if long else "",

@@ -33,6 +33,8 @@ STRETCHES = 12
 BENDS = 9
 # speed below which friction may be anything, per rms; width of sign(v)
 SLOW, WIDTH = 0.1, 0.02
+# distance of first places per travel, and of first forces per that of constants, that are none
+SAME_PLACE, SAME_FORCE = 0.01, 0.1
 # share of its samples that every run has where all others go too, at least
 SHARED = 0.2
 # share of its moving samples that a run goes one way, from which on friction is a constant there
@@ -90,6 +92,8 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     least = max(FORCE_PART * _rms(force), LEFT_PART * _rms(left))
     if not np.any((np.abs(off) > SURE * errors) & (np.abs(off) > least)):
+        return {}
+    if _begin_alike(runs, off):
         return {}
     return {run.name: float(value) for run, value in zip(runs, off, strict=True)}
 
@@ -179,6 +183,17 @@ def _share_places(runs: Sequence[BenchRun]) -> bool:
     x = [run.displacement[run.inner] for run in runs]
     low, high = max(map(np.min, x)), min(map(np.max, x))
     return all(float(np.mean((low <= each) & (each <= high))) > SHARED for each in x)
+
+
+def _begin_alike(runs: Sequence[BenchRun], off: Array) -> bool:
+    """Whether all runs begin at one place with one force: no cell was zeroed anew between them.
+
+    They do where their first forces differ by far less than the constants `off` would have it.
+    """
+    first = np.array([run.displacement[run.first] for run in runs])
+    travel = max(float(np.ptp(run.displacement[run.inner])) for run in runs)
+    forces = np.array([run.first_force for run in runs])
+    return bool(np.ptp(first) < SAME_PLACE * travel and np.ptp(forces) < SAME_FORCE * np.ptp(off))
 
 
 def _goes_one_way(run: BenchRun) -> bool:

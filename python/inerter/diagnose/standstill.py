@@ -18,8 +18,9 @@ from inerter.records import Record
 
 # share of a record that rests at its ends from which on they are left out
 MOST = 0.5
-# what a rest may move by, per travel and per its own noise
-TRAVEL, NOISE = 0.002, 6.0
+# what a rest may move by, per travel and per its own noise, and per travel however much that is:
+# small cycles, sampled sparsely, look like noise and are none
+TRAVEL, NOISE, LARGEST = 0.002, 6.0, 0.02
 # share of a record at its end that says where it rests
 END = 0.02
 
@@ -63,5 +64,6 @@ def _begins(x: NDArray[np.float64]) -> int:
     middle = float(np.median(end))
     # second differences of a motion are next to nothing
     noise = 1.4826 * float(np.median(np.abs(np.diff(end, 2)))) / np.sqrt(6.0)
-    away = np.abs(x - middle) > max(TRAVEL * float(np.ptp(x)), NOISE * noise)
+    travel = float(np.ptp(x))
+    away = np.abs(x - middle) > max(TRAVEL * travel, min(NOISE * noise, LARGEST * travel))
     return int(np.argmax(away)) if away.any() else x.size

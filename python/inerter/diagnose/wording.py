@@ -14,6 +14,8 @@ from inerter.diagnose.cannot_tell import (
     IN_WORDS,
     ONE_WAY_IN_WORDS,
     RUN_UP_IN_WORDS,
+    SWEEP,
+    SWEEP_IN_WORDS,
 )
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import by_weight, descriptions, note, stand_ins, warning
@@ -290,6 +292,8 @@ def verdict(diagnosis: Diagnosis) -> str:
     tone += ONE_WAY_IN_WORDS if diagnosis.method.get("one_way") else ""
     tone += RUN_UP_IN_WORDS if diagnosis.method.get("runs_up") else ""
     tone += FEW_IN_WORDS if FEW in diagnosis.cannot_tell else ""
+    drifts = any(finding.effect in SWEEP.effects for finding in diagnosis.findings)
+    tone += SWEEP_IN_WORDS if drifts and SWEEP in diagnosis.cannot_tell else ""
     notes = "".join(f" {note}" for note in diagnosis.notes)
     budget = f" {diagnosis.budget.sentence}" if diagnosis.budget else ""
     said = tone + _verdict(diagnosis) + budget + notes

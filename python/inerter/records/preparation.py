@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.core import Device
+from inerter.motion_units import ROTATION
 from inerter.records.motion import (
     Motion,
     apply_weight,
@@ -46,6 +47,8 @@ WRONG = ("sign_flip", "unit_suspect", "constant_channel")
 AT_LIMIT = 1e-3
 # share of its samples that a force which is not switched has between these ends
 SWITCHED = 0.2
+# travel of a joint [rad], about, from which on gravity is no stiffness
+BENT_TURN = 1.0
 # rms displacement of a run that moves, per noise
 MOVES = 10.0
 
@@ -292,6 +295,8 @@ def _force_error(
 ) -> float:
     """Rms force error of a broad linear model: inertance, damping, stiffness, friction, memory.
 
+    Of a joint that turns far the weight too: what gravity is missed by would hide all else.
+
     Above a `corner` [Hz] errors count less, see `weight_above`.
     """
     x_rms, v_rms = (
@@ -306,6 +311,9 @@ def _force_error(
         rows = [a, v, np.ones_like(x), v * np.abs(v), np.tanh(v / (0.01 * v_rms))]
         if not one_line:
             rows.append(x)
+            if motion.motion == ROTATION and 2.0 * x_rms > BENT_TURN:
+                # a weight that is swung, not in balance
+                rows += [np.sin(x), np.cos(x)]
         for share in shares:
             bristle = Device(
                 friction="dahl", coulomb_force=1.0, bristle_stiffness=float(1 / (share * x_rms))
