@@ -28,7 +28,11 @@ from inerter.diagnose import bent_damping
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.composition import carries, width
 from inerter.diagnose.stated import shafts, stated_candidates
-from inerter.diagnose.where_losses_act import may_damp_behind
+from inerter.diagnose.where_losses_act import (
+    may_damp_behind,
+    may_rub_behind,
+    rubbing_behind,
+)
 from inerter.identify.model import Model
 from inerter.identify.transient import RELAXING
 
@@ -97,6 +101,9 @@ def _law(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
             starts = law_starts(law, model, sizes)
             if starts:
                 yield Candidate(effect.name, law.name if effect.tells_law else None, starts)
+                if effect.name == "coulomb_friction" and may_rub_behind(model):
+                    # at the terminals it may take nothing of what it does behind a shaft
+                    yield Candidate(effect.name, "behind", rubbing_behind(starts))
     # of a law that is there, the level alone
     there = effect.name == "coulomb_friction" and FRICTION[model.friction].varies
     if there and "coulomb_force" not in model.free:

@@ -33,8 +33,9 @@ def rubbing_on_the_other_side(model: Model, baseline: Model) -> list[Model]:
     drifts, stated = "friction_drift" in model.values, SIDE in baseline.texts
     if stated or drifts or model.friction == "none" or not model.has_series:
         return []
-    side = "terminals" if model.rubs_behind else "flywheel"
-    return [replace(model, texts={**model.texts, SIDE: side})]
+    if model.rubs_behind:
+        return [replace(model, texts={**model.texts, SIDE: "terminals"})]
+    return [*rubbing_behind([model])]
 
 
 def damped_on_the_other_side(model: Model, baseline: Model) -> list[Model]:
@@ -69,6 +70,16 @@ def damped_on_the_other_side(model: Model, baseline: Model) -> list[Model]:
 def may_damp_behind(model: Model) -> bool:
     """Whether there is a shaft, and no damping of its flywheel yet."""
     return model.has_series and BEHIND not in model.values
+
+
+def may_rub_behind(model: Model) -> bool:
+    """Whether there is a shaft, no friction yet, and nobody has stated its side."""
+    return model.has_series and model.friction == "none" and SIDE not in model.texts
+
+
+def rubbing_behind(models: Sequence[Model]) -> tuple[Model, ...]:
+    """Models with their friction on the flywheel."""
+    return tuple(replace(each, texts={**each.texts, SIDE: "flywheel"}) for each in models)
 
 
 def with_side(finding: Finding, model: Model) -> Finding:

@@ -161,8 +161,9 @@ class Columns:
     def apart(self, model: Model) -> Apart | None:
         """What the residual is linear in, where that is so much that it is worth while."""
         names = self._in_proportion(model.free, model)
-        if BY_SPEED in model.free:
-            # what an inertance gains along the stroke is then no column that stays as it is
+        if BY_SPEED in model.free or not model.values.get("inertance"):
+            # what an inertance gains along the stroke is then no column that stays as it is; one of
+            # nothing gains nothing
             names = [name for name in names if not times_inertance(name)]
         moving = not set(model.free).isdisjoint((*PLACES, *_CHANNEL))
         if len(names) < _WORTH_WHILE or moving or clips(model.values):
