@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.exchange import plain_part
-from inerter.diagnose.plainer import as_one, as_plain_part, as_spring, swings_on, with_own_spring
+from inerter.diagnose.plainer import (
+    as_one,
+    as_one_friction,
+    as_plain_part,
+    as_spring,
+    swings_on,
+    with_own_spring,
+)
 from inerter.diagnose.search import Scored, Search
 from inerter.identify.model import Model
 
@@ -163,6 +170,24 @@ def test_damping_that_bends_at_once_is_friction() -> None:
     np.testing.assert_allclose(one, two, rtol=1e-3)
     # beside a law there is a level already
     assert as_plain_part(model.adding("coulomb", coulomb_force=3.0), 20.0, 3.0) == []
+
+
+@pytest.mark.parametrize(("law", "peaked"), [("coulomb", "stribeck"), ("dahl", "lugre")])
+def test_damping_with_a_tiny_knee_and_friction_are_one_friction(law: str, peaked: str) -> None:
+    bends = {"viscous": 6000.0, "damping_knee": 2e-3, "damping_beyond": 0.0}
+    own = {"coulomb_force": 15.0, **({"presliding": 1e-5} if law == "dahl" else {})}
+    model = BASELINE.adding(None, **bends).adding(law, **own)
+    found = as_one_friction(model, 0.2)
+    assert [each.friction for each in found] == [law, law, peaked, peaked]
+    # at any speed of the motion the force of both
+    assert all(each.values["coulomb_force"] == pytest.approx(27.0) for each in found)
+    assert all("damping_knee" not in each.values and each.is_possible for each in found)
+    assert "viscous" in found[1].free
+    assert "viscous" not in found[0].free
+    # a knee among the speeds of the motion is a damper's
+    assert as_one_friction(model, 0.02) == []
+    # nor is a level that varies put into another one
+    assert as_one_friction(model.adding(None, friction_asymmetry=0.1), 0.2) == []
 
 
 def test_damping_that_bends_upwards_may_be_quadratic() -> None:

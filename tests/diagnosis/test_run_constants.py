@@ -193,3 +193,26 @@ def test_runs_at_places_apart_have_no_constants() -> None:
     assert constants(thinned(apart)) == {}
     here = constants(thinned([record(1), record(2, offset=20.0)]))
     assert here["run 2"] - here["run 1"] == pytest.approx(20.0, abs=1.0)
+
+
+def loaded(seconds: float, offset: float = 0.0) -> Record:
+    """A spring that relaxes, pulled and let go again within some seconds, from one rest."""
+    random = np.random.default_rng(round(seconds))
+    time = np.linspace(0, 1, 4000) * seconds
+    x = 0.08 * np.sin(np.pi * time / seconds) ** 2
+    relaxed, steps = np.zeros(time.size), np.diff(x)
+    decay = np.exp(-(time[1] - time[0]) / 20.0)
+    for i, step in enumerate(steps):
+        relaxed[i + 1] = decay * (relaxed[i] + step)
+    force = 10 * x + 12 * relaxed + offset + random.normal(0, 1e-3, x.size)
+    return Record(
+        name=f"{seconds:g} s", time=time, force=force,
+        displacement=x + random.normal(0, 1e-6, x.size),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("offset", [0.0, 2.0])
+def test_runs_that_begin_alike_have_no_constants(offset: float) -> None:
+    """What the rate makes of the force is a cause; a cell that shows another zero begins there."""
+    found = constants(thinned([loaded(160.0), loaded(54.0), loaded(32.0, offset)]))
+    assert bool(found) == bool(offset)

@@ -77,3 +77,14 @@ def test_of_one_free_swing_no_stiffness_takes_the_place_of_inertance() -> None:
     assert "parallel_stiffness" not in [finding.effect for finding in diagnosis.findings]
     assert diagnosis.parameters["coulomb_force"].value == pytest.approx(FRICTION, rel=0.02)
     assert diagnosis.parameters["inertance"].value == pytest.approx(INERTANCE, rel=0.02)
+
+
+def test_small_cycles_of_a_protocol_are_no_rest() -> None:
+    """Cycles that grow, as structures are loaded, a few samples each: the first ones move too."""
+    cycles = np.repeat([0.08, 0.15, 0.3, 1.0], 4)
+    wave = np.array([0.0, 0.7, 1.0, 0.6, 0.0, -0.7, -1.0, -0.6])
+    x = 0.02 * np.concatenate([size * wave for size in cycles])
+    grown = Record(name="grown", time=np.arange(x.size), displacement=x, force=5e5 * x)
+    (kept,), told = without_standstill([grown])
+    assert kept.samples == grown.samples
+    assert told == ""

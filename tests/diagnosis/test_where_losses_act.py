@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from bench_runs import measured
 from inerter.diagnose import diagnose_bench
+from inerter.diagnose.candidates import candidates
 from inerter.diagnose.result import Finding
 from inerter.diagnose.where_losses_act import (
     damped_on_the_other_side,
@@ -19,7 +20,7 @@ from inerter.diagnose.where_losses_act import (
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.prediction import force_along
-from inerter.identify.runs import thin
+from inerter.identify.runs import BenchRun, thin
 from inerter.records.preparation import prepare
 from inerter.reference import ReferenceDevice, sum_of_sines
 from inerter.report.page import render_report
@@ -71,6 +72,29 @@ def test_it_goes_to_the_other_side_and_back() -> None:
     assert rubbing_on_the_other_side(terminals, stated) == []
     # without friction there is no side
     assert "friction_side" not in behind.without(("coulomb_force",), "none").stated()
+
+
+def test_friction_is_asked_for_behind_a_shaft_that_has_none() -> None:
+    """At the terminals it may take nothing, and then nobody would ask for its side."""
+    shaft = bare(series_frequency=10.0, series_loss=0.03)
+    sizes = Problem(*two_runs()).scales
+
+    def behind(model: Model) -> list[Model]:
+        found = [each for each in candidates(model, sizes) if each.law == "behind"]
+        assert all(each.effect == "coulomb_friction" for each in found)
+        return [start for each in found for start in each.starts]
+
+    assert behind(shaft)
+    assert all(start.rubs_behind for start in behind(shaft))
+    assert behind(bare()) == behind(shaft.adding("coulomb", coulomb_force=9.0)) == []
+    assert behind(replace(shaft, texts={"friction_side": "terminals"})) == []
+
+
+def two_runs() -> tuple[list[BenchRun], list[np.ndarray]]:
+    """Runs of a plain inerter, all of which count."""
+    records = measured(ReferenceDevice(inertance=90.0), MOTIONS, TIME, force_noise=0.3)
+    runs = [thin(motion) for motion in prepare(records).motions]
+    return runs, [np.ones(run.force.size, dtype=bool) for run in runs]
 
 
 def test_the_findings_say_where() -> None:

@@ -37,6 +37,8 @@ PLAY_STEP, PLAY_PARTS = 3e-5, 32
 MOST_STEPS = 80_000
 # steps from which on the engines run at the same time
 _LONG = 100_000
+# an error this many times the force is that of a simulation which has run away
+RUN_AWAY = 10.0
 
 
 def simulate_engines(
@@ -69,17 +71,21 @@ def _of_engine(
     if name == "exudyn" and not installed():
         return None
     try:
-        return _error(_exudyn if name == "exudyn" else _reference, model, runs, masks)
+        return _error(_exudyn if name == "exudyn" else _reference, model, runs, masks, RUN_AWAY)
     except (ValueError, RuntimeError):
         return None
 
 
 def _error(
-    along: Along, model: Model, runs: Sequence[BenchRun], masks: Sequence[NDArray[np.bool_]]
+    along: Along,
+    model: Model,
+    runs: Sequence[BenchRun],
+    masks: Sequence[NDArray[np.bool_]],
+    most: float = np.inf,
 ) -> float:
-    """Rms error [N]; ValueError if a force is not finite."""
+    """Rms error [N]; ValueError if a force is not finite, or the error `most` times the force."""
     device = model.device()
-    square, count = 0.0, 0
+    square, whole, count = 0.0, 0.0, 0
     for run, mask in zip(runs, masks, strict=True):
         if not mask.any():
             continue
@@ -100,7 +106,10 @@ def _error(
         shown = through_channel(values, force, run.elapsed, run.spacing)
         residual = settled(model, run, run.force - shown, mask & run.inner)
         square += float(np.sum(residual[mask] ** 2))
+        whole += float(np.sum(run.force[mask] ** 2))
         count += int(mask.sum())
+    if square > most**2 * whole:
+        raise ValueError("the force has run away")
     return float(np.sqrt(square / count))
 
 

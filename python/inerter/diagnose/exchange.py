@@ -19,6 +19,7 @@ from inerter.diagnose.decision import CRITERIA, loss, plainest
 from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.plainer import (
     as_one,
+    as_one_friction,
     as_plain_part,
     as_spring,
     as_weight,
@@ -39,7 +40,8 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        other_side, other_filter, _plainer_law, _spring_beside, plain_part, _weight, _one_cause
+        other_side, other_filter, _one_friction, _plainer_law, _spring_beside, plain_part, _weight,
+        _one_cause,
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
@@ -146,6 +148,27 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
                 return scored
             if loss(scored, current) < CRITERIA.gain:
                 good.append(scored)
+    best = min(good, key=lambda s: s.squares.sum(), default=None)
+    return best and plainest([s for s in good if s is best or not search.better(s, best)])
+
+
+def _one_friction(search: Search, current: Scored) -> Scored | None:
+    """One friction in the place of one and of damping that is another, the nearest to the data."""
+    masks, error = search.problem.masks, current.fit.rmse(search.problem.masks)
+    models = as_one_friction(current.model, search.problem.scales.velocity)
+    fits = [search.problem.fit(model) for model in filter(search.may_be, models)]
+    near = [
+        fit
+        for fit in fits
+        if fit.rmse(masks) < (1 + CRITERIA.too_much) * error
+        or within_blur(fit.model, fit.rmse(masks), error)
+    ]
+    good = [
+        scored
+        for scored in search.scores([("exchange", None, fit) for fit in near])
+        if loss(scored, current) < CRITERIA.gain
+        or within_blur(scored.model, scored.fit.rmse(masks), error)
+    ]
     best = min(good, key=lambda s: s.squares.sum(), default=None)
     return best and plainest([s for s in good if s is best or not search.better(s, best)])
 

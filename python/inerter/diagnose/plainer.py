@@ -10,7 +10,7 @@ import numpy as np
 
 from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
-from inerter.catalogue.friction import LAW_COORDINATES
+from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
 from inerter.diagnose.bent_damping import is_bent, knee_of
 from inerter.diagnose.composition import level_and_distance
 from inerter.diagnose.statistics import Array
@@ -21,6 +21,10 @@ _SHAFT = EFFECTS["series_elasticity"].coordinates
 _FORCE = next(each for each in QUANTITIES if each.name == "force")
 # a power of the speed that is next to none
 _NO_POWER = 0.3
+# share of a typical speed below which a knee is no more than where friction begins
+_FAR_BELOW = 0.05
+# laws of friction with a peak near rest, in the place of those without one
+_WITH_A_PEAK = {"coulomb": "stribeck", "dahl": "lugre", "lugre": "lugre"}
 # between slow (1) and quick (1.4)
 _EXPONENT = 1.3
 
@@ -139,6 +143,33 @@ def _as_one_that_bends_less(model: Model) -> list[Model]:
             bare.adding("stribeck", **peak, stribeck_velocity=ratio * knee)
             for ratio in (30.0, 300.0)
         ]
+    return found
+
+
+def as_one_friction(model: Model, speed: float) -> list[Model]:
+    """One friction for two: damping whose knee is far below a speed [m/s] is friction, too.
+
+    Its level alone, with the damping beyond the knee, and with a peak where it falls.
+    """
+    if (
+        not is_bent(model)
+        or model.friction not in _WITH_A_PEAK
+        or "coulomb_force" not in model.free
+    ):
+        return []
+    knee, damping = knee_of(model), model.values["viscous"]
+    if knee > _FAR_BELOW * speed or any(name in model.values for name in LEVEL_COORDINATES):
+        return []
+    beyond = model.values["damping_beyond"]
+    level = model.values["coulomb_force"] + damping * knee * max(1.0 - beyond, 0.1)
+    bare = model.without((*EFFECTS["digressive_damping"].coordinates, "viscous"))
+    bare = bare.holding(coulomb_force=level)
+    found = [bare, bare.adding(None, viscous=damping * max(beyond, 0.01))]
+    law = _WITH_A_PEAK[model.friction]
+    begin = {"bristle_damping": 0.0} if law == "lugre" and law != model.friction else {}
+    for ratio in (3.0, 30.0) if law != model.friction else ():
+        peak = {"static_excess": 0.3 * level, "stribeck_velocity": ratio * knee, **begin}
+        found.append(bare.adding(law, **peak))
     return found
 
 

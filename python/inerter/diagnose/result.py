@@ -331,7 +331,7 @@ class Diagnosis:
             self.repeatability,
             self.motion,
             carried=kept["rmse_after"] if kept else None,
-            foretold=self.unexplained.structure if self.unexplained.depends_on else 0.0,
+            foretold=self.unexplained.predicted if self.unexplained.depends_on else 0.0,
             source=" and ".join(["the motion", *channels_of(self.unexplained.depends_on)]),
         )
 

@@ -79,8 +79,8 @@ class Budget:
             if self.predictable > min(LEAST * whole, TOLD * self.rest)
             else "nothing more was predictable"
             if self.foretold <= LEAST * whole
-            else "a flexible predictor took nothing more away on data left out (though "
-            f"{self.foretold:.3g} {newton} of it goes with what is named above)"
+            else "a flexible predictor took nothing more away on data left out (though tests, one "
+            f"by one, foretell {self.foretold:.3g} {newton} of it)"
         )
         text = (
             f"Of {self.baseline:.3g} {newton} rms, {named}, {more}, and {self.rest:.3g} {newton} "
