@@ -84,20 +84,30 @@ def is_drawn(model: Model) -> bool:
     return not set(model.free).isdisjoint(nodes)
 
 
-def repeats(model: Model, problem: Problem) -> bool:
-    """Whether every period that is fitted lies within the travel; a longer one is a curve.
+def repeats(model: Model, sizes: Scales) -> bool:
+    """Whether every period that is fitted lies within the travel; a longer one is a curve."""
+    travel = sizes.travel[1] - sizes.travel[0]
+    return all(length <= travel for length in _fitted_lengths(model))
 
-    Nor is one that samples step over: it stands for another one, or for none.
-    """
-    travel = problem.scales.travel[1] - problem.scales.travel[0]
-    names = {each.period(i)[0] for each in QUANTITIES for i in range(1, PERIODS + 1)}
-    lengths = [model.values[name] for name in names.intersection(model.free)]
+
+def is_sampled(model: Model, problem: Problem) -> bool:
+    """Whether samples show every period that is fitted; one that they step over is another one."""
+    lengths = _fitted_lengths(model)
     if not lengths:
         return True
     pairs = zip(problem.runs, problem.masks, strict=True)
     paths = [np.abs(run.velocity[mask]) * run.sample_spacing for run, mask in pairs]
-    least = _STEPPED * float(np.median(np.concatenate(paths)))
-    return least <= min(lengths) and max(lengths) <= travel
+    return min(lengths) >= _STEPPED * float(np.median(np.concatenate(paths)))
+
+
+def is_there(model: Model, problem: Problem) -> bool:
+    """Whether every period that is fitted may be one of the device."""
+    return repeats(model, problem.scales) and is_sampled(model, problem)
+
+
+def _fitted_lengths(model: Model) -> list[float]:
+    names = {each.period(i)[0] for each in QUANTITIES for i in range(1, PERIODS + 1)}
+    return [model.values[name] for name in names.intersection(model.free)]
 
 
 def _effect(quantity: Quantity, model: Model, v: Array, a: Array, slow: float) -> Effect | None:

@@ -25,7 +25,6 @@ from inerter.diagnose.plainer import (
     as_weight,
     swings_on,
     with_own_spring,
-    without_a_peak,
 )
 from inerter.diagnose.trials import FAR
 from inerter.diagnose.where_losses_act import damped_on_the_other_side, rubbing_on_the_other_side
@@ -154,13 +153,9 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
 
 
 def _one_friction(search: Search, current: Scored) -> Scored | None:
-    """One friction for one and damping that is another, or for one with a peak that is none.
-
-    The plainest of those that are about as near to the data, but for the blur of reversals.
-    """
+    """One friction in the place of one and of damping that is another, the nearest to the data."""
     masks, error = search.problem.masks, current.fit.rmse(search.problem.masks)
     models = as_one_friction(current.model, search.problem.scales.velocity)
-    models += without_a_peak(current.model)
     fits = [search.problem.fit(model) for model in filter(search.may_be, models)]
     near = [
         fit

@@ -10,7 +10,7 @@ import numpy as np
 
 from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
-from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES, PLAY_COORDINATES
+from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
 from inerter.diagnose.bent_damping import is_bent, knee_of
 from inerter.diagnose.composition import level_and_distance
 from inerter.diagnose.statistics import Array
@@ -23,8 +23,6 @@ _FORCE = next(each for each in QUANTITIES if each.name == "force")
 _NO_POWER = 0.3
 # share of a typical speed below which a knee is no more than where friction begins
 _FAR_BELOW = 0.05
-# share of its level by which a peak of friction is none
-_NO_PEAK = 0.03
 # laws of friction with a peak near rest, in the place of those without one
 _WITH_A_PEAK = {"coulomb": "stribeck", "dahl": "lugre", "lugre": "lugre"}
 # between slow (1) and quick (1.4)
@@ -173,24 +171,6 @@ def as_one_friction(model: Model, speed: float) -> list[Model]:
         peak = {"static_excess": 0.3 * level, "stribeck_velocity": ratio * knee, **begin}
         found.append(bare.adding(law, **peak))
     return found
-
-
-def without_a_peak(model: Model) -> list[Model]:
-    """Friction with memory, and without, for LuGre friction that hardly falls with the speed.
-
-    Its damper may then be no more than what smoothed data make of any reversal.
-    """
-    level, presliding = level_and_distance(model)
-    if model.friction != "lugre" or not set(LAW_COORDINATES) & set(model.free) or not presliding:
-        return []
-    if model.values["static_excess"] > _NO_PEAK * level:
-        return []
-    bare = model.without(LAW_COORDINATES, "none")
-    kept = {"transition_velocity": model.values["transition_velocity"]}
-    return [
-        bare.adding("dahl", coulomb_force=level, presliding=presliding),
-        bare.without(PLAY_COORDINATES).adding("coulomb", coulomb_force=level, **kept),
-    ]
 
 
 def _as_law_of_the_place(model: Model) -> list[Model]:

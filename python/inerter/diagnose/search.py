@@ -313,7 +313,7 @@ class Search:
             and self.is_felt(s.model)
             and self.may_be(s.model)
             and not (is_shaft(s.effect) and swings_on(s.model, self.longest, sizes.frequency))
-            and along_stroke.repeats(s.model, self.problem)
+            and along_stroke.is_there(s.model, self.problem)
             and not is_harmonic(s.model, sizes, self.longest)
         ]
         # what is not there makes no peak of friction needless
