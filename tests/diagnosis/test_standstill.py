@@ -84,7 +84,7 @@ def test_small_cycles_of_a_protocol_are_no_rest() -> None:
     cycles = np.repeat([0.08, 0.15, 0.3, 1.0], 4)
     wave = np.array([0.0, 0.7, 1.0, 0.6, 0.0, -0.7, -1.0, -0.6])
     x = 0.02 * np.concatenate([size * wave for size in cycles])
-    grown = Record(name="grown", time=np.arange(x.size), displacement=x, force=5e5 * x)
+    grown = Record(name="grown", time=np.arange(float(x.size)), displacement=x, force=5e5 * x)
     (kept,), told = without_standstill([grown])
     assert kept.samples == grown.samples
     assert told == ""
