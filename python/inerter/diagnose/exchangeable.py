@@ -25,12 +25,11 @@ from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA, visible_delay
-from inerter.diagnose.low_passes import as_delay, filters, jumps_late, likeliest
+from inerter.diagnose.low_passes import as_delay, filters, with_low_pass
 from inerter.diagnose.rate_of_level import with_rate_of_level
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.search import Search
 from inerter.diagnose.statistics import advantage, block_squares
-from inerter.diagnose.trials import FAR
 from inerter.diagnose.values import parameter_units
 from inerter.identify.channel_filter import CHANNELS, Filter, filter_of
 from inerter.identify.fit import Fit, parameter_errors
@@ -368,37 +367,6 @@ def with_delay(
         parameters={**parameters, "delay": ParameterValue(delay, abs(delay), "s")},
     )
     return replace(found_with, evidence=wording.evidence(found_with))
-
-
-def with_low_pass(finding: Finding, search: Search, fit: Fit) -> Finding:
-    """A delay that is found, and the low-passes that are as late and do as well.
-
-    Where friction jumps late in the force as measured it is a delay.
-    """
-    model, late = fit.model, fit.model.values.get("delay", 0.0)
-    known = any(f"{each}_filter" in model.values for each in CHANNELS)
-    if finding.effect != "sensor_delay" or finding.members or known or "delay" not in model.free:
-        return finding
-    masks = search.problem.masks
-    here = replace(fit, residual=search.problem.residual(model))
-    limit = here.rmse(masks) * (1 + CRITERIA.tolerated_loss)
-    tried = likeliest(search, list(filters(model, late)))
-    fits = parallel(lambda each: search.trials.fit(each, (FAR * limit, np.inf), limit), tried)
-    near = sorted((f for f in fits if f.rmse(masks) < limit), key=lambda f: f.rmse(masks))
-    if not near:
-        return finding
-    # in the band a low-pass and a delay may do as well, and not where friction jumps
-    if jumps_late(search, *(search.score("", None, each) for each in (here, near[0]))):
-        return finding
-    name = f"{'force' if late > 0 else 'displacement'}_filter"
-    cutoffs = [each.model.values[name] for each in near]
-    error = max(parameter_errors(near[0])[name][1], 0.5 * float(np.ptp(cutoffs)))
-    told = replace(
-        finding, members=("sensor_delay", "sensor_filter"),
-        parameters={**finding.parameters, name: ParameterValue(cutoffs[0], error, "Hz")},
-        rivals=_others(finding.rivals, ("sensor_filter",)),
-    )  # fmt: skip
-    return replace(told, evidence=wording.evidence(told))
 
 
 def _with_damper(search: Search, model: Model) -> Model | None:

@@ -1,7 +1,8 @@
 """Low-passes of a channel in a search: tried where a delay shows, each order and kind.
 
 A filter is first of all late, so that where no delay shows nothing is tried, and no time is lost.
-What order it has shows better once the other effects are known: it is asked again after each.
+What order it has shows better once the other effects are known: it is asked again after each. Of a
+delay that is found it is asked whether a filter would do as well.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ from numpy.typing import NDArray
 
 from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose import wording
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.decision import CRITERIA, loss, visible
+from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.statistics import advantage, block_squares
-from inerter.diagnose.trials import FEW, within_shortlist
+from inerter.diagnose.trials import FAR, FEW, within_shortlist
 from inerter.identify.channel_filter import CHANNELS, KINDS, ORDERS, Filter, filter_of, named
-from inerter.identify.fit import Fit, rms
+from inerter.identify.fit import Fit, parameter_errors, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun
 from inerter.identify.split import blocks
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Fitted = Sequence[tuple[Candidate, Fit]]
+
+_TONE = EFFECTS["periodic_disturbance"].coordinates
 
 
 def has_filter(model: Model) -> bool:
@@ -150,6 +155,15 @@ def likeliest(search: Search, trials: list[Candidate]) -> list[Candidate]:
     return [trials[i] for i in np.argsort(errors)[: CRITERIA.filters_kept]]
 
 
+def _nearest_as_measured(search: Search, fits: list[Fit]) -> list[Fit]:
+    """Fits with a low-pass each, the nearest to the force as measured first.
+
+    In the band they are alike; which order makes the jumps that were measured is told above it.
+    """
+    problem = search.witness.raw if search.witness else search.problem
+    return sorted(fits, key=lambda fit: rms(problem.errors(fit.model), problem.masks))
+
+
 def jumps_late(search: Search, delayed: Scored, filtered: Scored) -> bool:
     """Whether the force as measured jumps, late, where a low-pass would have smoothed it.
 
@@ -186,3 +200,36 @@ def other_filter(search: Search, current: Scored) -> Scored | None:
         if loss(current, scored) > least:
             return scored
     return None
+
+
+def with_low_pass(finding: Finding, search: Search, fit: Fit) -> Finding:
+    """A delay that is found, and the low-passes that are as late and do as well.
+
+    Where friction jumps late in the force as measured it is a delay.
+    """
+    model, late = fit.model, fit.model.values.get("delay", 0.0)
+    known = any(f"{each}_filter" in model.values for each in CHANNELS)
+    if finding.effect != "sensor_delay" or finding.members or known or "delay" not in model.free:
+        return finding
+    masks = search.problem.masks
+    here = replace(fit, residual=search.problem.residual(model))
+    limit = here.rmse(masks) * (1 + CRITERIA.tolerated_loss)
+    # a tone is told above the band of the search, in which it would go astray
+    told = replace(model, free=tuple(name for name in model.free if name not in _TONE))
+    tried = likeliest(search, list(filters(told, late)))
+    fits = parallel(lambda each: search.trials.fit(each, (FAR * limit, np.inf), limit), tried)
+    near = _nearest_as_measured(search, [f for f in fits if f.rmse(masks) < limit])
+    if not near:
+        return finding
+    # in the band a low-pass and a delay may do as well, and not where friction jumps
+    if jumps_late(search, *(search.score("", None, each) for each in (here, near[0]))):
+        return finding
+    name = f"{'force' if late > 0 else 'displacement'}_filter"
+    cutoffs = [each.model.values[name] for each in near]
+    error = max(parameter_errors(near[0])[name][1], 0.5 * float(np.ptp(cutoffs)))
+    found = replace(
+        finding, members=("sensor_delay", "sensor_filter"),
+        parameters={**finding.parameters, name: ParameterValue(cutoffs[0], error, "Hz")},
+        rivals=[rival for rival in finding.rivals if rival.effect != "sensor_filter"],
+    )  # fmt: skip
+    return replace(found, evidence=wording.evidence(found))
