@@ -221,3 +221,32 @@ def test_along_one_sine_a_low_pass_may_be_a_damper() -> None:
     assert told.parameters["viscous"].value == pytest.approx(50.0, rel=0.05)
     assert [rival.effect for rival in told.rivals] == ["viscous_friction"]
     assert "this motion cannot tell" in told.evidence
+
+
+@pytest.mark.long
+def test_beside_a_hum_a_delay_may_be_a_filter(effects_seed: int) -> None:
+    """A filter of order two is as late up to where the motion goes; the hum tells nothing of it."""
+    random = np.random.default_rng(effects_seed)
+    rate, fine, seconds = 1000, 10, 14.0
+    time = np.arange(-rate * fine, int(seconds * rate * fine)) / (rate * fine)
+    x, v, a = np.zeros((3, time.size))
+    for frequency, size in ((0.7, 0.025), (1.9, 0.008), (4.3, 0.002)):
+        w, phase = 2 * np.pi * frequency, 2 * np.pi * frequency * time + random.uniform(0, 6)
+        x += size * np.sin(phase)
+        v += size * w * np.cos(phase)
+        a -= size * w**2 * np.sin(phase)
+    bristle = Device(friction="dahl", coulomb_force=55.0, bristle_stiffness=2.2e5)
+    force = 75 * a + bristle.along(1 / (rate * fine), x, v, a)["friction"]
+    low_pass = Channel(force_filter=60.0, force_filter_order=2.0, force_filter_bessel=0.0)
+    shown = low_passed(low_pass, time, force)[rate * fine :: fine]
+    at = np.arange(shown.size) / rate
+    hum = 4.0 * np.sin(2 * np.pi * 50.02 * at + 1.0)
+    record = Record(
+        name="hum", time=at, force=shown + hum + random.normal(0, 0.8, at.size),
+        displacement=x[rate * fine :: fine] + random.normal(0, 3e-6, at.size),
+    )  # fmt: skip
+    found = {each.effect: each for each in diagnose_bench([record]).findings}
+    (late,) = {"sensor_delay", "sensor_filter"} & found.keys()
+    members = {late, *found[late].members, *(rival.effect for rival in found[late].rivals)}
+    assert {"sensor_delay", "sensor_filter"} <= members
+    assert "periodic_disturbance" in found
