@@ -197,7 +197,9 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
   double now = *z, state[FRICTION_BLOCK] = {0};
   for (int i = 0; i < samples.size; i++) {
     double push = side[i] * p->bw_alpha;
-    if (now * side[i] >= 0) {
+    if (may_turn(path, i)) {
+      now = step_to(p, path, i, now, step);
+    } else if (now * side[i] >= 0) {
       now += forth[i] * (push - slow_forth * now);
     } else {
       double next = now + back[i] * (push + slow_back * now);

@@ -101,7 +101,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     end[i] = bent_in_the_end(p, to.v[i], yield);
   }
   double state[FRICTION_BLOCK] = {0};
-  bristle_along(path, share, end, z, state);
+  bristle_along(p, path, share, end, z, state, step);
   for (int i = 0; i < to.size; i++) {
     forces[i] = p->bristle_stiffness * state[i];
   }

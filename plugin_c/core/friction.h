@@ -159,21 +159,44 @@ static INLINED double sign(double v) {
   return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0;
 }
 
-// Forces at the samples of a path, the state z stepped from each to the next at the mean velocity
-// and the middle between them, which keeps the path of the law. Its step and force are compiled
-// into the loop, without load; without a state step is NULL. A law whose samples can be taken
-// several at once does so by friction_block.h.
+// Where a motion turns between two samples h apart, by their displacements x and velocities v: the
+// time from the first on, and the place. 0 where it does not.
+static inline double turn_between(const double* x, const double* v, double h, double* place) {
+  if (!(v[0] * v[1] < 0)) {
+    return 0;
+  }
+  double time = h * v[0] / (v[0] - v[1]);
+  *place = x[0] + 0.5 * v[0] * time;
+  return (x[1] - *place) * v[1] > 0 ? time : 0;
+}
+
+typedef double StateStep(const InerterDevice* p, double x, double v, double z, double h,
+                         double load);
+
+// A state from one sample to the next, at the mean velocity and in the middle between them, which
+// keeps the path of the law: where the motion turns on the way, of each of its two parts.
+static INLINED double step_to_next(const InerterDevice* p, const double* x, const double* v,
+                                   double h, double z, StateStep* step) {
+  double rest = p->rest_length, turn, time = turn_between(x, v, h, &turn);
+  if (!(time > 0)) {
+    return step(p, 0.5 * (x[0] + x[1]) - rest, (x[1] - x[0]) / h, z, h, 0);
+  }
+  z = step(p, 0.5 * (x[0] + turn) - rest, (turn - x[0]) / time, z, time, 0);
+  return step(p, 0.5 * (turn + x[1]) - rest, (x[1] - turn) / (h - time), z, h - time, 0);
+}
+
+// Forces at the samples of a path, the state z stepped from each to the next. The law's step and
+// force are compiled into the loop, without load; without a state step is NULL. A law whose samples
+// can be taken several at once does so by friction_block.h.
 static inline void friction_along(const InerterDevice* restrict p, const FrictionPath* path,
-                                  double* restrict z, double* restrict forces,
-                                  double (*step)(const InerterDevice* p, double x, double v,
-                                                 double z, double h, double load),
+                                  double* restrict z, double* restrict forces, StateStep* step,
                                   double (*force)(const InerterDevice* p, double x, double v,
                                                   double z, double load)) {
   const double *x = path->x, *v = path->v;
   double h = path->h, rest = p->rest_length, now = step ? *z : 0;
   for (int i = path->first; i < path->last; i++) {
     if (step && i) {
-      now = step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, now, h, 0);
+      now = step_to_next(p, x + i - 1, v + i - 1, h, now, step);
     }
     forces[i - path->first] = force(p, x[i] - rest, v[i], now, 0);
     if (step && path->states) {

@@ -102,13 +102,27 @@ static INLINED void keep_states(const FrictionPath* path, const double* state) {
   }
 }
 
+// whether a motion may turn on the way to sample i of a block, which is then taken by itself
+static INLINED int may_turn(const FrictionPath* path, int i) {
+  int at = path->first + i;
+  return at > 0 && path->v[at - 1] * path->v[at] < 0;
+}
+
+// the step of a law on the way to sample i of a block
+static INLINED double step_to(const InerterDevice* p, const FrictionPath* path, int i, double z,
+                              StateStep* step) {
+  int before = path->first + i - 1;
+  return step_to_next(p, path->x + before, path->v + before, path->h, z, step);
+}
+
 // A bristle from sample to sample, pulled by a share towards the end of its way: its state at each.
-static INLINED void bristle_along(const FrictionPath* path, const double* share, const double* end,
-                                  double* z, double* state) {
+static INLINED void bristle_along(const InerterDevice* p, const FrictionPath* path,
+                                  const double* share, const double* end, double* z, double* state,
+                                  StateStep* step) {
   int size = path->last - path->first;
   double now = *z;
   for (int i = 0; i < size; i++) {
-    now += share[i] * (end[i] - now);
+    now = may_turn(path, i) ? step_to(p, path, i, now, step) : now + share[i] * (end[i] - now);
     state[i] = now;
   }
   *z = now;

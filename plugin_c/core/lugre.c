@@ -102,7 +102,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
     share[i] = gone_within(p, samples.v[i], path->h, g);
     end[i] = bent_in_the_end(p, samples.v[i], g);
   }
-  bristle_along(path, share, end, z, state);
+  bristle_along(p, path, share, end, z, state, step);
 
   samples_at(p, path, &samples);
   levels_at(p, &samples, level);

@@ -153,10 +153,15 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   const double *x = path->x, *v = path->v;
   double rest = p->rest_length;
   int n = p->nfriction;
-  (void)v;
   for (int i = path->first; i < path->last; i++) {
     if (i) {
-      step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / path->h, z, path->h, 0);
+      double turn = x[i - 1], h = path->h, time = turn_between(x + i - 1, v + i - 1, h, &turn);
+      if (time > 0) {
+        step(p, 0.5 * (x[i - 1] + turn) - rest, (turn - x[i - 1]) / time, z, time, 0);
+        step(p, 0.5 * (turn + x[i]) - rest, (x[i] - turn) / (h - time), z, h - time, 0);
+      } else {
+        step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, z, h, 0);
+      }
     }
     forces[i - path->first] = force(p, z);
     for (int k = 0; k < n && path->states; k++) {

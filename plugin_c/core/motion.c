@@ -21,12 +21,20 @@ static double middle_load(const InerterDevice* device, const double* x, const do
   return 0.5 * inertance * (a[0] + a[1]) + rest;
 }
 
+// States of friction over a way of h seconds from displacement x to x1.
+static void rub(const InerterDevice* device, double x, double x1, double* z, double h,
+                double carried) {
+  double mean = (x1 - x) / h;
+  friction_step(device, stretch_of(device, 0.5 * (x + x1)), mean, z, h,
+                load_on_bristle(device, mean, carried));
+}
+
 // States from one sample to the next, h later. A bristle sees the mean velocity at the middle,
-// which keeps its path; a series element and branches see the quintic through both samples: a
-// stiff shaft carries b a.
+// which keeps its path, before and after the motion turns; a series element and branches see the
+// quintic through both samples: a stiff shaft carries b a.
 static void step_between(const InerterDevice* device, const double* x, const double* v,
                          const double* a, double* z, double h) {
-  double mean = (x[1] - x[0]) / h, start = stretch_of(device, x[0]);
+  double start = stretch_of(device, x[0]);
   double before = middle_load(device, x, v, a, z);
   Way way = way_between(x, v, a, h);
   if (has(device, PART_BRANCHES)) {
@@ -36,11 +44,16 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     series_step(device, start, &way, z, z + series_index(device), h);
   }
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
-    double middle = stretch_of(device, 0.5 * (x[1] + x[0]));
+    double turn, time = turn_between(x, v, h, &turn);
     double carried = inerter_load_bends(device) && has(device, PART_SERIES)
                          ? 0.5 * (before + series_force(device, v[1], z + series_index(device)))
                          : before;
-    friction_step(device, middle, mean, z, h, load_on_bristle(device, mean, carried));
+    if (time > 0) {
+      rub(device, x[0], turn, z, time, carried);
+      rub(device, turn, x[1], z, h - time, carried);
+    } else {
+      rub(device, x[0], x[1], z, h, carried);
+    }
   }
   if (device->ncontrol) {
     z[control_index(device)] = control_step(device, z[control_index(device)], h);

@@ -106,7 +106,7 @@ static SEVERAL_AT_ONCE void along(const InerterDevice* p, const FrictionPath* pa
   }
   double state[FRICTION_BLOCK] = {0}, now = exp(*z);
   for (int i = 0; i < to.size; i++) {
-    now = now * left[i] + fresh[i];
+    now = may_turn(path, i) ? exp(step_to(p, path, i, log(now), step)) : now * left[i] + fresh[i];
     state[i] = now;
   }
   samples_at(p, path, &at);

@@ -126,6 +126,20 @@ def test_an_interval_is_open_where_the_data_set_no_end() -> None:
     assert low < 1e8
 
 
+def test_an_interval_is_open_where_bristles_are_stiffer_than_any_that_is_told() -> None:
+    truth = Device(inertance=50, viscous=100, friction="dahl", coulomb_force=20,
+                   bristle_stiffness=1e10)  # fmt: skip
+    data = problem(truth, 60.0)
+    fit = search(data, law_named("dahl"), {}).best
+    _, error = parameter_errors(fit)["bristle_stiffness"]
+    low, high = profile_interval(
+        data, fit.model, lambda m: float(m.device().bristle_stiffness), error, 1.0
+    )
+    assert high is None
+    assert low is not None
+    assert low < 1e10
+
+
 def test_bouc_wen_names_what_cannot_be_told_apart() -> None:
     truth = Device(inertance=50, viscous=100, friction="bouc_wen", bw_stiffness=1e4, bw_beta=300,
                    bw_gamma=200)  # fmt: skip

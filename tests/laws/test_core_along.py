@@ -217,6 +217,37 @@ def draw_beside_friction(rng: np.random.Generator, part: str) -> Parameters:
     return {"viscous": 30.0, "damping_knee": 2e-3, "damping_beyond": 0.3, "damping_asymmetry": 0.2}
 
 
+def ways(x: np.ndarray, v: np.ndarray, h: float) -> list[tuple[float, float, float]]:
+    """Ends and time of the way between two samples, of each part where the motion turns."""
+    if x.size < 2:
+        return []
+    if not v[0] * v[1] < 0:
+        return [(x[0], x[1], h)]
+    time = h * v[0] / (v[0] - v[1])
+    place = x[0] + 0.5 * v[0] * time
+    if not (x[1] - place) * v[1] > 0:
+        return [(x[0], x[1], h)]
+    return [(x[0], place, time), (place, x[1], h - time)]
+
+
+@pytest.mark.parametrize("law", BRISTLES)
+def test_a_bristle_turns_where_the_motion_does(law: str) -> None:
+    """Samples far apart, between which a bristle yields, are nearly as good as close ones."""
+    known: dict[str, float | str] = {"friction": law, "inertance": 0.0}
+    if law == "bouc_wen":
+        known |= {"bw_alpha": 1.0, "bw_stiffness": 2e7, "bw_beta": 5e5, "bw_gamma": 5e5}
+    else:
+        known |= {"coulomb_force": 20.0, "bristle_stiffness": 2e7}
+    if law == "lugre":
+        known |= {"static_force": 20.0, "stribeck_velocity": 1.0, "bristle_damping": 0.0}
+    device, fine, h = Device(**known), 64, 5e-3
+    _, *close = sampled(MOTION, h / fine, 5.0)
+    truth = device.along(h / fine, *close)["friction"][::fine]
+    found = device.along(h, *(channel[::fine] for channel in close))["friction"]
+    # at the mean velocity alone it would be 2.6 to 4 %
+    assert np.sqrt(np.mean((found - truth) ** 2)) < 0.005 * np.max(np.abs(truth))
+
+
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(
     "part",
@@ -249,9 +280,8 @@ def test_parts_in_blocks_are_their_samples_one_by_one(law: str, part: str) -> No
         found = device.along(h, x, v, a)
         z = np.zeros(device.nstate)
         for i in range(x.size):
-            if i and device.nstate:
-                middle, mean = 0.5 * (x[i] + x[i - 1]), (x[i] - x[i - 1]) / h
-                z = np.atleast_1d(device.step(middle, mean, z, h))
+            for start, end, time in ways(x[i - 1 : i + 1], v[i - 1 : i + 1], h):
+                z = np.atleast_1d(device.step(0.5 * (start + end), (end - start) / time, z, time))
             alone = device.evaluate(x[i], v[i], a[i], z)
             size = abs(a[i]) * device.inertance + np.max(np.abs(found["total"]))
             for name in ("total", "friction"):

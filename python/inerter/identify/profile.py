@@ -37,6 +37,9 @@ _BADLY = 0.15
 _NOTHING = 50.0
 # a parameter that can be this many times larger or smaller has no end there
 _FAR = 10.0
+# share of the largest slope of a quantity from which on a variable matters to it; distance of a
+# search variable from its limit that is none
+_MATTERS, _AT_LIMIT = 1e-9, 1e-6
 # evaluations at most of a fit at a held value, and of one only asked whether it may be there
 _EVALUATIONS, _ASKED = 30, 12
 # rise of the cost beyond its least at a held value, per that at the interval's end, that is let be
@@ -66,7 +69,7 @@ def profile_interval(
     count = sum(int(mask.sum()) for mask in problem.masks)
     unit = best / max(count - len(model.free), 1) * max(inflation, 1e-12) + 1e-300
     enough = float(np.clip(_LEFT * _LEVEL**2 * unit / (best + 1e-300), _LEAST, _LEFT))
-    derivatives = problem.jacobian(model)
+    derivatives, slope = problem.jacobian(model), _slope(problem, model, quantity)
 
     value = quantity(model)
     # one that is known badly, and is positive, is followed in its logarithm, if it is not all but 0
@@ -108,9 +111,19 @@ def profile_interval(
             distance = _crossing(points)
             if distance > _OPEN * _LEVEL * unit_step:
                 return None
-        return target(side, _crossing(points))
+        # beyond the limit of the search it would go on at no cost
+        return None if _is_at_limit(problem, here, slope) else target(side, _crossing(points))
 
     return end(-1), end(1)
+
+
+def _is_at_limit(problem: Problem, model: Model, slope: Array) -> bool:
+    """Whether a variable on which a quantity depends (p,) is at the limit of its search."""
+    search = problem.variables(model)
+    here, (lower, upper) = search.encode(model.values), search.bounds
+    matters = np.abs(slope) > _MATTERS * np.max(np.abs(slope))
+    at = (here <= lower + _AT_LIMIT) | (here >= upper - _AT_LIMIT)
+    return bool(np.any(matters & at))
 
 
 def _crossing(points: list[tuple[float, float]]) -> float:
@@ -164,7 +177,7 @@ def _tied(
     slope = _slope(problem, model, quantity)
     # logarithmic ones first: they reach far
     order = sorted(range(len(how)), key=lambda i: (not how[i].logarithmic, -abs(slope[i])))
-    order = [i for i in order if abs(slope[i]) > 1e-9 * np.max(np.abs(slope))]
+    order = [i for i in order if abs(slope[i]) > _MATTERS * np.max(np.abs(slope))]
     for pivot in order:
         start = _solved(problem, model, quantity, target, pivot)
         if start is not None:
