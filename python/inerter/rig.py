@@ -136,9 +136,9 @@ def simulate_along(
 
     At each sample the rig is put at x and v and accelerated by a; the sensor gives the force of
     that instant (which the stages of RK4 are made of). Then the table moves on to the next sample,
-    which advances the states: at constant velocity by the laws' own steps (Euler), or with a series
-    element along the quintic through both samples, by stages of RK4 short enough for it. This is
-    what `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far
+    which advances the states: at constant velocity by the laws' own steps (Euler; two where the
+    motion turns on the way), or with a series element along the quintic through both samples, by
+    stages of RK4 short enough for it. This is what `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far
     below the table's 1e12 kg), with a series element to the error of its second-order steps, with
     load friction on a bristle to that of first-order ones. Viscoelastic branches take these steps
     at constant velocity too, where `Device.along` follows the quintic.
@@ -192,7 +192,7 @@ def simulate_along(
     told = 1 + (x.size - 1) // every
     total, friction = np.zeros((2, told))
     states = np.zeros((told, device.nstate))
-    between = np.append(np.diff(x) / h, 0.0)
+    between, turns = np.append(np.diff(x) / h, 0.0), _turns(h, x, v)
     instant = mujoco.mjtIntegrator.mjINT_RK4
     pieces = _pieces(device, h)
     moving = instant if pieces else mujoco.mjtIntegrator.mjINT_EULER
@@ -209,14 +209,34 @@ def simulate_along(
         # on to the next sample
         model.opt.integrator = moving
         if not pieces:
-            qvel[0], ctrl[0] = between[i], 0.0
-            mujoco.mj_step(model, data)
+            for time, velocity in turns.get(i, ((h, between[i]),)):
+                model.opt.timestep = time
+                qvel[0], ctrl[0] = velocity, 0.0
+                mujoco.mj_step(model, data)
             continue
         for gain in gains:
             ctrl[0] = gain
             mujoco.mj_step(model, data)
     first = states[:, 0] if device.nstate else np.zeros(told)
     return {"total": total, "friction": friction, "state": first, "states": states}
+
+
+def _turns(h: float, x: NDArray, v: NDArray) -> dict[int, tuple[tuple[float, float], ...]]:
+    """Of samples behind which the motion turns: times to and from there, and mean velocities.
+
+    As `Device.along` has it, the velocity taken as straight between the samples.
+    """
+    turning = np.flatnonzero(v[:-1] * v[1:] < 0)
+    begin, end = v[turning], v[turning + 1]
+    times = h * begin / (begin - end)
+    places = x[turning] + 0.5 * begin * times
+    behind = x[turning + 1] - places
+    rows = zip(turning, times, 0.5 * begin, behind, behind * end > 0, strict=True)
+    return {
+        int(i): ((float(time), float(velocity)), (float(h - time), float(way / (h - time))))
+        for i, time, velocity, way, goes_back in rows
+        if goes_back
+    }
 
 
 def _gains(h: float, x: NDArray, v: NDArray, a: NDArray, pieces: int) -> Iterator[list[float]]:
