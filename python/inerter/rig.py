@@ -138,10 +138,11 @@ def simulate_along(
     that instant (which the stages of RK4 are made of). Then the table moves on to the next sample,
     which advances the states: at constant velocity by the laws' own steps (Euler; two where the
     motion turns on the way), or with a series element along the quintic through both samples, by
-    stages of RK4 short enough for it. This is what `Device.along` does, so that both agree to rounding (1e-9 of the force for inertances far
-    below the table's 1e12 kg), with a series element to the error of its second-order steps, with
-    load friction on a bristle to that of first-order ones. Viscoelastic branches take these steps
-    at constant velocity too, where `Device.along` follows the quintic.
+    stages of RK4 short enough for it. This is what `Device.along` does, so that both agree to
+    rounding (1e-9 of the force for inertances far below the table's 1e12 kg), with a series element
+    to the error of its second-order steps, with load friction on a bristle to that of first-order
+    ones. Viscoelastic branches take these steps at constant velocity too, where `Device.along`
+    follows the quintic.
 
     Parameters
     ----------
