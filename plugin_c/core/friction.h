@@ -162,6 +162,7 @@ static INLINED double sign(double v) {
 // Where a motion turns between two samples h apart, by their displacements x and velocities v: the
 // time from the first on, and the place. 0 where it does not.
 static inline double turn_between(const double* x, const double* v, double h, double* place) {
+  *place = x[0];
   if (!(v[0] * v[1] < 0)) {
     return 0;
   }

@@ -155,7 +155,7 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   int n = p->nfriction;
   for (int i = path->first; i < path->last; i++) {
     if (i) {
-      double turn = x[i - 1], h = path->h, time = turn_between(x + i - 1, v + i - 1, h, &turn);
+      double turn, h = path->h, time = turn_between(x + i - 1, v + i - 1, h, &turn);
       if (time > 0) {
         step(p, 0.5 * (x[i - 1] + turn) - rest, (turn - x[i - 1]) / time, z, time, 0);
         step(p, 0.5 * (turn + x[i]) - rest, (x[i] - turn) / (h - time), z, h - time, 0);
