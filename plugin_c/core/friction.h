@@ -159,31 +159,49 @@ static INLINED double sign(double v) {
   return v > 0 ? 1.0 : v < 0 ? -1.0 : 0.0;
 }
 
-// Where a motion turns between two samples h apart, by their displacements x and velocities v: the
-// time from the first on, and the place. 0 where it does not.
-static inline double turn_between(const double* x, const double* v, double h, double* place) {
-  *place = x[0];
+// A leg of the way from one sample to the next, gone at its mean velocity.
+typedef struct Leg_ {
+  double x0, x1;  // displacement where it begins and ends
+  double time;
+} Leg;
+
+// The legs between two samples h apart, by their displacements x and velocities v: one, which keeps
+// the path of a law, or two where the motion turns between them. How many.
+static inline int legs_between(const double* x, const double* v, double h, Leg legs[2]) {
+  // a turn nearer to a sample than this share of h is at the sample
+  const double nearly = 1e-6;
+  legs[0] = (Leg){x[0], x[1], h};
   if (!(v[0] * v[1] < 0)) {
-    return 0;
+    return 1;
   }
-  double time = h * v[0] / (v[0] - v[1]);
-  *place = x[0] + 0.5 * v[0] * time;
-  return (x[1] - *place) * v[1] > 0 ? time : 0;
+  double share = v[0] / (v[0] - v[1]), place = x[0] + 0.5 * v[0] * share * h;
+  if (!(share > nearly && share < 1 - nearly && (x[1] - place) * v[1] > 0)) {
+    return 1;
+  }
+  legs[0] = (Leg){x[0], place, share * h};
+  legs[1] = (Leg){place, x[1], h - share * h};
+  return 2;
+}
+static inline double mean_velocity(const Leg* leg) {
+  return (leg->x1 - leg->x0) / leg->time;
+}
+static inline double middle_of(const Leg* leg) {
+  return 0.5 * (leg->x0 + leg->x1);
 }
 
 typedef double StateStep(const InerterDevice* p, double x, double v, double z, double h,
                          double load);
 
-// A state from one sample to the next, at the mean velocity and in the middle between them, which
-// keeps the path of the law: where the motion turns on the way, of each of its two parts.
+// A state from one sample to the next, without load.
 static INLINED double step_to_next(const InerterDevice* p, const double* x, const double* v,
                                    double h, double z, StateStep* step) {
-  double rest = p->rest_length, turn, time = turn_between(x, v, h, &turn);
-  if (!(time > 0)) {
-    return step(p, 0.5 * (x[0] + x[1]) - rest, (x[1] - x[0]) / h, z, h, 0);
+  Leg legs[2];
+  int count = legs_between(x, v, h, legs);
+  for (int i = 0; i < count; i++) {
+    const Leg* leg = legs + i;
+    z = step(p, middle_of(leg) - p->rest_length, mean_velocity(leg), z, leg->time, 0);
   }
-  z = step(p, 0.5 * (x[0] + turn) - rest, (turn - x[0]) / time, z, time, 0);
-  return step(p, 0.5 * (turn + x[1]) - rest, (x[1] - turn) / (h - time), z, h - time, 0);
+  return z;
 }
 
 // Forces at the samples of a path, the state z stepped from each to the next. The law's step and

@@ -155,12 +155,11 @@ static void along(const InerterDevice* p, const FrictionPath* path, double* z, d
   int n = p->nfriction;
   for (int i = path->first; i < path->last; i++) {
     if (i) {
-      double turn, h = path->h, time = turn_between(x + i - 1, v + i - 1, h, &turn);
-      if (time > 0) {
-        step(p, 0.5 * (x[i - 1] + turn) - rest, (turn - x[i - 1]) / time, z, time, 0);
-        step(p, 0.5 * (turn + x[i]) - rest, (x[i] - turn) / (h - time), z, h - time, 0);
-      } else {
-        step(p, 0.5 * (x[i] + x[i - 1]) - rest, (x[i] - x[i - 1]) / h, z, h, 0);
+      Leg legs[2];
+      int count = legs_between(x + i - 1, v + i - 1, path->h, legs);
+      for (int k = 0; k < count; k++) {
+        const Leg* leg = legs + k;
+        step(p, middle_of(leg) - rest, mean_velocity(leg), z, leg->time, 0);
       }
     }
     forces[i - path->first] = force(p, z);

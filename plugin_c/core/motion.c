@@ -21,14 +21,6 @@ static double middle_load(const InerterDevice* device, const double* x, const do
   return 0.5 * inertance * (a[0] + a[1]) + rest;
 }
 
-// States of friction over a way of h seconds from displacement x to x1.
-static void rub(const InerterDevice* device, double x, double x1, double* z, double h,
-                double carried) {
-  double mean = (x1 - x) / h;
-  friction_step(device, stretch_of(device, 0.5 * (x + x1)), mean, z, h,
-                load_on_bristle(device, mean, carried));
-}
-
 // States from one sample to the next, h later. A bristle sees the mean velocity at the middle,
 // which keeps its path, before and after the motion turns; a series element and branches see the
 // quintic through both samples: a stiff shaft carries b a.
@@ -44,15 +36,16 @@ static void step_between(const InerterDevice* device, const double* x, const dou
     series_step(device, start, &way, z, z + series_index(device), h);
   }
   if (has_bristle(device) && !has(device, PART_WHEEL_FRICTION)) {
-    double turn, time = turn_between(x, v, h, &turn);
     double carried = inerter_load_bends(device) && has(device, PART_SERIES)
                          ? 0.5 * (before + series_force(device, v[1], z + series_index(device)))
                          : before;
-    if (time > 0) {
-      rub(device, x[0], turn, z, time, carried);
-      rub(device, turn, x[1], z, h - time, carried);
-    } else {
-      rub(device, x[0], x[1], z, h, carried);
+    Leg legs[2];
+    int count = legs_between(x, v, h, legs);
+    for (int i = 0; i < count; i++) {
+      const Leg* leg = legs + i;
+      double mean = mean_velocity(leg);
+      friction_step(device, stretch_of(device, middle_of(leg)), mean, z, leg->time,
+                    load_on_bristle(device, mean, carried));
     }
   }
   if (device->ncontrol) {

@@ -20,6 +20,8 @@ _AT_ONCE = 4096
 # longest step in times of the series element, and share of it from which on one will do: the motion
 # within a piece is of an even acceleration
 _RESOLVED, _SHORT = 0.2, 0.1
+# share of a spacing by which a turn of the motion is away from a sample that it is not at
+_AT_SAMPLE = 1e-6
 
 
 def device_mjcf(
@@ -229,14 +231,14 @@ def _turns(h: float, x: NDArray, v: NDArray) -> dict[int, tuple[tuple[float, flo
     """
     turning = np.flatnonzero(v[:-1] * v[1:] < 0)
     begin, end = v[turning], v[turning + 1]
-    times = h * begin / (begin - end)
-    places = x[turning] + 0.5 * begin * times
+    shares = begin / (begin - end)
+    places = x[turning] + 0.5 * begin * shares * h
     behind = x[turning + 1] - places
-    rows = zip(turning, times, 0.5 * begin, behind, behind * end > 0, strict=True)
+    between = (shares > _AT_SAMPLE) & (shares < 1.0 - _AT_SAMPLE) & (behind * end > 0)
+    rows = zip(turning[between], shares[between] * h, begin[between], behind[between], strict=True)
     return {
-        int(i): ((float(time), float(velocity)), (float(h - time), float(way / (h - time))))
-        for i, time, velocity, way, goes_back in rows
-        if goes_back
+        int(i): ((float(time), float(0.5 * speed)), (float(h - time), float(way / (h - time))))
+        for i, time, speed, way in rows
     }
 
 

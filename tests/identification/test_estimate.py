@@ -111,10 +111,11 @@ def test_profile_of_a_linear_parameter_is_the_normal_interval() -> None:
         assert high == pytest.approx(value + 1.96 * error, abs=0.03 * error)
 
 
-def test_an_interval_is_open_where_the_data_set_no_end() -> None:
+@pytest.mark.parametrize("stiffness", [1e8, 1e10])
+def test_an_interval_is_open_where_the_data_set_no_end(stiffness: float) -> None:
     """Bristles that yield within a fraction of the noise could be as stiff as they like."""
     truth = Device(inertance=50, viscous=100, friction="dahl", coulomb_force=20,
-                   bristle_stiffness=1e8)  # fmt: skip
+                   bristle_stiffness=stiffness)  # fmt: skip
     data = problem(truth, 60.0)
     fit = search(data, law_named("dahl"), {}).best
     _, error = parameter_errors(fit)["bristle_stiffness"]
@@ -123,21 +124,7 @@ def test_an_interval_is_open_where_the_data_set_no_end() -> None:
     )
     assert high is None
     assert low is not None
-    assert low < 1e8
-
-
-def test_an_interval_is_open_where_bristles_are_stiffer_than_any_that_is_told() -> None:
-    truth = Device(inertance=50, viscous=100, friction="dahl", coulomb_force=20,
-                   bristle_stiffness=1e10)  # fmt: skip
-    data = problem(truth, 60.0)
-    fit = search(data, law_named("dahl"), {}).best
-    _, error = parameter_errors(fit)["bristle_stiffness"]
-    low, high = profile_interval(
-        data, fit.model, lambda m: float(m.device().bristle_stiffness), error, 1.0
-    )
-    assert high is None
-    assert low is not None
-    assert low < 1e10
+    assert low < stiffness
 
 
 def test_bouc_wen_names_what_cannot_be_told_apart() -> None:

@@ -230,22 +230,49 @@ def ways(x: np.ndarray, v: np.ndarray, h: float) -> list[tuple[float, float, flo
     return [(x[0], place, time), (place, x[1], h - time)]
 
 
-@pytest.mark.parametrize("law", BRISTLES)
-def test_a_bristle_turns_where_the_motion_does(law: str) -> None:
+STIFF: dict[str, dict[str, float]] = {
+    "dahl": {"coulomb_force": 20.0, "bristle_stiffness": 2e7},
+    "dahl behind a play": {
+        "coulomb_force": 20.0, "bristle_stiffness": 2e7, "friction_backlash": 1e-4,
+    },
+    "lugre": {
+        "coulomb_force": 20.0, "bristle_stiffness": 2e7, "static_force": 20.0,
+        "stribeck_velocity": 1.0, "bristle_damping": 0.0,
+    },
+    "bouc_wen": {"bw_alpha": 1.0, "bw_stiffness": 2e7, "bw_beta": 5e5, "bw_gamma": 5e5},
+    "maxwell_slip": {
+        "slip_force_1": 12.0, "slip_stiffness_1": 2e7, "slip_force_2": 8.0, "slip_stiffness_2": 5e6,
+    },
+}  # fmt: skip
+"""Friction that yields between samples."""
+
+
+def stiff(name: str) -> Device:
+    return Device(friction=name.split()[0], inertance=0.0, **STIFF[name])
+
+
+@pytest.mark.parametrize("name", STIFF)
+def test_a_bristle_turns_where_the_motion_does(name: str) -> None:
     """Samples far apart, between which a bristle yields, are nearly as good as close ones."""
-    known: dict[str, float | str] = {"friction": law, "inertance": 0.0}
-    if law == "bouc_wen":
-        known |= {"bw_alpha": 1.0, "bw_stiffness": 2e7, "bw_beta": 5e5, "bw_gamma": 5e5}
-    else:
-        known |= {"coulomb_force": 20.0, "bristle_stiffness": 2e7}
-    if law == "lugre":
-        known |= {"static_force": 20.0, "stribeck_velocity": 1.0, "bristle_damping": 0.0}
-    device, fine, h = Device(**known), 64, 5e-3
+    device, fine, h = stiff(name), 64, 5e-3
     _, *close = sampled(MOTION, h / fine, 5.0)
     truth = device.along(h / fine, *close)["friction"][::fine]
     found = device.along(h, *(channel[::fine] for channel in close))["friction"]
     # at the mean velocity alone it would be 2.6 to 4 %
     assert np.sqrt(np.mean((found - truth) ** 2)) < 0.005 * np.max(np.abs(truth))
+
+
+@pytest.mark.parametrize("name", STIFF)
+@pytest.mark.parametrize("speed", [1e-18, 1e-30, 5e-324])
+def test_a_turn_at_a_sample_is_none_between_samples(name: str, speed: float) -> None:
+    """Of a motion that comes to rest in a sample, but for rounding, on either side of it."""
+    h, x = 1e-3, np.array([0.0, 3.9999e-5, 3.9999e-5, 1.9e-5])
+    v = np.array([0.08, -speed, speed, -0.04])
+    found = stiff(name).along(h, x, v, np.zeros(4))
+    rests = stiff(name).along(h, x, np.array([0.08, 0.0, 0.0, -0.04]), np.zeros(4))
+    for each in ("total", "friction", "states"):
+        assert np.isfinite(found[each]).all()
+        np.testing.assert_allclose(found[each], rests[each], rtol=1e-9)
 
 
 @pytest.mark.parametrize("law", LAWS)
