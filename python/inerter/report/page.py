@@ -175,7 +175,7 @@ def _finding(finding: Finding, diagnosis: Diagnosis) -> dict[str, Any]:
         full = max(diagnosis.baseline.rmse, finding.rmse_before)
         return round(min(100.0, max(0.0, 100 * value / full)), 2) if full > 0 else 0.0
 
-    curves, others = curves_in_words(finding.parameters)
+    curves, others = curves_in_words(text.told_values(finding))
     return {
         "name": text.finding_name(finding),
         "key": finding.effect,

@@ -62,12 +62,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
         if likely:
             names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
             effect.append(f"\nor {names}", style="dim not bold")
-        curves, others = curves_in_words(finding.parameters)
-        if finding.members[1:] == ("rate_state_friction",):
-            # what the level may change by is said in the evidence
-            others = {
-                n: v for n, v in others.items() if not (n.endswith("_effect") and _unknown(v))
-            }
+        curves, others = curves_in_words(text.told_values(finding))
         values = "\n".join(
             [
                 *(

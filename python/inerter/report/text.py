@@ -18,6 +18,9 @@ _SUPERSCRIPT = str.maketrans("-0123456789n", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹ⁿ"
 UNKNOWN = "–"
 _POWER_OF_TEN = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e([+-]?\d+)(?!\w)")
 
+# of a friction level that may go with the speed
+_OF_THE_SPEED = ("rate_effect", "age_effect")
+
 
 def number(value: float | None, digits: int = 3) -> str:
     """Such as "68.8", "65 600" or "1.2 × 10⁻⁵"; a dash where there is no finite number."""
@@ -166,3 +169,16 @@ def _plain(value: float, decimals: int) -> str:
 def _scientific(value: float, power: int, decimals: int) -> str:
     mantissa = _plain(value / 10.0**power, decimals)
     return f"{mantissa} × 10{str(power).translate(_SUPERSCRIPT)}"
+
+
+def told_values(finding: Finding) -> dict[str, ParameterValue]:
+    """Parameters of a finding that are told in a table.
+
+    By how much a friction level may go with the speed is said in words, where it is not determined.
+    """
+    may_change = finding.members[1:] == ("rate_state_friction",)
+    return {
+        name: value
+        for name, value in finding.parameters.items()
+        if not (may_change and name in _OF_THE_SPEED and value.stderr > abs(value.value))
+    }
