@@ -5,9 +5,6 @@ The page builder runs this; `python docs/figures.py` does it by hand.
 
 from __future__ import annotations
 
-import re
-import runpy
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -19,6 +16,7 @@ from inerter import Device
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from ride_figures import drawn_ride
 from strut_figures import drawn_struts
 
 Array = NDArray[np.float64]
@@ -252,21 +250,35 @@ def dampers() -> None:
     _save(figure, "dampers")
 
 
+def at_frequencies(name: str, device: Device, strokes: Mapping[float, float], place: bool) -> None:
+    """Force over displacement or over velocity, last period of sines [Hz] of amplitudes [m]."""
+    figure = Figure(figsize=(8, 3.2), layout="constrained")
+    axes: Axes = figure.subplots()
+    for frequency, amplitude in strokes.items():
+        motion = sine(frequency, 6, amplitude)
+        over, force = 1e3 * motion[1] if place else motion[2], along(device, motion)
+        axes.plot(settled(over, frequency), settled(force, frequency), label=f"{frequency:g} Hz")
+    axes.set(xlabel="displacement [mm]" if place else "velocity [m/s]", ylabel="force [N]")
+    axes.legend(loc="best", fontsize="small")
+    _save(figure, name)
+
+
+def damper_spring() -> None:
+    """A valve behind a spring: force over velocity, the same speed at three frequencies."""
+    valve = Device(
+        viscous=2000, damping_knee=0.1, damping_beyond=0.25, damping_asymmetry=0.4,
+        damper_stiffness=2e5,
+    )  # fmt: skip
+    at_frequencies("damper_spring", valve, {1.0: 0.05, 4.0: 0.0125, 12.0: 0.05 / 12}, place=False)
+
+
 def branches() -> None:
     """Two viscoelastic branches beside a spring, at three frequencies: force over displacement."""
     rubber = Device(
         stiffness=500, branch_stiffness_1=2000, branch_damping_1=300, branch_stiffness_2=1000,
         branch_damping_2=20,
     )  # fmt: skip
-    figure = Figure(figsize=(8, 3.2), layout="constrained")
-    axes: Axes = figure.subplots()
-    for frequency in (0.2, 1.0, 5.0):
-        motion = sine(frequency, 6)
-        force = settled(along(rubber, motion), frequency)
-        axes.plot(1e3 * settled(motion[1], frequency), force, label=f"{frequency:g} Hz")
-    axes.set(xlabel="displacement [mm]", ylabel="force [N]")
-    axes.legend(loc="best", fontsize="small")
-    _save(figure, "branches")
+    at_frequencies("branches", rubber, dict.fromkeys((0.2, 1.0, 5.0), AMPLITUDE), place=True)
 
 
 def inertance() -> None:
@@ -382,32 +394,7 @@ def control() -> None:
 
 def semi_active() -> None:
     """The ride of the how-to page, with its own code."""
-    page = (Path(__file__).parent / "how_to" / "semi_active.md").read_text(encoding="utf-8")
-    (car,) = re.findall(r"^```xml\n(.*?)^```", page, re.S | re.M)
-    code = re.findall(r"^```python\n(.*?)^```", page, re.S | re.M)[0]
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder) / "car.xml"
-        place.write_text(car, encoding="utf-8")
-        program = Path(folder) / "ride.py"
-        program.write_text(code.replace('"car.xml"', repr(str(place))), encoding="utf-8")
-        names = runpy.run_path(str(program))
-    figure = Figure(figsize=(9, 4.5), layout="constrained")
-    above, below = figure.subplots(2, 1, sharex=True)
-    ride, shown = names["ride"], slice(2000, 5000)
-    t = 1e-3 * np.arange(10000)[shown]
-    best = min(names["passive"], key=names["passive"].get)
-    for label, law in (
-        (f"{best} N s/m, the best constant damping", lambda body, travel: best),
-        ("skyhook", names["skyhook"]),
-    ):
-        rows = ride(law)
-        size = names["rms"](rows)
-        above.plot(t, rows[shown, 0], label=f"{label}: {size:.2f} m/s$^2$ rms", linewidth=1)
-        below.plot(t, rows[shown, 1], linewidth=1)
-    above.set(ylabel="body acceleration [m/s$^2$]")
-    above.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-    below.set(xlabel="time [s]", ylabel="damping [N s/m]")
-    _save(figure, "semi_active")
+    _save(drawn_ride(), "semi_active")
 
 
 def strut_layouts() -> None:
@@ -417,8 +404,8 @@ def strut_layouts() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
-    load_on_bristle, damping_and_stiffness, dampers, branches, inertance, series, friction_side,
-    end_stops, gas, fluid, along_the_stroke, force_map, along_each_direction, coil, aging, control,
+    load_on_bristle, damping_and_stiffness, dampers, damper_spring, branches, inertance, series,
+    friction_side, end_stops, gas, fluid, along_the_stroke, force_map, along_each_direction, coil, aging, control,
     semi_active, strut_layouts,
 )  # fmt: skip
 

@@ -14,9 +14,9 @@
 enum {
   // all that such a device may have
   BLOCK_PARTS = PART_VARYING | PART_FLYWHEEL | PART_PIPE | PART_GAS | PART_STOPS | PART_BRANCHES |
-      PART_DAMPER | PART_FRICTION_CURVE | PART_FRICTION_BACK | PART_INERTANCE_CURVE |
-      PART_INERTANCE_BACK | PART_FORCE_CURVE | PART_VISCOUS_CURVE | PART_FORCE_MAP | PART_SERIES |
-      PART_BACKLASH,
+      PART_DAMPER | PART_DAMPER_SPRING | PART_FRICTION_CURVE | PART_FRICTION_BACK |
+      PART_INERTANCE_CURVE | PART_INERTANCE_BACK | PART_FORCE_CURVE | PART_VISCOUS_CURVE |
+      PART_FORCE_MAP | PART_SERIES | PART_BACKLASH,
   // what makes the force between the terminals more than a cubic spring and a quadratic damper
   BENT_PARTS = PART_STOPS | PART_DAMPER | PART_VISCOUS_CURVE | PART_FORCE_MAP
 };
@@ -57,6 +57,21 @@ static void branches_along(const InerterDevice* p, const FrictionPath* path, con
       }
     }
     e[k] = now;
+  }
+}
+
+// Force of dampers behind a spring at the samples of a path; w: their state.
+static void damper_spring_along(const InerterDevice* p, const FrictionPath* path, const double* a,
+                                double* w, double* forces) {
+  for (int i = path->first; i < path->last; i++) {
+    if (i) {
+      Way way = way_between(path->x + i - 1, path->v + i - 1, a + i - 1, path->h);
+      damper_spring_follow(p, &way, w, path->h);
+    }
+    forces[i - path->first] = damper_spring_force(p, *w);
+    if (path->states) {
+      path->states[(size_t)i * (size_t)path->apart] = *w;
+    }
   }
 }
 
@@ -131,8 +146,8 @@ static SEVERAL_AT_ONCE void stretches(const InerterDevice* p, int n, const doubl
 void blocks_along(const InerterDevice* p, int n, double h, const double* x, const double* v,
                   const double* a, double* z, double* total, double* friction, double* states) {
   double block[FRICTION_BLOCK] = {0}, stretch[FRICTION_BLOCK], relaxing[FRICTION_BLOCK],
-         carried[FRICTION_BLOCK] = {0};
-  int branch = branch_index(p), series = series_index(p);
+         damping[FRICTION_BLOCK], carried[FRICTION_BLOCK] = {0};
+  int branch = branch_index(p), series = series_index(p), damper = damper_index(p);
   SeriesExact steps;
   series_exact_steps(p, h, &steps);
   for (int first = 0; first < n; first += FRICTION_BLOCK) {
@@ -147,6 +162,10 @@ void blocks_along(const InerterDevice* p, int n, double h, const double* x, cons
     if (has(p, PART_BRANCHES)) {
       path.states = states ? states + branch : NULL;
       branches_along(p, &path, a, z + branch, relaxing);
+    }
+    if (has(p, PART_DAMPER_SPRING)) {
+      path.states = states ? states + damper : NULL;
+      damper_spring_along(p, &path, a, z + damper, damping);
     }
     double* sum = total ? total + first : carried;
     if (has(p, PART_SERIES)) {
@@ -163,6 +182,9 @@ void blocks_along(const InerterDevice* p, int n, double h, const double* x, cons
     add_parallel(p, size, stretch, v + first, sum);
     if (has(p, PART_BRANCHES)) {
       add(size, relaxing, sum);
+    }
+    if (has(p, PART_DAMPER_SPRING)) {
+      add(size, damping, sum);
     }
     if (p->friction != INERTER_FRICTION_none) {
       add(size, forces, sum);

@@ -172,6 +172,42 @@ static int check_branches(const InerterDevice* device, char* message) {
   return 0;
 }
 
+static int check_damper_spring(const InerterDevice* device, char* message) {
+  double stiffness = device->damper_stiffness;
+  if (stiffness == 0) {
+    return 0;
+  }
+  if (device->control == INERTER_CONTROL_viscous ||
+      device->control == INERTER_CONTROL_quadratic_damping) {
+    return refuse(message,
+                  "damper_stiffness is %g N/m and control is \"%s\": dampers behind a spring "
+                  "cannot be set by a control; remove one of the two",
+                  stiffness, inerter_control_name(device->control));
+  }
+  if (inerter_has_curve(device, INERTER_STROKE_viscous)) {
+    return refuse(message,
+                  "damper_stiffness is %g N/m, and viscous changes along the stroke: dampers "
+                  "behind a spring cannot; remove damper_stiffness or viscous_curve and "
+                  "viscous_periods",
+                  stiffness);
+  }
+  if (device->viscous == 0) {
+    return refuse(message,
+                  "damper_stiffness is %g N/m, but viscous is 0 N*s/m: behind the spring there is "
+                  "nothing that holds it at rest; give viscous > 0 N*s/m or remove "
+                  "damper_stiffness",
+                  stiffness);
+  }
+  if (device->damping_exponent < 0 && device->damping_knee > 0) {
+    return refuse(message,
+                  "damper_stiffness is %g N/m and damping_exponent %g: damping that falls with the "
+                  "speed has no steady motion behind a spring; give damping_exponent >= 0 or "
+                  "remove damper_stiffness",
+                  stiffness, device->damping_exponent);
+  }
+  return 0;
+}
+
 static int check_stops(const InerterDevice* device, char* message) {
   int lower = !isnan(device->stop_lower), upper = !isnan(device->stop_upper);
   if (!lower && !upper) {
@@ -343,7 +379,8 @@ static uint32_t parts_of(const InerterDevice* p) {
          (gas ? PART_GAS : 0) | (pipe || gas || brake ? PART_FLYWHEEL : 0) |
          (series ? PART_SERIES : 0) | (p->backlash > 0 ? PART_BACKLASH : 0) |
          (stops ? PART_STOPS : 0) | (branch_count(p) ? PART_BRANCHES : 0) |
-         (inerter_shapes_damping(p) ? PART_DAMPER : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
+         (inerter_shapes_damping(p) ? PART_DAMPER : 0) |
+         (p->damper_stiffness > 0 ? PART_DAMPER_SPRING : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
 int device_check(InerterDevice* device, char* message) {
@@ -358,10 +395,10 @@ int device_check(InerterDevice* device, char* message) {
   }
   return check_law(device, message) || check_ranges(device, message) ||
                  check_friction(device, message) || check_load(device, message) ||
-                 check_branches(device, message) || check_stops(device, message) ||
-                 check_gas(device, message) || check_channel(device, message) ||
-                 check_series(device, message) || curve_check(device, message) ||
-                 map_check(device, message)
+                 check_branches(device, message) || check_damper_spring(device, message) ||
+                 check_stops(device, message) || check_gas(device, message) ||
+                 check_channel(device, message) || check_series(device, message) ||
+                 curve_check(device, message) || map_check(device, message)
              ? -1
              : 0;
 }
@@ -392,7 +429,9 @@ void inerter_find_parts(InerterDevice* device) {
                           ? slip_count(device)
                           : inerter_friction_nstate(device->friction);
   device->nbranch = branch_count(device);
+  device->ndamper = device->damper_stiffness > 0;
   device->ncontrol = device->control != INERTER_CONTROL_force && device->control_lag > 0;
   device->nstate = device->nfriction + (has(device, PART_SERIES) ? 2 : 0) +
-                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch + device->ncontrol;
+                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch + device->ndamper +
+                   device->ncontrol;
 }

@@ -11,8 +11,8 @@
 // falls; for v < 0 damping_knee_back and damping_beyond_back, a valve of its own; c [N s/m] viscous
 // (c(x) along the stroke), c2 quadratic_damping. Passive for |kappa| < 1, r >= 0. The force is
 // continuous, its slope jumps at v = 0 with kappa. With n = 2 and alpha = -1 the brake of Smythe
-// (1942), otherwise the viscosity of Carreau (1972) and Yasuda (1979). Not modelled: hysteresis of
-// the valve, cavitation.
+// (1942), otherwise the viscosity of Carreau (1972) and Yasuda (1979). Behind a spring, which makes
+// its curve a loop: damper_spring.c. Not modelled: cavitation.
 
 #include "laws.h"
 
@@ -28,7 +28,23 @@ static double bend(const InerterDevice* p, double knee, double v) {
                           pow(1 + pow(ratio, -n), -lost / n);
 }
 
-double damper_shaped(const InerterDevice* p, double viscous, double v) {
+// its slope over v: (1 + r^n)^(-lost / n - 1) (1 + alpha r^n), r = |v| / knee
+static double bend_slope(const InerterDevice* p, double knee, double v) {
+  double ratio = fabs(v) / knee, n = p->damping_sharpness, alpha = p->damping_exponent;
+  double power = -(1 - alpha) / n - 1;
+  if (n == 2 && alpha == 0) {
+    double size = 1 + ratio * ratio;
+    return 1 / (size * sqrt(size));
+  }
+  if (ratio <= 1) {
+    double some = pow(ratio, n);
+    return pow(1 + some, power) * (1 + alpha * some);
+  }
+  double some = pow(ratio, -n);
+  return pow(ratio, alpha - 1) * pow(1 + some, power) * (some + alpha);
+}
+
+double damper_law(const InerterDevice* p, double viscous, double v) {
   double knee = v < 0 ? p->damping_knee_back : p->damping_knee;
   double bent = v;
   if (knee > 0) {
@@ -37,7 +53,23 @@ double damper_shaped(const InerterDevice* p, double viscous, double v) {
   }
   double force = viscous * bent + p->quadratic_damping * fabs(v) * v;
   double side = v < 0 ? -p->damping_asymmetry : p->damping_asymmetry;
-  return force * (1 + side) - p->damping_held * v;
+  return force * (1 + side);
+}
+
+double damper_slope(const InerterDevice* p, double viscous, double v) {
+  double knee = v < 0 ? p->damping_knee_back : p->damping_knee;
+  double bent = 1;
+  if (knee > 0) {
+    double beyond = v < 0 ? p->damping_beyond_back : p->damping_beyond;
+    bent = beyond + (1 - beyond) * bend_slope(p, knee, v);
+  }
+  double slope = viscous * bent + 2 * p->quadratic_damping * fabs(v);
+  double side = v < 0 ? -p->damping_asymmetry : p->damping_asymmetry;
+  return slope * (1 + side);
+}
+
+double damper_shaped(const InerterDevice* p, double viscous, double v) {
+  return damper_law(p, viscous, v) - p->damping_held * v;
 }
 
 double damper_over_step(const InerterDevice* p, double viscous, double v, double v1) {
@@ -54,8 +86,19 @@ static double steepest(double knee, double beyond) {
   return knee > 0 ? fmax(1, beyond) : 1;
 }
 
-double damper_steepest(const InerterDevice* p) {
+double inerter_steepest_damping(const InerterDevice* p) {
   double forth = steepest(p->damping_knee, p->damping_beyond) * (1 + p->damping_asymmetry);
   double back = steepest(p->damping_knee_back, p->damping_beyond_back) * (1 - p->damping_asymmetry);
   return p->viscous * fmax(forth, back);
+}
+
+// least slope of D while x grows, or shrinks
+static double flattest(double knee, double beyond) {
+  return knee > 0 ? fmin(1, beyond) : 1;
+}
+
+double inerter_flattest_damping(const InerterDevice* p) {
+  double forth = flattest(p->damping_knee, p->damping_beyond) * (1 + p->damping_asymmetry);
+  double back = flattest(p->damping_knee_back, p->damping_beyond_back) * (1 - p->damping_asymmetry);
+  return p->viscous * fmin(forth, back);
 }

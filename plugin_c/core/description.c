@@ -138,6 +138,9 @@ const char* inerter_state_name(const InerterDevice* device, int i) {
   if (device->ncontrol && i == device->nstate - 1) {
     return "control_change";
   }
+  if (device->ndamper && i == damper_index(device)) {
+    return "damper_velocity";
+  }
   if (i >= branch_index(device)) {
     return kBranch[i - branch_index(device)];
   }

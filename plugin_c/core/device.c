@@ -86,6 +86,9 @@ static int slips(const InerterDevice* device) {
 // T without friction
 static double beside_force(const InerterDevice* device, double stretch, double v, const double* z) {
   double force = parallel_force(device, stretch, v);
+  if (has(device, PART_DAMPER_SPRING)) {
+    force += damper_spring_force(device, z[damper_index(device)]);
+  }
   return has(device, PART_BRANCHES) ? force + branches_force(device, z + branch_index(device))
                                     : force;
 }
@@ -111,6 +114,10 @@ void inerter_state_rate(const InerterDevice* device, double x, double v, double 
   if (has(device, PART_BRANCHES)) {
     branches_rate(device, v, z + branch_index(device), rate + branch_index(device));
   }
+  if (has(device, PART_DAMPER_SPRING)) {
+    int at = damper_index(device);
+    rate[at] = damper_spring_rate(device, v, z[at]);
+  }
   if (device->ncontrol) {
     rate[control_index(device)] = control_rate(device, z[control_index(device)]);
   }
@@ -133,16 +140,38 @@ void inerter_state_step(const InerterDevice* device, double x, double v, double 
   if (has(device, PART_BRANCHES)) {
     branches_step(device, v, z + branch_index(device), h);
   }
+  if (has(device, PART_DAMPER_SPRING)) {
+    damper_spring_follow(device, &(Way){.v = v}, z + damper_index(device), h);
+  }
   if (device->ncontrol) {
     z[control_index(device)] = control_step(device, z[control_index(device)], h);
   }
 }
 
+// all states 0, but dampers behind a spring, which have followed
+static void begin_states(const InerterDevice* device, double v, double* z) {
+  for (int i = 0; i < device->nstate; i++) {
+    z[i] = 0;
+  }
+  if (has(device, PART_DAMPER_SPRING)) {
+    z[damper_index(device)] = v;
+  }
+}
+
+// total force with the first state at a value, the others as above
+static double force_with_first(const InerterDevice* device, double x, double v, double a,
+                               double first) {
+  double z[INERTER_MAXSTATE] = {0};
+  begin_states(device, v, z);
+  z[0] = first;
+  return inerter_force(device, x, v, a, z).total;
+}
+
 // the bristle's state for a total force; every law is linear in its state
 static double bristle_of_force(const InerterDevice* device, double x, double v, double a,
                                double force) {
-  double at_zero = inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){0}).total;
-  double at_one = inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){1}).total;
+  double at_zero = force_with_first(device, x, v, a, 0);
+  double at_one = force_with_first(device, x, v, a, 1);
   double z = (force - at_zero) / (at_one - at_zero);
   if (at_one == at_zero || isnan(z)) {
     return 0;
@@ -169,7 +198,7 @@ static double play_of_force(const InerterDevice* device, double x, double v, dou
   InerterDevice rigid = *device;
   rigid.friction_backlash = 0;
   double z = bristle_of_force(&rigid, x, v, a, force);
-  double wanted = force - inerter_force(device, x, v, a, (double[INERTER_MAXSTATE]){0}).total;
+  double wanted = force - force_with_first(device, x, v, a, 0);
   if (device->friction == INERTER_FRICTION_lugre && z * wanted <= 0) {
     // its damper bears all of it where the contact begins
     return copysign(device->friction_backlash, wanted) * (wanted != 0);
@@ -179,10 +208,8 @@ static double play_of_force(const InerterDevice* device, double x, double v, dou
 
 void inerter_state_of_force(const InerterDevice* device, double x, double v, double a, double force,
                             double* z) {
+  begin_states(device, v, z);
   if (!has(device, PART_SERIES)) {
-    for (int i = 0; i < device->nstate; i++) {
-      z[i] = 0;
-    }
     if (law_of(device)->several && device->nfriction) {
       double wanted = force - inerter_force(device, x, v, a, z).total;
       law_of(device)->several->of_force(device, stretch_of(device, x), v, wanted,
@@ -191,9 +218,6 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
       z[0] = play_of_force(device, x, v, a, force);
     }
     return;
-  }
-  for (int i = 0; i < device->nstate; i++) {
-    z[i] = 0;
   }
   double* series = z + series_index(device);
   series_of_force(device, v, 0, series);
@@ -212,10 +236,6 @@ void inerter_state_of_force(const InerterDevice* device, double x, double v, dou
 double inerter_bristle(const InerterDevice* device, double* damping) {
   *damping = device->friction == INERTER_FRICTION_lugre ? device->bristle_damping : 0;
   return has_bristle(device) ? law_of(device)->stiffness(device) : 0;
-}
-
-double inerter_steepest_damping(const InerterDevice* device) {
-  return damper_steepest(device);
 }
 
 double inerter_viscous(const InerterDevice* device, double x) {
@@ -309,6 +329,9 @@ double inerter_stored_energy(const InerterDevice* device, double x, double v, co
   if (has(device, PART_BRANCHES)) {
     energy += branches_energy(device, z + branch_index(device));
   }
+  if (has(device, PART_DAMPER_SPRING)) {
+    energy += damper_spring_energy(device, z[damper_index(device)]);
+  }
   return has(device, PART_STOPS) ? energy + stop_energy(device, stretch) : energy;
 }
 
@@ -346,6 +369,9 @@ static double power_beside_slip(const InerterDevice* device, double x, double v,
   }
   if (has(device, PART_BRANCHES)) {
     power += branches_heat(device, z + branch_index(device));
+  }
+  if (has(device, PART_DAMPER_SPRING)) {
+    power += damper_spring_heat(device, z[damper_index(device)]);
   }
   if (has(device, PART_FORCE_MAP)) {
     power += map_heat(device, stretch, v);

@@ -1,8 +1,8 @@
 // A device: forces at the terminals, and an inertance, perhaps behind a series element.
 //
 //   F = T(x, v, z) + N + mu sign(v) |N|
-//   T = c(x) v + c2 v|v| + k x + k3 x^3 + f(x) + F_map(x, v) + F_0 + F_friction + F_stops
-//       + F_branches
+//   T = D(x, v) + k x + k3 x^3 + f(x) + F_map(x, v) + F_0 + F_friction + F_stops + F_branches
+//   D = c(x) v + c2 v|v|, bent (damper.c), at w in place of v behind a spring (damper_spring.c)
 //   N = B(x, v) a + R(x, v) + G(x, v)                              rigid
 //   N = F_s,  B(y, w) w' + R(y, w) + G(y, w) = F_s,  y = x - s     with a series element
 //   F = T + F_s,  F_s = N + F_friction(y, w) + mu sign(w) |N|      friction_side = flywheel
@@ -17,8 +17,9 @@
 // positive. For a rotational device read rad, N m and kg m^2.
 //
 // States z, each only where it is needed, in this order: the friction law's, s, w, the position of
-// the free play, the springs of the viscoelastic branches (branches.c), the change of a parameter
-// that the control sets (control.c). All 0: unloaded, the flywheel at rest, in the middle of the
+// the free play, the springs of the viscoelastic branches (branches.c), the velocity over dampers
+// behind a spring (damper_spring.c), the change of a parameter that the control sets
+// (control.c). All 0: unloaded, the flywheel at rest, in the middle of the
 // play, the parameter as stated.
 //
 // This file and its neighbours are plain C17: no allocation, no globals, no simulator.
@@ -85,7 +86,7 @@ enum {
   INERTER_MAXSLIP = 8,                    // elements of maxwell_slip
   INERTER_MAXFRICTION = INERTER_MAXSLIP,  // states of a friction law
   INERTER_MAXBRANCH = 3,
-  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH + 1,
+  INERTER_MAXSTATE = INERTER_MAXFRICTION + 3 + INERTER_MAXBRANCH + 2,
   INERTER_MAXCURVE = 64,  // most values of a curve
   INERTER_MAXPERIOD = 8,  // most periods of a sum
   INERTER_MAXPLACE = 24,  // most rows and columns of a force map
@@ -133,6 +134,7 @@ typedef struct InerterDevice_ {
   uint64_t given[INERTER_NGIVEN];  // see inerter_is_given
   uint32_t parts;                  // which parts there are (laws.h); set by inerter_finish
   int nstate, nfriction, nbranch;  // states, of the friction law, of branches; by inerter_finish
+  int ndamper;                     // 1: a state of the dampers behind a spring
   int ncontrol;                    // 1: a state of the control
   double control_rest, command;    // value as stated; the one that is commanded (inerter_command)
   double damping_held;             // of `viscous`, what an engine takes care of: left out of forces
@@ -145,9 +147,10 @@ typedef struct InerterDevice_ {
 static inline int inerter_is_given(const InerterDevice* device, int i) {
   return (int)(device->given[i / 64] >> i % 64 & 1);
 }
-// Whether damping bends or differs by direction: no engine's damping can hold it.
+// Whether damping bends, differs by direction or is behind a spring: no engine's damping can hold
+// it.
 static inline int inerter_shapes_damping(const InerterDevice* device) {
-  return device->damping_asymmetry != 0 ||
+  return device->damping_asymmetry != 0 || device->damper_stiffness > 0 ||
          (device->damping_knee > 0 && device->damping_beyond != 1) ||
          (device->damping_knee_back > 0 && device->damping_beyond_back != 1);
 }
@@ -397,6 +400,8 @@ INERTER_API double inerter_map_steepest(const InerterDevice* device, double* ove
 INERTER_API double inerter_viscous(const InerterDevice* device, double x);
 // the steepest slope of the viscous damper's force over the velocity
 INERTER_API double inerter_steepest_damping(const InerterDevice* device);
+// The least of the same; 0 where it levels off.
+INERTER_API double inerter_flattest_damping(const InerterDevice* device);
 
 // Whether x and z are finite numbers that lie where the laws hold: 1, or 0 with a message that
 // names law, value and limit. Every other function answers a number that is none with such a

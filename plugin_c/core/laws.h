@@ -19,7 +19,8 @@ enum {
   PART_STOPS = 1 << 6,
   PART_WHEEL_FRICTION = 1 << 7,  // friction at the flywheel behind a series element
   PART_BRANCHES = 1 << 8,
-  PART_DAMPER = 1 << 9,  // damping that bends, or differs by direction
+  PART_DAMPER = 1 << 9,  // damping that bends, differs by direction, or is behind a spring
+  PART_DAMPER_SPRING = 1 << 10,
 
   // along the stroke (curve.c); that of friction is in friction.h
   PART_FRICTION_BACK = 1 << 17,
@@ -218,14 +219,29 @@ static inline double damping_at(const InerterDevice* device, double stretch) {
              : device->viscous;
 }
 
-// damper.c: force at a velocity, with c(x); the same at the end v1 of a step from v; the steepest
-// slope of c over the velocity
+// damper.c: force at a velocity, with c(x), and its slope; the force without what an engine takes
+// care of; that at the end v1 of a step from v
+double damper_law(const InerterDevice* p, double viscous, double v);
+double damper_slope(const InerterDevice* p, double viscous, double v);
 double damper_shaped(const InerterDevice* p, double viscous, double v);
 double damper_over_step(const InerterDevice* p, double viscous, double v, double v1);
-double damper_steepest(const InerterDevice* p);
 
-// force of the dampers between the terminals, at displacement `stretch`
+// damper_spring.c, w: velocity over dampers behind a spring, a state after those of branches; over
+// a step as branches_over_step
+double damper_spring_rate(const InerterDevice* p, double v, double w);
+void damper_spring_follow(const InerterDevice* p, const Way* way, double* w, double h);
+double damper_spring_force(const InerterDevice* p, double w);
+double damper_spring_over_step(const InerterDevice* p, double v1, double* w, double h,
+                               double mobility);
+double damper_spring_energy(const InerterDevice* p, double w);
+double damper_spring_heat(const InerterDevice* p, double w);
+
+// force of the dampers between the terminals, at displacement `stretch`; of those behind a spring
+// nothing but what an engine takes care of
 static inline double damper_force(const InerterDevice* device, double stretch, double v) {
+  if (has(device, PART_DAMPER_SPRING)) {
+    return -device->damping_held * v;
+  }
   double viscous = damping_at(device, stretch);
   return has(device, PART_DAMPER) ? damper_shaped(device, viscous, v)
                                   : quadratic_damper(device, viscous, v);
@@ -316,7 +332,12 @@ static inline const double* branch_element(const InerterDevice* p, int i) {
   return (const double*)p + offsetof(InerterDevice, branch_stiffness_1) / sizeof(double) + 2 * i;
 }
 static inline int branch_index(const InerterDevice* p) {
-  return p->nstate - p->nbranch - p->ncontrol;
+  return p->nstate - p->nbranch - p->ndamper - p->ncontrol;
+}
+
+// place of the velocity over the dampers behind a spring
+static inline int damper_index(const InerterDevice* p) {
+  return branch_index(p) + p->nbranch;
 }
 
 // place of the control's state, the last

@@ -32,6 +32,9 @@ static void step_between(const InerterDevice* device, const double* x, const dou
   if (has(device, PART_BRANCHES)) {
     branches_follow(device, &way, z + branch_index(device), h);
   }
+  if (has(device, PART_DAMPER_SPRING)) {
+    damper_spring_follow(device, &way, z + damper_index(device), h);
+  }
   if (has(device, PART_SERIES)) {
     series_step(device, start, &way, z, z + series_index(device), h);
   }

@@ -6,6 +6,7 @@
 //   end stops: at x + h v1, v1
 //   bristle: z1 = step(x, v1, z, h), force at z + share (z1 - z), its damper at the mean rate
 //   (z1 - z) / h, however soon within the step the bristle is bent; its load is N over the step
+//   dampers behind a spring: w1 by a backward step, force at D(w) + share (D(w1) - D(w))
 //   rigid inertance: B a + R + G at (x, v), the dampers of G with their slope times (v1 - v)
 //   series element: series_step.c
 //   share(k, m) = max(0, 1 - 1 / (h^2 k m)), m = mobility [1/kg] of the masses at the spring's ends
@@ -162,9 +163,13 @@ InerterForce inerter_force_over_step(const InerterDevice* device, double x, doub
       friction = friction_over_step(device, stretch, v, v1, h, share, load, next);
     }
     double spring = spring_force(device, stretch);
-    double damper = has(device, PART_DAMPER)
+    double damper = has(device, PART_DAMPER) && !has(device, PART_DAMPER_SPRING)
                         ? damper_over_step(device, damping_at(device, stretch), v, v1)
                         : damper_force(device, stretch, v1);
+    if (has(device, PART_DAMPER_SPRING)) {
+      double* w = next + damper_index(device);
+      damper += damper_spring_over_step(device, v1, w, h, mobility);
+    }
     double stops = has(device, PART_STOPS) ? stop_force(device, stretch + h * v1, v1) : 0;
     if (has(device, PART_FORCE_MAP)) {
       Tangent map = map_force(device, stretch, v);

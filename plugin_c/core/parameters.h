@@ -33,6 +33,8 @@
     "the knee while x shrinks; unset: damping_knee")                                               \
   X(damping_beyond_back, "1", NAN, 0, INFINITY, CLOSED, "",                                        \
     "the slope beyond it while x shrinks; unset: damping_beyond")                                  \
+  X(damper_stiffness, "N/m", 0, 0, INFINITY, CLOSED, "",                                           \
+    "stiffness in series with the dampers between the terminals, k_d; 0: rigid")                   \
   X(stiffness_cubic, "N/m^3", 0, -INFINITY, INFINITY, CLOSED, "", "force per x^3, k3")             \
   X(force_offset, "N", 0, -INFINITY, INFINITY, CLOSED, "", "constant force")                       \
   X(load_friction, "1", 0, 0, 1, CLOSED, "", "friction per inertance force, mu")                   \

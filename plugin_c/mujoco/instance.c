@@ -98,7 +98,8 @@ static InerterDevice matter_of(const InerterDevice* share) {
   matter.inertance_gradient = share->inertance_gradient;
   matter.inertance_curvature = share->inertance_curvature;
   matter.inertance_speed_gradient = share->inertance_speed_gradient;
-  matter.viscous = share->viscous;
+  // behind a spring dampers hold nothing by themselves
+  matter.viscous = share->damper_stiffness > 0 ? 0 : share->viscous;
   matter.damping_asymmetry = share->damping_asymmetry;
   matter.damping_knee = share->damping_knee;
   matter.damping_beyond = share->damping_beyond;
@@ -158,6 +159,9 @@ void instance_refresh(const mjModel* m, Instance* self, int force) {
 
   // an inertance that is not the engine's constant is the plugin's as a whole, be it 0 at present
   self->share = *device;
+  if (undamped && device->damper_stiffness > 0) {
+    self->share.quadratic_damping = 0;
+  }
   if (undamped && inerter_has_curve(device, INERTER_STROKE_viscous)) {
     InerterCurve* curve = &self->share.curve[INERTER_STROKE_viscous];
     curve->nvalue = curve->nperiod = 0;

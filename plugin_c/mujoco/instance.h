@@ -130,9 +130,9 @@ static inline int instance_has_sharp_friction(const InerterDevice* device) {
          (!instance_has_bristle(device) || device->friction == INERTER_FRICTION_rate_state);
 }
 
-// Whether a device has viscoelastic branches.
+// Whether a device has viscoelastic branches, or dampers behind a spring.
 static inline int instance_has_branches(const InerterDevice* device) {
-  return device->nbranch > 0;
+  return device->nbranch > 0 || device->ndamper > 0;
 }
 
 // Whether friction acts at the flywheel, behind a series element.

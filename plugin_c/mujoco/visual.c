@@ -60,7 +60,7 @@ static mjtNum flywheel(const mjModel* m, const mjData* d, const Instance* self, 
   if (!instance_has_series(device)) {
     return x;
   }
-  int nstate = inerter_nstate(device) - device->nbranch;
+  int nstate = inerter_nstate(device) - device->nbranch - device->ndamper - device->ncontrol;
   const mjtNum* state = d->act + instance_act(m, self);
   if (device->backlash > 0) {
     *loose = fabs(state[nstate - 1]) < device->backlash;

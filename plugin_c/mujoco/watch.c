@@ -236,7 +236,14 @@ void watch_stiffness(const mjModel* m, Instance* self) {
   consider(&fastest, sqrt(gas * wheel), swing, "the gas spring", "");
   if (stages) {
     double both = light + wheel;
-    consider(&fastest, inerter_steepest_damping(p) * light, decay, "viscous", implicit);
+    if (p->damper_stiffness > 0) {
+      consider(&fastest, sqrt(p->damper_stiffness * light), swing, "damper_stiffness", implicit);
+      double flattest = inerter_flattest_damping(p);
+      consider(&fastest, flattest > 0 ? p->damper_stiffness / flattest : 0, decay,
+               "the relaxation of the dampers behind damper_stiffness", implicit);
+    } else {
+      consider(&fastest, inerter_steepest_damping(p) * light, decay, "viscous", implicit);
+    }
     consider(&fastest, p->flywheel_viscous * wheel, decay, "flywheel_viscous", implicit);
     consider(&fastest, rise * light, decay, "force_map over velocity", implicit);
     consider(&fastest, sqrt(p->stop_stiffness * light), swing, "stop_stiffness", implicit);

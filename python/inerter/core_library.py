@@ -200,7 +200,7 @@ def device_type() -> type[ctypes.Structure]:
     words = (len(parameters()) + 67) // 64
     fields += [("given", ctypes.c_uint64 * words)]
     fields += [("parts", ctypes.c_uint32), ("nstate", ctypes.c_int), ("nfriction", ctypes.c_int)]
-    fields += [("nbranch", ctypes.c_int), ("ncontrol", ctypes.c_int)]
+    fields += [(name, ctypes.c_int) for name in ("nbranch", "ndamper", "ncontrol")]
     fields += [("control_rest", ctypes.c_double), ("command", ctypes.c_double)]
     known = type("_CKnown", (ctypes.Structure,), {"_fields_": fields})
     # what follows is read by functions of the core

@@ -119,8 +119,10 @@ class DeviceInModel:
             (known.damping_knee, known.damping_beyond),
             (known.damping_knee_back, known.damping_beyond_back),
         )
-        return known.damping_asymmetry != 0 or any(
-            knee > 0 and beyond != 1 for knee, beyond in bends
+        return (
+            known.damping_asymmetry != 0
+            or known.damper_stiffness > 0
+            or any(knee > 0 and beyond != 1 for knee, beyond in bends)
         )
 
     def stated(self, model: mujoco.MjModel) -> dict[str, float | str]:

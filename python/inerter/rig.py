@@ -143,8 +143,8 @@ def simulate_along(
     stages of RK4 short enough for it. This is what `Device.along` does, so that both agree to
     rounding (1e-9 of the force for inertances far below the table's 1e12 kg), with a series element
     to the error of its second-order steps, with load friction on a bristle to that of first-order
-    ones. Viscoelastic branches take these steps at constant velocity too, where `Device.along`
-    follows the quintic.
+    ones. Viscoelastic branches and dampers behind a spring take these steps at constant velocity
+    too, where `Device.along` follows the quintic.
 
     Parameters
     ----------

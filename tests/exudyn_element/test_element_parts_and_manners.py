@@ -73,6 +73,10 @@ PARTS: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[float, float] | Non
     "branches": (
         {"branch_stiffness_1": 300.0, "branch_damping_1": 60.0}, {"branch_damping_1": 20.0}, None,
     ),
+    "dampers behind a spring": (
+        {"viscous": 20.0, "damping_knee": 0.1, "damping_beyond": 0.3, "quadratic_damping": 5.0,
+         "damping_asymmetry": 0.3, "damper_stiffness": 400.0}, {"damper_stiffness": 900.0}, None,
+    ),
     "control of the damping": (
         {"viscous": 5.0, "control": "viscous", "control_lower": 1.0, "control_upper": 60.0,
          "control_lag": 0.05}, {"control_lag": 0.1}, None,

@@ -47,6 +47,7 @@ BESIDE = {
         "none",
         {"damping_power_knee": 0.01, "damping_beyond": 0.0, "damping_exponent": 0.35},
     ),
+    "dampers behind a spring": ("none", {"damping_asymmetry": 0.4, "damper_stiffness": 5e3}),
     "a spring about another place": ("none", {"rest_length": 0.004}),
     "asymmetric friction": ("coulomb", {"friction_asymmetry": 0.3}),
     "friction along x": ("dahl", {"friction_gradient": 10.0, "friction_curvature": 300.0}),

@@ -84,6 +84,12 @@ def draw(rng: np.random.Generator, law: str) -> dict[str, Any]:
         p |= {"control": wanted, "control_lower": 0.5 * value, "control_upper": 2.0 * value}
         p[wanted] = value
         p["control_lag"] = float(rng.choice([0.0, 0.1]))
+    # by a source of its own, so that what follows is drawn as it was
+    own = np.random.default_rng(int(1e6 * p["viscous"]))
+    rises = p.get("damping_exponent", 0.0) >= 0.0 or not p["damping_knee"]
+    fixed = {"viscous_curve", "viscous_periods"}.isdisjoint(p) and p.get("control") != "viscous"
+    if rises and fixed and own.random() < 0.6:
+        p["damper_stiffness"] = around(own, 1e4)
     return p
 
 
@@ -93,6 +99,7 @@ def drawn_states(rng: np.random.Generator, device: Device, p: dict[str, Any]) ->
     for name in device.state_names:
         size = {
             "series_deflection": 1e-3, "flywheel_velocity": 0.3, "gap_position": 0.0,
+            "damper_velocity": 0.3,
             "control_change": 0.2 * p.get("control_lower", 0.0),
         }.get(name, 1e-3)  # fmt: skip
         if name == "friction_state":

@@ -36,6 +36,7 @@ PARTS: dict[str, dict[str, Any]] = {
     "stop_damping": {"stop_upper": 0.1, "stop_stiffness": 1e4},
     "stop_stiffness_cubic": {"stop_upper": 0.1, "stop_stiffness": 1e4},
     "backlash": {"inertance": 1.0, "series_stiffness": 1e4},
+    "damper_stiffness": {"viscous": 100.0},
     "channel_roughness": CHANNEL,
     "force_map_columns": MAP,
     "force_map_passive": MAP | {"force_map_columns": 4},

@@ -65,6 +65,10 @@ PARTS: dict[str, tuple[dict[str, Any], bool, float]] = {
         {"branch_stiffness_1": 300.0, "branch_damping_1": 60.0, "branch_stiffness_2": 200.0,
          "branch_damping_2": 300.0}, True, 1e-8,
     ),
+    "dampers behind a spring": (
+        {"viscous": 60.0, "damping_knee": 0.5, "damping_beyond": 0.4, "damper_stiffness": 900.0},
+        True, 1e-8,
+    ),
     "control of the damping, lag": (
         {"viscous": 10.0, "control": "viscous", "control_lower": 5.0, "control_upper": 60.0,
          "control_lag": 0.2}, True, 1e-8,

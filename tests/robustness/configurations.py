@@ -149,6 +149,9 @@ def meant(draw: st.DrawFn) -> Values:
         }
         if "friction" in values:
             values |= {"friction_curve": _text(draw(rises))}
+    springy = values.get("viscous") and "viscous_curve" not in values and draw(st.booleans())
+    if springy and values["damping_exponent"] >= 0.0:
+        values["damper_stiffness"] = draw(_around(1e4, 0.7))
     if draw(st.booleans()):
         forces = st.lists(_signed(50.0), min_size=12, max_size=12)
         values |= {

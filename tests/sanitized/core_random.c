@@ -37,8 +37,9 @@ static int left_out(const char* name, unsigned parts, int slips, int branches) {
   if (!strncmp(name, "control_", 8)) {
     return 1;
   }
+  // dampers that have a spring need others, which are known later
   return (!strcmp(name, "inertance") && parts >> 4 & 1) || !strncmp(name, "curve_", 6) ||
-         !strncmp(name, "force_map_", 10);
+         !strcmp(name, "damper_stiffness") || !strncmp(name, "force_map_", 10);
 }
 
 // a control that sets a parameter around its value, or any, with a lag or
@@ -161,6 +162,14 @@ static int random_device(InerterDevice* device, int tame) {
     if (inerter_set_list(device, i, count, values, message) && !strstr(message, list->name)) {
       abort();
     }
+  }
+  const InerterCurve* along = device->curve + INERTER_STROKE_viscous;
+  int set = device->control == INERTER_CONTROL_viscous ||
+            device->control == INERTER_CONTROL_quadratic_damping;
+  if (tame && device->viscous > 0 && device->damping_exponent >= 0 && !set && !along->nvalue &&
+      !along->nperiod && below(&source, 2)) {
+    snprintf(text, sizeof(text), "%.17g", 1e-3 + fabs(moderate()));
+    if (inerter_set(device, "damper_stiffness", text, message)) abort();
   }
   memset(message, 0, sizeof(message));
   int refused = inerter_finish(device, message);

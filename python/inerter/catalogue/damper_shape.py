@@ -43,5 +43,11 @@ COORDINATES = (
         words={"damping_exponent": "power of the speed beyond the knee"},
         lower=lambda s: -1.0, upper=lambda s: 1.0, none=None,
     ),
+    Coordinate(
+        name="damper_stiffness", unit="N/m", none=None, logarithmic=True,
+        words={"damper_stiffness": "stiffness before the dampers k_d"},
+        size=lambda s: s.force / s.displacement, lower=lambda s: 0.1 * s.force / s.displacement,
+        upper=lambda s: 1e4 * s.force / s.displacement,
+    ),
 )  # fmt: skip
 """All of them."""

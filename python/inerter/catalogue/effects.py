@@ -362,6 +362,16 @@ _ALL = (
         rivals=("coulomb_friction", "stribeck_friction", "quadratic_damping"),
     ),
     Effect(
+        name="damper_elasticity", rank=18, kind="damper", coordinates=("damper_stiffness",),
+        telling=(), reported=("viscous", "damper_stiffness"), plain="dampers behind a spring",
+        meaning="the dampers' force D(w), w less than v by the rate at which k_d is bent",
+        cause="oil or gas in it that is compressed, hoses, rubber mounts at the ends of a damper",
+        taken_for="a delay, or friction with memory",
+        experiment="repeat at twice the frequency and half the stroke, the loop of the force over "
+        "the velocity opens twice as wide, and one of friction does not",
+        rivals=("sensor_delay", "viscoelasticity", "hysteretic_friction"),
+    ),
+    Effect(
         name="variable_inertance", rank=13,
         coordinates=(
             "inertance_gradient", "inertance_curvature", "inertance_speed_gradient",

@@ -15,6 +15,8 @@ from inerter.diagnose.candidate import Candidate
 from inerter.identify.model import Model
 
 EFFECT = EFFECTS["digressive_damping"].name
+SPRING = "damper_stiffness"
+"""What says that the dampers are behind a spring."""
 _LINE, _POWER = "damping_knee", "damping_power_knee"
 _BACK = ("damping_knee_back", "damping_beyond_back")
 # slope at rest over that of a straight line, knee over a typical speed, power
@@ -29,6 +31,24 @@ def is_bent(model: Model) -> bool:
 def knee_of(model: Model) -> float:
     """Its knee [m/s]."""
     return model.values[_POWER if _POWER in model.values else _LINE]
+
+
+def may_lag(model: Model) -> bool:
+    """Whether dampers may be behind a spring: a straight one there is a spring that relaxes."""
+    shapes = ("damping_asymmetry", "quadratic_damping", _LINE, _POWER)
+    shaped = any(model.values.get(name, 0.0) for name in shapes)
+    falls = model.values.get("damping_exponent", 0.0) < 0.0
+    return shaped and not falls and bool(model.values.get("viscous")) and SPRING not in model.values
+
+
+def lags(model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """Dampers behind a spring that takes half of the stroke to a hundredth of it."""
+    if may_lag(model):
+        unit = sizes.force / sizes.displacement
+        starts = tuple(
+            model.adding(None, **{SPRING: ratio * unit}) for ratio in (2.0, 8.0, 30.0, 100.0)
+        )
+        yield Candidate("damper_elasticity", None, starts)
 
 
 def bends(model: Model, linear: float, sizes: Scales) -> Iterator[Candidate]:

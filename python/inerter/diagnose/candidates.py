@@ -350,6 +350,10 @@ def _play_of_friction(effect: Effect, model: Model, sizes: Scales) -> Iterator[C
         yield Candidate(effect.name, None, starts)
 
 
+def _behind_a_spring(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    yield from bent_damping.lags(model, sizes)
+
+
 def _relaxing(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """A branch more, up to three, that relaxes within a period or over many."""
     # along one sine it is a stiffness and a damper
@@ -385,6 +389,7 @@ _SPECIAL: dict[str, Build] = {
     "viscous_friction": _viscous,
     "sensor_filter": _filter,
     "grip_mass": _grip,
+    "damper_elasticity": _behind_a_spring,
     "position_force": _by_the_search,
     "friction_play": _play_of_friction,
     "viscoelasticity": _relaxing,

@@ -82,6 +82,8 @@ def distinction(effect: str, fit: Fit, baseline: Model) -> float:
             power = fit.model.values["damping_exponent"]
             found.append(_per_error(min(abs(power), abs(1 - power)), errors["damping_exponent"]))
         return float(max(found))
+    if effect == "damper_elasticity":
+        return _per_error(*parameter_errors(fit).get("damper_stiffness", (1.0, 0.0)))
     if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
         return _per_error(*parameter_errors(fit).get("series_stiffness", (1.0, 0.0)))

@@ -18,6 +18,7 @@ from inerter.diagnose.composition import simpler_laws, within_blur
 from inerter.diagnose.decision import CRITERIA, loss, plainest
 from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.plainer import (
+    as_dampers_that_lag,
     as_one,
     as_one_friction,
     as_plain_part,
@@ -40,8 +41,8 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        other_side, other_filter, _one_friction, _plainer_law, _spring_beside, plain_part, _weight,
-        _one_cause,
+        other_side, other_filter, _dampers_that_lag, _one_friction, _plainer_law, _spring_beside,
+        plain_part, _weight, _one_cause,
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
@@ -150,6 +151,22 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
                 good.append(scored)
     best = min(good, key=lambda s: s.squares.sum(), default=None)
     return best and plainest([s for s in good if s is best or not search.better(s, best)])
+
+
+def _dampers_that_lag(search: Search, current: Scored) -> Scored | None:
+    """Dampers behind a spring in the place of a late channel, where they are nearer to the data.
+
+    A channel that is late is so for every force, dampers behind a spring for theirs alone; the
+    search meets the delay before it knows how the damping bends.
+    """
+    masks, sizes = search.problem.masks, search.problem.scales
+    models = filter(search.may_be, as_dampers_that_lag(current.model, sizes))
+    fits = parallel(search.problem.fit, list(models))
+    best = min(fits, key=lambda fit: fit.rmse(masks), default=None)
+    if best is None or best.rmse(masks) > current.fit.rmse(masks):
+        return None
+    scored = search.score("exchange", None, best)
+    return scored if loss(scored, current) < 0.0 else None
 
 
 def _one_friction(search: Search, current: Scored) -> Scored | None:

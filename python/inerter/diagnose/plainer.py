@@ -6,17 +6,21 @@ beside a constant force that hides where its gas is at rest.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
-from inerter.diagnose.bent_damping import is_bent, knee_of
+from inerter.catalogue.scales import Scales
+from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, lags, may_lag
 from inerter.diagnose.composition import level_and_distance
 from inerter.diagnose.statistics import Array
 from inerter.identify.model import Model
 from inerter.identify.transient import RELAXING
 
+_FILTER = tuple(n for n in EFFECTS["sensor_filter"].coordinates if n.startswith("force"))
 _SHAFT = EFFECTS["series_elasticity"].coordinates
 _FORCE = next(each for each in QUANTITIES if each.name == "force")
 # a power of the speed that is next to none
@@ -76,8 +80,9 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
     That is damping that bends with the speed either way, a branch that hardly relaxes in the
-    longest run [s], or so soon that it follows a motion of this frequency [Hz], a curve of the
-    force, and a shaft on which little turns or so softly that it does not follow the motion.
+    longest run [s], or so soon that it follows a motion of this frequency [Hz], one that is the
+    spring before the dampers, a curve of the force, and a shaft on which little turns or so softly
+    that it does not follow the motion.
     """
     found = []
     if "inertance" in model.free and _has_plain_shaft(model):
@@ -92,12 +97,25 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
             continue
         size, lasts = model.values[stiffness], model.values[time]
         bare = _without_branch(model, number)
+        if may_lag(bare):
+            damping = bare.values["viscous"] + size * lasts
+            found.append(bare.adding(None, viscous=damping, **{SPRING: size}))
         if lasts > 0.5 * longest:
             found.append(_with_spring(bare, size, 0.0))
         elif 2 * np.pi * frequency * lasts < 1.0:
             damping = model.values.get("viscous", 0.0) + size * lasts
             found.append(bare.adding(None, viscous=damping))
     return [*found, *_as_one_that_bends_less(model), *_as_law_of_the_place(model)]
+
+
+def as_dampers_that_lag(model: Model, sizes: Scales) -> Iterator[Model]:
+    """Dampers behind a spring for a force channel that is late, by a delay or a low-pass."""
+    late = [name for name in ("delay", *_FILTER) if name in model.free]
+    filtered = {"displacement_filter"} & model.values.keys()
+    if late and not filtered:
+        held = [name for name in _FILTER if "force_filter" in model.free]
+        for each in lags(model.without((*late, *held)), sizes):
+            yield from each.starts
 
 
 def as_weight(model: Model) -> list[Model]:

@@ -22,8 +22,9 @@ def force(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """The sum of all of them [N]."""
     total = p.force_offset
     # a value on a tape is no number that could be 0
-    if (damper := _damper(f, p, x, v)) is not None:
-        total = total + damper
+    # behind a spring dampers are in damper_spring.py
+    if not p.damper_stiffness and (drag := damper(f, p, x, v)) is not None:
+        total = total + drag
     if p.stiffness != 0.0:
         total = total + p.stiffness * x
     if p.stiffness_cubic:
@@ -53,12 +54,46 @@ def _bent(f: Functions, p: Parameters, v: Value, knee: float, beyond: float) -> 
     return v * (beyond + (1.0 - beyond) * f.choose(speed < 1.0, below, above))
 
 
-def _damper(f: Functions, p: Parameters, x: Value, v: Value) -> Value | None:
-    """Force of the dampers [N], None without any."""
-    forth, back = (
+def _bent_slope(f: Functions, p: Parameters, v: Value, knee: float, beyond: float) -> Value:
+    """Slope [-] of that over the velocity."""
+    if knee == 0.0:
+        return 1.0
+    n, lost = p.damping_sharpness, 1.0 - p.damping_exponent
+    speed = f.abs(v / knee)
+    slow, fast = f.least(speed, 1.0), f.greatest(speed, 1.0)
+    low, high = f.power(slow, n), f.power(fast, -n)
+    below = f.power(1.0 + low, -lost / n - 1.0) * (1.0 + p.damping_exponent * low)
+    above = f.power(1.0 + high, -lost / n - 1.0) * (high + p.damping_exponent)
+    above = above * f.power(fast, -lost)
+    return beyond + (1.0 - beyond) * f.choose(speed < 1.0, below, above)
+
+
+def _bends(p: Parameters) -> list[tuple[float, float]]:
+    """Knee [m/s] and slope beyond it, forth and back."""
+    return [
         (getattr(p, f"damping_knee{side}"), getattr(p, f"damping_beyond{side}"))
         for side in ("", "_back")
-    )
+    ]
+
+
+def damper_slope(f: Functions, p: Parameters, v: Value) -> Value:
+    """Slope of the dampers' force over the velocity [N s/m]."""
+    forth, back = _bends(p)
+    bent = _bent_slope(f, p, v, *forth)
+    if back != forth:
+        bent = f.choose(v < 0.0, _bent_slope(f, p, v, *back), bent)
+    slope = p.viscous * bent
+    if p.quadratic_damping != 0.0:
+        slope = slope + 2.0 * p.quadratic_damping * f.abs(v)
+    if p.damping_asymmetry == 0.0:
+        return slope
+    side = f.choose(v < 0.0, 1.0 - p.damping_asymmetry, 1.0 + p.damping_asymmetry)
+    return slope * side
+
+
+def damper(f: Functions, p: Parameters, x: Value, v: Value) -> Value | None:
+    """Force of the dampers [N], None without any."""
+    forth, back = _bends(p)
     total, bent = None, _bent(f, p, v, *forth)
     if back != forth:
         bent = f.choose(v < 0.0, _bent(f, p, v, *back), bent)
@@ -92,8 +127,8 @@ def stored_energy(f: Functions, p: Parameters, x: Value) -> Value:
 
 def dissipated_power(f: Functions, p: Parameters, x: Value, v: Value) -> Value:
     """Heat in dampers and stops [W]."""
-    damper = _damper(f, p, x, v)
-    heat = 0.0 if damper is None else damper * v
+    drag = None if p.damper_stiffness else damper(f, p, x, v)
+    heat = 0.0 if drag is None else drag * v
     if p.force_map:
         heat = heat + force_map.dissipated_power(f, p, x, v)
     for direction, place in _stops(p):

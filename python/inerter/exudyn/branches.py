@@ -24,7 +24,8 @@ def elements(p: Parameters) -> list[tuple[float, float]]:
 def deflections(p: Parameters, z: Sequence[Value]) -> list[tuple[float, float, Value, int]]:
     """Stiffness, damping, deflection [m] and place among the states of each branch."""
     found = elements(p)
-    first = p.nstate - len(found) - int(p.state_names[-1:] == ("control_change",))
+    after = sum(name in p.state_names for name in ("damper_velocity", "control_change"))
+    first = p.nstate - len(found) - after
     return [(*pair, z[first + i], first + i) for i, pair in enumerate(found)]
 
 

@@ -17,7 +17,7 @@ from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.exudyn import beside, branches, control, flywheel, friction, series
+from inerter.exudyn import beside, branches, control, damper_spring, flywheel, friction, series
 from inerter.exudyn.functions import NUMBERS, Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -72,6 +72,10 @@ def terms(
     for spring, dashpot, e, at in branches.deflections(p, z):
         found.append(Term(e, spring, ((at, -spring / dashpot),)))
         found.append(Term(v, 0.0, ((at, 1.0),)))
+    if damper_spring.is_there(p):
+        at_terminals = at_terminals + damper_spring.force(f, p, z)
+        rates = ((damper_spring.place(p), 1.0),)
+        found.append(Term(damper_spring.rate(f, p, v, z), 0.0, rates))
     if control.lags(p):
         found.append(Term(control.rate(p, z), 0.0, ((p.nstate - 1, 1.0),)))
     wheel = rubs_flywheel(p)
@@ -164,6 +168,8 @@ def forces(
         speed = state.speed if rubs_flywheel(p) else v
         rub = rub + _load_share(f, p, speed, through, state.friction) * f.abs(through)
     total = beside.force(f, p, x, v) + branches.force(p, z) + rub + through
+    if damper_spring.is_there(p):
+        total = total + damper_spring.force(f, p, z)
     return {"total": total, "inertance": through, "friction": rub}
 
 
@@ -174,6 +180,8 @@ def stored_energy(
     state = states_of(p, z)
     place = x - state.deflection if rubs_flywheel(p) else x
     energy = beside.stored_energy(f, p, x) + branches.stored_energy(p, z)
+    if damper_spring.is_there(p):
+        energy = energy + damper_spring.stored_energy(f, p, z)
     energy = energy + friction.stored_energy(f, p, place, state.friction)
     if not series.is_there(p):
         return energy + flywheel.stored_energy(f, p, x, v)
@@ -190,6 +198,8 @@ def dissipated_power(
     rubbing = _rubbing(f, p, x, v, state, bearing)
     place, speed = (x - state.deflection, state.speed) if rubs_flywheel(p) else (x, v)
     heat = beside.dissipated_power(f, p, x, v) + branches.dissipated_power(p, z)
+    if damper_spring.is_there(p):
+        heat = heat + damper_spring.dissipated_power(f, p, z)
     heat = heat + rubbing.bound * speed
     if rubbing.rate is not None:
         stored = friction.stored_power(f, p, place, speed, state.friction, rubbing.rate)

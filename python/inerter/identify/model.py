@@ -194,8 +194,10 @@ class Model:
         """The model without some coordinates, and what goes with them.
 
         Where nothing gives any more, a mass before what gave is inertance, and damping of the
-        flywheel is between the terminals.
+        flywheel is between the terminals. Without a damper no spring stands before it.
         """
+        if "viscous" in names:
+            names = (*names, "damper_stiffness")
         law, rigid = friction or self.friction, _SERIES.isdisjoint(self.values.keys() - set(names))
         if rigid:
             names = (*names, "grip_mass")

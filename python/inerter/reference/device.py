@@ -1,8 +1,10 @@
 """The device: an inertance with everything that stands beside it and in series with it.
 
     F = T(x, v, z) + N + lambda(v, z) |N|
-    T = c v + c2 v |v| + k x + k3 x^3 + f0 + F_friction + F_stops         at the terminals
+    T = D(v) + k x + k3 x^3 + f0 + F_friction + F_stops                   at the terminals
         + f(x) + c_x(x) v + F_map(x, v), see `laws/stroke.py` and `laws/force_map.py`
+    D(v) = c v + c2 v |v|, bent, see `laws/parallel.py`; at w_d in place of v behind a spring, see
+           `laws/damper_spring.py`
     without a series element:  N = B(x, v) a + R(x, v) + G(x, v)
     with one:                  N = F_s(s, s', gap),   B(y, w) w' + R(y, w) + G(y, w) = F_s
     G(y, w) = c_w w + pipe(w) + gas(y)                                    at the flywheel
@@ -15,7 +17,8 @@ element y = x and w = v. Each term's law, range and source stand in its own file
 Sign: positive x = longer; F is the force that lengthens the device (tension positive) and acts on
 the bodies as -F along the line. By hand: b = 2 kg, a = 3 m/s^2 gives F = +6 N.
 States, each only if needed: friction_state [m], series_deflection s [m], flywheel_velocity w
-[m/s], gap_position [m], branch_deflection_i [m], control_change (`laws/control.py`). All zero:
+[m/s], gap_position [m], branch_deflection_i [m], damper_velocity w_d [m/s], control_change
+(`laws/control.py`). All zero:
 unloaded, flywheel at rest, middle of the gap, every parameter as stated.
 Not modelled: masses of the terminals, several series elements.
 """
@@ -35,6 +38,7 @@ from .laws import (
     branches,
     channel,
     control,
+    damper_spring,
     end_stops,
     gas,
     inertance,
@@ -259,13 +263,15 @@ class ReferenceDevice(DeviceStates):
     ) -> Quantity:
         """The same without a state of the control."""
         inner = self._inner_rate(x, v, z, a, contact)
-        count = branches.count(self)
+        count = branches.count(self) + self._springy_damper
         if not count:
             return inner
-        beside = branches.rates(self, v, self._split(z)[1])
+        _, deflections, own = self._split(z)
+        columns = list(np.moveaxis(branches.rates(self, v, deflections), -1, 0))
+        if self._springy_damper:
+            columns.append(np.asarray(damper_spring.rate(self, v, own)))
         if self.nstate == 1:
-            return beside[..., 0]
-        columns = list(np.moveaxis(beside, -1, 0))
+            return columns[0]
         if self.nstate > count:
             several = self.nstate - count > 1
             columns = [*(np.moveaxis(np.asarray(inner), -1, 0) if several else [inner]), *columns]
@@ -317,7 +323,10 @@ class ReferenceDevice(DeviceStates):
         energy = energy + gas.stored_energy(self, position)
         if self.has_series:
             energy = energy + series.stored_energy(self, deflection, gap)
-        return energy + branches.stored_energy(self, self._split(z)[1])
+        _, deflections, own = self._split(z)
+        if self._springy_damper:
+            energy = energy + damper_spring.stored_energy(self, own)
+        return energy + branches.stored_energy(self, deflections)
 
     @at_command
     def dissipated_power(
@@ -329,7 +338,9 @@ class ReferenceDevice(DeviceStates):
         """
         friction, deflection, speed, gap = self._states(z)
         stretch = x - self.rest_length
-        heat = self._damper(stretch, v) * v
+        _, deflections, own = self._split(z)
+        rate_there = own if self._springy_damper else v
+        heat = self._damper(stretch, v, own) * rate_there
         heat = heat + (self.surface.dissipated_power(stretch, v) if self.surface else 0.0)
         place, rate = (stretch - deflection, speed) if self.rubs_flywheel else (stretch, v)
         loaded = self._loaded(x, v, a, z)
@@ -341,7 +352,7 @@ class ReferenceDevice(DeviceStates):
             heat = heat + series.dissipated_power(self, deflection, v - speed, gap)
         else:
             speed = v
-        heat = heat + branches.dissipated_power(self, v, self._split(z)[1])
+        heat = heat + branches.dissipated_power(self, v, deflections)
         flywheel = self.flywheel_viscous * speed * speed
         return heat + flywheel + channel.dissipated_power(self, speed)
 
@@ -363,28 +374,26 @@ class ReferenceDevice(DeviceStates):
         _, deflection, speed, gap = self._states(z)
         return series.guards(self, float(deflection), v - float(speed), float(gap), contact)
 
-    def _damper(self, stretch: Quantity, v: Quantity) -> Quantity:
-        """Force [N] of what damps between the terminals."""
-        viscous = self.viscous
+    def _damper(self, stretch: Quantity, v: Quantity, own: Quantity) -> Quantity:
+        """Force [N] of what damps between the terminals; `own` velocity behind a spring."""
+        if self._springy_damper:
+            return damper_spring.force(self, own) + 0.0 * v
+        viscous, *shape = self.damper
         if "viscous" in self.along:
             viscous = viscous + self.along["viscous"](stretch)
-        forth = self.damping_knee, self.damping_beyond
-        knee, beyond = self.damping_knee_back, self.damping_beyond_back
-        back = forth[0] if np.isnan(knee) else knee, forth[1] if np.isnan(beyond) else beyond
-        quadratic, asymmetry = self.quadratic_damping, self.damping_asymmetry
-        bend = forth, back, self.damping_sharpness, self.damping_exponent
-        return parallel.damping_force(v, viscous, quadratic, asymmetry, *bend)
+        return parallel.damping_force(v, viscous, *shape)
 
     def _beside(self, x: Quantity, v: Quantity, z: Quantity) -> Quantity:
         """T [N] without friction."""
         stretch = x - self.rest_length
         spring = parallel.spring_force(stretch, self.stiffness, self.stiffness_cubic)
-        damper = self._damper(stretch, v)
+        _, deflections, own = self._split(z)
+        damper = self._damper(stretch, v, own)
         if "force" in self.along:
             spring = spring + self.along["force"](stretch)
         force = spring + damper + self.force_offset + end_stops.force(self, stretch, v)
         force = force + (self.surface.force(stretch, v) if self.surface else 0.0)
-        return force + branches.force(self, self._split(z)[1])
+        return force + branches.force(self, deflections)
 
     def _flywheel_share(self, x: Quantity, v: Quantity, z: Quantity, contact: Contact) -> Quantity:
         """N [N] where friction takes its part of F_s behind the series element."""

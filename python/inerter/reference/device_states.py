@@ -65,7 +65,13 @@ class DeviceStates(DeviceParameters):
         flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
         gap = ("gap_position",) if self.backlash > 0.0 else ()
         beside = tuple(f"branch_deflection_{i + 1}" for i in range(branches.count(self)))
+        beside += ("damper_velocity",) * self._springy_damper
         return friction + flywheel + gap + beside + ("control_change",) * control.count(self)
+
+    @property
+    def _springy_damper(self) -> int:
+        """Number of states of dampers behind a spring."""
+        return int(self.damper_stiffness > 0.0)
 
     @property
     def friction_states(self) -> int:
@@ -115,18 +121,23 @@ class DeviceStates(DeviceParameters):
             return found, 0.0
         return found, array[..., 0] if self.nstate == 2 else array[..., :-1]
 
-    def _split(self, z: Quantity) -> tuple[Quantity, NDArray[np.float64]]:
-        """The states without those of the branches, in the form of `z`; deflections (..., n)."""
-        count, array = branches.count(self), np.asarray(z, dtype=np.float64)
-        if not count:
-            return z, np.zeros(0)
+    def _split(self, z: Quantity) -> tuple[Quantity, NDArray[np.float64], Quantity]:
+        """The states without those of branches and dampers, in the form of `z`; those of each.
+
+        Deflections (..., n); the velocity over dampers behind a spring, 0 without one.
+        """
+        count, damper = branches.count(self), self._springy_damper
+        last, array = count + damper, np.asarray(z, dtype=np.float64)
+        if not last:
+            return z, np.zeros(0), 0.0
         if array.ndim == 0 and array == 0.0:
-            return 0.0, np.zeros(count)
+            return 0.0, np.zeros(count), 0.0
         if self.nstate == 1:
-            return 0.0, array[..., np.newaxis]
-        inner, beside = array[..., :-count], array[..., -count:]
-        size = self.nstate - count
-        return (inner[..., 0] if size == 1 else inner if size else 0.0), beside
+            return 0.0, array[..., np.newaxis][..., :count], array if damper else 0.0
+        inner, beside = array[..., :-last], array[..., -last:]
+        size = self.nstate - last
+        own = inner[..., 0] if size == 1 else inner if size else 0.0
+        return own, beside[..., :count], beside[..., -1] if damper else 0.0
 
     def _states(self, z: Quantity) -> tuple[Quantity, Quantity, Quantity, Quantity]:
         """Friction state, s, w, gap; zero where there is none."""
@@ -136,7 +147,8 @@ class DeviceStates(DeviceParameters):
         array: NDArray[np.float64] = np.asarray(z, dtype=np.float64)
         if array.ndim == 0 and array == 0.0:
             return 0.0, 0.0, 0.0, 0.0
-        if array.ndim == 0 or array.shape[-1] != self.nstate - branches.count(self):
+        beside = branches.count(self) + self._springy_damper
+        if array.ndim == 0 or array.shape[-1] != self.nstate - beside:
             raise ValueError(
                 f"z: shape {array.shape}, but this device has the states "
                 f"{', '.join(self.state_names)} along the last axis"

@@ -189,6 +189,7 @@ def state_scales(device: ReferenceDevice) -> NDArray[np.float64]:
         sizes[f"friction_state_{i + 1}"] = lambda _, size=slip / spring: size
     for i in range(branches.count(device)):
         sizes[f"branch_deflection_{i + 1}"] = lambda _: 1e-3
+    sizes["damper_velocity"] = lambda _: 1e-2
     sizes["control_change"] = lambda d: d.control_upper - d.control_lower
     return np.array([sizes[name](device) for name in device.state_names])
 

@@ -29,6 +29,7 @@ STATE_UNITS = {
     "friction_state": "m",
     **{f"friction_state_{i}": "m" for i in range(1, 9)},
     **{f"branch_deflection_{i}": "m" for i in range(1, 4)},
+    "damper_velocity": "m/s",
     "control_change": "unit of what it sets",
     "series_deflection": "m",
     "flywheel_velocity": "m/s",

@@ -76,6 +76,8 @@ LAWS = {
         _law("damper_each_way", "corner", viscous=2e3, damping_asymmetry=0.4, damping_knee=0.1,
              damping_beyond=0.25, damping_knee_back=0.2, damping_beyond_back=1.5,
              damping_sharpness=6.0),
+        _law("damper_behind_a_spring", "corner", viscous=2e3, damping_asymmetry=0.4,
+             damping_knee=0.1, damping_beyond=0.25, quadratic_damping=200.0, damper_stiffness=1e5),
         _law("eddy_current_brake", "smooth", viscous=2e3, damping_knee=0.1, damping_beyond=0.0,
              damping_exponent=-1.0),
         _law("speed_inertance", "corner", inertance_speed_gradient=1.0),

@@ -68,6 +68,9 @@ class DeviceParameters(FrictionParameters):
     damping_beyond_back: float = parameter(
         UNSET, "-", "the same slope while x shrinks, damping_beyond where not given", at_least=0.0
     )
+    damper_stiffness: float = parameter(
+        0.0, "N/m", "spring in series with the dampers k_d; 0: none", at_least=0.0
+    )
     stiffness: float = parameter(0.0, "N/m", "linear stiffness k")
     stiffness_cubic: float = parameter(0.0, "N/m^3", "cubic stiffness k3")
     rest_length: float = parameter(0.0, "m", "length at which the displacement is zero")
@@ -158,6 +161,15 @@ class DeviceParameters(FrictionParameters):
         forward, backward = (self.load_friction if np.isnan(mu) else mu for mu in given)
         return forward, backward
 
+    @property
+    def damper(self) -> tuple[Any, ...]:
+        """What `parallel.damping_force` takes after the velocity."""
+        forth = self.damping_knee, self.damping_beyond
+        knee, beyond = self.damping_knee_back, self.damping_beyond_back
+        back = forth[0] if np.isnan(knee) else knee, forth[1] if np.isnan(beyond) else beyond
+        shape = forth, back, self.damping_sharpness, self.damping_exponent
+        return self.viscous, self.quadratic_damping, self.damping_asymmetry, *shape
+
     @cached_property
     def branches(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """K_i [N/m] and C_i [N s/m] of the branches that are there, shape (n,)."""
@@ -194,6 +206,7 @@ class DeviceParameters(FrictionParameters):
         super().__post_init__()
         self._check_side()
         self._check_branches()
+        self._check_damper_spring()
         self._check_channel()
         self._check_series()
         self._check_stops()
@@ -287,6 +300,21 @@ class DeviceParameters(FrictionParameters):
                     "there; give it too: branches are numbered from 1 without a gap"
                 )
             last = there
+
+    def _check_damper_spring(self) -> None:
+        if self.damper_stiffness == 0.0:
+            return
+        said = f"damper_stiffness: {self.damper_stiffness} N/m"
+        if self.control in ("viscous", "quadratic_damping"):
+            raise ValueError(f"{said} with control '{self.control}'; drop one of the two")
+        if self.viscous_curve or self.viscous_periods:
+            raise ValueError(f"{said} with viscous along the stroke; drop one of the two")
+        if self.viscous == 0.0:
+            raise ValueError(f"{said} with viscous 0.0 N s/m; give viscous above 0")
+        if self.damping_exponent < 0.0 and self.damping_knee > 0.0:
+            raise ValueError(
+                f"{said} with damping_exponent {self.damping_exponent}; give one of at least 0"
+            )
 
     def _check_side(self) -> None:
         if self.friction_side not in FRICTION_SIDES:
