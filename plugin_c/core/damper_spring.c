@@ -54,7 +54,7 @@ static double middled(const InerterDevice* p, const Way* way, double w, double h
 }
 
 // a step is divided until both halves tell a force that is this near to that of the whole
-static const double kNear = 1e-5;
+static const double kNear = 1e-4;
 enum { MOST_HALVES = 12 };
 
 static double divided(const InerterDevice* p, const Way* way, double w, double h, int halves) {

@@ -130,7 +130,7 @@ def test_along_a_motion_the_core_is_the_reference(shape: str, stiffness: float) 
         h, motion.displacement(t), motion.velocity(t), motion.acceleration(t), start
     )
     true = response(ReferenceDevice(**p), motion, t, initial_state=np.array([start]))
-    assert np.max(np.abs(told["total"] - true.force)) < 1e-5 * np.ptp(true.force)
+    assert np.max(np.abs(told["total"] - true.force)) < 5e-5 * np.ptp(true.force)
 
 
 def test_a_stiff_spring_is_none() -> None:

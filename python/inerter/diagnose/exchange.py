@@ -159,14 +159,15 @@ def _dampers_that_lag(search: Search, current: Scored) -> Scored | None:
     A channel that is late is so for every force, dampers behind a spring for theirs alone; the
     search meets the delay before it knows how the damping bends.
     """
-    masks, sizes = search.problem.masks, search.problem.scales
-    models = filter(search.may_be, as_dampers_that_lag(current.model, sizes))
-    fits = parallel(search.problem.fit, list(models))
-    best = min(fits, key=lambda fit: fit.rmse(masks), default=None)
-    if best is None or best.rmse(masks) > current.fit.rmse(masks):
-        return None
-    scored = search.score("exchange", None, best)
-    return scored if loss(scored, current) < 0.0 else None
+    masks = search.problem.masks
+    limit = current.fit.rmse(masks)
+    for model in filter(search.may_be, as_dampers_that_lag(current.model)):
+        trial = Candidate("exchange", None, (model,))
+        fit = search.trials.fit(trial, (FAR * limit, np.inf), limit)
+        if fit.rmse(masks) < limit:
+            scored = search.score("exchange", None, fit)
+            return scored if loss(scored, current) < 0.0 else None
+    return None
 
 
 def _one_friction(search: Search, current: Scored) -> Scored | None:

@@ -6,18 +6,16 @@ beside a constant force that hides where its gas is at rest.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
-from inerter.catalogue.scales import Scales
-from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, lags, may_lag
+from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, may_lag
 from inerter.diagnose.composition import level_and_distance
 from inerter.diagnose.statistics import Array
 from inerter.identify.model import Model
+from inerter.identify.prediction import lateness
 from inerter.identify.transient import RELAXING
 
 _FILTER = tuple(n for n in EFFECTS["sensor_filter"].coordinates if n.startswith("force"))
@@ -108,14 +106,16 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
     return [*found, *_as_one_that_bends_less(model), *_as_law_of_the_place(model)]
 
 
-def as_dampers_that_lag(model: Model, sizes: Scales) -> Iterator[Model]:
-    """Dampers behind a spring for a force channel that is late, by a delay or a low-pass."""
-    late = [name for name in ("delay", *_FILTER) if name in model.free]
-    filtered = {"displacement_filter"} & model.values.keys()
-    if late and not filtered:
-        held = [name for name in _FILTER if "force_filter" in model.free]
-        for each in lags(model.without((*late, *held)), sizes):
-            yield from each.starts
+def as_dampers_that_lag(model: Model) -> list[Model]:
+    """Dampers behind a spring, as late, for a force channel that is by a delay or a low-pass."""
+    names = [name for name in ("delay", *_FILTER) if name in model.values]
+    late = lateness(model.values)
+    bare = model.without(names)
+    if late <= 0.0 or {"delay", _FILTER[0]}.isdisjoint(model.free) or not may_lag(bare):
+        return []
+    # beyond its knee a valve is less late
+    slope = bare.values["viscous"] * max(bare.values.get("damping_beyond", 1.0), 0.1) ** 0.5
+    return [bare.adding(None, **{SPRING: slope / late})]
 
 
 def as_weight(model: Model) -> list[Model]:

@@ -64,27 +64,22 @@ def sharp_force(model: Model, run: BenchRun, state: State, drift: float) -> Arra
         if drift:
             total = total + drift * run.elapsed * total
     if model.has_jumps:
-        total = total + _abrupt(model, run, state)
+        for part, smooth in model.abrupt_parts:
+            total = total + _abrupt(part, smooth, model, run, state)
     return total
 
 
-def _abrupt(model: Model, run: BenchRun, state: State) -> Array:
-    alone = model.abrupt_part
-    if alone is not None:
-
-        def force() -> Array:
-            return run.force_at_measured_rate(alone.device, 0.0, "total")
-
-        return _in_band(run, ("abrupt", alone.stated), force)
-    # what changes along the stroke multiplies the rest; a play throws the flywheel about
-    rest, part = model.frictionless_part, model.smooth_part
-    before, smooth = (states_of(each, model, state) for each in (rest, part))
+def _abrupt(part: Part, smooth: Part, model: Model, run: BenchRun, state: State) -> Array:
+    """What a part adds to what of it is smooth."""
+    before, less = (states_of(each, model, state) for each in (part, smooth))
 
     def difference() -> Array:
-        whole = run.force_at_measured_rate(rest.device, before, "total")
-        return whole - run.force_at_measured_rate(part.device, smooth, "total")
+        whole = run.force_at_measured_rate(part.device, before, "total")
+        if not smooth.stated:
+            return whole
+        return whole - run.force_at_measured_rate(smooth.device, less, "total")
 
-    return _in_band(run, ("difference", rest.stated, _key(before)), difference)
+    return _in_band(run, ("difference", part.stated, smooth.stated, _key(before)), difference)
 
 
 def _in_band(run: BenchRun, key: tuple[Hashable, ...], fine: Callable[[], Array]) -> Array:

@@ -113,22 +113,28 @@ class Model:
         return self._part(lambda name: name in _OF_FRICTION, friction=self.friction)
 
     @cached_property
-    def abrupt_part(self) -> Part | None:
-        """Its end stops and force along the stroke alone; None where more is abrupt."""
-        along = {n for n in self._stated if n in lists() and not n.startswith("friction")}
-        if self._device.backlash or self._bends or not along <= _OF_FORCE:
-            return None
-        names = {*JUMPS, *_OF_FORCE, *_OF_PLACES}
-        return self._part(lambda name: name in names)
+    def abrupt_parts(self) -> tuple[tuple[Part, Part], ...]:
+        """What is quicker than the motion beside friction: parts, each with what of it is smooth.
 
-    @cached_property
-    def frictionless_part(self) -> Part:
-        """The device without its friction law."""
-        return self._part(lambda name: name not in _OF_FRICTION or name in _OF_PLACES)
+        Springs, stops and forces of the place; dampers; the inertance with all that stands with it.
+        Their forces add up.
+        """
+        smooth = dict(self.smooth_part.stated)
+        named = {name for name in self._stated if name not in _OF_FRICTION or name in _OF_PLACES}
+        groups = (_OF_SPRINGS, _OF_DAMPERS, named - _OF_SPRINGS - _OF_DAMPERS)
+        found = []
+        for group in groups:
+            own = {name: self._stated[name] for name in named & (group | _OF_PLACES)}
+            less = {name: smooth[name] for name in smooth if name in own}
+            # what is neither 0 nor where something is
+            rough = own.keys() - less.keys() - _OF_PLACES
+            if any(own[name] for name in rough):
+                found.append((_part_of(_items(own)), _part_of(_items(less))))
+        return tuple(found)
 
     def _part(self, has: Callable[[str], bool], **also: str) -> Part:
         kept = {name: value for name, value in self._stated.items() if has(name)}
-        return _part_of((*also.items(), *_with_ends(kept).items()))
+        return _part_of((*also.items(), *_items(kept)))
 
     @cached_property
     def has_jumps(self) -> bool:
@@ -220,8 +226,15 @@ BEHIND = "flywheel_viscous"
 # what says where a device is along its stroke
 _OF_PLACES = {"rest_length", "curve_lower", "curve_upper"}
 _SERIES = {"series_frequency", "series_stiffness", "series_damping"}
-# lists of forces that nothing else multiplies
-_OF_FORCE = {"force_curve", "force_periods"}
+# forces of the place alone, and what damps between the terminals
+_OF_SPRINGS = frozenset({
+    "stiffness_cubic", "force_curve", "force_periods", "force_map",
+    *(name for name in parameters() if name.startswith(("stop_", "force_map_"))),
+})  # fmt: skip
+_OF_DAMPERS = frozenset({
+    "viscous", "quadratic_damping", "viscous_curve", "viscous_periods", "damper_stiffness",
+    *(name for name in parameters() if name.startswith("damping_")),
+})  # fmt: skip
 _OF_FRICTION = {
     *(name for name, known in parameters().items() if known.laws),
     *(name for name, known in lists().items() if known.laws),
@@ -252,6 +265,10 @@ def _with_ends(values: Mapping[str, _Stated]) -> dict[str, _Stated]:
     """What a device is made of, with the ends of its curves where it has one."""
     ends = () if any(name.endswith("_curve") for name in values) else ("curve_lower", "curve_upper")
     return {name: value for name, value in values.items() if name not in ends}
+
+
+def _items(values: Mapping[str, _Stated]) -> tuple[tuple[str, _Stated], ...]:
+    return tuple(_with_ends(values).items())
 
 
 def _useful(free: tuple[str, ...], friction: str) -> tuple[str, ...]:
