@@ -8,6 +8,24 @@ from inerter.diagnose.cannot_tell import goes_one_way, runs_up, sweeps
 from inerter.diagnose.stages import Confirmed
 
 
+def unused_in_words(stands: Confirmed) -> str:
+    """Which measured channels of the motion were not used, a sentence; "" where none."""
+    data = stands.data
+    names = [
+        name
+        for name in ("velocity", "acceleration")
+        if name not in data.preparation.channels
+        and all(getattr(record, name) is not None for record in data.records)
+    ]
+    if not names:
+        return ""
+    were, them = ("were", "them") if len(names) > 1 else ("was", "it")
+    return (
+        f"The measured {' and '.join(names)} {were} not used: without {them} the motion foretells "
+        "the force at least as well."
+    )
+
+
 def method_of(stands: Confirmed) -> dict[str, Any]:
     """What was done, and along which motion, as `method` of diagnosis.json."""
     data, given = stands.data, stands.searched.prepared.given

@@ -23,7 +23,7 @@ from inerter.diagnose.engines import simulate_engines
 from inerter.diagnose.everything import errors_of, on_everything
 from inerter.diagnose.excerpts import Excerpts, excerpts
 from inerter.diagnose.exchangeable import exchanges, with_members
-from inerter.diagnose.method import method_of
+from inerter.diagnose.method import method_of, unused_in_words
 from inerter.diagnose.other_runs import (
     badly_missed,
     badly_missed_parts,
@@ -318,6 +318,7 @@ def diagnosis_of(
                 about_split,
                 steps_in_words(steps, motion, extended.rmse),
                 given.left_out,
+                unused_in_words(stands),
                 given.clock.in_words() if given.clock else "",
                 long.in_words() if long else "",
                 given.time.in_words(sum(not finding.compared for finding in findings)),
