@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from bench_runs import measured
 from inerter.diagnose.run_constants import (
     constants,
     constants_in_words,
@@ -18,6 +20,7 @@ from inerter.diagnose.start import Given, prepared
 from inerter.identify.runs import BenchRun, thin
 from inerter.records import Record
 from inerter.records.preparation import prepare
+from inerter.reference import ReferenceDevice, sine_motion, sum_of_sines
 
 TIME = np.arange(0, 12, 1 / 200)
 
@@ -216,3 +219,32 @@ def test_runs_that_begin_alike_have_no_constants(offset: float) -> None:
     """What the rate makes of the force is a cause; a cell that shows another zero begins there."""
     found = constants(thinned([loaded(160.0), loaded(54.0), loaded(32.0, offset)]))
     assert bool(found) == bool(offset)
+
+
+def test_an_uneven_valve_behind_a_spring_has_no_constants_along_sines() -> None:
+    """Each run has one frequency, and the mean of its force goes with it."""
+    valve = ReferenceDevice(
+        inertance=4.0, viscous=2200.0, damping_asymmetry=0.3, damping_knee=0.12,
+        damping_beyond=0.25, damper_stiffness=4e5, friction="coulomb", coulomb_force=50.0,
+        transition_velocity=1e-3,
+    )  # fmt: skip
+    runs = measured(
+        valve,
+        [sine_motion(size, frequency) for size, frequency in ((0.02, 1.5), (0.02, 4), (0.012, 9))],
+        np.arange(0, 3, 2e-3),
+    )
+    assert not constants(thinned(runs))
+    # beside a true one each is found
+    off = {"run_0": 60.0, "run_1": -60.0, "run_2": 0.0}
+    moved = [replace(each, force=each.force + off[each.name]) for each in dampers_alike()]
+    found = constants(thinned(moved))
+    assert found == pytest.approx(off, abs=3.0)
+
+
+def dampers_alike() -> list[Record]:
+    """Three runs of a damper along motions of several frequencies."""
+    damper = ReferenceDevice(inertance=4.0, viscous=2200.0, damping_asymmetry=0.3)
+    motions = [
+        sum_of_sines([0.01, 0.004, 0.002], [0.7 + i, 2.1, 4.3], [0.0, 1.0, i]) for i in range(3)
+    ]
+    return measured(damper, motions, np.arange(0, 6, 4e-3))

@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 SURE = 5.0
 FORCE_PART = 0.01
 LEFT_PART = 0.5
+# share of their spread by which damping that bends and lags may move constants
+MOVED = 0.2
 # stretches of a run that count as independent
 STRETCHES = 12
 # places at which a force of the place may bend
@@ -66,9 +68,22 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     if any(_goes_one_way(run) for run in runs) or not _share_places(runs):
         return {}
     rows = [_rows(run, _bends(runs)) for run in runs]
-    count = len(rows)
     if min(row.force.size for row in rows) < 10 * STRETCHES:
         return {}
+    off, errors, left = _about_mean(rows)
+    force = np.concatenate([row.force for row in rows])
+    least = max(FORCE_PART * _rms(force), LEFT_PART * left)
+    if not np.any((np.abs(off) > SURE * errors) & (np.abs(off) > least)):
+        return {}
+    richer, *_ = _about_mean([_richer(row, run) for row, run in zip(rows, runs, strict=True)])
+    if np.max(np.abs(richer - off)) > MOVED * np.ptp(off) or _begin_alike(runs, off):
+        return {}
+    return {run.name: float(value) for run, value in zip(runs, off, strict=True)}
+
+
+def _about_mean(rows: Sequence[_Rows]) -> tuple[Array, Array, float]:
+    """Constants of runs about their mean, their standard errors, and what is left, rms [N]."""
+    count = len(rows)
     dummies = [np.eye(count)[np.full(row.force.size, i)] for i, row in enumerate(rows)]
     matrix = np.concatenate(
         [np.column_stack([d, row.columns]) for d, row in zip(dummies, rows, strict=True)]
@@ -89,13 +104,7 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     about = np.zeros((count, matrix.shape[1]))
     about[:, :count] = (np.eye(count) - 1 / count) / scale[:count]
     off, covariance = about @ solved, about @ bread @ meat @ bread @ about.T
-    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    least = max(FORCE_PART * _rms(force), LEFT_PART * _rms(left))
-    if not np.any((np.abs(off) > SURE * errors) & (np.abs(off) > least)):
-        return {}
-    if _begin_alike(runs, off):
-        return {}
-    return {run.name: float(value) for run, value in zip(runs, off, strict=True)}
+    return off, np.sqrt(np.maximum(np.diag(covariance), 0.0)), _rms(left)
 
 
 def without_constants(records: Sequence[Record], found: Mapping[str, float]) -> list[Record]:
@@ -216,6 +225,16 @@ def _rows(run: BenchRun, bends: Array | None = None) -> _Rows:
         # an inertance along the stroke: b(x) a + b'(x) v^2 / 2
         columns += [0.5 * v * v + x * a, x * v * v + x * x * a]
     return _Rows(np.column_stack(columns)[moving], run.force[moving])
+
+
+def _richer(rows: _Rows, run: BenchRun) -> _Rows:
+    """The rows with damping that bends sooner, and that lags, differently in each direction."""
+    v, a = run.velocity, run.acceleration
+    size = _rms(v[run.inner]) or 1.0
+    speed, moving = np.abs(v) / size, run.inner & (np.abs(v) > SLOW * size)
+    way = np.tanh(v / (WIDTH * size))
+    more = np.column_stack([np.sqrt(speed), way * np.sqrt(speed), a * way, a * speed, a * v])
+    return replace(rows, columns=np.column_stack([rows.columns, more[moving]]))
 
 
 def _rms(values: Array) -> float:
