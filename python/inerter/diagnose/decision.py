@@ -157,6 +157,11 @@ class Criteria:
         "share of the level",
         "what such blur explains at most: up to 1.4 % in those cases, true peaks 13 to 31 %",
     )
+    bristle_seen: float = _bound(
+        0.02,
+        "of what the place of a reversal is known to",
+        "below this distance a bristle that yields is not told from friction without memory",
+    )
     losing: float = _bound(
         0.1,
         "beta per gamma of a Bouc-Wen law",

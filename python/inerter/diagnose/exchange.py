@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        other_side, other_filter, _dampers_that_lag, _one_friction, _plainer_law, _spring_beside,
-        plain_part, _weight, _one_cause,
+        other_side, other_filter, _dampers_that_lag, _one_friction, blurred_bristle, _plainer_law,
+        _spring_beside, plain_part, _weight, _one_cause,
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
@@ -71,6 +71,23 @@ def other_side(search: Search, current: Scored) -> Scored | None:
             scored = search.score("exchange", None, fit)
             if loss(scored, current) < (CRITERIA.exchange_loss if fewer else -CRITERIA.gain):
                 return scored
+    return None
+
+
+def blurred_bristle(search: Search, current: Scored) -> Scored | None:
+    """Friction without memory for a bristle that yields far within what a reversal is known to."""
+    masks, model = search.problem.masks, current.model
+    least = CRITERIA.bristle_seen * search.problem.scales.place_resolution
+    if "presliding" not in model.free or not model.values["presliding"] < least:
+        return None
+    error = current.fit.rmse(masks)
+    plain = (each for each in simpler_laws(model) if "presliding" not in each.values)
+    for each in filter(search.may_be, plain):
+        # about as fast as the motion is told to turn
+        width = 0.1 * search.problem.scales.speed_resolution
+        fit = search.problem.fit(each.holding(transition_velocity=width))
+        if within_blur(fit.model, fit.rmse(masks), error):
+            return search.score("exchange", None, fit)
     return None
 
 
