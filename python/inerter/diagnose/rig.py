@@ -17,6 +17,7 @@ from inerter.diagnose.budget.remains import with_ceiling
 from inerter.diagnose.budget.repeats import repeats
 from inerter.diagnose.clock_rate import on_one_clock
 from inerter.diagnose.composition import distinction
+from inerter.diagnose.creeping import without_creeping
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import as_sure_as_its_value, doubted, of_one_sine, with_own_value
 from inerter.diagnose.engines import simulate_engines
@@ -138,6 +139,7 @@ def diagnose_bench(
         stands, long = _stood(given)
         if not long:
             given, stands = _with_scale(given, stands)
+            given, stands = without_creeping(given, stands, _searched_once)
         other = None if time.is_over() else other_split_of(stands)
         if other and not long and not given.holdout:
             better = _with_other_split(given, stands, *other)
@@ -186,11 +188,15 @@ def _with_scale(given: Given, stands: Confirmed) -> tuple[Given, Confirmed]:
     return given, stands
 
 
+def _searched_once(given: Given) -> Confirmed:
+    return confirmed(settled(searched(prepared(given))))
+
+
 def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
     """What stands; of a long record, what was searched for on stretches of it."""
     found = excerpts(given)
     if found is None:
-        return confirmed(settled(searched(prepared(given)))), None
+        return _searched_once(given), None
     stands = _on_stretches(found)
     for _ in range(CRITERIA.more_stretches):
         more = found.with_missed(errors_of(stands))

@@ -30,6 +30,7 @@ from inerter.records.motion import (
     weight_above,
 )
 from inerter.records.record import Part
+from inerter.records.rests import long_stretches
 
 Array = NDArray[np.float64]
 
@@ -343,11 +344,7 @@ def _force_at(motion: Motion, index: int) -> float:
 def _resting(motion: Motion) -> NDArray[np.bool_]:
     """Stretches longer than the smoother's memory in which the velocity is within its noise."""
     slow = np.abs(motion.velocity) < REST * motion.velocity_noise
-    edges = np.flatnonzero(np.diff(np.r_[False, slow, False].astype(int)))
-    resting = np.zeros(slow.size, bool)
-    for begin, end in edges.reshape(-1, 2):
-        resting[begin:end] = (end - begin) * motion.spacing > 1 / motion.cutoff
-    return resting
+    return long_stretches(slow, motion.spacing, motion.cutoff)
 
 
 def whole(motion: Motion) -> BenchRun:

@@ -30,6 +30,7 @@ from inerter.core_library import library
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.even_clock import even_spacing
 from inerter.records.record import Part, Record
+from inerter.records.rests import at_rest, long_stretches
 
 Array = NDArray[np.float64]
 Shaft = tuple[float, float]
@@ -361,9 +362,9 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     velocity = irfft(s * estimate, period)[:n] + slope
     acceleration = irfft(s * s * estimate, period)[:n]
     inner = np.ones(n, bool)
-    if not _at_rest(velocity, spacing):
+    if not at_rest(velocity, spacing):
         inner[:edge] = False
-    if not _at_rest(velocity[::-1], spacing):
+    if not at_rest(velocity[::-1], spacing):
         inner[n - edge :] = False
 
     # across a gap the motion is a guess
@@ -371,6 +372,8 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
     for i in np.flatnonzero(steps > max(0.5 / cutoff, 3 * np.median(steps))):
         begin, end = (int((t - record.time[0]) / spacing) for t in record.time[i : i + 2])
         inner[max(begin - edge, 0) : end + edge] = False
+    if record.slowest:
+        inner &= ~long_stretches(np.abs(velocity) < record.slowest, spacing, cutoff)
     velocity_noise, acceleration_noise = _derivative_noise(x, spacing, cutoff)
     return Motion(
         name=record.name,
@@ -436,12 +439,6 @@ def _derivative_noise(displacement: Array, spacing: float, cutoff: float) -> tup
     velocity = 2 * np.pi * np.sqrt(density * cutoff**3 * np.pi / 12)
     acceleration = (2 * np.pi) ** 2 * np.sqrt(density * cutoff**5 * np.pi / 18)
     return float(velocity), float(acceleration)
-
-
-def _at_rest(velocity: Array, spacing: float) -> bool:
-    """Whether a motion starts at rest: there its continuation is known and nothing is guessed."""
-    first = max(int(0.01 / spacing), 3)
-    return bool(np.max(np.abs(velocity[:first])) < 0.02 * np.std(velocity))
 
 
 def _odd_about_zero(values: Array) -> Array:

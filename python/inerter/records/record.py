@@ -167,7 +167,8 @@ class Record(TimeRecord):
     """One run on a bench: time s, displacement m, force N; velocity m/s, acceleration m/s^2.
 
     part: where it is a part of a longer one. instants: per sample, at which forces are followed;
-    more than one where a low-pass before the converter has smoothed what jumps.
+    more than one where a low-pass before the converter has smoothed what jumps. slowest: speed
+    [m/s] below which rests do not count, for their direction is not told.
     """
 
     displacement: Array
@@ -176,6 +177,7 @@ class Record(TimeRecord):
     acceleration: Array | None = None
     part: Part | None = None
     instants: int = 1
+    slowest: float = 0.0
 
     kind: ClassVar[str] = "bench"
     required: ClassVar[tuple[str, ...]] = ("time", "displacement", "force")

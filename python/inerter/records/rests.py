@@ -1,0 +1,23 @@
+"""Where a motion rests."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def long_stretches(mask: NDArray[np.bool_], spacing: float, cutoff: float) -> NDArray[np.bool_]:
+    """Those stretches of a mask (n,) that last longer than the memory of a smoother [Hz]."""
+    edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int)))
+    found = np.zeros(mask.size, bool)
+    for begin, end in edges.reshape(-1, 2):
+        found[begin:end] = (end - begin) * spacing > 1 / cutoff
+    return found
+
+
+def at_rest(velocity: Array, spacing: float) -> bool:
+    """Whether a motion starts at rest: there its continuation is known and nothing is guessed."""
+    first = max(int(0.01 / spacing), 3)
+    return bool(np.max(np.abs(velocity[:first])) < 0.02 * np.std(velocity))
