@@ -45,6 +45,8 @@ def test_stretches_are_long_or_none() -> None:
     mask = np.array([1, 1, 0, 1, 1, 1, 1, 1, 0, 1], bool)
     found = long_stretches(mask, 0.1, 1.0 / 0.35)
     assert found.tolist() == [False, False, False, *[True] * 5, False, False]
+    wider = long_stretches(mask, 0.1, 1.0 / 0.35, 0.5)
+    assert wider.tolist() == [False, True, True, *[True] * 5, True, True]
 
 
 def test_rests_below_a_speed_do_not_count(settling: Record) -> None:
@@ -52,7 +54,11 @@ def test_rests_below_a_speed_do_not_count(settling: Record) -> None:
     without = smooth(replace(settling, slowest=5e-4), 40.0)
     left = counted & ~without.inner
     assert 0.2 < np.mean(left) < 0.5
-    assert np.max(np.abs(without.velocity[left])) < 5e-4
+    # and what the smoother makes of them beside
+    slow = np.abs(without.velocity) < 5e-4
+    alone = long_stretches(slow, 0.002, 40.0) & counted
+    assert np.all(left[alone])
+    assert np.sum(left) > np.sum(alone)
 
 
 def test_friction_is_found_where_the_rests_are_a_riddle(settling: Record) -> None:

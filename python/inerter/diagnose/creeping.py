@@ -20,7 +20,7 @@ from inerter.identify.fit import Problem, rms
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, thin
 from inerter.motion_units import words
-from inerter.records.rests import long_stretches
+from inerter.records.rests import LEAKS, long_stretches
 
 Masks = list[NDArray[np.bool_]]
 
@@ -108,11 +108,11 @@ def _speeds(stands: Confirmed) -> dict[str, float]:
 def _rests(stands: Confirmed, runs: Sequence[BenchRun]) -> Masks:
     """Of every run the samples that count and are in such rests."""
     speeds, cutoff = _speeds(stands), stands.data.preparation.cutoff
-    return [
-        run.inner
-        & long_stretches(np.abs(run.velocity) < speeds.get(run.name, 0.0), run.spacing, cutoff)
-        for run in runs
-    ]
+    found = []
+    for run in runs:
+        slow = np.abs(run.velocity) < speeds.get(run.name, 0.0)
+        found.append(run.inner & long_stretches(slow, run.spacing, cutoff, LEAKS))
+    return found
 
 
 def _in_words(stands: Confirmed, rests: Masks) -> str:

@@ -30,7 +30,7 @@ from inerter.core_library import library
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.records.even_clock import even_spacing
 from inerter.records.record import Part, Record
-from inerter.records.rests import at_rest, long_stretches
+from inerter.records.rests import LEAKS, at_rest, long_stretches
 
 Array = NDArray[np.float64]
 Shaft = tuple[float, float]
@@ -373,7 +373,7 @@ def smooth(record: Record, cutoff: float, use: tuple[str, ...] = ("velocity",)) 
         begin, end = (int((t - record.time[0]) / spacing) for t in record.time[i : i + 2])
         inner[max(begin - edge, 0) : end + edge] = False
     if record.slowest:
-        inner &= ~long_stretches(np.abs(velocity) < record.slowest, spacing, cutoff)
+        inner &= ~long_stretches(np.abs(velocity) < record.slowest, spacing, cutoff, LEAKS)
     velocity_noise, acceleration_noise = _derivative_noise(x, spacing, cutoff)
     return Motion(
         name=record.name,

@@ -7,13 +7,23 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LEAKS = 1.0
+"""Memories of a smoother by which what is not known of a rest spreads beyond it."""
 
-def long_stretches(mask: NDArray[np.bool_], spacing: float, cutoff: float) -> NDArray[np.bool_]:
-    """Those stretches of a mask (n,) that last longer than the memory of a smoother [Hz]."""
+
+def long_stretches(
+    mask: NDArray[np.bool_], spacing: float, cutoff: float, around: float = 0.0
+) -> NDArray[np.bool_]:
+    """Those stretches of a mask (n,) that last longer than the memory of a smoother [Hz].
+
+    With so many memories on either side of each.
+    """
     edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int)))
+    more = int(np.ceil(around / cutoff / spacing)) if around else 0
     found = np.zeros(mask.size, bool)
     for begin, end in edges.reshape(-1, 2):
-        found[begin:end] = (end - begin) * spacing > 1 / cutoff
+        if (end - begin) * spacing > 1 / cutoff:
+            found[max(begin - more, 0) : end + more] = True
     return found
 
 
