@@ -14,13 +14,13 @@
 #include "laws.h"
 
 // how fast w comes to v [1/s]; 0 without damping, when an engine has it disabled: there is no force
-static double pace(const InerterDevice* p, double w) {
+static double pace_at(const InerterDevice* p, double w) {
   double slope = damper_slope(p, p->viscous, w);
   return slope > 0 ? p->damper_stiffness / slope : 0;
 }
 
 double damper_spring_rate(const InerterDevice* p, double v, double w) {
-  return pace(p, w) * (v - w);
+  return pace_at(p, w) * (v - w);
 }
 
 // what w follows a way with at one pace: v - v' / pace + v'' / pace^2 - ...
@@ -49,8 +49,8 @@ static double relaxed(const Way* way, double pace, double w, double t) {
 
 // a step at the pace of its middle, which that of its start leads to
 static double middled(const InerterDevice* p, const Way* way, double w, double h) {
-  double middle = relaxed(way, pace(p, w), w, 0.5 * h);
-  return relaxed(way, pace(p, middle), w, h);
+  double middle = relaxed(way, pace_at(p, w), w, 0.5 * h);
+  return relaxed(way, pace_at(p, middle), w, h);
 }
 
 // a step is divided until both halves tell a force that is this near to that of the whole
@@ -76,7 +76,7 @@ static double divided(const InerterDevice* p, const Way* way, double w, double h
 void damper_spring_follow(const InerterDevice* p, const Way* way, double* w, double h) {
   int bends = p->quadratic_damping > 0 || p->damping_knee > 0 || p->damping_knee_back > 0 ||
               p->damping_asymmetry != 0;
-  *w = bends ? divided(p, way, *w, h, MOST_HALVES) : relaxed(way, pace(p, *w), *w, h);
+  *w = bends ? divided(p, way, *w, h, MOST_HALVES) : relaxed(way, pace_at(p, *w), *w, h);
 }
 
 double damper_spring_force(const InerterDevice* p, double w) {

@@ -7,6 +7,8 @@ from typing import cast
 
 import numpy as np
 import pytest
+from inerter.catalogue.scales import Scales
+from inerter.diagnose.bent_damping import straight_bends
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.exchange import plain_part
 from inerter.diagnose.plainer import (
@@ -218,3 +220,17 @@ def test_a_power_of_the_speed_that_is_none_may_be_stribeck_friction(
         # about the force that the power has far beyond its knee
         assert each.values["coulomb_force"] < 2e5 * 1.3e-4 < each.values["coulomb_force"] * 1.3
         assert "damping_exponent" not in each.values
+
+
+def test_a_power_of_the_speed_may_be_two_straight_lines() -> None:
+    sizes = Scales(force=100.0, displacement=0.01, velocity=0.1, acceleration=3.0)
+    power = {"viscous": 1300.0, "damping_power_knee": 0.5, "damping_exponent": -1.0}
+    model = BASELINE.holding(damping_beyond=0.0).adding(None, **power)
+    found = straight_bends(model, sizes)
+    assert len(found) == 2
+    for each in found:
+        assert {"damping_knee", "damping_beyond", "damping_sharpness"} <= set(each.free)
+        assert "damping_power_knee" not in each.values
+        assert "damping_exponent" not in each.values
+        assert each.is_possible
+    assert straight_bends(found[0], sizes) == []

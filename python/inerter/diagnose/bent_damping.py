@@ -71,6 +71,24 @@ def bends(model: Model, linear: float, sizes: Scales) -> Iterator[Candidate]:
     yield Candidate(EFFECT, "power", powers)
 
 
+def straight_bends(model: Model, sizes: Scales) -> list[Model]:
+    """Of damping that goes with a power of the speed two straight lines, about as large there.
+
+    They meet in a corner more or less; how sharp it is is free.
+    """
+    if _POWER not in model.free:
+        return []
+    knee, power, speed = knee_of(model), model.values["damping_exponent"], sizes.velocity
+    linear = model.values["viscous"] * min(1.0, (knee / speed) ** (1.0 - power))
+    bare = model.without((_POWER, "damping_exponent", "damping_beyond"))
+    return [
+        bare.holding(viscous=slope * linear).adding(
+            None, damping_knee=share * speed, damping_beyond=beyond, damping_sharpness=8.0
+        )
+        for slope, share, beyond in ((3.0, 0.25, 0.2), (1.5, 1.0, 0.3))
+    ]
+
+
 def bends_more(model: Model) -> Iterator[Candidate]:
     """Of damping that bends: sharply, in each direction by itself, with a power, to a line."""
     values = model.values

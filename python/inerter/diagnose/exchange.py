@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.catalogue.effects import EFFECTS
+from inerter.diagnose.bent_damping import straight_bends
 from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws, within_blur
@@ -41,8 +42,8 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        other_side, other_filter, _dampers_that_lag, _one_friction, blurred_bristle, _plainer_law,
-        _spring_beside, plain_part, _weight, _one_cause,
+        other_side, other_filter, _dampers_that_lag, _straight_bend, _one_friction,
+        blurred_bristle, _plainer_law, _spring_beside, plain_part, _weight, _one_cause,
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)
@@ -185,6 +186,23 @@ def _dampers_that_lag(search: Search, current: Scored) -> Scored | None:
             scored = search.score("exchange", None, fit)
             return scored if loss(scored, current) < 0.0 else None
     return None
+
+
+def _straight_bend(search: Search, current: Scored) -> Scored | None:
+    """Damping that bends to a straight line for a power of the speed, where that is nearer.
+
+    Which of the two it is shows better once what else there is has been found.
+    """
+    masks = search.problem.masks
+    limit = (1 - CRITERIA.gain) * current.fit.rmse(masks)
+    starts = tuple(filter(search.may_be, straight_bends(current.model, search.problem.scales)))
+    if not starts:
+        return None
+    fit = search.trials.fit(Candidate("exchange", None, starts), (FAR * limit, np.inf), limit)
+    if fit.rmse(masks) >= limit:
+        return None
+    scored = search.score("exchange", None, fit)
+    return scored if search.better(current, scored) else None
 
 
 def _one_friction(search: Search, current: Scored) -> Scored | None:

@@ -256,7 +256,9 @@ def diagnosis_of(
     again = repeats(data.whole, errors)
     missed = badly_missed(data, errors, floor)
     if not long and not missed:
-        missed = badly_missed_parts(data, errors, floor)
+        # how a shaft swung as a record began is read off its beginning, held out or not
+        settled_all = data.raw.with_masks([run.inner for run in data.whole]).errors(final)
+        missed = badly_missed_parts(data, settled_all, floor)
     if long and not missed:
         missed = badly_missed_stretches(long, errors_of(stands), extended.rmse, floor)
     own = RunValues() if long else run_values(data.whole, errors, floor, final)

@@ -115,7 +115,8 @@ def is_missing(finding: Finding) -> bool:
     return bool(unknown) and not any(_contradicts(v) for v in values)
 
 
-def _rival_in_words(rival: Rival) -> str:
+def rival_in_words(rival: Rival) -> str:
+    """Another effect that the data may mean, with its law."""
     return EFFECTS[rival.effect].plain + _law(rival.law)
 
 
@@ -266,12 +267,13 @@ def evidence(finding: Finding) -> str:
         )
     likely = [r for r in finding.other_rivals if r.confidence >= CRITERIA.rival_told]
     if likely:
-        others = " or ".join(
+        names = dict.fromkeys(
             "another form of it"
             if (rival.effect, rival.law) == (finding.effect, None)
-            else _rival_in_words(rival)
-            for rival in likely[:2]
+            else rival_in_words(rival)
+            for rival in likely
         )
+        others = " or ".join([*names][:2])
         text += f"; {others} would explain these data nearly as well"
     return in_digits(f"{text}{what_it_could_be(finding)}.")
 
@@ -412,7 +414,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
         text += f" The data contradict what is stated: {'; '.join(contradicted)}."
     doubts = [
         f"{effect_in_words(finding)} can hardly be told from "
-        f"{_rival_in_words(finding.rivals[0])}" + _told_apart(finding.effect, finding.rivals[0])
+        f"{rival_in_words(finding.rivals[0])}" + _told_apart(finding.effect, finding.rivals[0])
         for finding in diagnosis.findings
         if finding.rivals
         and finding.rivals[0].confidence >= CRITERIA.rival_told

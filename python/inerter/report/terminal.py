@@ -60,7 +60,7 @@ def _findings(diagnosis: Diagnosis) -> Table:
             effect = Text("looks like ", style="dim").append(effect)
         likely = [rival for rival in finding.other_rivals if rival.confidence >= 0.05]
         if likely:
-            names = text.listed([text.effect_name(rival.effect) for rival in likely[:2]])
+            names = text.listed([*dict.fromkeys(map(text.rival_name, likely))][:2])
             effect.append(f"\nor {names}", style="dim not bold")
         curves, others = curves_in_words(text.told_values(finding))
         values = "\n".join(

@@ -8,8 +8,8 @@ import re
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
-from inerter.diagnose.result import Finding, ParameterValue
-from inerter.diagnose.wording import effect_in_words
+from inerter.diagnose.result import Finding, ParameterValue, Rival
+from inerter.diagnose.wording import effect_in_words, rival_in_words
 from inerter.measured_text import NOTHING, decimals_told
 from inerter.motion_units import TRANSLATION, Kind
 from inerter.motion_units import parameter_unit as unit_in
@@ -110,6 +110,11 @@ def _written_out(found: re.Match[str]) -> str:
 def effect_name(effect: str) -> str:
     """An effect in words; the contract's name with spaces where there are none yet."""
     return KNOWN[effect].plain if effect in KNOWN else effect.replace("_", " ")
+
+
+def rival_name(rival: Rival) -> str:
+    """Another effect that the data may mean, in words, with its law where it is one of a bench."""
+    return rival_in_words(rival) if rival.effect in EFFECTS else effect_name(rival.effect)
 
 
 def finding_name(finding: Finding) -> str:
