@@ -7,7 +7,7 @@ from inerter.diagnose.result import Finding, ParameterValue
 from inerter.report.text import told_values
 
 
-@pytest.mark.parametrize(("stderr", "told"), [(0.02, True), (0.3, False)])
+@pytest.mark.parametrize(("stderr", "told"), [(0.02, True), (0.3, False), (0.06, False)])
 def test_what_a_level_may_change_by_is_no_value_where_it_is_not_determined(
     stderr: float, told: bool
 ) -> None:

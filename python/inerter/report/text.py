@@ -8,6 +8,7 @@ import re
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding, ParameterValue, Rival
 from inerter.diagnose.wording import effect_in_words, rival_in_words
 from inerter.measured_text import NOTHING, decimals_told
@@ -176,14 +177,18 @@ def _scientific(value: float, power: int, decimals: int) -> str:
     return f"{mantissa} × 10{str(power).translate(_SUPERSCRIPT)}"
 
 
+def _may_be_none(value: ParameterValue) -> bool:
+    return abs(value.value) < CRITERIA.distinction * value.stderr
+
+
 def told_values(finding: Finding) -> dict[str, ParameterValue]:
     """Parameters of a finding that are told in a table.
 
-    By how much a friction level may go with the speed is said in words, where it is not determined.
+    By how much a friction level may go with the speed is said in words, where it may not at all.
     """
     may_change = finding.members[1:] == ("rate_state_friction",)
     return {
         name: value
         for name, value in finding.parameters.items()
-        if not (may_change and name in _OF_THE_SPEED and value.stderr > abs(value.value))
+        if not (may_change and name in _OF_THE_SPEED and _may_be_none(value))
     }
