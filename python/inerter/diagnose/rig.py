@@ -293,7 +293,7 @@ def diagnosis_of(
     # a member that the model has not is told by its finding alone
     told = {name: v for each in findings for name, v in each.parameters.items()}
     values = values | {name: told[name] for name in values if name in told}
-    given.progress("simulating the extended device in MuJoCo")
+    given.progress("simulating the extended device: MuJoCo, Exudyn, the reference")
     # behind a play an engine takes many steps for a sample
     followed = part if "backlash" in final.free else data
     squares = [judge.error_squares(fit.model) for fit in (stands.before, stands.fit)]
