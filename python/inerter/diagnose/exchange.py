@@ -202,7 +202,8 @@ def _straight_bend(search: Search, current: Scored) -> Scored | None:
     if fit.rmse(masks) >= limit:
         return None
     scored = search.score("exchange", None, fit)
-    return scored if search.better(current, scored) else None
+    much = loss(scored, current) < -CRITERIA.large_gain
+    return scored if much or search.better(current, scored) else None
 
 
 def _one_friction(search: Search, current: Scored) -> Scored | None:
