@@ -198,7 +198,7 @@ static int check_damper_spring(const InerterDevice* device, char* message) {
                   "damper_stiffness",
                   stiffness);
   }
-  if (device->damping_exponent < 0 && device->damping_knee > 0) {
+  if (device->damping_exponent < 0 && (device->damping_knee > 0 || device->damping_knee_back > 0)) {
     return refuse(message,
                   "damper_stiffness is %g N/m and damping_exponent %g: damping that falls with the "
                   "speed has no steady motion behind a spring; give damping_exponent >= 0 or "

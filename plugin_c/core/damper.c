@@ -81,24 +81,25 @@ double damper_over_step(const InerterDevice* p, double viscous, double v, double
   return damper_shaped(p, viscous, nearly) / nearly * v1;
 }
 
-// largest slope of D while x grows, or shrinks
-static double steepest(double knee, double beyond) {
-  return knee > 0 ? fmax(1, beyond) : 1;
+// slopes of c over the velocity at rest and far beyond the knees, while x grows and while it
+// shrinks
+static void slopes_of(const InerterDevice* p, double slopes[4]) {
+  double forth = p->viscous * (1 + p->damping_asymmetry);
+  double back = p->viscous * (1 - p->damping_asymmetry);
+  slopes[0] = forth;
+  slopes[1] = back;
+  slopes[2] = p->damping_knee > 0 ? forth * p->damping_beyond : forth;
+  slopes[3] = p->damping_knee_back > 0 ? back * p->damping_beyond_back : back;
 }
 
 double inerter_steepest_damping(const InerterDevice* p) {
-  double forth = steepest(p->damping_knee, p->damping_beyond) * (1 + p->damping_asymmetry);
-  double back = steepest(p->damping_knee_back, p->damping_beyond_back) * (1 - p->damping_asymmetry);
-  return p->viscous * fmax(forth, back);
-}
-
-// least slope of D while x grows, or shrinks
-static double flattest(double knee, double beyond) {
-  return knee > 0 ? fmin(1, beyond) : 1;
+  double s[4];
+  slopes_of(p, s);
+  return fmax(fmax(s[0], s[1]), fmax(s[2], s[3]));
 }
 
 double inerter_flattest_damping(const InerterDevice* p) {
-  double forth = flattest(p->damping_knee, p->damping_beyond) * (1 + p->damping_asymmetry);
-  double back = flattest(p->damping_knee_back, p->damping_beyond_back) * (1 - p->damping_asymmetry);
-  return p->viscous * fmin(forth, back);
+  double s[4];
+  slopes_of(p, s);
+  return fmin(fmin(s[0], s[1]), fmin(s[2], s[3]));
 }

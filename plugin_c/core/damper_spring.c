@@ -7,16 +7,22 @@
 // D^2 / (2 k_d); heat: D w. Along the curve of the dampers over the velocity the force runs in a
 // loop: late by D' / k_d. Why w and not the spring's deflection: D need not be inverted, and a
 // stiff spring follows with w = v whatever D does. Source: Maxwell element with the dampers' own
-// law; struts of vehicles, e.g. Duym 2000. Not modelled: damping along the stroke, or set by a
-// control, behind the spring; damping that falls with the speed.
+// law; oil that is compressed in shock absorbers: Surace, Worden, Tomlinson 1992. Not modelled:
+// damping along the stroke, or set by a control, behind the spring; damping that falls with the
+// speed.
 
 #include "elementary.h"
 #include "laws.h"
 
+// slope of a damper that has levelled off, at which w follows at once
+static const double kLevel = 1e-200;
+
 // how fast w comes to v [1/s]; 0 without damping, when an engine has it disabled: there is no force
 static double pace_at(const InerterDevice* p, double w) {
-  double slope = damper_slope(p, p->viscous, w);
-  return slope > 0 ? p->damper_stiffness / slope : 0;
+  if (p->viscous == 0 && p->quadratic_damping == 0) {
+    return 0;
+  }
+  return p->damper_stiffness / fmax(damper_slope(p, p->viscous, w), kLevel);
 }
 
 double damper_spring_rate(const InerterDevice* p, double v, double w) {

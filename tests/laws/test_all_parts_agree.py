@@ -86,7 +86,7 @@ def draw(rng: np.random.Generator, law: str) -> dict[str, Any]:
         p["control_lag"] = float(rng.choice([0.0, 0.1]))
     # by a source of its own, so that what follows is drawn as it was
     own = np.random.default_rng(int(1e6 * p["viscous"]))
-    rises = p.get("damping_exponent", 0.0) >= 0.0 or not p["damping_knee"]
+    rises = p.get("damping_exponent", 0.0) >= 0.0
     fixed = {"viscous_curve", "viscous_periods"}.isdisjoint(p) and p.get("control") != "viscous"
     if rises and fixed and own.random() < 0.6:
         p["damper_stiffness"] = around(own, 1e4)

@@ -171,6 +171,14 @@ def test_steps_at_constant_velocity_are_those_of_the_equation() -> None:
     assert device.step(0.0, 0.3, 0.0, 1e3) == pytest.approx(0.3, rel=1e-12)
 
 
+def test_a_damper_that_has_levelled_off_follows_at_once() -> None:
+    """Its slope there is below any number."""
+    level = Device(viscous=1e3, damping_knee=1e-3, damping_beyond=0.0, damping_sharpness=64.0,
+                   damper_stiffness=1e5)  # fmt: skip
+    assert level.step(0.0, 20.0, 1e3, 1e-3) == 20.0
+    assert level.over_step(0.0, 20.0, 0.0, [1e3], 1e-3, 1.0)[0]["total"] == pytest.approx(1.0)
+
+
 def test_work_is_stored_or_heat() -> None:
     x, v, a = moving(1e-4)
     device = Device(**VALVE)
@@ -197,6 +205,10 @@ def test_a_first_force_finds_the_dampers_moving() -> None:
     [
         ({"viscous": 0.0}, "viscous is 0 N.s/m"),
         ({"damping_exponent": -0.5}, "damping_exponent -0.5"),
+        (
+            {"damping_exponent": -0.5, "damping_knee": 0.0, "damping_knee_back": 0.1},
+            "exponent -0.5",
+        ),
         ({"viscous_periods": "0.1 10 0"}, "along the stroke"),
         ({"control": "viscous", "control_lower": 1.0, "control_upper": 9e3}, "control"),
     ],

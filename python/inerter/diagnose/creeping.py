@@ -34,6 +34,7 @@ GAIN = 0.1
 """Share of the error of what moves that leaving them out takes away, at least."""
 # distance of a bristle where a fit begins, per travel
 _BEGIN = (1e-4, 1e-2)
+# of such a fit
 _EVALUATIONS = 25
 
 
@@ -120,7 +121,7 @@ def _in_words(stands: Confirmed, rests: Masks) -> str:
     speeds, motion = _speeds(stands), stands.data.whole[0].motion
     unit = words(motion, "m/s")
     each = [
-        f"{run.name} ({float(np.mean(rest)):.0%}, slower than {speeds[run.name]:.2g} {unit})"
+        f"{run.name} (about {float(np.mean(rest)):.0%}, slower than {speeds[run.name]:.2g} {unit})"
         for run, rest in zip(stands.data.whole, rests, strict=True)
         if rest.any()
     ]

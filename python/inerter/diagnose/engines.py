@@ -33,8 +33,9 @@ Along = Callable[[Device, BenchRun, Any], dict[str, Array]]
 # shortest step [s] of a device with free play, and steps per sample at most: half as long changes
 # nothing where an impact hardly comes, in either engine
 PLAY_STEP, PLAY_PARTS = 3e-5, 32
-# steps of a run at most where a bristle asks for more of them: some ten seconds of Exudyn
-MOST_STEPS = 30_000
+# steps of a run at most where a bristle asks for more of them: a minute of Exudyn, which with fewer
+# may diverge and say nothing
+MOST_STEPS = 80_000
 # steps from which on the engines run at the same time
 _LONG = 100_000
 # an error this many times the force is that of a simulation which has run away

@@ -6,16 +6,16 @@ from typing import Any
 
 from inerter.diagnose.cannot_tell import goes_one_way, runs_up, sweeps
 from inerter.diagnose.stages import Confirmed
+from inerter.records.preparation import usable
 
 
 def unused_in_words(stands: Confirmed) -> str:
-    """Which measured channels of the motion were not used, a sentence; "" where none."""
+    """Which measured channels of the motion were tried and not used, a sentence; "" where none."""
     data = stands.data
     names = [
         name
         for name in ("velocity", "acceleration")
-        if name not in data.preparation.channels
-        and all(getattr(record, name) is not None for record in data.records)
+        if name not in data.preparation.channels and usable(name, data.records)
     ]
     if not names:
         return ""

@@ -75,7 +75,7 @@ def constants(runs: Sequence[BenchRun]) -> dict[str, float]:
     least = max(FORCE_PART * _rms(force), LEFT_PART * left)
     if not np.any((np.abs(off) > SURE * errors) & (np.abs(off) > least)):
         return {}
-    richer, *_ = _about_mean([_richer(row, run) for row, run in zip(rows, runs, strict=True)])
+    richer, *_ = _about_mean([_rows(run, _bends(runs), uneven=True) for run in runs])
     if np.max(np.abs(richer - off)) > MOVED * np.ptp(off) or _begin_alike(runs, off):
         return {}
     return {run.name: float(value) for run, value in zip(runs, off, strict=True)}
@@ -213,7 +213,8 @@ def _goes_one_way(run: BenchRun) -> bool:
     return max(share, 1.0 - share) > ONE_WAY
 
 
-def _rows(run: BenchRun, bends: Array | None = None) -> _Rows:
+def _rows(run: BenchRun, bends: Array | None = None, *, uneven: bool = False) -> _Rows:
+    """With a force that bends along the stroke, and `uneven` damping that bends sooner and lags."""
     x, v, a = run.displacement, run.velocity, run.acceleration
     size = _rms(v[run.inner]) or 1.0
     moving = run.inner & (np.abs(v) > SLOW * size)
@@ -224,17 +225,10 @@ def _rows(run: BenchRun, bends: Array | None = None) -> _Rows:
         columns += list(np.maximum(x - bends[:, None], 0.0))
         # an inertance along the stroke: b(x) a + b'(x) v^2 / 2
         columns += [0.5 * v * v + x * a, x * v * v + x * x * a]
+    if uneven:
+        speed = np.abs(v) / size
+        columns += [np.sqrt(speed), way * np.sqrt(speed), a * way, a * speed, a * v]
     return _Rows(np.column_stack(columns)[moving], run.force[moving])
-
-
-def _richer(rows: _Rows, run: BenchRun) -> _Rows:
-    """The rows with damping that bends sooner, and that lags, differently in each direction."""
-    v, a = run.velocity, run.acceleration
-    size = _rms(v[run.inner]) or 1.0
-    speed, moving = np.abs(v) / size, run.inner & (np.abs(v) > SLOW * size)
-    way = np.tanh(v / (WIDTH * size))
-    more = np.column_stack([np.sqrt(speed), way * np.sqrt(speed), a * way, a * speed, a * v])
-    return replace(rows, columns=np.column_stack([rows.columns, more[moving]]))
 
 
 def _rms(values: Array) -> float:

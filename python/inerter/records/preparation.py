@@ -106,7 +106,7 @@ def prepare(records: Sequence[Record], learnt: Masks | None = None) -> Preparati
     lowest = min(2 * dominant, highest / 2)
     count = int(np.ceil(np.log(highest / lowest) / np.log(STEP))) + 1
     cutoffs = np.geomspace(lowest, highest, count)
-    measured = [name for name in ("velocity", "acceleration") if _usable(name, records)]
+    measured = [name for name in ("velocity", "acceleration") if usable(name, records)]
     choices = [use for count in range(len(measured) + 1) for use in combinations(measured, count)]
 
     wide = [smooth(record, float(cutoffs[-1]), ()) for record in records]
@@ -223,7 +223,7 @@ def prepare_again(
     return replace(preparation, motions=motions, cutoff=cutoff, cutoffs=cutoffs, errors=errors)
 
 
-def _usable(name: str, records: Sequence[Record]) -> bool:
+def usable(name: str, records: Sequence[Record]) -> bool:
     """Whether every record has a channel, and in none it was found to be dead or wrong."""
     return all(
         getattr(record, name) is not None

@@ -311,7 +311,8 @@ class DeviceParameters(FrictionParameters):
             raise ValueError(f"{said} with viscous along the stroke; drop one of the two")
         if self.viscous == 0.0:
             raise ValueError(f"{said} with viscous 0.0 N s/m; give viscous above 0")
-        if self.damping_exponent < 0.0 and self.damping_knee > 0.0:
+        bends = self.damping_knee > 0.0 or self.damping_knee_back > 0.0
+        if self.damping_exponent < 0.0 and bends:
             raise ValueError(
                 f"{said} with damping_exponent {self.damping_exponent}; give one of at least 0"
             )
