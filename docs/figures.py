@@ -301,6 +301,17 @@ def series() -> None:
     in_time("series", devices, sine(2.0, 3))
 
 
+def clutch() -> None:
+    """A clutch, a one-way clutch, a leak: a start from rest at 2 Hz."""
+    devices = {
+        "elastic": Device(**SERIES),
+        "a clutch of 100 N": Device(**SERIES, clutch_force=100),
+        "a one-way clutch": Device(**SERIES, clutch_force=1e6, clutch_asymmetry=1),
+        "a leak": Device(inertance=100, leak_damping=500, leak_quadratic_damping=1e4),
+    }
+    in_time("clutch", devices, sine(2.0, 3))
+
+
 def friction_side() -> None:
     """Friction before and behind the elastic drive."""
     soft = {"inertance": 100, "series_stiffness": 1e5, "series_damping": 1500}
@@ -404,7 +415,7 @@ def strut_layouts() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
-    load_on_bristle, damping_and_stiffness, dampers, damper_spring, branches, inertance, series,
+    load_on_bristle, damping_and_stiffness, dampers, damper_spring, branches, inertance, series, clutch,
     friction_side, end_stops, gas, fluid, along_the_stroke, force_map, along_each_direction, coil,
     aging, control, semi_active, strut_layouts,
 )  # fmt: skip

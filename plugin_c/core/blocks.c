@@ -16,7 +16,7 @@ enum {
   BLOCK_PARTS = PART_VARYING | PART_FLYWHEEL | PART_PIPE | PART_GAS | PART_STOPS | PART_BRANCHES |
       PART_DAMPER | PART_DAMPER_SPRING | PART_FRICTION_CURVE | PART_FRICTION_BACK |
       PART_INERTANCE_CURVE | PART_INERTANCE_BACK | PART_FORCE_CURVE | PART_VISCOUS_CURVE |
-      PART_FORCE_MAP | PART_SERIES | PART_BACKLASH,
+      PART_FORCE_MAP | PART_SERIES | PART_BACKLASH | PART_CLUTCH,
   // what makes the force between the terminals more than a cubic spring and a quadratic damper
   BENT_PARTS = PART_STOPS | PART_DAMPER | PART_VISCOUS_CURVE | PART_FORCE_MAP
 };
@@ -80,7 +80,7 @@ static void series_along(const InerterDevice* p, const FrictionPath* path, const
                          SeriesExact* steps, double* z, double* forces) {
   const double *x = path->x, *v = path->v;
   double h = path->h;
-  size_t count = has(p, PART_BACKLASH) ? 3 : 2;
+  size_t count = (size_t)series_count(p);
   for (int i = path->first; i < path->last; i++) {
     if (i) {
       Way way = way_between(x + i - 1, v + i - 1, a + i - 1, h);

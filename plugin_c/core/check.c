@@ -8,7 +8,7 @@
 #include "configuration.h"
 #include "laws.h"
 
-static int refuse(char* message, const char* format, ...) {
+int refuse(char* message, const char* format, ...) {
   va_list values;
   va_start(values, format);
   vsnprintf(message, INERTER_MESSAGE_SIZE, format, values);
@@ -333,43 +333,13 @@ static int check_channel(InerterDevice* device, char* message) {
   return 0;
 }
 
-static int check_series(const InerterDevice* device, char* message) {
-  if (device->friction_side == INERTER_SIDE_flywheel && device->mu_backward >= 1) {
-    const char* name = device->load_friction >= 1 ? "load_friction" : "mu_backward";
-    return refuse(message,
-                  "%s is %g and friction_side is \"flywheel\": the flywheel would lock; "
-                  "give %s < 1",
-                  name, device->mu_backward, name);
-  }
-  const int needy[] = {INERTER_INDEX_series_hardening, INERTER_INDEX_backlash};
-  const double values[] = {device->series_hardening, device->backlash};
-  for (int i = 0; i < 2; i++) {
-    const InerterParameter* p = inerter_parameter(needy[i]);
-    if (values[i] != 0 && device->series_stiffness == 0) {
-      return refuse(message,
-                    "%s is %g %s, but series_stiffness is 0 N/m; give series_stiffness > 0 N/m or "
-                    "remove %s",
-                    p->name, values[i], p->unit, p->name);
-    }
-  }
-  if (device->inertance == 0 && (device->series_stiffness > 0 || device->series_damping > 0)) {
-    int stiff = device->series_stiffness > 0;
-    return refuse(message,
-                  "%s is %g %s, but inertance is 0 kg: there is nothing behind the series element; "
-                  "give inertance > 0 kg or remove %s",
-                  stiff ? "series_stiffness" : "series_damping",
-                  stiff ? device->series_stiffness : device->series_damping,
-                  stiff ? "N/m" : "N*s/m", stiff ? "series_stiffness" : "series_damping");
-  }
-  return 0;
-}
-
 static uint32_t parts_of(const InerterDevice* p) {
   // where the control sets it, what is 0 now may become more
   int valve = p->control == INERTER_CONTROL_minor_loss;
   int brake = p->control == INERTER_CONTROL_flywheel_viscous || p->flywheel_viscous > 0;
   int pipe = p->fluid_viscosity > 0 || p->minor_loss > 0 || valve, gas = p->gas_pressure > 0;
-  int series = p->series_stiffness > 0 || p->series_damping > 0;
+  int slips = p->clutch_force > 0 || p->leak_damping > 0 || p->leak_quadratic_damping > 0;
+  int series = p->series_stiffness > 0 || p->series_damping > 0 || slips;
   int varying =
       p->inertance_gradient != 0 || p->inertance_curvature != 0 || p->inertance_speed_gradient != 0;
   int stops = !isnan(p->stop_lower) || !isnan(p->stop_upper);
@@ -378,8 +348,8 @@ static uint32_t parts_of(const InerterDevice* p) {
   return curve_parts(p) | (varying ? PART_VARYING : 0) | (pipe ? PART_PIPE : 0) |
          (gas ? PART_GAS : 0) | (pipe || gas || brake ? PART_FLYWHEEL : 0) |
          (series ? PART_SERIES : 0) | (p->backlash > 0 ? PART_BACKLASH : 0) |
-         (stops ? PART_STOPS : 0) | (branch_count(p) ? PART_BRANCHES : 0) |
-         (inerter_shapes_damping(p) ? PART_DAMPER : 0) |
+         (slips ? PART_CLUTCH : 0) | (stops ? PART_STOPS : 0) |
+         (branch_count(p) ? PART_BRANCHES : 0) | (inerter_shapes_damping(p) ? PART_DAMPER : 0) |
          (p->damper_stiffness > 0 ? PART_DAMPER_SPRING : 0) | (wheel ? PART_WHEEL_FRICTION : 0);
 }
 
@@ -397,7 +367,7 @@ int device_check(InerterDevice* device, char* message) {
                  check_friction(device, message) || check_load(device, message) ||
                  check_branches(device, message) || check_damper_spring(device, message) ||
                  check_stops(device, message) || check_gas(device, message) ||
-                 check_channel(device, message) || check_series(device, message) ||
+                 check_channel(device, message) || series_check(device, message) ||
                  curve_check(device, message) || map_check(device, message)
              ? -1
              : 0;
@@ -431,7 +401,6 @@ void inerter_find_parts(InerterDevice* device) {
   device->nbranch = branch_count(device);
   device->ndamper = device->damper_stiffness > 0;
   device->ncontrol = device->control != INERTER_CONTROL_force && device->control_lag > 0;
-  device->nstate = device->nfriction + (has(device, PART_SERIES) ? 2 : 0) +
-                   (has(device, PART_BACKLASH) ? 1 : 0) + device->nbranch + device->ndamper +
+  device->nstate = device->nfriction + series_count(device) + device->nbranch + device->ndamper +
                    device->ncontrol;
 }

@@ -14,4 +14,10 @@ const char* range_text(const InerterParameter* p, char text[128]);
 // whether a value is in that range
 int allowed(const InerterParameter* p, double value);
 
+// write a message; -1
+int refuse(char* message, const char* format, ...);
+
+// series_check.c: whether a series element's parameters fit together; -1 with a message if not
+int series_check(const InerterDevice* device, char* message);
+
 #endif  // INERTER_CORE_CONFIGURATION_H_

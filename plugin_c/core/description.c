@@ -144,6 +144,9 @@ const char* inerter_state_name(const InerterDevice* device, int i) {
   if (i >= branch_index(device)) {
     return kBranch[i - branch_index(device)];
   }
+  if (i == device->nfriction + 2 && has(device, PART_CLUTCH)) {
+    return "slip_position";
+  }
   if (i >= device->nfriction) {
     return kSeries[i - device->nfriction];
   }

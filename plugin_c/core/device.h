@@ -263,7 +263,8 @@ INERTER_API int inerter_nstate(const InerterDevice* device);
 INERTER_API const char* inerter_compiler(void);
 
 // Name of state i: "friction_state" (of maxwell_slip "friction_state_1", ...), "series_deflection",
-// "flywheel_velocity", "gap_position", "branch_deflection_1", ...; NULL past the end.
+// "flywheel_velocity", "gap_position" or "slip_position", "branch_deflection_1", ...; NULL past the
+// end.
 INERTER_API const char* inerter_state_name(const InerterDevice* device, int i);
 
 // Rates of the states z at displacement x, velocity v, acceleration a, which matters only where a

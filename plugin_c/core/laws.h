@@ -21,6 +21,7 @@ enum {
   PART_BRANCHES = 1 << 8,
   PART_DAMPER = 1 << 9,  // damping that bends, differs by direction, or is behind a spring
   PART_DAMPER_SPRING = 1 << 10,
+  PART_CLUTCH = 1 << 11,  // a series element that slips
 
   // along the stroke (curve.c); that of friction is in friction.h
   PART_FRICTION_BACK = 1 << 17,
@@ -298,8 +299,18 @@ double friction_over_step(const InerterDevice* p, double x, double v, double v1,
                           double share, double load, double* z);
 double friction_grip(const InerterDevice* p, double x, double v);
 
-// series.c: states s, w, gap in z; x, v of the terminals; drag: what friction at the flywheel takes
-// of the force
+// clutch.c: F_c for the sign of a force; force of a slip u, with its slope; u at which
+// weight S(u) + damping u is a force; u and force where the spring bears a force and the element
+// lengthens at a rate
+double clutch_limit(const InerterDevice* p, double force);
+double clutch_law(const InerterDevice* p, double u);
+double clutch_slope(const InerterDevice* p, double u);
+double clutch_speed(const InerterDevice* p, double weight, double damping, double force);
+double clutch_rate(const InerterDevice* p, double spring, double rate);
+double clutch_carries(const InerterDevice* p, double spring, double rate);
+
+// series.c: states s, w, gap or slip in z; x, v of the terminals; drag: what friction at the
+// flywheel takes of the force
 double series_force(const InerterDevice* p, double v, const double* z);
 void series_rate(const InerterDevice* p, double x, double v, const double* z, double drag,
                  double* rate);
@@ -386,6 +397,8 @@ typedef struct Slide_ {
 typedef struct SeriesExact_ {
   int holds;  // whether there may be such steps
   double h;
+  double dashpot;                   // alone in series [N s/m]; 0: there is a spring
+  double decay, driven[RESPONSES];  // of that: what is left of s' after a step, and the rest
   int has_swings, has_slides;
   Oscillator oscillator;
   Swing half_swing, swing;
@@ -422,8 +435,16 @@ static inline double least_share(double stiffness, double mobility, double h) {
 // series.c: spring phi(d) with its slope
 Tangent series_spring(const InerterDevice* p, double d);
 
-// position of the play, and the spring's deflection d
+// number of its states
+static inline int series_count(const InerterDevice* p) {
+  return has(p, PART_SERIES) ? 2 + ((p->parts & (PART_BACKLASH | PART_CLUTCH)) != 0) : 0;
+}
+
+// what of the deflection is not the spring's: the position in the play, or the slip
 static inline double series_gap(const InerterDevice* p, const double* z) {
+  if (has(p, PART_CLUTCH)) {
+    return z[2];
+  }
   if (!has(p, PART_BACKLASH)) {
     return 0;
   }

@@ -54,6 +54,14 @@
   X(series_hardening, "1/m", 0, -INFINITY, INFINITY, CLOSED, "",                                   \
     "relative rise of the series stiffness per deflection, q")                                     \
   X(backlash, "m", 0, 0, INFINITY, CLOSED, "", "half of the free play of the series element, eps") \
+  X(clutch_force, "N", 0, 0, INFINITY, CLOSED, "",                                                 \
+    "force at which a clutch in series with the inertance slips, F_c; 0: none holds")              \
+  X(clutch_asymmetry, "1", 0, -1, 1, CLOSED, "",                                                   \
+    "relative rise of clutch_force in tension, fall in compression; 1 or -1: a one-way clutch")    \
+  X(leak_damping, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                             \
+    "force per velocity of the slip, c_l: a laminar leak; 0: none")                                \
+  X(leak_quadratic_damping, "N*s^2/m^2", 0, 0, INFINITY, CLOSED, "",                               \
+    "force per velocity of the slip squared, q_l: a turbulent leak; 0: none")                      \
   /* end stops */                                                                                  \
   X(stop_lower, "m", NAN, -INFINITY, INFINITY, CLOSED, "",                                         \
     "x below which it stops; unset: no stop")                                                      \

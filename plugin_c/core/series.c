@@ -1,17 +1,18 @@
-// Series element between the terminals and the flywheel: spring, damper, backlash.
+// Series element between the terminals and the flywheel: spring, damper, backlash or slip.
 //
 //   y = x - s,   s' = v - w,   B(y, w) w' + R(y, w) + G(y, w) = F_s
 //   d = s - gap,   |gap| <= eps
 //   phi(d) = k_s (1 + q d) d, constant from where its tangent would turn negative (1 + 2 q d < 0)
 //   F_s = phi(d) + c_s (s' - gap')
 //   gap = +eps: gap' = min(0, s' + phi / c_s);  -eps: max(0, ...);  between: gap' = s' + phi / c_s
+//   with slip in the place of a play (clutch.c): d = s - p,  F_s = phi(d) + c_s (s' - p')
 //
 // s [m] deflection with the play, w [m/s] velocity of the flywheel, gap [m] position in the play, d
 // [m] deflection of the spring; k_s [N/m] series_stiffness, c_s [N s/m] series_damping, q [1/m]
 // series_hardening, eps [m] backlash, half of the play. F_s lengthens. Stored energy: integral of
 // phi; heat c_s d'^2. Within the play F_s = 0 and the spring relaxes against its damper. Without
 // damper that takes no time: gap = s clamped to the play, F_s a dead zone. Without stiffness the
-// damper alone is in series.
+// damper alone is in series, without either what slips alone: F_s = S(s').
 // Why contact ends at the force's sign and not at a position: the damper of a plain dead zone pulls
 // the sides together as they part.
 // Source: Nordin, Galic, Gutman 1997; the release set of Wang & Su 2008, eq. (7).
@@ -32,9 +33,12 @@ Tangent series_spring(const InerterDevice* p, double d) {
                    p->series_stiffness * relative};
 }
 
-// gap'
+// gap', or p'
 static double gap_rate(const InerterDevice* p, double v, const double* z) {
   double rate = v - z[W];
+  if (has(p, PART_CLUTCH)) {
+    return clutch_rate(p, series_spring(p, z[S] - z[GAP]).value, rate);
+  }
   if (p->series_damping == 0) {
     return fabs(z[S]) < p->backlash ? rate : 0;
   }
@@ -46,6 +50,9 @@ static double gap_rate(const InerterDevice* p, double v, const double* z) {
 }
 
 double series_force(const InerterDevice* p, double v, const double* z) {
+  if (has(p, PART_CLUTCH)) {
+    return clutch_carries(p, series_spring(p, z[S] - z[GAP]).value, v - z[W]);
+  }
   double force = series_spring(p, z[S] - series_gap(p, z)).value + p->series_damping * (v - z[W]);
   if (!has(p, PART_BACKLASH) || p->series_damping == 0) {
     return force;
@@ -62,7 +69,7 @@ void series_rate(const InerterDevice* p, double x, double v, const double* z, do
   rest += flywheel_force(p, y, z[W]);
   rate[S] = v - z[W];
   rate[W] = (series_force(p, v, z) - drag - rest) / inertance;
-  if (has(p, PART_BACKLASH)) {
+  if (series_count(p) > GAP) {
     rate[GAP] = gap_rate(p, v, z);
   }
 }
@@ -77,11 +84,12 @@ double series_energy(const InerterDevice* p, const double* z) {
 }
 
 double series_heat(const InerterDevice* p, double v, const double* z) {
-  double rate = v - z[W];
-  if (has(p, PART_BACKLASH)) {
-    rate -= gap_rate(p, v, z);
+  double rate = v - z[W], slip = series_count(p) > GAP ? gap_rate(p, v, z) : 0;
+  if (has(p, PART_CLUTCH)) {
+    double force = series_force(p, v, z), spring = series_spring(p, z[S] - z[GAP]).value;
+    return (force - spring) * (rate - slip) + force * slip;
   }
-  return p->series_damping * rate * rate;
+  return p->series_damping * (rate - slip) * (rate - slip);
 }
 
 int series_valid(const InerterDevice* p, const double* z, char* message) {
@@ -101,8 +109,17 @@ void series_of_force(const InerterDevice* p, double v, double force, double* z) 
   double k = p->series_stiffness, q = p->series_hardening;
   z[S] = 0;
   z[W] = v;
+  if (has(p, PART_CLUTCH)) {
+    z[GAP] = 0;
+    double held = clutch_limit(p, force);
+    if (p->leak_damping > 0 || p->leak_quadratic_damping > 0) {
+      z[W] -= clutch_speed(p, 1, 0, force);
+    } else {
+      force = clamp(force, -held, held);
+    }
+  }
   if (k == 0) {
-    z[W] = v - force / p->series_damping;
+    z[W] -= p->series_damping > 0 ? force / p->series_damping : 0;
     return;
   }
 

@@ -3,11 +3,13 @@
 //
 //   in contact:  b s'' + (c_s + c_w) s' + k_s (s - gap) = b a(t) + c_w v(t),  w = v - s'
 //   loose:       w' = -c_w w / b,  d' = -k_s d / c_s,  s' = v - w
+//   a dashpot c alone, or a laminar leak:  s'' + (c + c_w) / b s' = a(t) + c_w / b v(t)
 //
 // In contact see oscillator.c. With backlash a step is only taken where the force keeps its sign,
-// or the play is not used up, in its middle and at its end; others are left to series_step.c.
+// or the play is not used up, in its middle and at its end, with a clutch where that holds there;
+// others are left to series_step.c.
 //
-// b, k_s > 0, c_s, c_w, s, d, gap, w: as in series.c.
+// b, k_s, c_s, c_w, s, d, gap, w: as in series.c.
 // Source: linear oscillator.
 // Not modelled: inertance that varies, pipe, gas, hardening.
 
@@ -19,17 +21,56 @@ static double contact_force(const InerterDevice* p, double v, const double* z) {
   return p->series_stiffness * (z[S] - z[GAP]) + p->series_damping * (v - z[W]);
 }
 
-// whether a linear flywheel hangs on a linear spring
+// whether a flywheel is linear
 static int is_linear(const InerterDevice* p) {
-  return p->series_stiffness > 0 && p->series_hardening == 0 && !has(p, PART_VARYING) &&
-         !has(p, PART_PIPE) && !has(p, PART_GAS);
+  return !has(p, PART_VARYING) && !has(p, PART_PIPE) && !has(p, PART_GAS) &&
+         !has(p, PART_WHEEL_FRICTION);
+}
+
+// a linear dashpot without a spring beside it [N s/m], or 0
+static double dashpot_alone(const InerterDevice* p) {
+  if (p->series_stiffness > 0) {
+    return 0;
+  }
+  if (!has(p, PART_CLUTCH)) {
+    return p->series_damping;
+  }
+  int straight = p->series_damping == 0 && p->clutch_force == 0 && p->leak_quadratic_damping == 0;
+  return straight ? p->leak_damping : 0;
+}
+
+// a step of a flywheel behind a dashpot
+static void drag_along(const InerterDevice* p, const SeriesExact* steps, const Way* way,
+                       double* z) {
+  const double drive[] = {way->v, way->a, way->jerk, way->snap, way->crackle, 0};
+  double own = p->flywheel_viscous / p->inertance, rate = steps->dashpot / p->inertance + own;
+  double u = way->v - z[W], end = steps->decay * u;
+  for (int k = 0; k < RESPONSES; k++) {
+    end += steps->driven[k] * (drive[k + 1] + own * drive[k]);
+  }
+  double faster = way_speed(way, steps->h), travel = way_travel(way, steps->h);
+  double slid = (faster - way->v + own * travel + u - end) / rate;
+  z[S] += slid;
+  z[W] = faster - end;
+  if (has(p, PART_CLUTCH)) {
+    z[GAP] += slid;
+  }
 }
 
 void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps) {
-  steps->holds = is_linear(p) && h >= 0 && !has(p, PART_WHEEL_FRICTION) &&
+  int linear = has(p, PART_SERIES) && is_linear(p) && h >= 0;
+  steps->h = h;
+  steps->dashpot = linear ? dashpot_alone(p) : 0;
+  if (steps->dashpot > 0) {
+    double rate = (steps->dashpot + p->flywheel_viscous) / p->inertance;
+    steps->holds = 1;
+    steps->decay = exp(-rate * h);
+    decay_driven(rate, h, steps->driven);
+    return;
+  }
+  steps->holds = linear && p->series_stiffness > 0 && p->series_hardening == 0 &&
                  series_parts(p, p->series_stiffness, p->inertance, h) < series_most_parts(p);
   if (steps->holds) {
-    steps->h = h;
     steps->has_swings = steps->has_slides = 0;
     steps->oscillator = (Oscillator){.mass = p->inertance,
                                      .damping = p->series_damping + p->flywheel_viscous,
@@ -60,12 +101,12 @@ static void loose(const InerterDevice* p, const Slide* slide, const Way* way, do
   z[GAP] = z[S] - d;
 }
 
-static void find_swings(SeriesExact* steps, int backlash) {
+static void find_swings(SeriesExact* steps, int halves) {
   if (!steps->has_swings) {
     steps->has_swings = 1;
     steps->swing = oscillator_swing(&steps->oscillator, steps->h);
     steps->half_swing =
-        backlash ? oscillator_swing(&steps->oscillator, 0.5 * steps->h) : steps->swing;
+        halves ? oscillator_swing(&steps->oscillator, 0.5 * steps->h) : steps->swing;
   }
 }
 static void find_slides(const InerterDevice* p, SeriesExact* steps) {
@@ -76,9 +117,39 @@ static void find_slides(const InerterDevice* p, SeriesExact* steps) {
   }
 }
 
+// whether a clutch holds a force
+static int holds(const InerterDevice* p, double force) {
+  return fabs(force) < clutch_limit(p, force);
+}
+
+// a step in which a clutch holds at the start, in the middle and at the end; else 0, nothing done
+static int holding(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z) {
+  if (!holds(p, contact_force(p, way->v, z))) {
+    return 0;
+  }
+  double slip = z[GAP], middle[3] = {z[S], z[W], slip}, end[3] = {z[S], z[W], slip};
+  find_swings(steps, 1);
+  contact(steps, &steps->half_swing, way, slip, middle);
+  contact(steps, &steps->swing, way, slip, end);
+  if (!holds(p, contact_force(p, way_speed(way, 0.5 * steps->h), middle)) ||
+      !holds(p, contact_force(p, way_speed(way, steps->h), end))) {
+    return 0;
+  }
+  z[S] = end[S];
+  z[W] = end[W];
+  return 1;
+}
+
 int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z) {
   if (!steps->holds) {
     return 0;
+  }
+  if (steps->dashpot > 0) {
+    drag_along(p, steps, way, z);
+    return 1;
+  }
+  if (has(p, PART_CLUTCH)) {
+    return holding(p, steps, way, z);
   }
   if (!has(p, PART_BACKLASH)) {
     find_swings(steps, 0);

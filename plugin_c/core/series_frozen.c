@@ -9,7 +9,8 @@
 // A half step with the coefficients of the start leads to the middle. B, R, G, phi, c_s, s, w: as
 // in series.c; D: slope of the flywheel's dampers; m: in the middle. Why: a step need not resolve
 // the oscillation, only how much its coefficients change. Order: 2. Source: exponential Rosenbrock
-// methods (Hochbruck, Ostermann 2010), the middle in place of the start. Not modelled: backlash.
+// methods (Hochbruck, Ostermann 2010), the middle in place of the start. Not modelled: backlash,
+// slip.
 
 #include "laws.h"
 
@@ -126,7 +127,7 @@ static int loose(const InerterDevice* p, double x, const Way* way, double h, dou
 enum { PER_CHANGE = 16 };
 
 int series_frozen(const InerterDevice* p, double x, const Way* way, double* z, double h, int most) {
-  if (h < 0) {
+  if (h < 0 || has(p, PART_CLUTCH)) {
     return 0;
   }
   int side = 0;

@@ -11,6 +11,9 @@
 // its own line, which the step resolves better. The sum of both is continuous and does not fall
 // with s1, so that with the flywheel's line there is one F.
 //
+// A slip of h U over the step leaves the spring the rest of u = s1 - s: F = S(U), and
+//            (1 + slope give) S(U) + slope h U = F without slip (1 + slope give)
+//
 // v, w, s, d, phi, B, R, G, h [s]: as in series.c; share 1/2 ... 1: implicit part of the step.
 // Friction at the flywheel (wheel_friction.c) takes a force D of F there, that of the velocity
 //            w + share (w1 - w): one equation in D, which does not fall with w1, found by bisection
@@ -34,6 +37,7 @@ typedef struct Flywheel_ {
 typedef struct Element_ {
   Tangent push, pull;  // F = max(0, push) + min(0, pull); without backlash F = push
   double rest;         // deflection that a loose spring relaxes to
+  double h;            // [s]
   int side;            // +1, -1: side in contact at the start
 } Element;
 
@@ -57,7 +61,7 @@ static Flywheel flywheel_step(const InerterDevice* p, double y, double near, dou
 // the element's step from z; in contact linearised at deflection near, with `share`
 static Element element_step(const InerterDevice* p, const double* z, double near, double h,
                             double share) {
-  Element element = {.side = 0};
+  Element element = {.h = h, .side = 0};
   double damping = p->series_damping / h, gap = series_gap(p, z), d = z[S] - gap;
   Tangent spring = series_spring(p, near);
   spring.value += spring.slope * (d - near);
@@ -89,8 +93,29 @@ static double on_line(Tangent line, Flywheel flywheel) {
   return at(line, flywheel.free_u) / (1 + line.slope * flywheel.give_u);
 }
 
+// velocity of the slip over the step, and F
+static double clutch_over_step(const InerterDevice* p, Element element, Flywheel flywheel,
+                               double* force) {
+  Tangent line = element.push;
+  double h = element.h, give = flywheel.give_u, u;
+  if (p->series_stiffness == 0 && p->series_damping == 0) {
+    u = clutch_speed(p, give, h, flywheel.free_u);
+    *force = clutch_law(p, u);
+    return u;
+  }
+  double weight = 1 + line.slope * give, wanted = at(line, flywheel.free_u);
+  u = clutch_speed(p, weight, line.slope * h, wanted);
+  *force = (wanted - line.slope * h * u) / weight;
+  return u;
+}
+
 // F of both; of the four combinations of lines the one that fits itself
 static double common_force(const InerterDevice* p, Element element, Flywheel flywheel) {
+  if (has(p, PART_CLUTCH)) {
+    double force;
+    clutch_over_step(p, element, flywheel, &force);
+    return force;
+  }
   if (!has(p, PART_BACKLASH)) {
     return on_line(element.push, flywheel);
   }
@@ -116,6 +141,10 @@ static void finish_step(const InerterDevice* p, Element element, Flywheel flywhe
   double u = flywheel.free_u - flywheel.give_u * force;
   z[S] += u;
   z[W] = flywheel.free_w + flywheel.give_w * force;
+  if (has(p, PART_CLUTCH)) {
+    z[GAP] += element.h * clutch_over_step(p, element, flywheel, &force);
+    return;
+  }
   if (!has(p, PART_BACKLASH)) {
     return;
   }
@@ -237,7 +266,7 @@ static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel
 // resolve the element, so that it settles.
 static void substep(const InerterDevice* p, double x, double v, double a, double* bristle,
                     double* z, double h) {
-  double middle[3] = {z[S], z[W], has(p, PART_BACKLASH) ? z[GAP] : 0};
+  double middle[3] = {z[S], z[W], series_count(p) > GAP ? z[GAP] : 0};
   double d = z[S] - series_gap(p, z);
   Element half = element_step(p, z, d, 0.5 * h, 1);
   double midway = v + 0.5 * h * a;
@@ -249,7 +278,7 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
   double near = middle[S] - series_gap(p, middle);
   double y = x + 0.25 * h * (v + midway) - middle[S];
   double inertance = inertance_felt(p, y, middle[W], NULL);
-  double damping = p->series_damping, stiffness = series_spring(p, near).slope;
+  double damping = p->series_damping, stiffness = series_spring(p, near).slope, relaxed = 0;
   if (has(p, PART_FLYWHEEL)) {
     damping += flywheel_damper(p, middle[W]).slope;
   }
@@ -257,7 +286,15 @@ static void substep(const InerterDevice* p, double x, double v, double a, double
     damping += friction_grip(p, y, middle[W]);
     stiffness += bristle ? law_of(p)->stiffness(p) : 0;
   }
-  double square = h * (h * stiffness + damping) / inertance;
+  if (has(p, PART_CLUTCH)) {
+    double slip = clutch_slope(p, (middle[GAP] - z[GAP]) / (0.5 * h));
+    if (stiffness == 0 && p->series_damping == 0) {
+      damping += slip;
+    } else if (p->leak_damping > 0 || p->leak_quadratic_damping > 0) {
+      relaxed = h * stiffness / (slip + p->series_damping);
+    }
+  }
+  double square = fmax(relaxed, h * (h * stiffness + damping) / inertance);
   double share = square > 2 ? 1 - 1 / square : 0.5;
   Element element = element_step(p, z, near, h, share);
   flywheel = flywheel_step(p, y, middle[W], z[W], v + share * h * a, h, share);
@@ -288,6 +325,9 @@ void series_step(const InerterDevice* p, double x, const Way* way, double* brist
     stiffness += law_of(p)->stiffness(p);
   }
   double parts = series_parts(p, stiffness, inertance, h);
+  if (has(p, PART_CLUTCH) && stiffness == 0 && p->series_damping == 0) {
+    parts += PER_RADIAN * fabs(h) * clutch_slope(p, way->v - z[W]) / inertance;
+  }
   int resolved = parts < SERIES_MOST_PARTS, count = resolved ? 1 + (int)parts : FEW_PARTS;
   if (parts < series_most_parts(p)) {
     SeriesExact steps;

@@ -114,7 +114,8 @@ void instance_complain(const mjModel* m, Instance* self, Complaint reason, const
 
 // Whether a device has a series element; end stops.
 static inline int instance_has_series(const InerterDevice* device) {
-  return device->series_stiffness > 0 || device->series_damping > 0;
+  return device->series_stiffness > 0 || device->series_damping > 0 || device->leak_damping > 0 ||
+         device->leak_quadratic_damping > 0;
 }
 static inline int instance_has_stop(const InerterDevice* device) {
   return device->stop_stiffness > 0;

@@ -60,12 +60,11 @@ static mjtNum flywheel(const mjModel* m, const mjData* d, const Instance* self, 
   if (!instance_has_series(device)) {
     return x;
   }
-  int nstate = inerter_nstate(device) - device->nbranch - device->ndamper - device->ncontrol;
-  const mjtNum* state = d->act + instance_act(m, self);
+  const mjtNum* series = d->act + instance_act(m, self) + device->nfriction;
   if (device->backlash > 0) {
-    *loose = fabs(state[nstate - 1]) < device->backlash;
+    *loose = fabs(series[2]) < device->backlash;
   }
-  return x - state[nstate - (device->backlash > 0 ? 3 : 2)];
+  return x - series[0];
 }
 
 void visual_draw(const mjModel* m, mjData* d, const mjvOption* option, mjvScene* scene,

@@ -262,6 +262,15 @@ void watch_stiffness(const mjModel* m, Instance* self) {
       consider(&fastest, sqrt(p->series_stiffness * both), swing, "series_stiffness", implicit);
       consider(&fastest, p->series_damping * both, decay, "series_damping", implicit);
     }
+    if (series && p->series_stiffness == 0 && p->series_damping == 0) {
+      consider(&fastest, p->leak_damping * both, decay, "leak_damping", implicit);
+    } else if (p->leak_damping > 0) {
+      consider(&fastest, p->series_stiffness / (p->leak_damping + p->series_damping), decay,
+               "the relaxation of the series element that slips", implicit);
+    } else if (p->clutch_force > 0 && p->series_damping > 0) {
+      consider(&fastest, p->series_stiffness / p->series_damping, decay,
+               "the relaxation of the series element where it slips", implicit);
+    }
     if (p->backlash > 0 && p->series_damping > 0) {
       consider(&fastest, p->series_stiffness / p->series_damping, decay,
                "the relaxation of the series element in its play", implicit);

@@ -77,6 +77,12 @@ PARTS: dict[str, tuple[dict[str, Any], dict[str, Any], tuple[float, float] | Non
         {"viscous": 20.0, "damping_knee": 0.1, "damping_beyond": 0.3, "quadratic_damping": 5.0,
          "damping_asymmetry": 0.3, "damper_stiffness": 400.0}, {"damper_stiffness": 900.0}, None,
     ),
+    "leak": (
+        {"leak_damping": 20.0, "leak_quadratic_damping": 30.0}, {"leak_damping": 40.0}, None,
+    ),
+    "clutch": (
+        {**SHAFT, "clutch_force": 2.0, "clutch_asymmetry": 0.3}, {"clutch_force": 3.0}, None,
+    ),
     "control of the damping": (
         {"viscous": 5.0, "control": "viscous", "control_lower": 1.0, "control_upper": 60.0,
          "control_lag": 0.05}, {"control_lag": 0.1}, None,

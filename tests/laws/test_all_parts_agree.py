@@ -90,6 +90,11 @@ def draw(rng: np.random.Generator, law: str) -> dict[str, Any]:
     fixed = {"viscous_curve", "viscous_periods"}.isdisjoint(p) and p.get("control") != "viscous"
     if rises and fixed and own.random() < 0.6:
         p["damper_stiffness"] = around(own, 1e4)
+    if p.get("inertance") and not p.get("backlash") and own.random() < 0.4:
+        p["leak_damping"] = around(own, 300.0) * float(own.random() < 0.7)
+        p["leak_quadratic_damping"] = around(own, 300.0)
+        if p.get("series_stiffness") and own.random() < 0.6:
+            p |= {"clutch_force": around(own, 30.0), "clutch_asymmetry": own.uniform(-1.0, 1.0)}
     return p
 
 
@@ -99,7 +104,7 @@ def drawn_states(rng: np.random.Generator, device: Device, p: dict[str, Any]) ->
     for name in device.state_names:
         size = {
             "series_deflection": 1e-3, "flywheel_velocity": 0.3, "gap_position": 0.0,
-            "damper_velocity": 0.3,
+            "damper_velocity": 0.3, "slip_position": 1e-3,
             "control_change": 0.2 * p.get("control_lower", 0.0),
         }.get(name, 1e-3)  # fmt: skip
         if name == "friction_state":

@@ -36,6 +36,12 @@ PARTS: dict[str, dict[str, Any]] = {
     "stop_damping": {"stop_upper": 0.1, "stop_stiffness": 1e4},
     "stop_stiffness_cubic": {"stop_upper": 0.1, "stop_stiffness": 1e4},
     "backlash": {"inertance": 1.0, "series_stiffness": 1e4},
+    "clutch_force": {"inertance": 1.0, "series_stiffness": 1e4, "series_damping": 10.0},
+    "clutch_asymmetry": {
+        "inertance": 1.0, "series_stiffness": 1e4, "series_damping": 10.0, "clutch_force": 10.0,
+    },
+    "leak_damping": {"inertance": 1.0},
+    "leak_quadratic_damping": {"inertance": 1.0},
     "damper_stiffness": {"viscous": 100.0},
     "channel_roughness": CHANNEL,
     "force_map_columns": MAP,
@@ -305,6 +311,7 @@ def test_zero_leaves_a_part_away() -> None:
         "stop_stiffness_cubic", "stop_damping", "gas_pressure", "gas_area", "gas_volume",
         "piston_area", "channel_area",
         "channel_length", "fluid_viscosity", "channel_roughness", "minor_loss",
+        "clutch_force", "clutch_asymmetry", "leak_damping", "leak_quadratic_damping",
     }  # fmt: skip
     device = Device(inertance=2.0, **dict.fromkeys(sorted(zero), 0.0))
     assert device.nstate == 0

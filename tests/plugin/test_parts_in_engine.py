@@ -69,6 +69,10 @@ PARTS: dict[str, tuple[dict[str, Any], bool, float]] = {
         {"viscous": 60.0, "damping_knee": 0.5, "damping_beyond": 0.4, "damper_stiffness": 900.0},
         True, 1e-8,
     ),
+    # slips all the time, or now and then
+    "leak": ({"leak_damping": 20.0, "leak_quadratic_damping": 40.0}, True, 1e-7),
+    "leak behind a spring": ({**SHAFT, "leak_damping": 20.0}, True, 1e-7),
+    "clutch": ({**SHAFT, "clutch_force": 4.0, "clutch_asymmetry": 0.3}, False, 1e-4),
     "control of the damping, lag": (
         {"viscous": 10.0, "control": "viscous", "control_lower": 5.0, "control_upper": 60.0,
          "control_lag": 0.2}, True, 1e-8,

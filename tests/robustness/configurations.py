@@ -153,6 +153,9 @@ def meant(draw: st.DrawFn) -> Values:
     if springy and values["damping_exponent"] >= 0.0:
         values["damper_stiffness"] = draw(_around(1e4, 0.7))
     if draw(st.booleans()):
+        values |= {"leak_damping": draw(_around(1e3, 0.7))}
+        values |= {"leak_quadratic_damping": draw(st.floats(0.0, 1e3))}
+    if draw(st.booleans()):
         forces = st.lists(_signed(50.0), min_size=12, max_size=12)
         values |= {
             "force_map": _text(draw(forces)),

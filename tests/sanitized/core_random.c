@@ -39,7 +39,8 @@ static int left_out(const char* name, unsigned parts, int slips, int branches) {
   }
   // dampers that have a spring need others, which are known later
   return (!strcmp(name, "inertance") && parts >> 4 & 1) || !strncmp(name, "curve_", 6) ||
-         !strcmp(name, "damper_stiffness") || !strncmp(name, "force_map_", 10);
+         !strcmp(name, "damper_stiffness") || !strncmp(name, "force_map_", 10) ||
+         !strncmp(name, "clutch_", 7) || !strncmp(name, "leak_", 5);
 }
 
 // a control that sets a parameter around its value, or any, with a lag or
@@ -170,6 +171,14 @@ static int random_device(InerterDevice* device, int tame) {
       !along->nperiod && below(&source, 2)) {
     snprintf(text, sizeof(text), "%.17g", 1e-3 + fabs(moderate()));
     if (inerter_set(device, "damper_stiffness", text, message)) abort();
+  }
+  if (tame && (device->inertance > 0 || device->channel_area > 0) && device->backlash == 0 &&
+      below(&source, 2)) {
+    const char* const keys[] = {"leak_damping", "leak_quadratic_damping", "clutch_force"};
+    for (int i = 0; i < 2 + (device->series_stiffness > 0); i++) {
+      snprintf(text, sizeof(text), "%.17g", 1e-3 + fabs(moderate()));
+      if (inerter_set(device, keys[i], text, message)) abort();
+    }
   }
   memset(message, 0, sizeof(message));
   int refused = inerter_finish(device, message);

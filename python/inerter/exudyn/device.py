@@ -4,7 +4,7 @@
 
 T: `beside.py`; friction: `friction.py`; N, through the inertance: `flywheel.py`, behind the series
 element of `series.py` if there is one. States z: friction_state, series_deflection s,
-flywheel_velocity w, gap_position, each only where it is needed.
+flywheel_velocity w, gap_position or slip_position, each only where it is needed.
 
 With `friction_side` "flywheel" and a series element, whose force is S: F = T + S, and
 S = N + F_friction + lambda |N| at the flywheel's displacement and velocity w.
@@ -51,6 +51,7 @@ def states_of(p: Parameters, z: Sequence[Value]) -> States:
             ("deflection", "series_deflection"),
             ("speed", "flywheel_velocity"),
             ("gap", "gap_position"),
+            ("gap", "slip_position"),
         )
         if name in names
     }
@@ -110,6 +111,8 @@ def terms(
         found.append(Term(shaft.force, 1.0, ((spinning, 1.0 / mass),)))
         found.append(Term(rest, 0.0, ((spinning, -1.0 / mass),)))
     found.append(Term(rate, 0.0, ((place["series_deflection"], 1.0),)))
+    if "slip_position" in place:
+        found.append(Term(shaft.gap_rate, 0.0, ((place["slip_position"], 1.0),)))
     if p.backlash and p.series_damping:
         found.append(Term(shaft.gap_rate, 0.0, ((place["gap_position"], 1.0),)))
     return [*found, Term(at_terminals, 1.0)]

@@ -133,6 +133,13 @@ def pieces(device: Device, h: float, v: NDArray[np.float64]) -> int:
             device.series_damping / device.inertance,
             device.series_stiffness / device.series_damping if device.backlash else 0.0,
         )
+    if device.leak_damping or device.leak_quadratic_damping:
+        # at the speed of the terminals, which a slip seldom exceeds
+        slope = device.leak_damping + 2.0 * device.leak_quadratic_damping * float(np.abs(v).max())
+        spring = device.series_stiffness
+        fastest = max(fastest, spring / slope if spring else slope / device.inertance)
+    elif device.clutch_force and device.series_damping:
+        fastest = max(fastest, device.series_stiffness / device.series_damping)
     return int(np.clip(np.ceil(fastest * h / 0.2), 1, MOST_PIECES))
 
 

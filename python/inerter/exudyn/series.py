@@ -1,8 +1,9 @@
-"""The element between terminal and flywheel: an elastic, damped shaft, perhaps with free play.
+"""The element between terminal and flywheel: an elastic, damped shaft, with free play or slip.
 
     rigid teeth:       F_s = phi(s) + c_s s'
     play, c_s > 0:     r = s' + phi(s - g) / c_s;  F_s = c_s r where the teeth press, else 0
     play, c_s = 0:     F_s = phi(d), d the part of s outside the play
+    a clutch or leak:  `clutch.py`, g is how far it has slipped, g' = u
     phi(d) = k_s (1 + q d) d, constant where its tangent would turn negative
 
 Symbols: s series deflection [m], g position within the play [m], |g| <= eps `backlash`. Teeth
@@ -21,6 +22,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from inerter.exudyn import clutch
 from inerter.exudyn.functions import Functions, Value
 from inerter.exudyn.parameters import Parameters
 
@@ -29,7 +31,7 @@ EAGER = 10.0
 
 
 class Series(NamedTuple):
-    """Force [N], and the rate of the position in the play [m/s]."""
+    """Force [N], and the rate of the position in the play, or of the slip [m/s]."""
 
     force: Value
     gap_rate: Value
@@ -37,11 +39,13 @@ class Series(NamedTuple):
 
 def is_there(p: Parameters) -> bool:
     """Whether the device has such an element."""
-    return bool(p.series_stiffness or p.series_damping)
+    return bool(p.series_stiffness or p.series_damping or clutch.is_there(p))
 
 
 def at(f: Functions, p: Parameters, s: Value, rate: Value, gap: Value) -> Series:
     """What the element does at deflection s [m], s' [m/s], position in the play [m]."""
+    if clutch.is_there(p):
+        return Series(*clutch.at(f, p, _spring(f, p, s - gap), rate))
     eps = p.backlash
     if not eps:
         return Series(_spring(f, p, s) + p.series_damping * rate, 0.0)
@@ -63,6 +67,8 @@ def at(f: Functions, p: Parameters, s: Value, rate: Value, gap: Value) -> Series
 
 def position(f: Functions, p: Parameters, s: Value, gap: Value) -> Value:
     """Position in the play [m]: the state, or s itself where the shaft has no damper."""
+    if clutch.is_there(p):
+        return gap
     if not p.backlash:
         return 0.0
     place = gap if p.series_damping else s
@@ -79,7 +85,10 @@ def stored_energy(f: Functions, p: Parameters, s: Value, gap: Value) -> Value:
 
 
 def dissipated_power(f: Functions, p: Parameters, s: Value, rate: Value, gap: Value) -> Value:
-    """Heat in the shaft: c_s (s' - g')^2 [W]."""
+    """Heat in the shaft: c_s (s' - g')^2 [W]; of what slips F_s g' besides."""
+    if clutch.is_there(p):
+        force, slip = at(f, p, s, rate, gap)
+        return (force - _spring(f, p, s - gap)) * (rate - slip) + force * slip
     if not p.series_damping:
         return 0.0
     if not p.backlash:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.information import least_missed
+from inerter.identify.information import ALONE, least_missed, leverage
 from inerter.identify.runs import BenchRun, scales
 
 Mask = NDArray[np.bool_]
@@ -56,7 +56,8 @@ def split(
         them, and another where that one alone tells something (`information`).
     in_blocks : bool, optional
         Whether blocks of every run are held out instead; by default where all others have one
-        frequency, and it has another.
+        frequency, and it has another, and where each of two tells something that the other does
+        not: two triangles, say, at one speed each.
 
     Raises
     ------
@@ -69,7 +70,7 @@ def split(
     chosen |= {i for i, run in enumerate(runs) if run.part and run.part.run in named}
     if not chosen and len(runs) > 1:
         usual = _most_typical(runs)
-        if in_blocks or (in_blocks is None and _has_the_other_frequency(runs, usual)):
+        if in_blocks or (in_blocks is None and _is_needed(runs, usual)):
             return _in_blocks(runs)
         chosen = {usual}
     if held := chosen:
@@ -88,6 +89,13 @@ def _in_blocks(runs: Sequence[BenchRun]) -> Split:
     out = [held_blocks(run.inner, name)[0] for run in runs]
     fit = [~mask for mask in out]
     return Split(fit, out, _folds(runs, fit), held_blocks(runs[0].inner, name)[1], in_blocks=True)
+
+
+def _is_needed(runs: Sequence[BenchRun], held: int) -> bool:
+    """Whether a run would take away, held out as a whole, what no other one can do without."""
+    if _has_the_other_frequency(runs, held):
+        return True
+    return len(runs) == 2 and bool(np.all(leverage(runs) > ALONE))
 
 
 def _has_the_other_frequency(runs: Sequence[BenchRun], held: int) -> bool:

@@ -63,7 +63,7 @@ class DeviceStates(DeviceParameters):
         if self.friction == "maxwell_slip":
             friction = tuple(f"friction_state_{i + 1}" for i in range(self.friction_states))
         flywheel = ("series_deflection", "flywheel_velocity") if self.has_series else ()
-        gap = ("gap_position",) if self.backlash > 0.0 else ()
+        gap = ("gap_position",) * (self.backlash > 0.0) + ("slip_position",) * self.has_clutch
         beside = tuple(f"branch_deflection_{i + 1}" for i in range(branches.count(self)))
         beside += ("damper_velocity",) * self._springy_damper
         return friction + flywheel + gap + beside + ("control_change",) * control.count(self)
@@ -140,7 +140,7 @@ class DeviceStates(DeviceParameters):
         return own, beside[..., :count], beside[..., -1] if damper else 0.0
 
     def _states(self, z: Quantity) -> tuple[Quantity, Quantity, Quantity, Quantity]:
-        """Friction state, s, w, gap; zero where there is none."""
+        """Friction state, s, w, gap or slip; zero where there is none."""
         z = self._split(z)[0]
         if not self.has_series:
             return z, 0.0, 0.0, 0.0
@@ -155,5 +155,6 @@ class DeviceStates(DeviceParameters):
             )
         first = self.friction_states
         friction = array[..., :first] if first > 1 else array[..., 0] if first else 0.0
-        gap = array[..., first + 2] if self.backlash > 0.0 else 0.0
+        third = self.backlash > 0.0 or self.has_clutch
+        gap = array[..., first + 2] if third else 0.0
         return friction, array[..., first], array[..., first + 1], gap

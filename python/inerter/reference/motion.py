@@ -183,6 +183,7 @@ def state_scales(device: ReferenceDevice) -> NDArray[np.float64]:
         "series_deflection": lambda _: min(1e-3, 10.0 / stiffness) if stiffness else 1e-3,
         "flywheel_velocity": lambda _: 1e-2,
         "gap_position": lambda d: min(d.backlash, 10.0 / stiffness),
+        "slip_position": lambda _: 1e-3,
     }
     elements = maxwell_slip.elements(device)
     for i, (spring, slip) in enumerate(zip(*elements, strict=True)):

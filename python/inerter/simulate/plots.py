@@ -34,6 +34,7 @@ STATE_UNITS = {
     "series_deflection": "m",
     "flywheel_velocity": "m/s",
     "gap_position": "m",
+    "slip_position": "m",
 }
 
 

@@ -122,6 +122,11 @@ LAWS = {
         _law("rubber_stops", "corner", stop_lower=-5e-3, stop_upper=6e-3, stop_stiffness=2e5,
              stop_stiffness_cubic=5e10, stop_damping=0.5),
         _law("backlash", "contact", **_SHAFT, backlash=5e-4),
+        _law("clutch", "corner", **_SHAFT, clutch_force=400.0, clutch_asymmetry=0.3),
+        _law("one_way_clutch", "corner", **_SHAFT, clutch_force=1e5, clutch_asymmetry=1.0),
+        _law("leak", "corner", leak_damping=2e3, leak_quadratic_damping=2e4),
+        _law("leak_behind_a_spring", "corner", series_stiffness=1e5, leak_damping=2e3,
+             leak_quadratic_damping=2e4),
     )
 }  # fmt: skip
 """The laws by name."""

@@ -92,6 +92,14 @@ class DeviceParameters(FrictionParameters):
     series_damping: float = parameter(0.0, "N s/m", "damper in series c_s", at_least=0.0)
     series_hardening: float = parameter(0.0, "1/m", "relative rise of k_s per deflection")
     backlash: float = parameter(0.0, "m", "half of the free play", at_least=0.0)
+    clutch_force: float = parameter(0.0, "N", "force at which a clutch slips F_c", at_least=0.0)
+    clutch_asymmetry: float = parameter(
+        0.0, "-", "relative rise of F_c in tension", at_least=-1.0, at_most=1.0
+    )
+    leak_damping: float = parameter(0.0, "N s/m", "laminar leak c_l", at_least=0.0)
+    leak_quadratic_damping: float = parameter(
+        0.0, "N s^2/m^2", "turbulent leak q_l", at_least=0.0
+    )
     flywheel_viscous: float = parameter(0.0, "N s/m", "damping of the flywheel", at_least=0.0)
 
     branch_stiffness_1: float = parameter(0.0, "N/m", "spring of branch 1", at_least=0.0)
@@ -152,7 +160,13 @@ class DeviceParameters(FrictionParameters):
     @property
     def has_series(self) -> bool:
         """Whether something stands in series with the inertance."""
-        return self.series_stiffness > 0.0 or self.series_damping > 0.0
+        return self.series_stiffness > 0.0 or self.series_damping > 0.0 or self.has_clutch
+
+    @property
+    def has_clutch(self) -> bool:
+        """Whether something slips in series with the inertance."""
+        slipping = (self.clutch_force, self.leak_damping, self.leak_quadratic_damping)
+        return any(value > 0.0 for value in slipping)
 
     @property
     def load_shares(self) -> tuple[float, float]:
@@ -354,11 +368,31 @@ class DeviceParameters(FrictionParameters):
                         f"{name}: {getattr(self, name)} {unit} needs series_stiffness > 0; "
                         f"give series_stiffness, or drop {name}"
                     )
+        self._check_clutch()
         if self.has_series and self.inertance == 0.0 and self.channel_area == 0.0:
-            given = "series_stiffness" if self.series_stiffness > 0.0 else "series_damping"
+            names = ("series_stiffness", "series_damping", "clutch_force", "leak_damping",
+                     "leak_quadratic_damping")  # fmt: skip
+            given = next(name for name in names if getattr(self, name) > 0.0)
             raise ValueError(
                 f"{given}: {getattr(self, given)} stands in series with an inertance of 0 kg; "
                 f"give inertance > 0, or drop {given}"
+            )
+
+    def _check_clutch(self) -> None:
+        if self.clutch_asymmetry != 0.0 and self.clutch_force == 0.0:
+            raise ValueError(
+                f"clutch_asymmetry: {self.clutch_asymmetry} needs clutch_force > 0; give it, or "
+                "drop clutch_asymmetry"
+            )
+        if self.has_clutch and self.backlash > 0.0:
+            raise ValueError(
+                f"backlash: {self.backlash} m beside what slips; drop one of the two"
+            )
+        damped = self.leak_damping > 0.0 or self.leak_quadratic_damping > 0.0
+        damped = damped and self.series_stiffness > 0.0
+        if self.clutch_force > 0.0 and self.series_damping == 0.0 and not damped:
+            raise ValueError(
+                f"clutch_force: {self.clutch_force} N needs series_damping > 0; give it"
             )
 
     def _check_stops(self) -> None:

@@ -1,8 +1,9 @@
-"""The series element between terminal 2 and the flywheel: spring, damper, backlash.
+"""The series element between terminal 2 and the flywheel: spring, damper, backlash or slip.
 
     F_s = phi(d) + c_s (s' - gap'),   d = s - gap,   -eps <= gap <= eps
     in contact (gap = +eps and F_s >= 0, or gap = -eps and F_s <= 0):   gap' = 0
     in the gap:   F_s = 0, the shaft relaxes:   gap' = s' + phi(d) / c_s
+    with slip in the place of a gap, see `clutch.py`: gap' = u
 
 Symbols: s series deflection [m], gap position within the free play [m], d deflection of the
 shaft [m], c_s `series_damping` [N s/m], eps `backlash` [m] (half the free play), phi see
@@ -24,7 +25,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import series_spring
+from . import clutch, series_spring
 from .device_parameters import DeviceParameters
 from .parameters import Quantity
 
@@ -33,6 +34,8 @@ Contact = int | None
 
 def gap_position(parameters: DeviceParameters, series: Quantity, gap: Quantity) -> Quantity:
     """The gap [m]: the state, or where it follows from s alone (no damper) that."""
+    if parameters.has_clutch:
+        return gap
     if parameters.backlash == 0.0:
         return 0.0 * series
     if parameters.series_damping == 0.0:
@@ -48,6 +51,9 @@ def gap_rate(
     contact: Contact = None,
 ) -> Quantity:
     """Rate of the gap [m/s] at s [m], s' [m/s] and gap [m], which broadcast together."""
+    if parameters.has_clutch:
+        spring = series_spring.force(parameters, series - gap)
+        return clutch.rate(parameters, spring, series_rate)
     eps = parameters.backlash
     if eps == 0.0 or (contact is not None and contact != 0):
         return 0.0 * series_rate
@@ -71,6 +77,9 @@ def force(
     contact: Contact = None,
 ) -> Quantity:
     """Force F_s [N] through the element."""
+    if parameters.has_clutch:
+        spring = series_spring.force(parameters, series - gap)
+        return clutch.force(parameters, spring, series_rate)
     if contact == 0 and parameters.backlash > 0.0:
         return 0.0 * series_rate
     if contact is not None and parameters.backlash > 0.0:
