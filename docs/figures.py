@@ -415,9 +415,9 @@ def strut_layouts() -> None:
 
 GALLERY: Sequence[Callable[[], None]] = (
     friction, friction_backlash, memory, friction_level, load_friction, load_by_power,
-    load_on_bristle, damping_and_stiffness, dampers, damper_spring, branches, inertance, series, clutch,
-    friction_side, end_stops, gas, fluid, along_the_stroke, force_map, along_each_direction, coil,
-    aging, control, semi_active, strut_layouts,
+    load_on_bristle, damping_and_stiffness, dampers, damper_spring, branches, inertance, series,
+    clutch, friction_side, end_stops, gas, fluid, along_the_stroke, force_map,
+    along_each_direction, coil, aging, control, semi_active, strut_layouts,
 )  # fmt: skip
 
 

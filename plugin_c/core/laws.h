@@ -399,6 +399,7 @@ typedef struct SeriesExact_ {
   double h;
   double dashpot;                   // alone in series [N s/m]; 0: there is a spring
   double decay, driven[RESPONSES];  // of that: what is left of s' after a step, and the rest
+  int bends;                        // whether a leak that bends is alone in series
   int has_swings, has_slides;
   Oscillator oscillator;
   Swing half_swing, swing;

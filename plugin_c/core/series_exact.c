@@ -4,6 +4,8 @@
 //   in contact:  b s'' + (c_s + c_w) s' + k_s (s - gap) = b a(t) + c_w v(t),  w = v - s'
 //   loose:       w' = -c_w w / b,  d' = -k_s d / c_s,  s' = v - w
 //   a dashpot c alone, or a laminar leak:  s'' + (c + c_w) / b s' = a(t) + c_w / b v(t)
+//   one that bends: of fourth order, or the same for its tangent in the middle, of second
+//   a clutch that slips:  b w' = F_c - c_w w,  c_s d' = F_c - k_s d
 //
 // In contact see oscillator.c. With backlash a step is only taken where the force keeps its sign,
 // or the play is not used up, in its middle and at its end, with a clutch where that holds there;
@@ -57,10 +59,74 @@ static void drag_along(const InerterDevice* p, const SeriesExact* steps, const W
   }
 }
 
+// The same behind a leak that bends, exact for its tangent at `near`, its velocity in the middle:
+// u after a time h; *slid: its way.
+static double leak_near(const InerterDevice* p, const Way* way, double u, double near, double h,
+                        double* slid) {
+  const double drive[] = {way->v, way->a, way->jerk, way->snap, way->crackle, 0};
+  double own = p->flywheel_viscous / p->inertance, slope = clutch_slope(p, near) / p->inertance;
+  double rest = clutch_law(p, near) / p->inertance - slope * near, rate = slope + own;
+  double driven[RESPONSES], end = exp(-rate * h) * u;
+  decay_driven(rate, h, driven);
+  end -= driven[0] * rest;
+  for (int k = 0; k < RESPONSES; k++) {
+    end += driven[k] * (drive[k + 1] + own * drive[k]);
+  }
+  double faster = way_speed(way, h) - way->v + own * way_travel(way, h);
+  *slid = rate * h > 1e-3 ? (faster - rest * h + u - end) / rate : 0.5 * h * (u + end);
+  return end;
+}
+
+// the same with the tangent in the middle, which that of the start leads to
+static double leak_step(const InerterDevice* p, const Way* way, double u, double h, double* slid) {
+  double middle = leak_near(p, way, u, u, 0.5 * h, slid);
+  return leak_near(p, way, u, middle, h, slid);
+}
+
+// u' from a time on a way
+static double leak_rate(const InerterDevice* p, const Way* way, double t, double u) {
+  double own = p->flywheel_viscous / p->inertance;
+  return way_acceleration(way, t) + own * (way_speed(way, t) - u) - clutch_law(p, u) / p->inertance;
+}
+
+// a step of Runge and Kutta's fourth order
+static double leak_run(const InerterDevice* p, const Way* way, double u, double h, double* slid) {
+  double half = 0.5 * h, first = leak_rate(p, way, 0, u), early = u + half * first;
+  double second = leak_rate(p, way, half, early), late = u + half * second;
+  double third = leak_rate(p, way, half, late), end = u + h * third;
+  double fourth = leak_rate(p, way, h, end);
+  *slid = h / 6 * (u + 2 * (early + late) + end);
+  return u + h / 6 * (first + 2 * (second + third) + fourth);
+}
+
+// parts of so little of a radian are run through; more are steps whose error goes with its square,
+// at most so many
+enum { PER_RUN = 4, MOST_RUNS = 8, MOST_BENDS = 64 };
+
+static void leak_along(const InerterDevice* p, const Way* way, double h, double* z) {
+  double u = way->v - z[W], fastest = fabs(u) + fabs(way_speed(way, h) - way->v), slid;
+  double parts = PER_RUN * h * (clutch_slope(p, fastest) + p->flywheel_viscous) / p->inertance;
+  int runs = parts < MOST_RUNS, count = parts < MOST_BENDS ? 1 + (int)parts : MOST_BENDS;
+  double part = h / count;
+  for (int i = 0; i < count; i++) {
+    Way now = i ? way_after(way, part * i) : *way;
+    u = runs ? leak_run(p, &now, u, part, &slid) : leak_step(p, &now, u, part, &slid);
+    z[S] += slid;
+    z[GAP] += slid;
+  }
+  z[W] = way_speed(way, h) - u;
+}
+
 void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps) {
   int linear = has(p, PART_SERIES) && is_linear(p) && h >= 0;
   steps->h = h;
   steps->dashpot = linear ? dashpot_alone(p) : 0;
+  int spring = p->series_stiffness > 0 || p->series_damping > 0;
+  steps->bends = linear && has(p, PART_CLUTCH) && !spring && p->leak_quadratic_damping > 0;
+  if (steps->bends) {
+    steps->holds = 1;
+    return;
+  }
   if (steps->dashpot > 0) {
     double rate = (steps->dashpot + p->flywheel_viscous) / p->inertance;
     steps->holds = 1;
@@ -140,6 +206,39 @@ static int holding(const InerterDevice* p, SeriesExact* steps, const Way* way, d
   return 1;
 }
 
+// s, w and slip where a clutch slips with a constant force
+static void slip_on(const InerterDevice* p, const Slide* slide, const Way* way, double force,
+                    double* z) {
+  double rate = p->flywheel_viscous / p->inertance, w = z[W], t = slide->time;
+  double push = force / p->inertance, held = force / p->series_stiffness;
+  double late = rate * t > 1e-3 ? (t - slide->run) / rate : t * t * (0.5 - rate * t / 6);
+  double d = held + (z[S] - z[GAP] - held) * slide->fade;
+  z[S] += way_travel(way, t) - w * slide->run - push * late;
+  z[W] = w + (push - rate * w) * slide->run;
+  z[GAP] = z[S] - d;
+}
+
+// a step in which a clutch slips one way at the start, in the middle and at the end, as above
+static int slipping(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z) {
+  double start = contact_force(p, way->v, z), force = sign(start) * clutch_limit(p, start);
+  double middle[3] = {z[S], z[W], z[GAP]}, end[3] = {z[S], z[W], z[GAP]};
+  if (!(fabs(start) > fabs(force))) {
+    return 0;
+  }
+  find_slides(p, steps);
+  slip_on(p, &steps->half_slide, way, force, middle);
+  slip_on(p, &steps->slide, way, force, end);
+  double side = sign(start), beyond = fabs(force);
+  if (!(side * contact_force(p, way_speed(way, 0.5 * steps->h), middle) > beyond &&
+        side * contact_force(p, way_speed(way, steps->h), end) > beyond)) {
+    return 0;
+  }
+  z[S] = end[S];
+  z[W] = end[W];
+  z[GAP] = end[GAP];
+  return 1;
+}
+
 int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z) {
   if (!steps->holds) {
     return 0;
@@ -148,8 +247,13 @@ int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, dou
     drag_along(p, steps, way, z);
     return 1;
   }
+  if (steps->bends) {
+    leak_along(p, way, steps->h, z);
+    return 1;
+  }
   if (has(p, PART_CLUTCH)) {
-    return holding(p, steps, way, z);
+    int leaks = p->leak_damping > 0 || p->leak_quadratic_damping > 0;
+    return holding(p, steps, way, z) || (!leaks && slipping(p, steps, way, z));
   }
   if (!has(p, PART_BACKLASH)) {
     find_swings(steps, 0);

@@ -48,6 +48,11 @@ BESIDE = {
         {"damping_power_knee": 0.01, "damping_beyond": 0.0, "damping_exponent": 0.35},
     ),
     "dampers behind a spring": ("none", {"damping_asymmetry": 0.4, "damper_stiffness": 5e3}),
+    "a leak": ("none", {"leak_corner": 3.0}),
+    "a leak that bends": ("none", {"leak_quadratic_damping": 3e3}),
+    "a clutch": (
+        "none", {"clutch_force": 40.0, "series_frequency": 12.0, "series_loss": 0.3},
+    ),
     "a spring about another place": ("none", {"rest_length": 0.004}),
     "asymmetric friction": ("coulomb", {"friction_asymmetry": 0.3}),
     "friction along x": ("dahl", {"friction_gradient": 10.0, "friction_curvature": 300.0}),

@@ -101,7 +101,7 @@ def test_along_a_motion_the_core_is_the_reference(kind: str) -> None:
 
 @pytest.mark.parametrize("dashpot", ["leak_damping", "series_damping"])
 def test_a_dashpot_alone_is_a_low_pass_of_the_first_order(dashpot: str) -> None:
-    """B w' = c (v - w) - c_w w from rest, along x = A cos: exact but for what the quintic misses."""
+    """B w' = c (v - w) - c_w w from rest, along a cosine: exact but for what a quintic misses."""
     motion, t = sine_motion(0.02, 2.0, 0.5 * np.pi), np.arange(0.0, 1.0, 2e-3)
     along = (2e-3, motion.displacement(t), motion.velocity(t), motion.acceleration(t))
     w = 4.0 * np.pi
@@ -198,10 +198,10 @@ def test_work_is_stored_or_heat() -> None:
         device = Device(**p)
         found = device.along(1e-4, x, v, a)
         told = device.evaluate(x, v, a, found["states"])
-        work = np.trapezoid(found["total"] * v, dx=1e-4)
-        heat = np.trapezoid(told["dissipated_power"], dx=1e-4)
+        work = float(np.trapezoid(found["total"] * v, dx=1e-4))
+        heat = float(np.trapezoid(told["dissipated_power"], dx=1e-4))
         stored = told["stored_energy"][-1] - told["stored_energy"][0]
-        size = np.trapezoid(np.abs(found["total"] * v), dx=1e-4)
+        size = float(np.trapezoid(np.abs(found["total"] * v), dx=1e-4))
         assert work == pytest.approx(heat + stored, abs=2e-3 * size), kind
 
 
@@ -231,5 +231,5 @@ def test_a_first_force_is_borne() -> None:
 def test_what_cannot_slip_is_refused(values: dict[str, Any], message: str) -> None:
     with pytest.raises(DeviceError, match=message):
         Device(**values)
-    with pytest.raises(ValueError, match="clutch|leak|backlash"):
+    with pytest.raises(ValueError, match=r"clutch|leak|backlash"):
         ReferenceDevice(**values)

@@ -38,7 +38,10 @@ PARTS: dict[str, dict[str, Any]] = {
     "backlash": {"inertance": 1.0, "series_stiffness": 1e4},
     "clutch_force": {"inertance": 1.0, "series_stiffness": 1e4, "series_damping": 10.0},
     "clutch_asymmetry": {
-        "inertance": 1.0, "series_stiffness": 1e4, "series_damping": 10.0, "clutch_force": 10.0,
+        "inertance": 1.0,
+        "series_stiffness": 1e4,
+        "series_damping": 10.0,
+        "clutch_force": 10.0,
     },
     "leak_damping": {"inertance": 1.0},
     "leak_quadratic_damping": {"inertance": 1.0},

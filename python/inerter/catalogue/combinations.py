@@ -32,6 +32,10 @@ def shaft(values: Values) -> None:
         values["series_damping"] = 2 * loss * rate * inertance
 
 
+def leak(values: Values) -> None:
+    values["leak_damping"] = 2 * np.pi * values.pop("leak_corner") * values["inertance"]
+
+
 def breakaway(values: Values) -> None:
     values["static_force"] = values["coulomb_force"] + values.pop("static_excess")
     if "presliding" in values or not {"transition_velocity", "stribeck_velocity"} <= values.keys():

@@ -9,6 +9,7 @@ is the combination that the data see:
     bw_shape        beta / (beta + gamma), with beta + gamma = presliding^-bw_exponent       [-]
     series_frequency  sqrt(series_stiffness / inertance) / 2 pi, of the inertance on its shaft  [Hz]
     series_loss     series_damping / (2 sqrt(series_stiffness inertance))                      [-]
+    leak_corner     leak_damping / (2 pi inertance), below which a leak lets a motion pass      [Hz]
     gas_push        gas_pressure gas_area, the force of the atmosphere on the piston            [N]
     gas_reach       gas_volume / gas_area, the height of the gas                                [m]
     gas_reach_above  the same of a gas that is compressed as the device lengthens               [m]
@@ -28,7 +29,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from inerter.catalogue import along_stroke, combinations, damper_shape
+from inerter.catalogue import along_stroke, combinations, damper_shape, drive
 from inerter.catalogue.combinations import Values
 from inerter.catalogue.coordinate import Coordinate
 from inerter.catalogue.scales import Range, Scales
@@ -250,34 +251,7 @@ _ALL = (
         upper=lambda s: 3 / s.velocity,
     ),
     # between the terminal and the flywheel
-    Coordinate(
-        name="series_frequency", unit="Hz", words={"series_stiffness": "series stiffness k_s"},
-        size=lambda s: s.frequency, lower=lambda s: 0.1 * s.frequency,
-        upper=lambda s: 8 * s.highest_frequency, logarithmic=True, none=None, entangled=True,
-        start=(1.5, 30.0), start_unit=lambda s: s.frequency, to_parameters=combinations.shaft,
-        of_device=lambda d: np.sqrt(d.series_stiffness / d.inertance) / (2 * np.pi),
-    ),
-    Coordinate(
-        name="series_loss", unit="1", words={"series_damping": "series damping c_s"},
-        size=lambda s: 0.1, lower=lambda s: 1e-4, upper=lambda s: 1e2, logarithmic=True, none=None,
-        start=(0.01, 1.0),
-        of_device=lambda d: d.series_damping / (2 * np.sqrt(d.series_stiffness * d.inertance)),
-    ),
-    Coordinate(
-        name="series_hardening", unit="1/m", size=lambda s: 0.1 / s.displacement,
-        lower=lambda s: -3 / s.displacement, upper=lambda s: 3 / s.displacement,
-    ),
-    Coordinate(
-        name="flywheel_viscous", unit="N*s/m", words={"flywheel_viscous": "c_w of the flywheel"},
-        size=lambda s: s.force / s.velocity, lower=_zero, start=(1e-3, 0.3),
-        start_unit=lambda s: s.force / s.velocity, entangled=True, proportional_to="inertance",
-    ),
-    Coordinate(
-        name="backlash", unit="m", words={"backlash": "half of the free play eps"},
-        size=lambda s: s.displacement, lower=lambda s: 1e-5 * s.displacement,
-        upper=lambda s: 2 * s.displacement, logarithmic=True, jumps=True,
-        start=(1e-3, 0.3), start_unit=lambda s: s.displacement,
-    ),
+    *drive.COORDINATES,
     *_branch(1), *_branch(2), *_branch(3),
     *along_stroke.COORDINATES,
     # stops
@@ -381,6 +355,7 @@ _CONVERTED = tuple(
     for name in (
         "gas_push",
         "series_frequency",
+        "leak_corner",
         "static_excess",
         "presliding",
         "branch_time_1",
@@ -400,7 +375,7 @@ _BENT = tuple(each.name for each in damper_shape.COORDINATES)
 ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
     "inertance": (
         *(each.name for each in _ALL if each.entangled),
-        "gas_pressure", "series_stiffness", "series_damping",
+        "gas_pressure", "series_stiffness", "series_damping", "leak_damping",
     ),
     "viscous": (*_BENT, "viscous_drift"), "quadratic_damping": _BENT,
 })  # fmt: skip
@@ -408,7 +383,7 @@ ENTANGLED: Mapping[str, tuple[str, ...]] = MappingProxyType({
 JUMPS = tuple(name for each in _ALL if each.jumps for name in (each.name, *each.also))
 """Beside the friction laws' own, those by which a force is not smooth in the motion."""
 BENDS = (
-    "stiffness_cubic", "quadratic_damping", *_BENT,
+    "stiffness_cubic", "quadratic_damping", *_BENT, "leak_quadratic_damping",
     "inertance_gradient", "inertance_curvature", "inertance_speed_gradient",
     "gas_pressure", "gas_area", "gas_volume", "gas_exponent",
 )  # fmt: skip

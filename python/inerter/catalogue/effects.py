@@ -7,96 +7,16 @@ search took.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from inerter.catalogue.along_stroke import QUANTITIES
-from inerter.catalogue.coordinates import COORDINATES
+from inerter.catalogue.effect import Effect
 from inerter.catalogue.friction import LAW_COORDINATES, PLAY_COORDINATES
 
 _ALONG = {quantity.effect: quantity for quantity in QUANTITIES}
 _FORCE = _ALONG["position_force"]
 _RATIO = _ALONG["variable_inertance"]
 _LEVEL = _ALONG["position_dependent_friction"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Effect:
-    """An effect by its contract name.
-
-    Attributes
-    ----------
-    name
-        As in the contract.
-    kind
-        "law", a friction law; "level", one that varies; "damper", a viscous damping that is not
-        constant; "shaft", elasticity before the flywheel; "play", that with a gap; "term",
-        whatever else.
-    coordinates
-        Those that come and go with it.
-    reported
-        Device parameters that a finding reports; those of the coordinates, where nothing else is
-        said.
-    telling
-        Coordinates whose being zero means that it is absent; the coordinates, where nothing else is
-        said, none where that cannot be told so.
-    stated_as
-        Parameters that a user states for what is searched for in other coordinates.
-    rank
-        How usual it is: where the data cannot tell two effects apart, the one with the smaller
-        number is named.
-    local
-        Whether it may show in few stretches, or in one run alone.
-    far
-        Whether one step from a starting point says little: what it cuts off, or remembers.
-    unlike_friction
-        Whether no friction law can stand in for it.
-    on_table
-        Whether amplitudes at a list of frequencies can show it.
-    smooth
-        Whether it is linear in the motion: its force ends where the motion's band does.
-    tells_law
-        Whether a finding says by which law.
-    plain
-        The effect in running text.
-    meaning, cause
-        What it adds to F = b a, and what makes it in a real device.
-    taken_for, experiment
-        What it is easily taken for, and the experiment that tells them apart.
-    rivals
-        Effects among those that it is taken for.
-    """
-
-    name: str
-    plain: str
-    meaning: str
-    cause: str
-    taken_for: str
-    experiment: str
-    kind: str = "term"
-    coordinates: tuple[str, ...] = ()
-    reported: tuple[str, ...] = ()
-    telling: tuple[str, ...] | None = None
-    stated_as: tuple[str, ...] = ()
-    rank: int = 0
-    local: bool = False
-    smooth: bool = False
-    far: bool = False
-    unlike_friction: bool = False
-    on_table: bool = False
-    tells_law: bool = False
-    rivals: tuple[str, ...] = ()
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Device parameters that a finding reports."""
-        known = (COORDINATES[name] for name in self.coordinates if name in COORDINATES)
-        return self.reported or tuple(dict.fromkeys(name for each in known for name in each.words))
-
-    @property
-    def amplitudes(self) -> tuple[str, ...]:
-        """Coordinates whose being zero means that it is absent."""
-        return self.coordinates if self.telling is None else self.telling
 
 
 _ALL = (
@@ -401,6 +321,26 @@ _ALL = (
         cause="worn screw or gear flanks, loose pins", taken_for="hysteretic friction",
         experiment="repeat with strokes within the suspected play",
         rivals=("hysteretic_friction",),
+    ),
+    Effect(
+        name="clutch_slip", rank=24, kind="play",
+        coordinates=("clutch_force", "series_frequency", "series_loss"), telling=(),
+        unlike_friction=True, far=True, plain="a clutch that slips before the inertance",
+        meaning="what comes through to the inertance is F_c at most",
+        cause="a torque limiter, a belt or a press fit that slips",
+        taken_for="a force channel that clips, or Coulomb friction",
+        experiment="repeat with half the stroke, below its force a clutch does not slip",
+        rivals=("sensor_saturation", "coulomb_friction"),
+    ),
+    Effect(
+        name="leak", rank=23, coordinates=("leak_corner", "leak_quadratic_damping"), telling=(),
+        unlike_friction=True, plain="a leak past the inertance",
+        meaning="a damper c_l u + q_l u |u| in series with the inertance, u = v - w",
+        cause="fluid that passes its piston or its gear beside the channel, a coupling that slips",
+        taken_for="a low-pass of the force, or viscous friction and less inertance",
+        experiment="repeat at a tenth of the frequency, slow motion passes a leak, and hardly "
+        "drives the inertance",
+        rivals=("sensor_filter", "viscous_friction", "sensor_delay"),
     ),
     Effect(
         name="series_elasticity", rank=21, smooth=True, kind="shaft",

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from inerter.catalogue.effects import EFFECTS, Effect
+from inerter.catalogue.effect import Effect
+from inerter.catalogue.effects import EFFECTS
 
 _ALL = (
     Effect(

@@ -15,7 +15,8 @@ import numpy as np
 
 from inerter.catalogue.along_stroke import QUANTITIES
 from inerter.catalogue.coordinates import COORDINATES, FRICTION_SHARE
-from inerter.catalogue.effects import EFFECTS, Effect
+from inerter.catalogue.effect import Effect
+from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import (
     BRISTLES,
     FRICTION,
@@ -195,18 +196,42 @@ def _grip(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 
 def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
-    if "backlash" in model.values:
+    """Free play, or a clutch: a series element has one of them."""
+    if not {"backlash", "clutch_force", *_LEAK}.isdisjoint(model.values):
         return
-    x, slow = sizes.displacement, sizes.frequency
+    name, unit, ratios = effect.coordinates[0], sizes.displacement, _PLAYS
+    if name == "clutch_force":
+        unit, ratios = sizes.force, _CLUTCHES
     contacts: list[dict[str, float]] = [{}]
     if not model.has_series:
+        slow = sizes.frequency
         contacts = [{"series_frequency": ratio * slow, "series_loss": 0.3} for ratio in (5, 20)]
     starts = tuple(
-        model.adding(None, backlash=ratio * x, **contact)
-        for ratio in (0.002, 0.005, 0.01, 0.02, 0.05, 0.2)
+        model.adding(None, **{name: ratio * unit}, **contact)
+        for ratio in ratios
         for contact in contacts
     )
     yield Candidate(effect.name, None, starts)
+
+
+def _leaking(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
+    """A laminar leak, a turbulent one, or one that is both.
+
+    Along one sine it is an inertance of another size and a damper.
+    """
+    if sizes.one_tone or not {"backlash", "clutch_force"}.isdisjoint(model.values):
+        return
+    unit = sizes.force / sizes.velocity**2
+    forms = {
+        ("leak_corner", "leak_damping"): [
+            ratio * sizes.frequency for ratio in (0.2, 0.7, 2.0, 6.0)
+        ],
+        ("leak_quadratic_damping",): [ratio * unit for ratio in (1.0, 5.0, 30.0)],
+    }
+    for names, values in forms.items():
+        if model.values.keys().isdisjoint(names):
+            starts = tuple(model.adding(None, **{names[0]: value}) for value in values)
+            yield Candidate(effect.name, names[0], starts)
 
 
 def _damper(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
@@ -385,7 +410,13 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     return iter(())
 
 
+_LEAK = ("leak_corner", "leak_damping", "leak_quadratic_damping")
+# half of a play per stroke, force of a clutch per force
+_PLAYS = (0.002, 0.005, 0.01, 0.02, 0.05, 0.2)
+_CLUTCHES = (0.4, 0.8, 1.3)
+
 _SPECIAL: dict[str, Build] = {
+    "leak": _leaking,
     "viscous_friction": _viscous,
     "sensor_filter": _filter,
     "grip_mass": _grip,

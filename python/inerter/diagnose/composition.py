@@ -27,6 +27,8 @@ from inerter.identify.model import Model
 
 DRIVE = tuple(name for name, effect in EFFECTS.items() if effect.kind in ("play", "shaft"))
 """Effects that take away the rigid drive of the flywheel."""
+PLAYS = frozenset(e.coordinates[0] for e in EFFECTS.values() if e.kind == "play")
+"""Coordinates with which a shaft is that of a play or of a clutch."""
 SMOOTH = frozenset(name for name, effect in EFFECTS.items() if effect.smooth)
 """Effects that are linear in the motion."""
 # share of the largest eigenvalue of a correlation below which one is no more than rounding
@@ -84,6 +86,10 @@ def distinction(effect: str, fit: Fit, baseline: Model) -> float:
         return float(max(found))
     if effect == "damper_elasticity":
         return _per_error(*parameter_errors(fit).get("damper_stiffness", (1.0, 0.0)))
+    if effect == "leak":
+        known = parameter_errors(fit)
+        told = (known.get(name, (0.0, 1.0)) for name in EFFECTS[effect].parameters)
+        return float(max(_per_error(*each) for each in told))
     if EFFECTS[effect].kind == "shaft":
         # known through its resonance; without an inertance there is none, and no stiffness
         return _per_error(*parameter_errors(fit).get("series_stiffness", (1.0, 0.0)))
@@ -230,9 +236,9 @@ def effects_of(model: Model, baseline: Model) -> list[tuple[str, str | None]]:
         elif name == "viscous_friction" and bent:
             there = False
         elif effect.kind == "play":
-            there = name in added
+            there = effect.coordinates[0] in added
         elif effect.kind == "shaft":
-            there = "series_frequency" in added and "backlash" not in added
+            there = "series_frequency" in added and PLAYS.isdisjoint(added)
         else:
             there = not added.isdisjoint(effect.coordinates)
         if there:
@@ -263,7 +269,7 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
         return [*simpler_laws(model), without]
     if EFFECTS[effect].kind == "play" and "series_frequency" in model.free:
         # its elasticity alone
-        return [model.without(("backlash",)), without]
+        return [model.without(EFFECTS[effect].coordinates[:1]), without]
     if effect == "variable_inertance":
         # along the stroke alone, with the speed alone
         along, speed = ("inertance_gradient", "inertance_curvature"), ("inertance_speed_gradient",)
@@ -271,6 +277,9 @@ def without_effect(model: Model, effect: str, baseline: Model) -> list[Model]:
             return [model.without(speed), model.without(along), without]
     if EFFECTS[effect].kind != "level" and (fewer := _fewer_periods(model, effect)):
         return [*fewer, without]
+    if effect == "leak" and {*EFFECTS[effect].coordinates} <= {*model.free}:
+        # laminar alone, turbulent alone
+        return [*(model.without((each,)) for each in EFFECTS[effect].coordinates), without]
     if effect == "hardening_stiffness" and "rest_length" in model.free:
         return [model.without(("rest_length",)), without]
     if effect == "viscous_friction" and {*EFFECTS[effect].coordinates} <= {*model.free}:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.catalogue.scales import Scales
+from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.stages import Confirmed
 from inerter.diagnose.start import Given
 from inerter.identify.fit import Problem, rms
@@ -42,12 +43,15 @@ def without_creeping(
     given: Given, stands: Confirmed, stood: Callable[[Given], Confirmed]
 ) -> tuple[Given, Confirmed]:
     """What stands without rests that friction makes a riddle of, where there are such."""
-    whole = stands.data.whole
-    rests = _rests(stands, whole)
-    if given.time.is_over() or not _is_riddle(stands):
+    whole, errors = stands.data.whole, stands.data.raw.errors(stands.fit.model)
+    left = rms(errors, [run.inner for run in whole])
+    noise = stands.judge.noise_left(stands.fit.model)
+    # where hardly more than noise is left nothing is a riddle, however plain models fare
+    if given.time.is_over() or left < CRITERIA.near_noise * noise or not _is_riddle(stands):
         return given, stands
+    rests = _rests(stands, whole)
     moving = [run.inner & ~rest for run, rest in zip(whole, rests, strict=True)]
-    before = rms(stands.data.raw.errors(stands.fit.model), moving)
+    before = rms(errors, moving)
     given.progress("rests in which friction may have either sign: searching without them")
     speeds = _speeds(stands)
     records = [replace(each, slowest=speeds.get(each.name, 0.0)) for each in given.records]

@@ -19,6 +19,7 @@ from inerter.diagnose.composition import simpler_laws, within_blur
 from inerter.diagnose.decision import CRITERIA, loss, plainest
 from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.plainer import (
+    as_constant_force,
     as_dampers_that_lag,
     as_one,
     as_one_friction,
@@ -159,7 +160,8 @@ def plain_part(search: Search, current: Scored) -> Scored | None:
     masks, frequency = search.problem.masks, search.problem.scales.frequency
     none = swings_on(current.model, search.longest, frequency)
     good = []
-    for model in filter(search.may_be, as_plain_part(current.model, search.longest, frequency)):
+    plain = as_plain_part(current.model, search.longest, frequency)
+    for model in filter(search.may_be, [*plain, *as_constant_force(current.model)]):
         fit = search.problem.fit(model)
         if none or fit.rmse(masks) < (1 + CRITERIA.too_much) * current.fit.rmse(masks):
             scored = search.score("exchange", None, fit)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from inerter.diagnose.candidates import candidates
-from inerter.diagnose.composition import DRIVE
+from inerter.diagnose.composition import DRIVE, PLAYS
 from inerter.diagnose.decision import as_good, better
 from inerter.diagnose.search import Scored, Search
 from inerter.identify.channel_filter import filters_of
@@ -48,5 +48,5 @@ def from_delay_on(search: Search, final: Scored) -> Scored | None:
 def _has_damped_shaft(scored: Scored) -> bool:
     """Whether a shaft without play was found that hardly swings."""
     values = scored.model.values
-    shaft = "series_frequency" in scored.model.free and "backlash" not in values
+    shaft = "series_frequency" in scored.model.free and PLAYS.isdisjoint(values)
     return shaft and values["series_loss"] > _DAMPED

@@ -12,7 +12,7 @@ from inerter.catalogue.along_stroke import QUANTITIES, TURN
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.friction import LAW_COORDINATES, LEVEL_COORDINATES
 from inerter.diagnose.bent_damping import SPRING, is_bent, knee_of, may_lag
-from inerter.diagnose.composition import level_and_distance
+from inerter.diagnose.composition import PLAYS, level_and_distance
 from inerter.diagnose.statistics import Array
 from inerter.identify.model import Model
 from inerter.identify.prediction import lateness
@@ -32,8 +32,8 @@ _EXPONENT = 1.3
 
 
 def _has_plain_shaft(model: Model) -> bool:
-    """Whether a shaft without play is searched for."""
-    return set(_SHAFT) <= set(model.free) and "backlash" not in model.values
+    """Whether a shaft without play or clutch is searched for."""
+    return set(_SHAFT) <= set(model.free) and PLAYS.isdisjoint(model.values)
 
 
 def swings_on(model: Model, longest: float, frequency: float) -> bool:
@@ -189,6 +189,16 @@ def as_one_friction(model: Model, speed: float) -> list[Model]:
         peak = {"static_excess": 0.3 * level, "stribeck_velocity": ratio * knee, **begin}
         found.append(bare.adding(law, **peak))
     return found
+
+
+def as_constant_force(model: Model) -> list[Model]:
+    """A constant force for a curve of force, which may be level."""
+    nodes = [name for name in _FORCE.nodes if name in model.values]
+    if set(nodes).isdisjoint(model.free):
+        return []
+    mean = float(np.mean([model.values[name] for name in nodes]))
+    bare = model.without(nodes)
+    return [bare.adding(None, force_offset=bare.values.get("force_offset", 0.0) + mean)]
 
 
 def _as_law_of_the_place(model: Model) -> list[Model]:

@@ -38,14 +38,11 @@ _POINTS = 4000
 
 def nodes_of(names: Sequence[str], model: Model) -> list[str]:
     """Those of some coordinates that are nodes of a friction curve and may be told like this."""
-    device = model.device()
     if (
         not FRICTION[model.friction].varies
         or clips(model.values)
         or model.values.get("friction_drift")
-        or device.series_stiffness
-        or device.series_damping
-        or device.backlash
+        or model.has_series
     ):
         return []
     known = set(_FRICTION.nodes)

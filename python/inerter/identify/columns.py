@@ -48,6 +48,7 @@ from inerter.identify.transient import (
     RELAXING,
     bending,
     relaxing,
+    swings_freely,
     without_bending,
     without_relaxing,
 )
@@ -189,7 +190,7 @@ class Columns:
         """Those of some coordinates that enter the force times their columns."""
         device, values = model.device(), model.values
         # a flywheel on its spring is set going by whatever acts
-        swings = device.series_stiffness and not device.backlash
+        swings = swings_freely(device)
         far = not all(np.isinf(run.far) for run in self.problem.runs)
         late = any(moves_late(values, run) for run in self.problem.runs)
         if swings or far or late:

@@ -141,7 +141,7 @@ class Model:
         """Whether something beside friction makes the force jump, or bend with the motion."""
         device = self._device
         along = any(n in lists() and not n.startswith("friction") for n in self._stated)
-        jumps = bool(device.backlash or device.stop_stiffness)
+        jumps = bool(device.backlash or device.clutch_force or device.stop_stiffness)
         return clips(self.values) or along or jumps or self._bends or self.rubs_behind
 
     @cached_property
@@ -225,7 +225,10 @@ BEHIND = "flywheel_viscous"
 """Damping of the flywheel, behind a shaft."""
 # what says where a device is along its stroke
 _OF_PLACES = {"rest_length", "curve_lower", "curve_upper"}
-_SERIES = {"series_frequency", "series_stiffness", "series_damping"}
+_SERIES = {
+    "series_frequency", "series_stiffness", "series_damping",
+    "leak_corner", "leak_damping", "leak_quadratic_damping",
+}  # fmt: skip
 # forces of the place alone, and what damps between the terminals
 _OF_SPRINGS = frozenset({
     "stiffness_cubic", "force_curve", "force_periods", "force_map",

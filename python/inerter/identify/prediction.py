@@ -30,6 +30,7 @@ from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
 from inerter.identify.transient import (
     relaxing,
+    swings_freely,
     without_bending,
     without_relaxing,
     without_transient,
@@ -341,7 +342,7 @@ def settled(model: Model, run: BenchRun, residual: Array, mask: NDArray[np.bool_
     device, values = model.device(), model.values
     if not np.isfinite(residual).all():
         return residual
-    if device.series_stiffness and not device.backlash:
+    if swings_freely(device):
         speed = float(np.max(np.abs(run.velocity)))
         residual = without_transient(device, residual, run.spacing, mask, speed)
     residual = without_bending(run.path, bristle_reach(device), residual, mask, run.first)

@@ -57,7 +57,7 @@ def split(
     in_blocks : bool, optional
         Whether blocks of every run are held out instead; by default where all others have one
         frequency, and it has another, and where each of two tells something that the other does
-        not: two triangles, say, at one speed each.
+        not: triangles, say, at one speed each.
 
     Raises
     ------
@@ -95,7 +95,8 @@ def _is_needed(runs: Sequence[BenchRun], held: int) -> bool:
     """Whether a run would take away, held out as a whole, what no other one can do without."""
     if _has_the_other_frequency(runs, held):
         return True
-    return len(runs) == 2 and bool(np.all(leverage(runs) > ALONE))
+    two = len(runs) == 2 and not scales(runs).one_tone
+    return two and bool(np.all(leverage(runs) > ALONE))
 
 
 def _has_the_other_frequency(runs: Sequence[BenchRun], held: int) -> bool:

@@ -29,22 +29,33 @@ _FORGOTTEN = 15.0
 _FEWEST, _PERIODS = 3, 0.5
 
 
+def swings_freely(device: Device) -> bool:
+    """Whether a flywheel is set going by whatever acts, and goes on by a linear equation.
+
+    That is on a spring in series, or behind a laminar leak alone.
+    """
+    if device.backlash or device.clutch_force or device.leak_quadratic_damping:
+        return False
+    return bool(device.series_stiffness) != bool(device.leak_damping)
+
+
 def without_transient(
     device: Device, residual: Array, spacing: float, mask: NDArray[np.bool_], speed: float = np.inf
 ) -> Array:
     """A residual without the decay of the series element's unknown first state, shape (n,).
 
     Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
-    oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0; the share of the
+    oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0, behind a leak alone
+    lambda = -(c_l + c_w) / b; the share of the
     masked samples that has this form is taken out. Its size at the beginning is held near what the
     residual is large, for where the beginning is masked, its faint rest tells nothing of it. Nor is
     it more than a flywheel carries that turned some times faster than the record's largest `speed`
     [m/s]: hardly any inertance has no such oscillation.
     """
     b = device.inertance
-    damping = device.series_damping + device.flywheel_viscous
+    damping = device.series_damping + device.flywheel_viscous + device.leak_damping
     stiffness = device.series_stiffness
-    roots = _roots(b, damping, stiffness)
+    roots = _roots(b, damping, stiffness) if stiffness else np.array([-damping / b + 0j])
     if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
         return residual
     # what is below rounding by then has no share

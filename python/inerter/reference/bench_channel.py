@@ -22,6 +22,7 @@ from scipy.signal import bessel, butter, lfilter, residue
 
 from .bench_motions import Drive
 from .device import ReferenceDevice
+from .laws import clutch
 from .motion import Response, Signal, response
 from .sizes import rounded
 
@@ -157,9 +158,12 @@ def _moved(device: ReferenceDevice, drive: Drive, times: Array, rtol: float) -> 
     begin = float(times[0]) - SWING_IN
     speed = float(drive.motion.velocity(begin))
     pull = device.inertance * float(drive.motion.acceleration(begin))
+    if device.clutch_force > 0.0:
+        pull = float(np.clip(pull, *clutch.limits(device)))
     gap = float(np.sign(pull)) * device.backlash
+    stiffness = device.series_stiffness
     known = {
-        "series_deflection": gap + pull / device.series_stiffness,
+        "series_deflection": gap + (pull / stiffness if stiffness > 0.0 else 0.0),
         "flywheel_velocity": speed,
         "gap_position": gap,
     }

@@ -160,6 +160,27 @@ def _backlash(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> D
     return Drawn({**shaft.device, "backlash": gap}, {}, ("backlash", *shaft.names))
 
 
+def _leak(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
+    # laminar or turbulent; the corner below which it lets a motion pass
+    corner = highest_frequency(drives) * float(np.exp(draw.uniform(np.log(0.3), np.log(3.0))))
+    damping = 2.0 * np.pi * corner * ideal.inertance
+    if draw.random() < 0.5:
+        return Drawn({"leak_damping": rounded(damping)}, {}, ("leak_damping",))
+    speed = np.sqrt(
+        np.mean(np.concatenate([drive.motion.velocity(drive.time) for drive in drives]) ** 2)
+    )
+    name = "leak_quadratic_damping"
+    return Drawn({name: rounded(damping / float(speed))}, {}, (name,))
+
+
+def _clutch(draw: Generator, ideal: ReferenceDevice, drives: list[Drive]) -> Drawn:
+    frequency = highest_frequency(drives) * draw.uniform(2.5, 5.0)
+    shaft = _series(ideal, frequency, draw.uniform(0.4, 1.0))
+    bare = np.concatenate([ideal.inertance * drive.acceleration for drive in drives])
+    level = rounded(float(np.quantile(abs(bare), draw.uniform(0.6, 0.95))))
+    return Drawn({**shaft.device, "clutch_force": level}, {}, ("clutch_force", *shaft.names))
+
+
 def _series(ideal: ReferenceDevice, frequency: float, ratio: float) -> Drawn:
     stiffness = rounded(ideal.inertance * (2.0 * np.pi * frequency) ** 2)
     damping = rounded(2.0 * ratio * np.sqrt(stiffness * ideal.inertance))
@@ -187,6 +208,8 @@ _UNSIZED: dict[str, Callable[[Generator, ReferenceDevice, list[Drive]], Drawn]] 
     "inertance_error": _stated,
     "series_elasticity": _shaft,
     "backlash": _backlash,
+    "leak": _leak,
+    "clutch_slip": _clutch,
 }
 
 

@@ -34,6 +34,8 @@ EFFECTS = (
     "viscoelasticity",
     "rate_state_friction",
     "position_force",
+    "leak",
+    "clutch_slip",
 )
 """Every effect that a bench record can hide."""
 
@@ -56,8 +58,8 @@ NEEDS_LEVEL = LEVEL_CHANGES[:2]
 # these are all of one viscous damping
 DAMPERS = ("viscous_friction", "asymmetric_damping", "digressive_damping", "viscous_drift")
 
-# an inertance has one series element, and a gap comes with its own
-_SERIES = ("backlash", "series_elasticity")
+# an inertance has one series element; a gap and a clutch come with their own
+_SERIES = ("backlash", "clutch_slip", "leak", "series_elasticity")
 
 
 def compatible(effects: Sequence[str]) -> bool:
@@ -88,8 +90,9 @@ def clash(effects: Sequence[str]) -> str | None:
     dampers = [name for name in effects if name in DAMPERS]
     if len(dampers) > 1:
         return f"{' and '.join(dampers)} are of the same damping; leave one of them out"
-    if all(name in effects for name in _SERIES):
-        return "backlash has its own series element; leave series_elasticity out"
+    series = [name for name in _SERIES if name in effects]
+    if len(series) > 1:
+        return f"{series[0]} has its own series element; leave {series[1]} out"
     return None
 
 

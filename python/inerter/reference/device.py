@@ -17,9 +17,9 @@ element y = x and w = v. Each term's law, range and source stand in its own file
 Sign: positive x = longer; F is the force that lengthens the device (tension positive) and acts on
 the bodies as -F along the line. By hand: b = 2 kg, a = 3 m/s^2 gives F = +6 N.
 States, each only if needed: friction_state [m], series_deflection s [m], flywheel_velocity w
-[m/s], gap_position or slip_position [m], branch_deflection_i [m], damper_velocity w_d [m/s], control_change
-(`laws/control.py`). All zero:
-unloaded, flywheel at rest, middle of the gap, every parameter as stated.
+[m/s], gap_position or slip_position [m], branch_deflection_i [m], damper_velocity w_d [m/s],
+control_change (`laws/control.py`). All zero: unloaded, flywheel at rest, middle of the
+gap, every parameter as stated.
 Not modelled: masses of the terminals, several series elements.
 """
 

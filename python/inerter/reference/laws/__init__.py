@@ -13,6 +13,7 @@ from types import ModuleType
 from . import (
     branches,
     channel,
+    clutch,
     control,
     damper_spring,
     end_stops,
@@ -42,6 +43,7 @@ __all__ = [
     "Quantity",
     "branches",
     "channel",
+    "clutch",
     "control",
     "damper_spring",
     "end_stops",

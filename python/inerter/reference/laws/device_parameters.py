@@ -97,9 +97,7 @@ class DeviceParameters(FrictionParameters):
         0.0, "-", "relative rise of F_c in tension", at_least=-1.0, at_most=1.0
     )
     leak_damping: float = parameter(0.0, "N s/m", "laminar leak c_l", at_least=0.0)
-    leak_quadratic_damping: float = parameter(
-        0.0, "N s^2/m^2", "turbulent leak q_l", at_least=0.0
-    )
+    leak_quadratic_damping: float = parameter(0.0, "N s^2/m^2", "turbulent leak q_l", at_least=0.0)
     flywheel_viscous: float = parameter(0.0, "N s/m", "damping of the flywheel", at_least=0.0)
 
     branch_stiffness_1: float = parameter(0.0, "N/m", "spring of branch 1", at_least=0.0)
@@ -385,9 +383,7 @@ class DeviceParameters(FrictionParameters):
                 "drop clutch_asymmetry"
             )
         if self.has_clutch and self.backlash > 0.0:
-            raise ValueError(
-                f"backlash: {self.backlash} m beside what slips; drop one of the two"
-            )
+            raise ValueError(f"backlash: {self.backlash} m beside what slips; drop one of the two")
         damped = self.leak_damping > 0.0 or self.leak_quadratic_damping > 0.0
         damped = damped and self.series_stiffness > 0.0
         if self.clutch_force > 0.0 and self.series_damping == 0.0 and not damped:
