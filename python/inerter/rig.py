@@ -197,7 +197,7 @@ def simulate_along(
     states = np.zeros((told, device.nstate))
     between, turns = np.append(np.diff(x) / h, 0.0), _turns(h, x, v)
     instant = mujoco.mjtIntegrator.mjINT_RK4
-    pieces = _pieces(device, h)
+    pieces = _pieces(device, h, float(np.max(np.abs(v), initial=0.0)))
     moving = instant if pieces else mujoco.mjtIntegrator.mjINT_EULER
     model.opt.timestep = h / max(pieces, 1)
     for i, gains in enumerate(_gains(h, x, v, a, pieces)):
@@ -271,12 +271,20 @@ def _gains(h: float, x: NDArray, v: NDArray, a: NDArray, pieces: int) -> Iterato
         yield []
 
 
-def _pieces(device: Device, h: float) -> int:
-    """Into how many steps of RK4 a spacing is cut to resolve the series element; 0 without one."""
-    if not (device.series_stiffness or device.series_damping):
+def _pieces(device: Device, h: float, fastest: float) -> int:
+    """Into how many steps of RK4 a spacing is cut to resolve the series element; 0 without one.
+
+    fastest: the largest speed of the terminals [m/s], which a slip seldom exceeds.
+    """
+    stiffness, inertance = device.series_stiffness, device.inertance
+    leak = device.leak_damping + 2.0 * device.leak_quadratic_damping * fastest
+    if not (stiffness or device.series_damping or leak):
         return 0
-    spring = np.sqrt(device.series_stiffness / device.inertance)
-    damper = device.series_damping / device.inertance
-    relaxation = device.series_stiffness / device.series_damping if device.backlash else 0.0
+    spring = np.sqrt(stiffness / inertance)
+    damper = (device.series_damping if stiffness or not leak else leak) / inertance
+    relaxation = 0.0
+    if device.backlash or device.clutch_force or leak:
+        slope = device.series_damping + leak
+        relaxation = stiffness / slope if slope else 0.0
     length = h * max(spring, damper, relaxation) / _RESOLVED
     return 1 if length < _SHORT else max(2, int(np.ceil(length)))

@@ -137,7 +137,8 @@ def pieces(device: Device, h: float, v: NDArray[np.float64]) -> int:
         # at the speed of the terminals, which a slip seldom exceeds
         slope = device.leak_damping + 2.0 * device.leak_quadratic_damping * float(np.abs(v).max())
         spring = device.series_stiffness
-        fastest = max(fastest, spring / slope if spring else slope / device.inertance)
+        relaxing = spring / (slope + device.series_damping)
+        fastest = max(fastest, relaxing if spring else slope / device.inertance)
     elif device.clutch_force and device.series_damping:
         fastest = max(fastest, device.series_stiffness / device.series_damping)
     return int(np.clip(np.ceil(fastest * h / 0.2), 1, MOST_PIECES))

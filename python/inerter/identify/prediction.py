@@ -25,6 +25,7 @@ from inerter.identify.channel_filter import (
     slow_start,
     without_start,
 )
+from inerter.identify.first_slip import flywheel_speed
 from inerter.identify.force_parts import RUNAWAY, is_sum, sharp_force, smooth_force, states_of
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, forces_along
@@ -74,6 +75,9 @@ def first_state(
     state = device.state_of_force(run.displacement[i], run.velocity[i], run.acceleration[i], force)
     if device.series_stiffness:
         state = _twisted(device, run, np.atleast_1d(state))
+    if device.clutch_force:
+        state = np.atleast_1d(state)
+        state[device.state_names.index("flywheel_velocity")] = flywheel_speed(device, run)
     if not device.friction_backlash:
         return state
     bent, side = _bent(device, float(np.atleast_1d(state)[0]))

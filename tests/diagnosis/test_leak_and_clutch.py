@@ -1,0 +1,160 @@
+"""A leak past the inertance, and a clutch that slips before it, told from what does nearly that."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from inerter.catalogue.scales import Scales
+from inerter.diagnose import Diagnosis, diagnose_bench
+from inerter.diagnose.candidates import candidates
+from inerter.diagnose.composition import effects_of, without_effect
+from inerter.identify.fit import Problem
+from inerter.identify.model import Model
+from inerter.identify.runs import BenchRun, whole
+from inerter.identify.transient import swings_freely
+from inerter.records import Record
+from inerter.records.preparation import prepare
+from inerter.reference import ReferenceDevice, response
+from inerter.reference.motion import Motion
+
+TONES = ((0.9, 0.02, 0.3), (1.9, 0.008, 1.1), (3.7, 0.003, 2.0))
+
+
+def moving(shift: float) -> Motion:
+    """Three tones."""
+
+    def of(order: int) -> Any:
+        def at(t: Any) -> Any:
+            return sum(
+                size * (2 * np.pi * f) ** order
+                * np.sin(2 * np.pi * f * t + phase + shift * f + 0.5 * np.pi * order)
+                for f, size, phase in TONES
+            )  # fmt: skip
+
+        return at
+
+    return Motion(of(0), of(1), of(2))
+
+
+def recorded(noise: float = 0.5, seconds: float = 8.0, **device: Any) -> list[Record]:
+    """Two runs of a device at 250 Hz, by the reference."""
+    random, found = np.random.default_rng(3), []
+    for i, shift in enumerate((0.0, 1.7)):
+        motion, t = moving(shift), np.arange(round(250 * seconds)) / 250.0
+        force = response(ReferenceDevice(**device), motion, t, rtol=1e-8).force
+        found.append(
+            Record(
+                name=f"run{i}", time=t,
+                displacement=np.asarray(motion.displacement(t)) + random.normal(0, 1e-6, t.size),
+                force=force + random.normal(0, noise, t.size),
+            )
+        )  # fmt: skip
+    return found
+
+
+def named(found: Diagnosis) -> set[str]:
+    return {each.effect for each in found.findings if each.confidence >= 0.9}
+
+
+LAMINAR: dict[str, Any] = {
+    "inertance": 120.0, "leak_damping": 2500.0, "friction": "coulomb", "coulomb_force": 20.0,
+    "transition_velocity": 1e-4,
+}  # fmt: skip
+
+
+def test_a_leak_beside_friction_is_found() -> None:
+    found = diagnose_bench(recorded(**LAMINAR))
+    assert named(found) == {"leak", "coulomb_friction"}, found.verdict
+    known = found.parameters
+    for name in ("inertance", "leak_damping", "coulomb_force"):
+        true = LAMINAR[name]
+        assert known[name].value == pytest.approx(true, rel=0.01)
+        assert abs(known[name].value - true) < 4.0 * (known[name].stderr or 0.0) + 2e-3 * true
+    assert found.engines["mujoco"] == pytest.approx(found.extended.rmse, rel=0.02)
+    assert found.engines["reference"] == pytest.approx(found.extended.rmse, rel=0.02)
+
+
+@pytest.mark.long
+def test_a_leak_that_is_laminar_and_turbulent_is_found() -> None:
+    device = {"inertance": 120.0, "leak_damping": 500.0, "leak_quadratic_damping": 3e4,
+              "viscous": 200.0}  # fmt: skip
+    found = diagnose_bench(recorded(**device))
+    assert named(found) == {"leak", "viscous_friction"}, found.verdict
+    for name, true in device.items():
+        assert found.parameters[name].value == pytest.approx(true, rel=0.03)
+
+
+@pytest.mark.long
+def test_a_clutch_that_slips_is_found() -> None:
+    device = {"inertance": 60.0, "series_stiffness": 6e5, "series_damping": 500.0,
+              "clutch_force": 90.0, "viscous": 120.0}  # fmt: skip
+    found = diagnose_bench(recorded(**device))
+    assert {"clutch_slip", "viscous_friction"} <= named(found), found.verdict
+    assert found.parameters["clutch_force"].value == pytest.approx(90.0, rel=0.02)
+    assert found.parameters["inertance"].value == pytest.approx(60.0, rel=0.02)
+
+
+PLAIN = Model("none", {"inertance": 100.0, "transition_velocity": 1e-3}, ("inertance",))
+
+
+def runs() -> list[BenchRun]:
+    return [whole(motion) for motion in prepare(recorded(seconds=3.0, **LAMINAR)).motions]
+
+
+def sizes() -> Scales:
+    found = runs()
+    return Problem(found, [run.inner for run in found]).scales
+
+
+def test_a_leak_is_tried_as_laminar_as_turbulent_and_as_both() -> None:
+    scales = sizes()
+    plain = PLAIN
+    forms = {c.law for c in candidates(plain, scales) if c.effect == "leak"}
+    assert forms == {"leak_corner", "leak_quadratic_damping"}
+    leaking = plain.adding(None, leak_corner=3.0)
+    assert leaking.device().leak_damping == pytest.approx(2 * np.pi * 3.0 * 100.0)
+    tried = list(candidates(leaking, scales))
+    assert {c.law for c in tried if c.effect == "leak"} == {"leak_quadratic_damping"}
+    # a clutch and a play have a shaft; what leaks already has none of them
+    assert not {"clutch_slip", "backlash"} & {c.effect for c in tried}
+    both = leaking.adding(None, leak_quadratic_damping=1e3)
+    assert effects_of(both, plain) == [("leak", None)]
+    simpler = without_effect(both, "leak", plain)
+    assert [each.shape for each in simpler[1:]] == [leaking.shape, plain.shape]
+    # along one sine it is an inertance of another size and a damper
+    one = replace(scales, one_tone=True)
+    assert "leak" not in {c.effect for c in candidates(plain, one)}
+
+
+def test_a_clutch_has_its_shaft_in_it() -> None:
+    plain = PLAIN
+    (tried,) = (c for c in candidates(plain, sizes()) if c.effect == "clutch_slip")
+    model = tried.starts[0]
+    assert effects_of(model, plain) == [("clutch_slip", None)]
+    shaft, without = without_effect(model, "clutch_slip", plain)
+    assert effects_of(shaft, plain) == [("series_elasticity", None)]
+    assert without.shape == plain.shape
+
+
+def test_how_a_flywheel_turned_at_first_is_read_off_where_it_goes_on_by_itself() -> None:
+    plain = PLAIN
+    assert swings_freely(plain.adding(None, leak_corner=3.0).device())
+    shaft = plain.adding(None, series_frequency=20.0, series_loss=0.1)
+    assert swings_freely(shaft.device())
+    assert not swings_freely(shaft.adding(None, clutch_force=10.0).device())
+    assert not swings_freely(plain.adding(None, leak_quadratic_damping=10.0).device())
+    assert not swings_freely(plain.device())
+    # a leak whose flywheel turned before the record begins leaves nothing of that
+    (record, _) = recorded(noise=1e-6, seconds=6.0, inertance=120.0, leak_damping=2500.0)
+    late = record.time > 1.0
+    cut = replace(
+        record, time=record.time[late], displacement=record.displacement[late],
+        force=record.force[late],
+    )  # fmt: skip
+    (run,) = (whole(motion) for motion in prepare([cut]).motions)
+    model = Model("none", {"inertance": 120.0, "leak_corner": 2500.0 / 240.0 / np.pi}, ())
+    (left,) = Problem([run], [run.inner]).residual(model)
+    assert np.sqrt(np.mean(left[run.inner] ** 2)) < 0.02 * np.std(run.force)
