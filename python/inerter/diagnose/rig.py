@@ -209,7 +209,11 @@ def _stood(given: Given) -> tuple[Confirmed, Excerpts | None]:
 def other_split_of(stands: Confirmed) -> tuple[str, str] | None:
     """Another run to hold out, and the effect that would be found then besides, if any."""
     data, final = stands.data, stands.fit.model
-    missed = badly_missed(data, data.raw.errors(final), stands.judge.noise_left(final))
+    errors, noise = data.raw.errors(final), stands.judge.noise_left(final)
+    if rms(errors, [run.inner for run in data.whole]) < CRITERIA.near_noise * noise:
+        # no run tells of anything more
+        return None
+    missed = badly_missed(data, errors, noise)
     return other_split(stands.searched.search, data, final, bool(missed))
 
 

@@ -155,8 +155,7 @@ class Search:
     ) -> Scored:
         """Search from a model, by default the baseline; the extended one, fitted to all fit data.
 
-        `most` effects are added at most.
-        Where the effect `until` is found the search ends with it, and nothing is pruned.
+        `most` effects are added at most; with the effect `until` it ends, and nothing is pruned.
         """
         start = start or self.baseline
         self._weigh_for(start)
@@ -200,15 +199,14 @@ class Search:
         if any(is_local(effect) for effect, _ in effects_of(model, self.baseline)):
             self._folds = self._spread
         with suppress(OverTimeError):
-            chosen = self._best_step(self.score("", None, self.problem.fit(model)))
-            return chosen.effect if chosen else None
+            found = self._best_step(self.score("", None, self.problem.fit(model)))
+            # the exchange may take it back
+            left = found and exchanged(self, found).model.shape
+            return found.effect if found and left != model.shape else None
         return None
 
     def baseline_fit(self) -> Fit:
-        """The baseline fitted by least squares, also where a play lets what is far off count less.
-
-        That loss is made for what a model with the play leaves.
-        """
+        """The baseline by least squares, whatever a play lets count less for its own model."""
         runs = [replace(run, far=np.inf) for run in self.runs]
         return Problem(runs, self.split.fit, self.problem.scales).fit(self.baseline)
 

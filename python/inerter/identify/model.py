@@ -105,6 +105,9 @@ class Model:
         if "damping_exponent" in self.values:
             # a slope at rest that may be many times what the motion meets
             rough.add("viscous")
+        if {"clutch_force", "leak_quadratic_damping"} & self._stated.keys():
+            # how fast the flywheel turns at first would set it swinging on a spring that holds
+            rough |= _BEFORE_FLYWHEEL
         return self._part(lambda n: n not in rough and not (n in known and known[n].laws))
 
     @cached_property
@@ -228,6 +231,9 @@ _OF_PLACES = {"rest_length", "curve_lower", "curve_upper"}
 _SERIES = {
     "series_frequency", "series_stiffness", "series_damping",
     "leak_corner", "leak_damping", "leak_quadratic_damping",
+}  # fmt: skip
+_BEFORE_FLYWHEEL = {
+    "series_stiffness", "series_damping", "series_hardening", "leak_damping", "clutch_asymmetry",
 }  # fmt: skip
 # forces of the place alone, and what damps between the terminals
 _OF_SPRINGS = frozenset({
