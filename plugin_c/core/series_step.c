@@ -38,6 +38,7 @@ typedef struct Element_ {
   Tangent push, pull;  // F = max(0, push) + min(0, pull); without backlash F = push
   double rest;         // deflection that a loose spring relaxes to
   double h;            // [s]
+  double stiffness;    // tangent of the spring
   int side;            // +1, -1: side in contact at the start
 } Element;
 
@@ -65,6 +66,7 @@ static Element element_step(const InerterDevice* p, const double* z, double near
   double damping = p->series_damping / h, gap = series_gap(p, z), d = z[S] - gap;
   Tangent spring = series_spring(p, near);
   spring.value += spring.slope * (d - near);
+  element.stiffness = spring.slope;
   spring.slope = share * spring.slope + damping;
   element.push = spring;
   if (!has(p, PART_BACKLASH)) {
@@ -109,6 +111,19 @@ static double clutch_over_step(const InerterDevice* p, Element element, Flywheel
   return u;
 }
 
+// Way of the slip over a step in which the whole lengthens by u. Where F is that of a clutch the
+// spring goes on to bear it, c_s d' = F - phi, however little h resolves of that.
+static double slipped(const InerterDevice* p, Element element, Flywheel flywheel, double u) {
+  double force, rate = clutch_over_step(p, element, flywheel, &force);
+  int leaks = p->leak_damping > 0 || p->leak_quadratic_damping > 0;
+  if (leaks || rate == 0) {
+    return element.h * rate;
+  }
+  double rest = force - element.push.value, stiffness = element.stiffness;
+  double time = element.h / p->series_damping;
+  return u - (stiffness > 0 ? rest / stiffness * -expm1(-stiffness * time) : rest * time);
+}
+
 // F of both; of the four combinations of lines the one that fits itself
 static double common_force(const InerterDevice* p, Element element, Flywheel flywheel) {
   if (has(p, PART_CLUTCH)) {
@@ -142,7 +157,7 @@ static void finish_step(const InerterDevice* p, Element element, Flywheel flywhe
   z[S] += u;
   z[W] = flywheel.free_w + flywheel.give_w * force;
   if (has(p, PART_CLUTCH)) {
-    z[GAP] += element.h * clutch_over_step(p, element, flywheel, &force);
+    z[GAP] += slipped(p, element, flywheel, u);
     return;
   }
   if (!has(p, PART_BACKLASH)) {
@@ -350,6 +365,10 @@ double series_over_step(const InerterDevice* p, double x, double v, double* bris
   double inertance = inertance_felt(p, x - z[S], z[W], NULL), d = z[S] - series_gap(p, z);
   double stiffness = series_spring(p, d).slope;
   double share = least_share(stiffness, mobility + 1 / inertance, h);
+  if (stiffness > 0 && (p->leak_damping > 0 || p->leak_quadratic_damping > 0)) {
+    // what leaks lets the spring relax
+    share = fmax(share, 1 - (p->series_damping + p->leak_damping) / (stiffness * h));
+  }
   Element element = element_step(p, z, d, h, share);
   Flywheel flywheel = flywheel_step(p, x - z[S], z[W], z[W], v, h, 1);
   if (has(p, PART_WHEEL_FRICTION)) {
