@@ -77,6 +77,18 @@ def test_a_leak_beside_friction_is_found() -> None:
     assert found.engines["reference"] == pytest.approx(found.extended.rmse, rel=0.02)
 
 
+def test_an_inertance_alone_does_not_tell_a_leak_from_a_low_pass() -> None:
+    """F = b a / (1 + s b / c) is both."""
+    found = diagnose_bench(recorded(inertance=120.0, leak_damping=2500.0))
+    (leak,) = found.findings
+    assert set(leak.members) == {"leak", "sensor_filter"}
+    corner = 2500.0 / 240.0 / np.pi
+    assert leak.parameters["force_filter"].value == pytest.approx(corner, rel=0.02)
+    assert leak.parameters["leak_damping"].value == pytest.approx(2500.0, rel=0.01)
+    assert f"a low-pass of the force, such as one of order 1 at {corner:.3g} Hz" in found.verdict
+    assert "another record would (state the filter" in found.verdict
+
+
 @pytest.mark.long
 def test_a_leak_that_is_laminar_and_turbulent_is_found() -> None:
     device = {"inertance": 120.0, "leak_damping": 500.0, "leak_quadratic_damping": 3e4,

@@ -25,6 +25,7 @@ from inerter.catalogue.friction import FRICTION
 from inerter.diagnose import wording
 from inerter.diagnose.composition import stripped
 from inerter.diagnose.decision import CRITERIA, visible_delay
+from inerter.diagnose.leak_or_filter import with_leak
 from inerter.diagnose.low_passes import as_delay, filters, with_low_pass
 from inerter.diagnose.rate_of_level import with_rate_of_level
 from inerter.diagnose.result import Finding, ParameterValue, Rival
@@ -200,7 +201,7 @@ def with_members(
     """A finding with whatever else the data cannot tell from it."""
     finding = with_branch(with_exchange(finding, exchange), search, fit)
     finding = with_force_of_place(finding, search, fit)
-    finding = with_delay(finding, search, fit, covered)
+    finding = with_leak(with_delay(finding, search, fit, covered), search, fit)
     return with_rate_of_level(with_low_pass(finding, search, fit), search, fit, covered)
 
 

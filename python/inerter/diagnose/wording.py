@@ -213,6 +213,12 @@ def either_in_words(finding: Finding) -> str:
     coordinates = {each: one.get(each, EFFECTS[each].parameters[0]) for each in finding.members}
     if "displacement_filter" in finding.parameters:
         coordinates["sensor_filter"] = "displacement_filter"
+    if finding.members == ("leak", "sensor_filter"):
+        leak, cutoff = (finding.parameters[n] for n in ("leak_damping", "force_filter"))
+        return (
+            f"{amount_in_words('leak', leak.value, finding.motion)} or a low-pass of the force, "
+            f"such as one of order 1 at {cutoff.value:.3g} Hz"
+        )
     return beside + " or ".join(
         amount_in_words(member, finding.parameters[name].value, finding.motion)
         for member, name in coordinates.items()
@@ -225,10 +231,17 @@ def _teller(finding: Finding) -> str:
         return "the device turned round"
     if _is_level_at_least(finding):
         return "steady strokes at speeds a hundred times apart"
+    if "leak" in finding.members:
+        return "another record"
     late = finding.members == ("sensor_delay", "sensor_filter")
     if late or _is_filter_at_least(finding):
         return "quicker motion, up to the filter's cut-off,"
     return "a second frequency"
+
+
+def _asked(finding: Finding) -> str:
+    """The member whose experiment it is."""
+    return "sensor_filter" if "leak" in finding.members else finding.members[0]
 
 
 def evidence(finding: Finding) -> str:
@@ -424,7 +437,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
         if finding.members and not _is_level_at_least(finding):
             text += (
                 f" It is {either_in_words(finding)}: this motion cannot tell; {_teller(finding)} "
-                f"would ({EFFECTS[finding.members[0]].experiment})."
+                f"would ({EFFECTS[_asked(finding)].experiment})."
             )
     if doubts:
         text += " In these data " + "; ".join(doubts) + "."

@@ -55,7 +55,9 @@ def without_transient(
     b = device.inertance
     damping = device.series_damping + device.flywheel_viscous + device.leak_damping
     stiffness = device.series_stiffness
-    roots = _roots(b, damping, stiffness) if stiffness else np.array([-damping / b + 0j])
+    roots = np.array([-damping / b], dtype=np.complex128)
+    if stiffness:
+        roots = _roots(b, damping, stiffness)
     if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
         return residual
     # what is below rounding by then has no share
