@@ -159,14 +159,28 @@ def test_how_a_flywheel_turned_at_first_is_read_off_where_it_goes_on_by_itself()
     assert not swings_freely(shaft.adding(None, clutch_force=10.0).device())
     assert not swings_freely(plain.adding(None, leak_quadratic_damping=10.0).device())
     assert not swings_freely(plain.device())
-    # a leak whose flywheel turned before the record begins leaves nothing of that
-    (record, _) = recorded(noise=1e-6, seconds=6.0, inertance=120.0, leak_damping=2500.0)
+    both = shaft.adding(None, leak_corner=3.0)
+    assert swings_freely(both.device())
+
+
+# a leak alone, behind a spring, and with a damper beside that
+@pytest.mark.parametrize("shaft", [{}, {"series_stiffness": 3e5},
+                                   {"series_stiffness": 3e5, "series_damping": 800.0}])  # fmt: skip
+def test_what_a_flywheel_did_before_the_record_leaves_nothing(shaft: dict[str, float]) -> None:
+    device = {"inertance": 120.0, "leak_damping": 2500.0, **shaft}
+    (record, _) = recorded(noise=0.05, seconds=6.0, **device)
     late = record.time > 1.0
     cut = replace(
         record, time=record.time[late], displacement=record.displacement[late],
         force=record.force[late],
     )  # fmt: skip
     (run,) = (whole(motion) for motion in prepare([cut]).motions)
-    model = Model("none", {"inertance": 120.0, "leak_corner": 2500.0 / 240.0 / np.pi}, ())
-    (left,) = Problem([run], [run.inner]).residual(model)
-    assert np.sqrt(np.mean(left[run.inner] ** 2)) < 0.02 * np.std(run.force)
+    values = {"inertance": 120.0, "leak_corner": 2500.0 / 240.0 / np.pi}
+    if shaft:
+        damping = shaft.get("series_damping", 0.0)
+        values["series_frequency"] = np.sqrt(3e5 / 120.0) / 2.0 / np.pi
+        values["series_loss"] = damping / 2.0 / np.sqrt(3e5 * 120.0)
+    (left,) = Problem([run], [run.inner]).residual(Model("none", values, ()))
+    # of some hundred newtons
+    assert np.sqrt(np.mean(left[run.inner] ** 2)) < 0.3
+    assert np.std(run.force) > 100.0

@@ -32,11 +32,11 @@ _FEWEST, _PERIODS = 3, 0.5
 def swings_freely(device: Device) -> bool:
     """Whether a flywheel is set going by whatever acts, and goes on by a linear equation.
 
-    That is on a spring in series, or behind a laminar leak alone.
+    That is on a spring in series, behind a laminar leak, or behind both.
     """
     if device.backlash or device.clutch_force or device.leak_quadratic_damping:
         return False
-    return bool(device.series_stiffness) != bool(device.leak_damping)
+    return bool(device.series_stiffness or device.leak_damping)
 
 
 def without_transient(
@@ -46,7 +46,7 @@ def without_transient(
 
     Nobody measures how fast the flywheel turns as a record begins. What that leaves is a decaying
     oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0, behind a leak alone
-    lambda = -(c_l + c_w) / b; the share of the
+    lambda = -(c_l + c_w) / b, behind both see `_roots_of`; the share of the
     masked samples that has this form is taken out. Its size at the beginning is held near what the
     residual is large, for where the beginning is masked, its faint rest tells nothing of it. Nor is
     it more than a flywheel carries that turned some times faster than the record's largest `speed`
@@ -55,9 +55,7 @@ def without_transient(
     b = device.inertance
     damping = device.series_damping + device.flywheel_viscous + device.leak_damping
     stiffness = device.series_stiffness
-    roots = np.array([-damping / b], dtype=np.complex128)
-    if stiffness:
-        roots = _roots(b, damping, stiffness)
+    roots = _roots_of(device)
     if np.count_nonzero(mask) < 4 or not np.isfinite(roots).all():
         return residual
     # what is below rounding by then has no share
@@ -188,6 +186,24 @@ def _share(basis: Array, mask: NDArray[np.bool_]) -> Array:
     seen = basis * mask
     found = np.linalg.solve(seen @ basis.T + TIMID * np.eye(len(basis)), seen)
     return np.asarray(found, dtype=np.float64)
+
+
+def _roots_of(device: Device) -> NDArray[np.complex128]:
+    """Rates lambda [1/s] at which a flywheel goes on that nothing drives.
+
+    Behind a spring and a leak F g = k d + c_s (v - w), g = 1 + c_s / c_l, d' = v - w - F / c_l and
+    b w' = F - c_w w.
+    """
+    b, c, own = device.inertance, device.series_damping, device.flywheel_viscous
+    stiffness, leak = device.series_stiffness, device.leak_damping
+    if not stiffness:
+        return np.array([-(c + own + leak) / b], dtype=np.complex128)
+    if not leak:
+        return _roots(b, c + own, stiffness)
+    g = 1.0 + c / leak
+    relaxing, dragged = stiffness / (g * leak), (c / g + own) / b
+    turning = (1.0 - c / (g * leak)) * stiffness / (g * b)
+    return _roots(1.0, relaxing + dragged, relaxing * dragged + turning)
 
 
 def _roots(b: float, damping: float, stiffness: float) -> NDArray[np.complex128]:
