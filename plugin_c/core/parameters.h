@@ -55,7 +55,7 @@
     "relative rise of the series stiffness per deflection, q")                                     \
   X(backlash, "m", 0, 0, INFINITY, CLOSED, "", "half of the free play of the series element, eps") \
   X(clutch_force, "N", 0, 0, INFINITY, CLOSED, "",                                                 \
-    "force at which a clutch in series with the inertance slips, F_c; 0: none holds")              \
+    "force at which a clutch in series with the inertance slips, F_c; 0: no clutch")               \
   X(clutch_asymmetry, "1", 0, -1, 1, CLOSED, "",                                                   \
     "relative rise of clutch_force in tension, fall in compression; 1 or -1: a one-way clutch")    \
   X(leak_damping, "N*s/m", 0, 0, INFINITY, CLOSED, "",                                             \
