@@ -10,6 +10,7 @@
 
 #include "elementary.h"
 #include "laws.h"
+#include "series.h"
 
 enum {
   // all that such a device may have

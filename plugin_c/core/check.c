@@ -7,6 +7,7 @@
 
 #include "configuration.h"
 #include "laws.h"
+#include "series.h"
 
 int refuse(char* message, const char* format, ...) {
   va_list values;

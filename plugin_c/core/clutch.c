@@ -10,7 +10,7 @@
 // the torque limiter of Coulomb. Not modelled: a breakaway force above the sliding one, the time
 // that a clutch takes to engage.
 
-#include "laws.h"
+#include "series.h"
 
 double clutch_limit(const InerterDevice* p, double force) {
   return p->clutch_force * (1 + p->clutch_asymmetry * sign(force));

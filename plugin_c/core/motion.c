@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "laws.h"
+#include "series.h"
 
 // Force through the inertance that loads a bristle: in the middle between two samples, with a
 // series element at the first.

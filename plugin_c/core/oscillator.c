@@ -16,7 +16,7 @@
 // velocity of the flywheel.
 // Source: linear oscillator; phi functions of exponential integrators (Hochbruck, Ostermann 2010).
 
-#include "laws.h"
+#include "series.h"
 
 enum { S, W };  // places in z
 

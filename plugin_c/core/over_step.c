@@ -25,6 +25,7 @@
 #include <string.h>
 
 #include "laws.h"
+#include "series.h"
 
 // asymmetry of friction up to which its force does not fall with v1
 static const double kMildAsymmetry = 0.5;

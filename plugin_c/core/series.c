@@ -18,9 +18,9 @@
 // Source: Nordin, Galic, Gutman 1997; the release set of Wang & Su 2008, eq. (7).
 // Not modelled: friction within the play, impact losses beyond c_s, inertia of the shaft.
 
-#include <stdio.h>
+#include "series.h"
 
-#include "laws.h"
+#include <stdio.h>
 
 enum { S, W, GAP };  // places in z
 

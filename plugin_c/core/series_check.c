@@ -1,7 +1,7 @@
 // Whether the parameters of a series element fit together.
 
 #include "configuration.h"
-#include "laws.h"
+#include "series.h"
 
 // what slips in series with the inertance
 static int check_slipping(const InerterDevice* p, char* message) {

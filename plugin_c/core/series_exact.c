@@ -15,7 +15,7 @@
 // Source: linear oscillator.
 // Not modelled: inertance that varies, pipe, gas, hardening.
 
-#include "laws.h"
+#include "series.h"
 
 enum { S, W, GAP };  // places in z
 

@@ -12,7 +12,7 @@
 // methods (Hochbruck, Ostermann 2010), the middle in place of the start. Not modelled: backlash,
 // slip.
 
-#include "laws.h"
+#include "series.h"
 
 enum { S, W, GAP };  // places in z
 

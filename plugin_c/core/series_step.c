@@ -23,7 +23,7 @@
 
 #include <string.h>
 
-#include "laws.h"
+#include "series.h"
 
 enum { S, W, GAP };  // places in z
 

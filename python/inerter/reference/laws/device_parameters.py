@@ -15,18 +15,14 @@ from .stroke import flat
 
 GAS_LAWS = ("polytropic", "expanded")
 FRICTION_SIDES = ("terminals", "flywheel")
+IN_SERIES = (
+    "series_stiffness", "series_damping", "clutch_force", "leak_damping", "leak_quadratic_damping",
+)  # fmt: skip
+"""What may stand between the terminals and the flywheel."""
 CONTROLS = (
-    "force",
-    "viscous",
-    "quadratic_damping",
-    "flywheel_viscous",
-    "minor_loss",
-    "coulomb_force",
-    "static_force",
-    "stiffness",
-    "bw_stiffness",
-    "inertance",
-)
+    "force", "viscous", "quadratic_damping", "flywheel_viscous", "minor_loss", "coulomb_force",
+    "static_force", "stiffness", "bw_stiffness", "inertance",
+)  # fmt: skip
 """What a control can be: a force beside the device, or a parameter that it sets."""
 
 
@@ -163,8 +159,7 @@ class DeviceParameters(FrictionParameters):
     @property
     def has_clutch(self) -> bool:
         """Whether something slips in series with the inertance."""
-        slipping = (self.clutch_force, self.leak_damping, self.leak_quadratic_damping)
-        return any(value > 0.0 for value in slipping)
+        return max(self.clutch_force, self.leak_damping, self.leak_quadratic_damping) > 0.0
 
     @property
     def load_shares(self) -> tuple[float, float]:
@@ -368,9 +363,7 @@ class DeviceParameters(FrictionParameters):
                     )
         self._check_clutch()
         if self.has_series and self.inertance == 0.0 and self.channel_area == 0.0:
-            names = ("series_stiffness", "series_damping", "clutch_force", "leak_damping",
-                     "leak_quadratic_damping")  # fmt: skip
-            given = next(name for name in names if getattr(self, name) > 0.0)
+            given = next(name for name in IN_SERIES if getattr(self, name) > 0.0)
             raise ValueError(
                 f"{given}: {getattr(self, given)} stands in series with an inertance of 0 kg; "
                 f"give inertance > 0, or drop {given}"
@@ -378,18 +371,12 @@ class DeviceParameters(FrictionParameters):
 
     def _check_clutch(self) -> None:
         if self.clutch_asymmetry != 0.0 and self.clutch_force == 0.0:
-            raise ValueError(
-                f"clutch_asymmetry: {self.clutch_asymmetry} needs clutch_force > 0; give it, or "
-                "drop clutch_asymmetry"
-            )
+            raise ValueError(f"clutch_asymmetry: {self.clutch_asymmetry} needs clutch_force > 0")
         if self.has_clutch and self.backlash > 0.0:
             raise ValueError(f"backlash: {self.backlash} m beside what slips; drop one of the two")
-        damped = self.leak_damping > 0.0 or self.leak_quadratic_damping > 0.0
-        damped = damped and self.series_stiffness > 0.0
-        if self.clutch_force > 0.0 and self.series_damping == 0.0 and not damped:
-            raise ValueError(
-                f"clutch_force: {self.clutch_force} N needs series_damping > 0; give it"
-            )
+        leaks = self.series_stiffness * max(self.leak_damping, self.leak_quadratic_damping) > 0.0
+        if self.clutch_force > 0.0 and self.series_damping == 0.0 and not leaks:
+            raise ValueError(f"clutch_force: {self.clutch_force} N needs series_damping > 0")
 
     def _check_stops(self) -> None:
         there = [n for n in ("stop_lower", "stop_upper") if not np.isnan(getattr(self, n))]
