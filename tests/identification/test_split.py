@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inerter.identify.runs import BenchRun
@@ -86,3 +88,27 @@ def test_of_two_runs_of_one_frequency_each_blocks_of_both_are_held_out() -> None
         ([slow, quick], (), False),
     ):
         assert not split(runs, holdout, in_blocks).in_blocks
+
+
+def triangle(name: str, speed: float, stroke: float = 0.04) -> BenchRun:
+    """To and fro at one speed [m/s], the corners rounded over 20 ms."""
+    time = np.arange(0, 8.0, 0.01)
+    phase = speed * time / stroke
+    way = np.convolve(np.where(phase % 2.0 < 1.0, 1.0, -1.0), np.full(2, 0.5), "same")
+    v = speed * way
+    x = np.cumsum(v) * 0.01
+    return replace(
+        run(name, -0.02, 0.02, seconds=8.0), displacement=x, velocity=v,
+        acceleration=np.gradient(v, 0.01),
+    )  # fmt: skip
+
+
+def test_of_two_runs_of_one_speed_each_blocks_of_both_are_held_out() -> None:
+    """With one of them held out a damper would be a friction, and how it bends not told."""
+    slow, quick = triangle("slow", 0.12), triangle("quick", 0.25)
+    assert split([slow, quick]).in_blocks
+    # of one and the same speed, of three, where one changes it, and where somebody says so, a run
+    assert not split([slow, triangle("again", 0.125)]).in_blocks
+    assert not split([slow, quick, triangle("third", 0.18)]).in_blocks
+    assert not split([slow, quick], ["quick"]).in_blocks
+    assert not split([slow, quick], in_blocks=False).in_blocks

@@ -24,8 +24,6 @@ Array = NDArray[np.float64]
 TOLD = 1e-4
 # from this leverage on a run is not held out where another one can be
 TOO_MUCH = 0.8
-# from this leverage on a run is the only one that tells something
-ALONE = 0.95
 # weight of what the held-out run can judge against what it takes away
 JUDGING = 0.3
 # least share that counts

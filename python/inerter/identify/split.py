@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identify.information import ALONE, least_missed, leverage
+from inerter.identify.information import least_missed
 from inerter.identify.runs import BenchRun, scales
 
 Mask = NDArray[np.bool_]
@@ -19,6 +19,8 @@ HELD_OUT_BLOCKS = (3, 6, 8)
 # share of all data that a run held out by itself has at most, and at least
 MOST_HELD = 0.6
 LEAST_HELD = 0.02
+# a run has one speed where so large a share of it is so near to the median
+STEADY, NEAR = 0.7, 0.1
 # folds of the runs learnt from, where these are so many
 FOLDS = 5
 
@@ -56,8 +58,7 @@ def split(
         them, and another where that one alone tells something (`information`).
     in_blocks : bool, optional
         Whether blocks of every run are held out instead; by default where all others have one
-        frequency, and it has another, and where each of two tells something that the other does
-        not: triangles, say, at one speed each.
+        frequency, and it has another, and where two have one speed each, as triangles have.
 
     Raises
     ------
@@ -93,10 +94,21 @@ def _in_blocks(runs: Sequence[BenchRun]) -> Split:
 
 def _is_needed(runs: Sequence[BenchRun], held: int) -> bool:
     """Whether a run would take away, held out as a whole, what no other one can do without."""
-    if _has_the_other_frequency(runs, held):
-        return True
-    two = len(runs) == 2 and not scales(runs).one_tone
-    return two and bool(np.all(leverage(runs) > ALONE))
+    return _has_the_other_frequency(runs, held) or _has_the_other_speed(runs)
+
+
+def _has_the_other_speed(runs: Sequence[BenchRun]) -> bool:
+    """Whether two runs have one speed each, and each another.
+
+    Along one speed a damper is a friction, and how it bends is not told.
+    """
+    if len(runs) != 2 or any(run.part for run in runs):
+        return False
+    speeds = [np.abs(run.velocity[run.inner]) for run in runs]
+    usual = [float(np.median(speed)) if speed.size else 0.0 for speed in speeds]
+    pairs = zip(speeds, usual, strict=True)
+    steady = all(np.mean(np.abs(v - middle) < NEAR * middle) > STEADY for v, middle in pairs)
+    return steady and max(usual) > (1.0 + 2.0 * NEAR) * min(usual)
 
 
 def _has_the_other_frequency(runs: Sequence[BenchRun], held: int) -> bool:
