@@ -11,6 +11,7 @@ from inerter.catalogue.scales import Scales
 from inerter.diagnose import Diagnosis, diagnose_bench
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import effects_of, without_effect
+from inerter.diagnose.stated import stated_candidates
 from inerter.identify.fit import Problem
 from inerter.identify.model import Model
 from inerter.identify.runs import BenchRun, whole
@@ -184,3 +185,18 @@ def test_what_a_flywheel_did_before_the_record_leaves_nothing(shaft: dict[str, f
     # of some hundred newtons
     assert np.sqrt(np.mean(left[run.inner] ** 2)) < 0.3
     assert np.std(run.force) > 100.0
+
+
+def test_what_a_user_states_of_a_leak_and_of_a_clutch_may_be_contradicted() -> None:
+    scales = sizes()
+    stated = Model("none", {**PLAIN.values, "leak_damping": 2000.0}, PLAIN.free)
+    (leak,) = (c for c in stated_candidates(stated, scales) if c.effect == "leak")
+    (freed,) = leak.starts
+    assert "leak_damping" not in freed.values
+    assert freed.device().leak_damping == pytest.approx(2000.0)
+    assert effects_of(freed, stated) == [("leak", None)]
+    shaft = {"series_stiffness": 1e5, "series_damping": 100.0, "clutch_force": 50.0}
+    stated = Model("none", {**PLAIN.values, **shaft}, PLAIN.free)
+    found = {c.effect: c.starts[0] for c in stated_candidates(stated, scales)}
+    assert effects_of(found["clutch_slip"], stated) == [("clutch_slip", None)]
+    assert found["clutch_slip"].values["series_stiffness"] == 1e5

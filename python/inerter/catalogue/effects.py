@@ -334,6 +334,7 @@ _ALL = (
     ),
     Effect(
         name="leak", rank=23, coordinates=("leak_corner", "leak_quadratic_damping"), telling=(),
+        stated_as=("leak_damping", "leak_quadratic_damping"),
         unlike_friction=True, plain="a leak past the inertance",
         meaning="a damper c_l u + q_l u |u| in series with the inertance, u = v - w",
         cause="fluid that passes its piston or its gear beside the channel, a coupling that slips",

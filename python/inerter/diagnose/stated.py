@@ -1,7 +1,8 @@
 """What a user's device states, set free: the models by which the data can contradict it.
 
 Inertance, damping, stiffness, levels and their variations are coordinates that `candidates` sets
-free itself. A law's other parameters, a shaft, stops and a gas are set free here, each as a whole;
+free itself. A law's other parameters, a shaft, what slips before or after it, stops and a gas are
+set free here, each as a whole;
 of a law also what the user leaves to its default, for the simulation has it. A stated free play is
 held.
 """
@@ -33,6 +34,7 @@ def stated_candidates(model: Model, sizes: Scales) -> Iterator[Candidate]:
     yield from _law(model, sizes)
     yield from _shaft(model, sizes)
     yield from _gas(model)
+    yield from _slipping(model)
     stops = {name: model.values[name] for name in _held(model, EFFECTS["end_stop"].coordinates)}
     if stops:
         yield Candidate("end_stop", None, _starts(model, stops, "stop_stiffness"))
@@ -110,6 +112,21 @@ def _shaft(model: Model, sizes: Scales) -> Iterator[Candidate]:
     rigid = model.without(effect.stated_as)
     starts = tuple(rigid.adding(None, **shaft) for shaft in (stated, *shafts(sizes)))
     yield Candidate(effect.name, None, starts)
+
+
+def _slipping(model: Model) -> Iterator[Candidate]:
+    """A leak, and a clutch."""
+    device, (corner, bent) = model.device(), EFFECTS["leak"].coordinates
+    leak = {name: model.values[name] for name in _held(model, (bent,))}
+    bare = model
+    if _held(model, EFFECTS["leak"].stated_as[:1]) and device.leak_damping:
+        bare = model.without(EFFECTS["leak"].stated_as[:1])
+        leak[corner] = COORDINATES[corner].of(device)
+    if leak:
+        yield Candidate("leak", None, (bare.adding(None, **leak),))
+    if held := _held(model, EFFECTS["clutch_slip"].coordinates[:1]):
+        clutch = {name: model.values[name] for name in held}
+        yield Candidate("clutch_slip", None, (model.adding(None, **clutch),))
 
 
 def _gas(model: Model) -> Iterator[Candidate]:
