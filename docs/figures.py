@@ -95,7 +95,7 @@ def in_time(name: str, devices: Mapping[str, Device], motion: Sequence[Array]) -
             state = device.state_of_force(x, v, a, 0.0)
         axes.plot(motion[0], along(device, motion, state), label=label)
     axes.set(xlabel="time [s]", ylabel="force [N]")
-    axes.legend(loc="best", fontsize="small")
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(devices), frameon=False)
     _save(figure, name)
 
 

@@ -12,6 +12,7 @@ from inerter.diagnose.bent_damping import straight_bends
 from inerter.diagnose.composition import effects_of
 from inerter.diagnose.exchange import plain_part
 from inerter.diagnose.plainer import (
+    as_constant_force,
     as_one,
     as_one_friction,
     as_plain_part,
@@ -234,3 +235,16 @@ def test_a_power_of_the_speed_may_be_two_straight_lines() -> None:
         assert "damping_exponent" not in each.values
         assert each.is_possible
     assert straight_bends(found[0], sizes) == []
+
+
+def test_a_curve_of_the_force_that_is_level_may_be_a_constant_force() -> None:
+    nodes = {f"force_node_{i}": 39.0 + 0.5 * (-1) ** i for i in range(1, 8)}
+    ends = {"curve_lower": -0.03, "curve_upper": 0.03}
+    held = {"inertance": 60.0, "force_offset": 1.0}
+    curve = Model("none", {**held, **ends, **nodes}, ("inertance", *nodes))
+    (constant,) = as_constant_force(curve)
+    assert constant.values["force_offset"] == pytest.approx(39.93, abs=0.01)
+    assert set(constant.free) == {"inertance", "force_offset"}
+    assert nodes.keys().isdisjoint(constant.values)
+    # one that is stated stays
+    assert as_constant_force(Model("none", {**held, **ends, **nodes}, ("inertance",))) == []

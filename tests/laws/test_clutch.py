@@ -10,6 +10,7 @@ from inerter.exudyn import device as element
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.parameters import Parameters
 from inerter.reference import ReferenceDevice, response, sine_motion
+from tellings import told_alike
 
 SHAFT: dict[str, Any] = {"inertance": 50.0, "series_stiffness": 4e5, "series_damping": 200.0}
 SLIPS: dict[str, dict[str, Any]] = {
@@ -49,25 +50,9 @@ def test_three_tellings_are_one() -> None:
     rng = np.random.default_rng(4)
     for _ in range(150):
         p = draw(rng)
-        core, reference = Device(**p), ReferenceDevice(**p)
-        assert core.state_names == reference.state_names
-        at = core.state_names.index("slip_position")
         sizes = {"friction_state": 1e-4, "flywheel_velocity": 0.3}
-        z = np.column_stack(
-            [rng.normal(0.0, sizes.get(name, 1e-3), 20) for name in core.state_names]
-        )
-        x, v, a = rng.normal(0, 0.01, 20), rng.normal(0, 0.3, 20), rng.normal(0, 5.0, 20)
-        found, state = core.evaluate(x, v, a, z), reference.state_argument(z)
-        told = {
-            "total": reference.force(x, v, a, state),
-            "stored_energy": reference.stored_energy(x, v, state),
-            "dissipated_power": reference.dissipated_power(x, v, a, state),
-            "state_rate": reference.state_rate(x, v, state, a=a),
-        }
-        for name, value in told.items():
-            mine = found[name].reshape(20, -1)
-            size = np.abs(mine).max(axis=0) + 1e-300
-            assert np.max(np.abs(np.reshape(value, mine.shape) - mine) / size) < 1e-12, (p, name)
+        core, z, x, v, a, found = told_alike(rng, p, sizes)
+        at = core.state_names.index("slip_position")
         assert np.all(found["dissipated_power"] >= -1e-12 * np.abs(found["total"] * v).max())
         if "control" in p:
             continue
@@ -130,6 +115,22 @@ def test_a_leak_that_bends_is_followed_in_second_order() -> None:
     assert errors[0] < 1e-3 * np.ptp(true.force)
     # steps are divided where they are long
     assert errors[1] < 0.03 * errors[0]
+
+
+@pytest.mark.parametrize("rate", [2.0, 20.0])
+def test_a_leak_too_quick_for_the_samples_is_followed(rate: float) -> None:
+    """Up to some hundred time constants of the leak in a sample of 2 ms."""
+    motion, h = sine_motion(0.02, 2.0), 2e-3
+    p: dict[str, Any] = {
+        "inertance": 1.0,
+        "leak_damping": 5e2 * rate,
+        "leak_quadratic_damping": 2e5 * rate,
+    }
+    t = h * np.arange(501, dtype=np.float64)
+    told = Device(**p).along(h, motion.displacement(t), motion.velocity(t), motion.acceleration(t))
+    true = response(ReferenceDevice(**p), motion, t, rtol=1e-9)
+    # the flywheel comes up to speed within the first samples
+    assert np.max(np.abs(told["total"] - true.force)[5:]) < 1e-3 * np.ptp(true.force[5:])
 
 
 def test_a_clutch_bears_its_force_and_no_more() -> None:

@@ -1,7 +1,7 @@
 """What a user's device states, set free: the models by which the data can contradict it.
 
 Inertance, damping, stiffness, levels and their variations are coordinates that `candidates` sets
-free itself. A law's other parameters, a shaft, what slips before or after it, stops and a gas are
+free itself. A law's other parameters, a shaft, a leak, a clutch, stops and a gas are
 set free here, each as a whole;
 of a law also what the user leaves to its default, for the simulation has it. A stated free play is
 held.

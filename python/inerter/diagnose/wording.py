@@ -197,6 +197,13 @@ def either_in_words(finding: Finding) -> str:
             f"a low-pass of {finding.parameters[found].value:.3g} Hz ({finding.law}), or one of "
             f"another order with {delay} beside it"
         )
+    if finding.effect == "sensor_filter" and "leak" in finding.members:
+        cutoff, leak = (finding.parameters[n].value for n in ("force_filter", "leak_damping"))
+        late = ", with a delay beside it or without," if "delay" in finding.parameters else ""
+        return (
+            f"a low-pass of {cutoff:.3g} Hz ({finding.law}){late} or "
+            f"{amount_in_words('leak', leak, finding.motion)}, perhaps behind a spring"
+        )
     if _is_level_at_least(finding):
         level = value_in_words(EFFECTS[finding.effect].plain, finding.parameters["coulomb_force"])
         return f"{level}, which may go with the speed (rate-and-state friction)"
@@ -237,11 +244,6 @@ def _teller(finding: Finding) -> str:
     if late or _is_filter_at_least(finding):
         return "quicker motion, up to the filter's cut-off,"
     return "a second frequency"
-
-
-def _asked(finding: Finding) -> str:
-    """The member whose experiment it is."""
-    return "sensor_filter" if "leak" in finding.members else finding.members[0]
 
 
 def evidence(finding: Finding) -> str:
@@ -435,9 +437,10 @@ def _verdict(diagnosis: Diagnosis) -> str:
     ]
     for finding in diagnosis.findings:
         if finding.members and not _is_level_at_least(finding):
+            asked = "sensor_filter" if "leak" in finding.members else finding.members[0]
             text += (
                 f" It is {either_in_words(finding)}: this motion cannot tell; {_teller(finding)} "
-                f"would ({EFFECTS[_asked(finding)].experiment})."
+                f"would ({EFFECTS[asked].experiment})."
             )
     if doubts:
         text += " In these data " + "; ".join(doubts) + "."

@@ -8,7 +8,9 @@ With the law's shape fixed such an effect is linear in one size p, so p solves
 Sized otherwise: a stated inertance that is 3 to 20 % off; a half gap of 0.5 to 10 % of the
 smallest stroke; a shaft whose resonance lies at 1.5 to 6 times, a low-pass whose cut-off at 1.5 to
 4 times the highest frequency of the motion; a variable inertance whose factor stays within 0.3 ..
-1.7 (so its share may stay lower); a force channel that clips 2 to 15 % of the samples.
+1.7 (so its share may stay lower); a force channel that clips 2 to 15 % of the samples; a leak whose
+corner lies at 0.3 to 3 times the highest frequency; a clutch that slips at a force which an ideal
+inerter exceeds in 5 to 40 % of the samples.
 """
 
 from __future__ import annotations
