@@ -372,6 +372,10 @@ INERTER_API void inerter_step_instant(InerterStep* step, const InerterDevice* de
 INERTER_API int inerter_step_is_line(const InerterStep* step);
 INERTER_API double inerter_step_force(const InerterStep* step, double a, double* slope);
 
+// An acceleration whose rounding the force does not see: the velocities of terminals and flywheel
+// over the step [m/s^2].
+INERTER_API double inerter_step_grain(const InerterStep* step);
+
 // Energy stored in inertance, springs, bristles, gas and stops [J].
 INERTER_API double inerter_stored_energy(const InerterDevice* device, double x, double v,
                                          const double* z);

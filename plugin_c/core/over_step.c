@@ -307,3 +307,13 @@ double inerter_step_force(const InerterStep* step, double a, double* slope) {
   *slope = fmax(0, (beside - force) / near);
   return force;
 }
+
+double inerter_step_grain(const InerterStep* step) {
+  enum { W = 1 };  // the flywheel's velocity among the states of a series element
+  if (!(step->h > 0)) {
+    return 0;
+  }
+  int turns = has(step->device, PART_SERIES) && step->z;
+  double w = turns ? step->z[series_index(step->device) + W] : 0;
+  return (fabs(step->v) + fabs(w)) / step->h;
+}

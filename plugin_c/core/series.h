@@ -63,14 +63,15 @@ Swing oscillator_swing(const Oscillator* o, double t);
 void oscillator_swung(const Oscillator* o, const Swing* swing, const Way* way, double* z);
 void oscillator_step(const Oscillator* o, const Way* way, double t, double* z);
 
-// what a loose flywheel does in a time: its way per velocity [s], what is left of a deflection
+// what a loose flywheel does in a time: its way per velocity [s] and per push [s^2], what is left
+// of a deflection
 typedef struct Slide_ {
-  double time, run, fade;
+  double time, run, late, fade;
 } Slide;
 
 // series_exact.c: steps of h seconds of one device in closed form. What all of them have in common
 // is worked out when it is first asked for. series_exact: states after a step, 1; 0 and nothing
-// done where no closed form holds.
+// done where no closed form holds. Friction at the flywheel is oscillator.push, a constant.
 typedef struct SeriesExact_ {
   int holds;  // whether there may be such steps
   double h;
@@ -85,6 +86,10 @@ typedef struct SeriesExact_ {
 
 void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps);
 int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z);
+
+// series_sliding.c: the same where friction at the flywheel slides evenly; bristle: its states
+int series_sliding(const InerterDevice* p, SeriesExact* steps, double x, const Way* way,
+                   double* bristle, double* z);
 
 // series_frozen.c: the same of varying coefficients, where less than `most` parts are enough
 int series_frozen(const InerterDevice* p, double x, const Way* way, double* z, double h, int most);

@@ -2,7 +2,8 @@
 // stays.
 //
 //   in contact:  b s'' + (c_s + c_w) s' + k_s (s - gap) = b a(t) + c_w v(t),  w = v - s'
-//   loose:       w' = -c_w w / b,  d' = -k_s d / c_s,  s' = v - w
+//   loose:       b w' = -c_w w,  d' = -k_s d / c_s,  s' = v - w
+//   in both a constant drag on the flywheel (series_sliding.c)
 //   a dashpot c alone, or a laminar leak:  s'' + (c + c_w) / b s' = a(t) + c_w / b v(t)
 //   one that bends: of fourth order, or the same for its tangent in the middle, of second
 //   a clutch that slips:  b w' = F_c - c_w w,  c_s d' = F_c - k_s d
@@ -23,10 +24,9 @@ static double contact_force(const InerterDevice* p, double v, const double* z) {
   return p->series_stiffness * (z[S] - z[GAP]) + p->series_damping * (v - z[W]);
 }
 
-// whether a flywheel is linear
+// whether a flywheel is linear but for friction
 static int is_linear(const InerterDevice* p) {
-  return !has(p, PART_VARYING) && !has(p, PART_PIPE) && !has(p, PART_GAS) &&
-         !has(p, PART_WHEEL_FRICTION);
+  return !has(p, PART_VARYING) && !has(p, PART_PIPE) && !has(p, PART_GAS);
 }
 
 // a linear dashpot without a spring beside it [N s/m], or 0
@@ -153,17 +153,25 @@ static void contact(const SeriesExact* steps, const Swing* swing, const Way* way
   z[S] += gap;
 }
 
-// s, w and gap after a slide in the play
+// s and w after a slide in which a force pushes the flywheel
 static Slide slide_over(const InerterDevice* p, double t) {
   double rate = p->flywheel_viscous / p->inertance;
-  return (Slide){t, rate * t > 1e-8 ? -expm1(-rate * t) / rate : t,
+  double run = rate * t > 1e-8 ? -expm1(-rate * t) / rate : t;
+  return (Slide){t, run, rate * t > 1e-3 ? (t - run) / rate : t * t * (0.5 - rate * t / 6),
                  p->series_damping > 0 ? exp(-p->series_stiffness * t / p->series_damping) : 0};
 }
-static void loose(const InerterDevice* p, const Slide* slide, const Way* way, double* z) {
-  double rate = p->flywheel_viscous / p->inertance, w = z[W];
+static void slide_on(const InerterDevice* p, const Slide* slide, const Way* way, double force,
+                     double* z) {
+  double rate = p->flywheel_viscous / p->inertance, push = force / p->inertance, w = z[W];
+  z[S] += way_travel(way, slide->time) - w * slide->run - push * slide->late;
+  z[W] = w + (push - rate * w) * slide->run;
+}
+
+// the same in the play, whose spring relaxes
+static void loose(const InerterDevice* p, const Slide* slide, const Way* way, double drag,
+                  double* z) {
   double d = p->series_damping > 0 ? (z[S] - z[GAP]) * slide->fade : 0;
-  z[S] += way_travel(way, slide->time) - w * slide->run;
-  z[W] = w - rate * w * slide->run;
+  slide_on(p, slide, way, -drag, z);
   z[GAP] = z[S] - d;
 }
 
@@ -209,12 +217,8 @@ static int holding(const InerterDevice* p, SeriesExact* steps, const Way* way, d
 // s, w and slip where a clutch slips with a constant force
 static void slip_on(const InerterDevice* p, const Slide* slide, const Way* way, double force,
                     double* z) {
-  double rate = p->flywheel_viscous / p->inertance, w = z[W], t = slide->time;
-  double push = force / p->inertance, held = force / p->series_stiffness;
-  double late = rate * t > 1e-3 ? (t - slide->run) / rate : t * t * (0.5 - rate * t / 6);
-  double d = held + (z[S] - z[GAP] - held) * slide->fade;
-  z[S] += way_travel(way, t) - w * slide->run - push * late;
-  z[W] = w + (push - rate * w) * slide->run;
+  double held = force / p->series_stiffness, d = held + (z[S] - z[GAP] - held) * slide->fade;
+  slide_on(p, slide, way, force, z);
   z[GAP] = z[S] - d;
 }
 
@@ -265,8 +269,8 @@ int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, dou
   double v = way->v, midway = way_speed(way, 0.5 * steps->h), last = way_speed(way, steps->h);
   if (side == 0) {
     find_slides(p, steps);
-    loose(p, &steps->half_slide, way, middle);
-    loose(p, &steps->slide, way, end);
+    loose(p, &steps->half_slide, way, steps->oscillator.push, middle);
+    loose(p, &steps->slide, way, steps->oscillator.push, end);
     if (fabs(middle[GAP]) >= p->backlash || fabs(end[GAP]) >= p->backlash) {
       return 0;
     }

@@ -3,8 +3,9 @@
 //   in contact:  B w' + R + G = phi + c_s s',   w = v - s',   d = s - gap
 //                B_m d'' + (c_s + D_m) d' + phi'_m d = B_m a + D_m v + e + e' t
 //   loose:       B w' + R + G = 0,   d' = -phi / c_s
+//   G: friction without memory at the flywheel among it
 //   e + e' t:  R + G_gas + (B - B_m) w' through the start and the middle, and what the tangents of
-//              the spring and of the dampers leave there
+//              the spring, of the dampers and of friction leave there
 //
 // A half step with the coefficients of the start leads to the middle. B, R, G, phi, c_s, s, w: as
 // in series.c; D: slope of the flywheel's dampers; m: in the middle. Why: a step need not resolve
@@ -19,16 +20,27 @@ enum { S, W, GAP };  // places in z
 // what the coefficients are at one state
 typedef struct Coefficients_ {
   double mass, damper_slope, spring_slope;
-  double varying;  // R + gas
-  double fixed;    // what the tangents of dampers and spring leave
-  double force;    // F_s
-  double rate;     // w'
+  double varying;   // R + gas
+  double fixed;     // what the tangents of dampers and spring leave
+  double force;     // F_s
+  double rate;      // w'
+  Tangent rubbing;  // friction
 } Coefficients;
+
+// friction without memory at the flywheel, at its displacement and velocity
+static Tangent rubbing_at(const InerterDevice* p, double y, double w) {
+  return has(p, PART_WHEEL_FRICTION)
+             ? (Tangent){law_of(p)->force(p, y, w, 0, 0), friction_grip(p, y, w)}
+             : (Tangent){0, 0};
+}
 
 static Coefficients coefficients(const InerterDevice* p, double x, double v, double gap,
                                  const double* z) {
   double rest, d = z[S] - gap, mass = inertance_felt(p, x - z[S], z[W], &rest);
   Tangent damper = flywheel_damper(p, z[W]), spring = series_spring(p, d);
+  Tangent rubbing = rubbing_at(p, x - z[S], z[W]);
+  damper.value += rubbing.value;
+  damper.slope += rubbing.slope;
   double varying = rest + (has(p, PART_GAS) ? gas_force(p, x - z[S]) : 0);
   double force = spring.value + p->series_damping * (v - z[W]);
   return (Coefficients){
@@ -39,6 +51,7 @@ static Coefficients coefficients(const InerterDevice* p, double x, double v, dou
       .fixed = damper.value - damper.slope * z[W] - (spring.value - spring.slope * d),
       .force = force,
       .rate = (force - damper.value - varying) / mass,
+      .rubbing = rubbing,
   };
 }
 
@@ -61,6 +74,20 @@ static double change(const InerterDevice* p, const Coefficients* start, const Co
     gas = fabs((middle->varying - start->varying) / step) * h * h / middle->mass;
   }
   return 2 * (masses + springs + dampers) + gas;
+}
+
+// how much friction is off its tangent in the middle, by speed; relative to what it is at most
+static double bend(const InerterDevice* p, const Coefficients* start, const Coefficients* middle,
+                   double w, double midway, double y1, double w1) {
+  if (!has(p, PART_WHEEL_FRICTION)) {
+    return 0;
+  }
+  Tangent near = middle->rubbing;
+  double end = law_of(p)->force(p, y1, w1, 0, 0);
+  double most = fmax(fabs(near.value), fmax(fabs(start->rubbing.value), fabs(end)));
+  double off = fabs(start->rubbing.value - near.value - near.slope * (w - midway)) +
+               fabs(end - near.value - near.slope * (w1 - midway));
+  return most > 0 ? off / most : 0;
 }
 
 // one step in contact at a play's side (0: there is no play); how much the coefficients changed,
@@ -93,22 +120,35 @@ static double frozen(const InerterDevice* p, double x, const Way* way, double h,
       return INFINITY;
     }
   }
+  double y1 = x + way_travel(way, h) - end[S] - gap;
+  double bends = bend(p, &start, &there, z[W], middle[W], y1, end[W]);
   z[S] = end[S] + gap;
   z[W] = end[W];
-  return change(p, &start, &there, step, h);
+  return change(p, &start, &there, step, h) + bends;
 }
 
+// a slide in which friction changes by no more than this share is one with a constant force
+static const double kEven = 0.05;
+
 // one step within the play, in which only the flywheel's own forces change its velocity; 0 and
-// nothing done where the play is used up
+// nothing done where the play is used up, or friction turns
 static int loose(const InerterDevice* p, double x, const Way* way, double h, double* z) {
   double d = z[S] - z[GAP], half = 0.5 * h, rest;
   double mass = inertance_felt(p, x - z[S], z[W], &rest);
-  double w = z[W] - half * (rest + flywheel_force(p, x - z[S], z[W])) / mass;
+  double first = rubbing_at(p, x - z[S], z[W]).value;
+  double w = z[W] - half * (rest + flywheel_force(p, x - z[S], z[W]) + first) / mass;
   double midway = x + way_travel(way, half);
   double s = z[S] + midway - x - half * 0.5 * (z[W] + w);
   mass = inertance_felt(p, midway - s, w, &rest);
-  double end = z[W] - h * (rest + flywheel_force(p, midway - s, w)) / mass;
+  double rubbing = rubbing_at(p, midway - s, w).value;
+  double end = z[W] - h * (rest + flywheel_force(p, midway - s, w) + rubbing) / mass;
   double s1 = z[S] + way_travel(way, h) - h * 0.5 * (z[W] + end);
+  if (has(p, PART_WHEEL_FRICTION)) {
+    double last = rubbing_at(p, x + way_travel(way, h) - s1, end).value;
+    if (!(fabs(first - rubbing) + fabs(last - rubbing) <= kEven * fabs(rubbing))) {
+      return 0;
+    }
+  }
 
   // the spring relaxes with the stiffness of its chord
   double fade = p->series_damping > 0 && d != 0
@@ -128,6 +168,9 @@ enum { PER_CHANGE = 16 };
 
 int series_frozen(const InerterDevice* p, double x, const Way* way, double* z, double h, int most) {
   if (h < 0 || has(p, PART_CLUTCH)) {
+    return 0;
+  }
+  if (has(p, PART_WHEEL_FRICTION) && (has_bristle(p) || inerter_has_load_friction(p))) {
     return 0;
   }
   int side = 0;

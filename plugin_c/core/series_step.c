@@ -226,6 +226,7 @@ static double misfit(const InerterDevice* p, Element element, Flywheel flywheel,
 }
 
 enum { MOST_TURNS = 100 };
+#define EXACT 4e-15  // a difference per drag that is rounding
 
 // The drag that friction has at the velocity which it leaves; 0 without friction there. Between 0
 // and what the flywheel would feel without it: Chandrupatla's method.
@@ -249,10 +250,16 @@ static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel
     b *= 2;
     fb = misfit(p, element, flywheel, rubbing, b);
   }
-  double part = 0.5;
+  // a flywheel that sticks and one that slides are both nearly linear
+  double part = clamp(fa / (fa - fb), 1e-3, 1 - 1e-3), last = b;
   for (int i = 0; i < MOST_TURNS; i++) {
     // the bracket is a, b with a the newest; c the one before
     double next = a + part * (b - a), value = misfit(p, element, flywheel, rubbing, next);
+    last = next;
+    if (fabs(value) <= EXACT * fabs(next)) {
+      // friction falls with the drag: no further from it than this
+      return next;
+    }
     double c = value * fa > 0 ? a : b, fc = value * fa > 0 ? fa : fb;
     if (c == b) {
       b = a;
@@ -272,7 +279,9 @@ static double drag_of(const InerterDevice* p, Element element, Flywheel flywheel
     part = clamp(part, least, 1 - least);
   }
   double best = fabs(fa) < fabs(fb) ? a : b;
-  misfit(p, element, flywheel, rubbing, best);
+  if (best != last) {
+    misfit(p, element, flywheel, rubbing, best);
+  }
   return best;
 }
 
@@ -347,8 +356,11 @@ void series_step(const InerterDevice* p, double x, const Way* way, double* brist
   if (parts < series_most_parts(p)) {
     SeriesExact steps;
     series_exact_steps(p, h, &steps);
-    if (!rubs && (series_exact(p, &steps, way, z) ||
-                  series_frozen(p, x, way, z, h, 1 + (resolved ? count : SERIES_MOST_PARTS) / 2))) {
+    int most = 1 + (resolved ? count : SERIES_MOST_PARTS) / 2;
+    double* states = rubs && has_bristle(p) ? bristle : NULL;
+    int exact =
+        rubs ? series_sliding(p, &steps, x, way, states, z) : series_exact(p, &steps, way, z);
+    if (exact || series_frozen(p, x, way, z, h, most)) {
       return;
     }
   }

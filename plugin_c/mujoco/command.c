@@ -59,7 +59,20 @@ void command_take_value(const mjModel* m, const mjData* d, Instance* self) {
 
 int command_range(const mjModel* m, int actuator, const InerterDevice* device,
                   char message[INERTER_MESSAGE_SIZE]) {
-  if (device->control == INERTER_CONTROL_force || !m->actuator_ctrlnum[actuator]) {
+  if (!m->actuator_ctrlnum[actuator]) {
+    return 0;
+  }
+  const mjtNum* given = m->actuator_ctrlrange + 2 * (size_t)m->actuator_ctrladr[actuator];
+  if (device->control == INERTER_CONTROL_force) {
+    int limited = m->actuator_ctrllimited[m->actuator_ctrladr[actuator]];
+    if (limited && !(given[0] <= 0 && given[1] >= 0)) {
+      snprintf(message, INERTER_MESSAGE_SIZE,
+               "ctrlrange is %g to %g, without 0: a device that nobody commands would be pushed by "
+               "%g all the time; give a range with 0, or ctrllimited=\"false\" where a class of "
+               "defaults has brought it",
+               given[0], given[1], given[0] > 0 ? given[0] : given[1]);
+      return -1;
+    }
     return 0;
   }
   // the model is written here as in placement_decide, and only while it is compiled

@@ -233,7 +233,8 @@ static int solve_springs(Part* part, const Constrained* problem, mjtNum* a, mjtN
       W[i * k + c] = profile_dot(part->P + i * n, part->X + c * n, n);
     }
   }
-  int rounds = monotone_solve(problem->law, problem->devices, k, W, part->p, a, force, scratch);
+  int rounds = monotone_solve(problem->law, problem->devices, k, W, part->p, problem->grain, a,
+                              force, scratch);
   for (int i = 0; i < k; i++) {
     mju_addToScl(part->x, part->X + i * n, -force[i], n);
   }

@@ -23,8 +23,9 @@ typedef struct Constrained_ {
   int n;                // devices
   const void* devices;  // what the law is asked with
   MonotoneLaw law;
-  const int* moment;   // their rows of mjData.actuator_moment
-  const mjtNum* bias;  // n
+  const int* moment;    // their rows of mjData.actuator_moment
+  const mjtNum* bias;   // n
+  const mjtNum* grain;  // n, see monotone.h
 } Constrained;
 
 // Whether the workspace for a group fits on the stack of mjData.

@@ -20,6 +20,8 @@
 // worst misfit of the acceleration of a step, over the size of its terms; of a velocity, its
 // rounding over that
 static const double kMisfit = 1e-6, kVelocityRounding = 1e-8;
+// an acceleration that is none [m/s^2, rad/s^2]: of what rests all terms are rounding
+static const double kAtRest = 1e-10;
 
 //------------------------------ laws --------------------------------------------------------------
 
@@ -142,7 +144,8 @@ static int solve_free(const mjModel* m, mjData* d, Solution* part, const Group* 
     const Instance* self = part->all[i].self;
     part->a[i] = instance_along(m, d, self, last) + self->bias;
   }
-  return monotone_solve(solution_law, part->all, n, W, p, part->a, part->force, scratch);
+  return monotone_solve(solution_law, part->all, n, W, p, solution_grains(d, part->all, n), part->a,
+                        part->force, scratch);
 }
 
 static int solve_joints(const mjModel* m, mjData* d, Solution* part, const Group* group) {
@@ -166,7 +169,8 @@ static int solve_constrained(const mjModel* m, mjData* d, Solution* part, const 
     solution_mobilities(m, d, part, group, W);
   }
   begin_all(m, part, asked ? W : NULL);
-  Constrained problem = {part->n, part->all, solution_law, part->moment, part->bias};
+  Constrained problem = {part->n,      part->all,  solution_law,
+                         part->moment, part->bias, solution_grains(d, part->all, part->n)};
   if (constrained_fits(m, d, group, part->n)) {
     return constrained_solve(m, d, &part->metric, group, &problem, part->smooth, part->a,
                              part->force, W);
@@ -300,7 +304,7 @@ void coupled_check(const mjModel* m, const mjData* d, Instance* self) {
   mjtNum size = fabs(self->bias) + instance_along_size(m, d, self, d->qacc) +
                 instance_along_size(m, d, self, d->qacc_smooth) +
                 kVelocityRounding * instance_along_size(m, d, self, d->qvel) / h;
-  if (fabs(a - self->acceleration) > kMisfit * size) {
+  if (fabs(a - self->acceleration) > kMisfit * size + kAtRest) {
     count_misfit(m, self);
   }
 }

@@ -46,7 +46,8 @@ int damped_step(const mjModel* m, mjData* d, Solution* part, const Group* group,
   }
   mju_copy(felt, part->force, n);
   solution_mobilities(m, d, part, group, W);
-  int rounds = monotone_solve(solution_law, part->all, n, W, p, part->a, part->force, scratch);
+  int rounds = monotone_solve(solution_law, part->all, n, W, p, solution_grains(d, part->all, n),
+                              part->a, part->force, scratch);
 
   // with all actuation disabled the engine makes its reference acceleration only after this
   if (m->opt.disableflags & mjDSBL_ACTUATION) {

@@ -100,7 +100,8 @@ static double refit(mjData* d, Solution* part, const mjtNum* W, const mjtNum* sc
   for (int i = 0; i < n; i++) {
     p[i] = answered[i] + mju_dot(W + i * n, asked, n);
   }
-  monotone_solve(solution_law, part->all, n, W, p, part->a, part->force, scratch);
+  monotone_solve(solution_law, part->all, n, W, p, solution_grains(d, part->all, n), part->a,
+                 part->force, scratch);
   double worst = 0;
   for (int i = 0; i < n; i++) {
     double size = fabs(p[i]) + fabs(answered[i]) + scale[i] + mjMINVAL, miss = 0;

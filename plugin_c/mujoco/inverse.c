@@ -166,7 +166,7 @@ static void feel(const mjModel* m, mjData* d, const mjtNum* qacc, int n, Now* al
     }
   }
   if (k) {
-    monotone_solve(solution_law, part, k, W, p, a, force, scratch);
+    monotone_solve(solution_law, part, k, W, p, solution_grains(d, part, k), a, force, scratch);
   }
   for (int i = 0; i < k; i++) {
     mju_addToScl(felt, X + i * nv, of_step[i] - force[i], nv);

@@ -16,6 +16,9 @@
 
 enum { ROUNDS = 100 };
 
+// change of a, over the size of its terms, from which on rounds that come no nearer are rounding
+static const double kEnough = 1e-9;
+
 // solve the n x n system A x = y by elimination with row exchange; A and y are destroyed
 static void solve_dense(int n, mjtNum* A, mjtNum* y, mjtNum* x) {
   for (int c = 0; c < n; c++) {
@@ -100,16 +103,19 @@ static void newton_matrix(int n, const mjtNum* W, const mjtNum* rise, mjtNum* A)
   }
 }
 
+// what rounding leaves of the terms of a, over their size
+static const double kRounding = 64 * DBL_EPSILON;
+
 // largest of the changes of a over what rounding leaves of its terms, 1 or less is nothing
-static double largest(int n, const mjtNum* W, const mjtNum* p, const Point* at,
+static double largest(int n, const mjtNum* W, const mjtNum* p, const mjtNum* grain, const Point* at,
                       const mjtNum* change) {
   double worst = 0;
   for (int i = 0; i < n; i++) {
-    double size = fabs(p[i]) + fabs(at->a[i]) + DBL_MIN;
+    double size = fabs(p[i]) + fabs(at->a[i]) + grain[i] + DBL_MIN;
     for (int j = 0; j < n; j++) {
       size += fabs(W[i * n + j] * at->y[j]);
     }
-    worst = fmax(worst, fabs(change[i]) / (64 * DBL_EPSILON * size));
+    worst = fmax(worst, fabs(change[i]) / (kRounding * size));
   }
   return worst;
 }
@@ -139,8 +145,24 @@ static double go(void* context, double t) {
   return slope;
 }
 
+// Whether the laws, asked at their own forces, say the same: then these are the solution. Where
+// they do not, a step that was cut short lies between two corners, and the point stays as it is.
+static int fits_itself(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
+                       const mjtNum* p, Point* now, Point* next) {
+  mju_copy(next->y, now->force, n);
+  multiply(n, W, next->y, next->a);
+  mju_sub(next->a, p, next->a, n);
+  evaluate(law, devices, n, next);
+  if (memcmp(now->force, next->force, sizeof(mjtNum) * (size_t)n) != 0) {
+    return 0;
+  }
+  mju_copy(now->y, next->y, n);
+  mju_copy(now->a, next->a, n);
+  return 1;
+}
+
 int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
-                   mjtNum* a, mjtNum* force, mjtNum* scratch) {
+                   const mjtNum* grain, mjtNum* a, mjtNum* force, mjtNum* scratch) {
   mjtNum *A = scratch, *r = A + n * n, *dy = r + n, *u = dy + n;
   Point now = {force, a, u + n, u + 2 * n};
   Point next = {u + 3 * n, u + 4 * n, u + 5 * n, u + 6 * n};
@@ -156,18 +178,21 @@ int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
   mju_sub(a, p, u, n);
   evaluate(law, devices, n, &now);
 
+  double before = INFINITY;
   for (int round = 0; round < ROUNDS; round++) {
     mju_sub(r, now.force, now.y, n);
     multiply(n, W, r, u);
-    if (!(largest(n, W, p, &now, u) > 1)) {
+    double left = largest(n, W, p, grain, &now, u);
+    if (!(left > 1) || (kRounding * left <= kEnough && left >= 0.5 * before)) {
       return round;
     }
+    before = left;
     newton_matrix(n, W, now.rise, A);
     solve_dense(n, A, r, dy);
     multiply(n, W, dy, u);
     Line line = {law, devices, n, &now, dy, u, &next};
     downhill_search(go, &line, mju_dot(u, now.y, n) - mju_dot(u, now.force, n));
-    int last = !(largest(n, W, p, &now, u) > 1);
+    int last = !(largest(n, W, p, grain, &now, u) > 1);
     int flat = memcmp(now.force, next.force, sizeof(mjtNum) * (size_t)n) == 0;
     mju_copy(now.y, next.y, n);
     mju_copy(now.a, next.a, n);
@@ -179,10 +204,7 @@ int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W,
       return round + 1;
     }
     // forces that are small beside what they are the sum of: what is left is less than its rounding
-    if (flat) {
-      mju_copy(now.y, now.force, n);
-      multiply(n, W, now.y, u);
-      mju_sub(a, p, u, n);
+    if (flat && fits_itself(law, devices, n, W, p, &now, &next)) {
       return round + 1;
     }
   }

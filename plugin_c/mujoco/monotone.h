@@ -14,10 +14,11 @@
 // Force of device i at acceleration a, and how it rises with a; near enough will do for the rise.
 typedef double (*MonotoneLaw)(const void* devices, int i, double a, double* rise);
 
-// Solve for a (in: a guess), as far as rounding lets. force: the n forces at the solution. scratch:
-// n * (n + 9) numbers. Returns the number of rounds, negative if it stopped at its bound.
+// Solve for a (in: a guess), as far as rounding lets. grain: n accelerations whose rounding the
+// laws do not see, those of their velocities over a step. force: the n forces at the solution.
+// scratch: n * (n + 9) numbers. Returns the number of rounds, negative if it stopped at its bound.
 int monotone_solve(MonotoneLaw law, const void* devices, int n, const mjtNum* W, const mjtNum* p,
-                   mjtNum* a, mjtNum* force, mjtNum* scratch);
+                   const mjtNum* grain, mjtNum* a, mjtNum* force, mjtNum* scratch);
 
 // The same where every law is a line: F_i = start_i + rise_i a_i. scratch: n * (n + 1) numbers.
 void monotone_solve_lines(int n, const mjtNum* start, const mjtNum* rise, const mjtNum* W,

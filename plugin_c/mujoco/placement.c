@@ -168,6 +168,16 @@ static void derive(mjModel* m) {
   m->nplugin = nplugin;
 }
 
+// Gains and bias that a class of defaults gives an actuator say nothing to a device, but the
+// engine's implicit integrators would read them.
+static void without_gains(mjModel* m, int actuator) {
+  m->actuator_gaintype[actuator] = mjGAIN_FIXED;
+  m->actuator_biastype[actuator] = mjBIAS_NONE;
+  mju_zero(m->actuator_gainprm + mjNGAIN * actuator, mjNGAIN);
+  mju_zero(m->actuator_biasprm + mjNBIAS * actuator, mjNBIAS);
+  m->actuator_gainprm[mjNGAIN * actuator] = 1;
+}
+
 int placement_decide(const mjModel* m, int actuator, const InerterDevice* device, int* native,
                      char message[INERTER_MESSAGE_SIZE]) {
   mjtNum mark = m->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot];
@@ -216,6 +226,7 @@ int placement_decide(const mjModel* m, int actuator, const InerterDevice* device
     model->actuator_armature[actuator] = inertance;
     model->actuator_damping[actuator] = viscous;
   }
+  without_gains(model, actuator);
   model->actuator_gainprm[mjNGAIN * actuator + kPlacedSlot] =
       *native ? PLACED_NATIVE : PLACED_PLUGIN;
   return 0;

@@ -9,6 +9,14 @@ double solution_law(const void* devices, int i, double a, double* rise) {
   return force;
 }
 
+mjtNum* solution_grains(mjData* d, const Coupled* all, int n) {
+  mjtNum* grain = mj_stackAllocNum(d, n);
+  for (int i = 0; i < n; i++) {
+    grain[i] = inerter_step_grain(&all[i].step);
+  }
+  return grain;
+}
+
 void solution_mobilities(const mjModel* m, mjData* d, const Solution* part, const Group* group,
                          mjtNum* W) {
   int n = part->n;

@@ -39,6 +39,10 @@ typedef struct Solution_ {
 // Force of a device at an acceleration, less what the engine's matrix holds; how it rises.
 double solution_law(const void* devices, int i, double a, double* rise);
 
+// Accelerations whose rounding the laws of n devices do not see (monotone.h), on the stack of
+// mjData.
+mjtNum* solution_grains(mjData* d, const Coupled* all, int n);
+
 // The solution of one group, its devices one after another; on the stack of mjData. And what was
 // found of them back to the whole.
 Solution solution_part(mjData* d, const Solution* s, const Group* group);

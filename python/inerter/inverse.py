@@ -110,8 +110,13 @@ def inverse_dynamics(
     work = copy.copy(data)
     work.qacc[:] = given = np.array(qacc, dtype=np.float64)
     mujoco.mj_inverse(model, work)
-    missing = device_force(model, work, given).qfrc
-    _ask(plugin_library().inerter_felt_acceleration, model, work, given, work.qacc)
+    asked = work
+    if model.opt.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE:
+        # how easily terminals give way over a step is in what only a forward pass builds
+        asked = copy.copy(data)
+        mujoco.mj_forward(model, asked)
+    missing = device_force(model, asked, given).qfrc
+    _ask(plugin_library().inerter_felt_acceleration, model, asked, given, work.qacc)
     inertia = np.zeros(model.nv)
     mujoco.mj_mulM(model, work, inertia, given - work.qacc)
     mujoco.mj_inverse(model, work)

@@ -200,3 +200,54 @@ def test_what_a_user_states_of_a_leak_and_of_a_clutch_may_be_contradicted() -> N
     found = {c.effect: c.starts[0] for c in stated_candidates(stated, scales)}
     assert effects_of(found["clutch_slip"], stated) == [("clutch_slip", None)]
     assert found["clutch_slip"].values["series_stiffness"] == 1e5
+
+
+def sliding() -> list[Record]:
+    """Friction alone, which differs with the direction: nothing turns."""
+    return recorded(
+        friction="coulomb", coulomb_force=60.0, friction_asymmetry=0.3, transition_velocity=1e-4,
+        viscous=300.0,
+    )  # fmt: skip
+
+
+def test_what_has_no_inertance_is_diagnosed_to_its_end() -> None:
+    """A leak before a flywheel of next to nothing is no device: such a start is none."""
+    found = diagnose_bench(sliding())
+    assert {"leak", "clutch_slip", "backlash"}.isdisjoint(named(found))
+    assert found.parameters["coulomb_force"].value == pytest.approx(60.0, rel=0.02)
+
+
+@pytest.mark.parametrize("inertance", [0.0, 8.7e-15])
+def test_before_no_inertance_one_of_a_usual_size_is_begun_with(inertance: float) -> None:
+    prepared = prepare(sliding())
+    runs = [whole(motion) for motion in prepared.motions]
+    problem = Problem(runs, [np.ones(run.force.size, bool) for run in runs])
+    values = {"inertance": inertance, "viscous": 100.0, "transition_velocity": 1e-4}
+    tried = ("leak", "clutch_slip", "backlash")
+    for model, starts_there in (
+        (Model("none", values, ("inertance", "viscous")), True),
+        (Model("none", values, ("viscous",)), False),
+    ):
+        own = [c for c in candidates(model, problem.scales) if c.effect in tried]
+        assert {c.effect for c in own} == (set(tried) if starts_there else set())
+        for start in (start for each in own for start in each.starts):
+            assert start.is_possible
+            assert np.isfinite(problem.masked(problem.residual(start))).all()
+        assert {c.effect for c in candidates(model, problem.scales)} - set(tried)
+
+
+@pytest.mark.long
+def test_oil_and_a_leak_are_no_low_pass_with_a_delay() -> None:
+    """Within what the motion tells a low-pass that needs a delay beside it stands for both."""
+    found = diagnose_bench(
+        recorded(
+            noise=0.3, inertance=120.0, series_stiffness=4e5, leak_damping=4000.0, viscous=300.0
+        )
+    )
+    assert {"sensor_delay", "sensor_filter"}.isdisjoint(named(found))
+    assert {"leak", "series_elasticity", "viscous_friction"} <= named(found)
+    for name, true in (
+        ("leak_damping", 4000.0), ("series_stiffness", 4e5), ("viscous", 300.0),
+        ("inertance", 120.0),
+    ):  # fmt: skip
+        assert found.parameters[name].value == pytest.approx(true, rel=0.02)

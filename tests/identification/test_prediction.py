@@ -210,6 +210,26 @@ def test_a_beginning_that_is_left_out_is_read_off_it(time: float) -> None:
     assert np.max(np.abs(left)) < 0.1
 
 
+@pytest.mark.parametrize(
+    ("losses", "root"),
+    [
+        # b s^2 + c s + k = 0, and behind a leak s^2 + (k / c_l) s + k / b = 0
+        ({"series_damping": 1e4}, complex(-41.66666667, 39.96526269)),
+        ({"leak_damping": 4000.0}, complex(-50.0, 28.86751346)),
+    ],
+)
+def test_so_is_how_a_flywheel_turned_that_soon_follows(
+    losses: dict[str, float], root: complex
+) -> None:
+    device = Device(inertance=120.0, series_stiffness=4e5, **losses)
+    noise = np.random.default_rng(3).standard_normal(TIME.size)
+    for wave in (40.0 * np.exp(root * TIME).real, 40.0 * np.exp(root * TIME).imag):
+        left = without_transient(device, wave, 1e-3, TIME > 3.0)
+        assert np.max(np.abs(left)) < 0.1
+    left = without_transient(device, noise, 1e-3, TIME > 3.0)
+    assert np.max(np.abs(left - noise)) < 1.0
+
+
 @pytest.mark.parametrize("first", [0, 40])
 @pytest.mark.parametrize("later", [0.6, 2.0, 5.0])
 def test_so_is_what_a_bristle_was_bent_by(first: int, later: float) -> None:

@@ -150,6 +150,31 @@ def test_along_a_motion_the_core_converges_to_the_reference(law: str, play: floa
 
 
 @pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("play", [0.0, 1e-4], ids=["no_play", "play"])
+def test_a_flywheel_that_slides_is_followed_in_long_steps(law: str, play: float) -> None:
+    """Without load friction a step where friction is even has a closed form: few are needed."""
+    p = {**STRUT, "backlash": play, "friction": law, **LAWS[law]}
+    core = Device(**p, friction_side="flywheel")
+    motion, times = sine_motion(2e-3, 3.0), np.linspace(0.0, 0.4, 201)
+    start = np.zeros(core.nstate)
+    start[core.state_names.index("flywheel_velocity")] = motion.velocity(0.0)
+    true = response(
+        ReferenceDevice(**p, friction_side="flywheel"), motion, times, initial_state=start,
+        rtol=1e-9,
+    )  # fmt: skip
+    size, errors = np.sqrt(np.mean(true.force**2)), []
+    for parts in (1, 4, 16):
+        t = np.linspace(0.0, 0.4, 200 * parts + 1)
+        told = core.along(
+            t[1], motion.displacement(t), motion.velocity(t), motion.acceleration(t), start
+        )
+        errors.append(np.sqrt(np.mean((told["total"][::parts] - true.force) ** 2)) / size)
+    assert errors[0] < 3e-3
+    assert errors[1] < 5e-4
+    assert errors[2] < 1e-4
+
+
+@pytest.mark.parametrize("law", LAWS)
 def test_a_step_is_stable_however_long_and_however_stiff(law: str) -> None:
     # at rest at the ends the flywheel comes to rest, and its energy never grows
     stiff = {"bristle_stiffness": 1e9} if law in ("dahl", "lugre") else {}

@@ -124,3 +124,46 @@ def test_a_wrong_acceleration_is_named() -> None:
     for wrong in (np.zeros(3), np.full(model.nv, np.nan)):
         with pytest.raises(ValueError, match=f"give {model.nv} finite numbers"):
             inerter.device_force(model, data, wrong)
+
+
+@pytest.mark.parametrize(
+    ("device", "states"),
+    [
+        ({"series_stiffness": 4413.0}, 2),
+        ({"branch_stiffness_1": 1e4, "branch_damping_1": 100.0}, 1),
+        ({"friction": "dahl", "coulomb_force": 5.0, "bristle_stiffness": 1e5}, 1),
+    ],
+)
+@pytest.mark.parametrize("integrator", INTEGRATORS[:-1])
+def test_springs_that_a_step_does_not_resolve(
+    device: dict[str, float | str], states: int, integrator: str
+) -> None:
+    """Nothing but the state is looked at: no forward pass has run there."""
+    keys = {"inertance": 11.0, **device}
+    config = "".join(f'<config key="{name}" value="{value}"/>' for name, value in keys.items())
+    model = mujoco.MjModel.from_xml_string(f"""
+<mujoco>
+  <extension><plugin plugin="inerter.device"/></extension>
+  <option timestep="0.01" integrator="{integrator}" gravity="0 0 0"/>
+  <worldbody>
+    <body>
+      <freejoint/><geom type="box" size=".1 .05 .03" mass="2"/><site name="a" pos=".1 0 0"/>
+    </body>
+    <body pos="1 .2 .3">
+      <freejoint/><geom type="box" size=".1 .1 .1" mass="3"/><site name="b"/>
+    </body>
+  </worldbody>
+  <tendon><spatial name="t"><site site="a"/><site site="b"/></spatial></tendon>
+  <actuator>
+    <plugin name="d" plugin="inerter.device" tendon="t" actdim="{states}">{config}</plugin>
+  </actuator>
+</mujoco>""")
+    rng = np.random.default_rng(2)
+    for _ in range(5):
+        data = mujoco.MjData(model)
+        mujoco.mj_integratePos(model, data.qpos, 0.2 * rng.normal(size=12), 1.0)
+        data.qvel[:] = rng.normal(size=12)
+        wanted = 5.0 * rng.normal(size=12)
+        data.qfrc_applied[:] = inerter.inverse_dynamics(model, data, wanted)
+        mujoco.mj_forward(model, data)
+        assert data.qacc == pytest.approx(wanted, abs=1e-8)

@@ -195,9 +195,21 @@ def _grip(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
         yield from _term(effect, model, sizes)
 
 
+def _turning(model: Model, sizes: Scales) -> Model | None:
+    """The model with a flywheel that is felt, before which something may give; None without one.
+
+    What gives may be why none has been found.
+    """
+    usual = sizes.force / sizes.acceleration
+    if model.values.get("inertance", 0.0) > _FELT * usual:
+        return model
+    return model.holding(inertance=usual) if "inertance" in model.free else None
+
+
 def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
     """Free play, or a clutch: a series element has one of them."""
-    if not {"backlash", "clutch_force", *_LEAK}.isdisjoint(model.values):
+    turning = _turning(model, sizes)
+    if turning is None or {"backlash", "clutch_force", *_LEAK} & model.values.keys():
         return
     name, unit, ratios = effect.coordinates[0], sizes.displacement, _PLAYS
     if name == "clutch_force":
@@ -207,7 +219,7 @@ def _play(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
         slow = sizes.frequency
         contacts = [{"series_frequency": ratio * slow, "series_loss": 0.3} for ratio in (5, 20)]
     starts = tuple(
-        model.adding(None, **{name: ratio * unit}, **contact)
+        turning.adding(None, **{name: ratio * unit}, **contact)
         for ratio in ratios
         for contact in contacts
     )
@@ -219,7 +231,8 @@ def _leaking(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]
 
     Along one sine it is an inertance of another size and a damper.
     """
-    if sizes.one_tone or not {"backlash", "clutch_force"}.isdisjoint(model.values):
+    turning = _turning(model, sizes)
+    if sizes.one_tone or turning is None or {"backlash", "clutch_force"} & model.values.keys():
         return
     unit = sizes.force / sizes.velocity**2
     forms = {
@@ -230,7 +243,7 @@ def _leaking(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]
     }
     for names, values in forms.items():
         if model.values.keys().isdisjoint(names):
-            starts = tuple(model.adding(None, **{names[0]: value}) for value in values)
+            starts = tuple(turning.adding(None, **{names[0]: value}) for value in values)
             yield Candidate(effect.name, names[0], starts)
 
 
@@ -411,6 +424,8 @@ def _filter(effect: Effect, model: Model, sizes: Scales) -> Iterator[Candidate]:
 
 
 _LEAK = ("leak_corner", "leak_damping", "leak_quadratic_damping")
+# force of an inertance from which on it is one, in typical forces
+_FELT = 1e-6
 # half of a play per stroke, force of a clutch per force
 _PLAYS = (0.002, 0.005, 0.01, 0.02, 0.05, 0.2)
 _CLUTCHES = (0.4, 0.8, 1.3)

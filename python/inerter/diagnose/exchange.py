@@ -17,6 +17,7 @@ from inerter.diagnose.candidate import Candidate
 from inerter.diagnose.candidates import candidates
 from inerter.diagnose.composition import simpler_laws, within_blur
 from inerter.diagnose.decision import CRITERIA, loss, plainest
+from inerter.diagnose.leak_or_filter import leak_for_low_pass
 from inerter.diagnose.low_passes import other_filter
 from inerter.diagnose.plainer import (
     as_constant_force,
@@ -43,8 +44,9 @@ if TYPE_CHECKING:
 def exchanged(search: Search, current: Scored) -> Scored:
     """A model that says about as much with fewer parameters, as long as there is one."""
     for other in (
-        other_side, other_filter, _dampers_that_lag, _straight_bend, _one_friction,
-        blurred_bristle, _plainer_law, _spring_beside, plain_part, _weight, _one_cause,
+        other_side, other_filter, leak_for_low_pass, _dampers_that_lag, _straight_bend,
+        _one_friction, blurred_bristle, _plainer_law, _spring_beside, plain_part, _weight,
+        _one_cause,
     ):  # fmt: skip
         if found := other(search, current):
             return found if other is _one_cause else exchanged(search, found)

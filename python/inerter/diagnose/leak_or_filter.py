@@ -15,18 +15,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose import wording
-from inerter.diagnose.decision import CRITERIA
+from inerter.diagnose.decision import CRITERIA, loss
 from inerter.diagnose.low_passes import as_delay, filters
 from inerter.diagnose.result import Finding, ParameterValue
-from inerter.diagnose.search import Search
 from inerter.diagnose.statistics import advantage, block_squares
 from inerter.diagnose.values import parameter_units
 from inerter.identify.fit import Fit, parameter_errors
 from inerter.identify.model import Model
 from inerter.parallel_steps import parallel
+
+if TYPE_CHECKING:
+    from inerter.diagnose.search import Scored, Search
 
 _LEAK = EFFECTS["leak"].coordinates
 _FILTER = tuple(n for n in EFFECTS["sensor_filter"].coordinates if n.startswith("force"))
@@ -57,6 +60,22 @@ def with_leak(finding: Finding, search: Search, fit: Fit) -> Finding:
         rivals=[rival for rival in finding.rivals if rival.effect != other],
     )
     return replace(told, evidence=wording.evidence(told))
+
+
+def leak_for_low_pass(search: Search, current: Scored) -> Scored | None:
+    """A leak, and a spring before it, in the place of a low-pass and a delay, if they do as well.
+
+    A low-pass within what the motion tells that needs a delay beside it is none that is usual.
+    """
+    model = current.model
+    if search.problem.scales.one_tone or not {"force_filter", "delay"} <= set(model.free):
+        return None
+    fits = parallel(search.problem.fit, list(filter(search.may_be, _leaks(model, search))))
+    masks, limit = search.problem.masks, current.fit.rmse(search.problem.masks)
+    near = [f for f in fits if f.rmse(masks) < (1 + CRITERIA.tolerated_loss) * limit]
+    scored = search.scores([("exchange", None, fit) for fit in near])
+    best = min(scored, key=lambda s: s.squares.sum(), default=None)
+    return best if best and loss(best, current) < CRITERIA.exchange_loss else None
 
 
 def _low_passes(model: Model) -> list[Model]:

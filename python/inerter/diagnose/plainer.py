@@ -77,10 +77,10 @@ def as_spring(model: Model) -> list[Model]:
 def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]:
     """A damper, friction, or a spring with any zero for what may be no more, plainest first.
 
-    That is damping that bends with the speed either way, a branch that hardly relaxes in the
-    longest run [s], or so soon that it follows a motion of this frequency [Hz], one that is the
-    spring before the dampers, a curve of the force, and a shaft on which little turns or so softly
-    that it does not follow the motion.
+    That is a leak before a flywheel that hardly turns at this frequency [Hz], damping that bends
+    with the speed either way, a branch that hardly relaxes in the longest run [s], or so soon that
+    it follows a motion of this frequency, one that is the spring before the dampers, a curve of the
+    force, and a shaft on which little turns or so softly that it does not follow the motion.
     """
     found = []
     if "inertance" in model.free and _has_plain_shaft(model):
@@ -103,7 +103,27 @@ def as_plain_part(model: Model, longest: float, frequency: float) -> list[Model]
         elif 2 * np.pi * frequency * lasts < 1.0:
             damping = model.values.get("viscous", 0.0) + size * lasts
             found.append(bare.adding(None, viscous=damping))
-    return [*found, *_as_one_that_bends_less(model), *_as_law_of_the_place(model)]
+    return [
+        *found, *_as_dampers(model, frequency), *_as_one_that_bends_less(model),
+        *_as_law_of_the_place(model),
+    ]  # fmt: skip
+
+
+def _as_dampers(model: Model, frequency: float) -> list[Model]:
+    """What leaks past a flywheel that hardly turns, as dampers between the terminals."""
+    corner, bends = model.values.get("leak_corner", 0.0), "leak_quadratic_damping"
+    inertance = model.values.get("inertance", 0.0)
+    if "inertance" not in model.free or {"leak_corner", bends}.isdisjoint(model.free):
+        return []
+    typical = 2 * np.pi * corner * inertance
+    if not corner < 0.5 * frequency:
+        return []
+    dampers = {"viscous": model.values.get("viscous", 0.0) + typical} if corner else {}
+    if bends in model.values:
+        quadratic = "quadratic_damping"
+        dampers[quadratic] = model.values.get(quadratic, 0.0) + model.values[bends]
+    leak = ("leak_corner", bends, *_SHAFT)
+    return [model.without(leak).holding(inertance=0.0).adding(None, **dampers)]
 
 
 def as_dampers_that_lag(model: Model) -> list[Model]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any, TypeGuard
@@ -228,12 +229,13 @@ class Trials:
                 trials.append(self._as_is(part, beside))
                 continue
             near = known.near(part, start) if known else None
-            trials.append(
-                part.fit(
-                    start, evaluations, tolerance=1e-3, give_up=hopeless, rough=True,
-                    near=near,
+            with suppress(NotFiniteError):
+                fit = part.fit(
+                    start, evaluations, tolerance=1e-3, give_up=hopeless, rough=True, near=near
                 )
-            )  # fmt: skip
+                trials.append(fit)
+        if not trials:
+            return self._as_is(self.problem, starts[0])
         trials.sort(key=lambda fit: fit.rmse(part.masks))
         best = trials[0].rmse(part.masks)
         if best > (limit if fast else AT_LEAST * limit_of_part):

@@ -48,7 +48,8 @@ def without_transient(
     oscillation, exp(lambda t) with b lambda^2 + (c_s + c_w) lambda + k_s = 0, behind a leak alone
     lambda = -(c_l + c_w) / b, behind both see `_roots_of`; the share of the
     masked samples that has this form is taken out. Its size at the beginning is held near what the
-    residual is large, for where the beginning is masked, its faint rest tells nothing of it. Nor is
+    residual is large, for its faint rest tells nothing of it: where nothing is masked before it is
+    that faint, the beginning itself tells it. Nor is
     it more than a flywheel carries that turned some times faster than the record's largest `speed`
     [m/s]: hardly any inertance has no such oscillation.
     """
@@ -60,6 +61,8 @@ def without_transient(
         return residual
     # what is below rounding by then has no share
     slowest = float(np.max(roots.real)) * spacing
+    if slowest < 0:
+        mask = _with_beginning(mask, 0, int(-1.0 / slowest) + 1)
     count = residual.size if slowest >= 0 else min(residual.size, int(_DECAYED / -slowest) + 2)
     with np.errstate(under="ignore"):
         if abs(roots[0].imag) > 0:
