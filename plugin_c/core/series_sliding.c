@@ -53,10 +53,13 @@ int series_sliding(const InerterDevice* p, SeriesExact* steps, double x, const W
     return 0;
   }
   double first = rubbing(p, x - z[S], z[W], bristle), drag = first, last = first;
-  double states[INERTER_MAXFRICTION], next[3];
-  size_t size = sizeof(double) * (size_t)p->nfriction, most = series_count(p);
+  double states[INERTER_MAXFRICTION] = {0}, next[3] = {0};
+  size_t size = sizeof(double) * (size_t)p->nfriction;
+  size_t count = sizeof(double) * (size_t)series_count(p);
   for (int i = 0; i < 2; i++) {
-    memcpy(next, z, sizeof(double) * most);
+    next[S] = z[S];
+    next[W] = z[W];
+    next[GAP] = series_count(p) > GAP ? z[GAP] : 0;
     if (bristle) {
       memcpy(states, bristle, size);
     }
@@ -69,7 +72,7 @@ int series_sliding(const InerterDevice* p, SeriesExact* steps, double x, const W
       return 0;
     }
   }
-  memcpy(z, next, sizeof(double) * most);
+  memcpy(z, next, count);
   if (bristle) {
     memcpy(bristle, states, size);
   }

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from inerter import Device
 from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.scales import Scales
 from inerter.device_file import DeviceError, device_text, read_delay, read_device, read_filters
-from inerter.diagnose import diagnose, diagnose_bench
+from inerter.diagnose import diagnose, diagnose_bench, low_passes
 from inerter.diagnose.baseline import baseline_of
 from inerter.diagnose.composition import effects_of, stripped
 from inerter.diagnose.data import divided
@@ -250,3 +252,24 @@ def test_beside_a_hum_a_delay_may_be_a_filter(effects_seed: int) -> None:
     members = {late, *found[late].members, *(rival.effect for rival in found[late].rivals)}
     assert {"sensor_delay", "sensor_filter"} <= members
     assert "periodic_disturbance" in found
+
+
+@pytest.mark.parametrize(("also", "asked"), [({}, 0.0), ({"backlash": 1e-4}, 5e-3)])
+def test_behind_a_play_a_low_pass_is_asked_for_where_no_delay_shows(
+    also: dict[str, float], asked: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What strikes is rounded by it more than it is late."""
+    told: list[float] = []
+
+    def best(*given: Any) -> list[Any]:
+        told.append(given[3])
+        return []
+
+    monkeypatch.setattr(low_passes, "_best", best)
+    values = {"inertance": 90.0, "series_frequency": 15.0, "series_loss": 0.5, **also}
+    fit = Fit(Model("none", values, tuple(values)), [np.ones(9)], np.eye(len(values)), 1)
+    search = SimpleNamespace(
+        problem=SimpleNamespace(masks=[np.ones(9, bool)]), excluded=frozenset(), spacing=5e-3
+    )
+    low_passes.where_late(cast(Any, search), cast(Any, SimpleNamespace(fit=fit)), [])
+    assert told == [asked]

@@ -166,4 +166,5 @@ def test_springs_that_a_step_does_not_resolve(
         wanted = 5.0 * rng.normal(size=12)
         data.qfrc_applied[:] = inerter.inverse_dynamics(model, data, wanted)
         mujoco.mj_forward(model, data)
-        assert data.qacc == pytest.approx(wanted, abs=1e-8)
+        # of free bodies under `discrete` the engine is asked until it fits, to 1e-6
+        assert data.qacc == pytest.approx(wanted, abs=1e-5 if integrator == "discrete" else 1e-8)

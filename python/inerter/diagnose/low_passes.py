@@ -18,6 +18,7 @@ from inerter.catalogue.along_stroke import node_of
 from inerter.catalogue.effects import EFFECTS
 from inerter.diagnose import wording
 from inerter.diagnose.candidate import Candidate
+from inerter.diagnose.composition import PLAYS
 from inerter.diagnose.decision import CRITERIA, loss, visible
 from inerter.diagnose.result import Finding, ParameterValue
 from inerter.diagnose.statistics import advantage, block_squares
@@ -103,7 +104,8 @@ def noise_taken(
 def where_late(search: Search, current: Scored, fitted: Fitted) -> list[tuple[Candidate, Fit]]:
     """The best low-passes where a delay helps nearly as much as anything else, or has been found.
 
-    fitted: the other candidates, the best first.
+    What strikes behind a play is rounded by a low-pass of any cut-off, and no delay tells of it: it
+    is asked for there too. fitted: the other candidates, the best first.
     """
     masks, here = search.problem.masks, current.fit
     if has_filter(here.model) or "sensor_filter" in search.excluded:
@@ -114,6 +116,8 @@ def where_late(search: Search, current: Scored, fitted: Fitted) -> list[tuple[Ca
         near = late.rmse(masks) < CRITERIA.late_enough * fitted[0][1].rmse(masks)
         gains = late.rmse(masks) < (1 - CRITERIA.gain) * here.rmse(masks)
         delay = late.model.delay if near and gains else 0.0
+    if not delay and not PLAYS.isdisjoint(here.model.free):
+        delay = search.spacing
     return _best(search, here, within_shortlist([fit.rmse(masks) for _, fit in fitted]), delay)
 
 
