@@ -3,15 +3,15 @@
 //   in contact:  B w' + R + G = phi + c_s s',   w = v - s',   d = s - gap
 //                B_m d'' + (c_s + D_m) d' + phi'_m d = B_m a + D_m v + e + e' t
 //   loose:       B w' + R + G = 0,   d' = -phi / c_s
-//   G: friction without memory at the flywheel among it
 //   e + e' t:  R + G_gas + (B - B_m) w' through the start and the middle, and what the tangents of
 //              the spring, of the dampers and of friction leave there
 //
 // A half step with the coefficients of the start leads to the middle. B, R, G, phi, c_s, s, w: as
-// in series.c; D: slope of the flywheel's dampers; m: in the middle. Why: a step need not resolve
-// the oscillation, only how much its coefficients change. Order: 2. Source: exponential Rosenbrock
-// methods (Hochbruck, Ostermann 2010), the middle in place of the start. Not modelled: backlash,
-// slip.
+// in series.c, with friction without memory at the flywheel in G; D: slope of the flywheel's
+// dampers and of that friction; m: in the middle. Why: a step need not resolve the oscillation,
+// only how much its coefficients change. A step in which friction turns is left to series_step.c.
+// Order: 2. Source: exponential Rosenbrock methods (Hochbruck, Ostermann 2010), the middle in place
+// of the start. Not modelled: backlash, slip.
 
 #include "series.h"
 
