@@ -11,6 +11,9 @@ from hidden_vehicles import Road, noisy
 from inerter.diagnose import diagnose
 from inerter.diagnose.vehicle import SystemDiagnosis
 from inerter.models import model_path
+from inerter.records import RecordError
+from inerter.records.free_form import column_names, read_free_form
+from inerter.records.stated import reading
 from inerter.reference import Corner, HalfCar, ReferenceDevice, Strut
 from scipy.integrate import solve_ivp
 
@@ -60,6 +63,36 @@ def _arm_runs(folder: Path, quadratic: float) -> list[Path]:
         paths.append(folder / f"swing{i}.csv")
         np.savetxt(paths[-1], table, "%.9g", ",", header="time,M[N*m],phi[deg]", comments="")
     return paths
+
+
+LOGGED = "Zeit [ms];Fahrbahn [mm];a_achse [g]\n" + "".join(
+    f"{10 * i},0;{i % 7},5;0,{i % 10}\n" for i in range(60)
+)
+
+
+def test_a_logger_names_time_and_road_its_own_way(tmp_path: Path) -> None:
+    path = tmp_path / "fahrt.csv"
+    path.write_text(LOGGED)
+    with pytest.raises(RecordError, match=r"no column 'time'.*--column time='Zeit .ms."):
+        read_free_form([path], ["a_achse"])
+    with reading(["time=Zeit [ms]", "road=Fahrbahn [mm]"]):
+        assert column_names([path]) == ["road", "a_achse"]
+        (found,) = read_free_form([path], ["road", "a_achse"], {"a_achse": "m/s^2"})
+    assert found.time == pytest.approx(0.01 * np.arange(60))
+    channels = found.channels()
+    assert channels["road"] == pytest.approx(1e-3 * (np.arange(60) % 7 + 0.5))
+    assert channels["a_achse"] == pytest.approx(0.980665 * (np.arange(60) % 10))
+
+
+@pytest.mark.parametrize("unit", ["mm", "m/s", "kN", "furlong"])
+def test_a_column_has_a_unit_of_what_the_sensor_gives(unit: str, tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    rows = "".join(f"{0.01 * i:.2f},{i % 5}\n" for i in range(60))
+    path.write_text(f"time,axle[{unit}]\n{rows}")
+    with pytest.raises(RecordError, match=r"axle.*is no unit of .* m/s\^2; correct the unit"):
+        read_free_form([path], ["axle"], {"axle": "m/s^2"})
+    # of a sensor without a known unit any is taken
+    assert read_free_form([path], ["axle"])[0].samples == 60
 
 
 def test_joint_of_a_robot_with_mapped_columns(tmp_path: Path) -> None:

@@ -247,3 +247,21 @@ def test_the_literatures_names_are_taken(tmp_path: Path) -> None:
     )
     assert run.exit_code == 0, run.output
     assert [row["layout"] for row in json.loads(run.stdout)["rows"]] == ["S3"]
+
+
+def test_a_device_of_a_strut_that_moves_less_than_its_wheel_is_refused(tmp_path: Path) -> None:
+    """Its values are the strut's: as the wheel's they would be 1 / ratio^2 too large."""
+    (tmp_path / "device.toml").write_text(TEXT)
+    car = tmp_path / "car.toml"
+    car.write_text(
+        "[car]\nkind = 'quarter'\nbody_mass_kg = 90\n[front]\nwheel_mass_kg = 14\n"
+        "tyre_stiffness_kN_per_m = 150\n[front.strut]\nlayout = 'S2'\nstiffness_N_per_mm = 60\n"
+        "damping_N_s_per_m = 2500\ninertance_kg = 8\nmotion_ratio = 0.6\n"
+    )
+    app = typer.Typer()
+    app.command()(evaluate_command)
+    asked = ["--car", str(car), "--device", str(tmp_path / "device.toml"), "--layout", "S2"]
+    found = CliRunner().invoke(app, [*asked, "--out", str(tmp_path / "out")])
+    assert found.exit_code == 2
+    assert "front.strut.motion_ratio is 0.6" in " ".join(found.output.split())
+    assert not (tmp_path / "out").exists()

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from inerter.printable import text_of
 from inerter.unit_text import parse_unit, unit_registry
 
+from .calibration import Statement, applied, column_of, is_there
 from .files import record_files
 from .quality import check_records
 from .raw_table import RawTable, listed
@@ -44,11 +47,14 @@ def column_names(paths: Sequence[str | Path]) -> list[str]:
         It cannot be read.
     """
     file = next(file for entry in paths for file in record_files(entry))
-    table = read_table(file, lambda header: _name(header) == "time", stated_of(file))
-    return [name for name in _names(table) if name not in ("time", "run")]
+    stated = stated_of(file)
+    names = _names(read_table(file, _wanted({"time"}, stated.columns), stated), stated.columns)
+    return [name for name in names if name not in ("time", "run")]
 
 
-def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[FreeRecord]:
+def read_free_form(
+    paths: Sequence[str | Path], columns: Sequence[str], units: Mapping[str, str] | None = None
+) -> list[FreeRecord]:
     """Every run of the given files with the named columns, in SI units.
 
     Parameters
@@ -57,6 +63,8 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
         Files, folders or globs.
     columns : sequence of str
         Names without units, beside `time`.
+    units : mapping
+        SI unit of the quantity that a column holds, where it is known.
 
     Raises
     ------
@@ -65,17 +73,18 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
     """
     records: list[Any] = []
     for path in [file for entry in paths for file in record_files(entry)]:
-        table = read_table(
-            path, lambda header: _name(header) in {"time", "run", *columns}, stated_of(path)
-        )
-        at = _names(table)
+        stated = stated_of(path)
+        says = stated.columns
+        table = read_table(path, _wanted({"time", "run", *columns}, says), stated)
+        at = _names(table, says)
         for name in ("time", *columns):
             if name not in at:
                 raise RecordError(
                     f"{path}: no column {name!r} (found: {listed(list(at))}); every run needs it"
+                    f"{_how(table, name)}"
                 )
         values = {
-            name: numbers_of(table, at[name]) * _factor(table, at[name], name)
+            name: _si_values(table, at[name], name, says.get(name), (units or {}).get(name, ""))
             for name in ("time", *columns)
         }
         for run, rows in split_runs(table, at.get("run")):
@@ -100,17 +109,48 @@ def read_free_form(paths: Sequence[str | Path], columns: Sequence[str]) -> list[
     return check_records(named)
 
 
-def _names(table: RawTable) -> dict[str, int]:
+def _wanted(names: set[str], says: Mapping[str, Statement]) -> Callable[[str], bool]:
+    """Whether a column has one of some names, or is stated to be a quantity."""
+    own = [each for each in says.values() if each.column]
+    return lambda header: _name(header) in names or any(is_there(each, (header,)) for each in own)
+
+
+def _how(table: RawTable, name: str) -> str:
+    """How to state which column is meant, of a quantity that has a name of its own."""
+    spare = [text.strip() for text in table.header if text.strip()]
+    if name not in QUANTITIES or not spare:
+        return ""
+    return f": say which it is, such as --column {name}={spare[0]!r}"
+
+
+def _names(table: RawTable, says: Mapping[str, Statement]) -> dict[str, int]:
     """Index by name; known names in lower case, others as written without their unit."""
-    found: dict[str, int] = {}
+    own = {
+        name: column_of(each, table.header, name, table.path)
+        for name, each in says.items()
+        if each.column
+    }
+    counted = {name: -1 for name, each in says.items() if each.interval is not None}
+    found = own | counted
     for index, header in enumerate(table.header):
         name = _name(header)
-        if not name:
+        if not name or index in own.values() or name in own or name in counted:
             continue
         if name in found:
             raise RecordError(f"{table.path}: two columns hold {name!r}; keep one of them")
         found[name] = index
     return found
+
+
+def _si_values(table: RawTable, index: int, name: str, says: Statement | None, unit: str) -> Array:
+    """Values of a column in SI units; `unit`: of its quantity, "" where that is not known."""
+    if says is not None and says.interval is not None:
+        return says.interval * np.arange(table.rows, dtype=np.float64)
+    where = f"{table.path}: column {table.header[index].strip()!r}"
+    values = numbers_of(table, index)
+    if says is not None:
+        return applied(says, name, values, table.header[index], where)[0]
+    return values * _factor(table, index, name, unit)
 
 
 def _name(header: str) -> str:
@@ -121,17 +161,26 @@ def _name(header: str) -> str:
     return re.sub(r"\s*[\[(].*$", "", header.strip().strip("\ufeff\"'").strip())
 
 
-def _factor(table: RawTable, index: int, name: str) -> float:
-    """Factor to SI units (rad for angles)."""
+def _factor(table: RawTable, index: int, name: str, quantity: str) -> float:
+    """Factor to SI units (rad for angles); quantity: the one that is wanted, "" for any."""
     _, unit = split_header(table.header[index])
     where = f"{table.path}: column {table.header[index].strip()!r}"
     if name in QUANTITIES:
         return si_factor(name, unit, where)
     if unit is None or unit in ("1", "-"):
         return 1.0
+    wrong = RecordError(
+        f"{where}: {unit!r} is no unit of what the model's sensor gives, {quantity}; correct the "
+        "unit, or map the column to another sensor by --sensor"
+    )
     if unit in _GRAVITY:
+        if quantity not in ("", "m/s^2"):
+            raise wrong
         return _GRAVITY[unit] * 9.80665
     parsed = parse_unit(unit)
     if parsed is None:
         raise RecordError(f"{where}: unknown unit {unit!r}; write an SI unit, or leave it out")
+    wanted = parse_unit(quantity) if quantity else None
+    if wanted is not None and wanted.dimensionality != parsed.dimensionality:
+        raise wrong
     return float(unit_registry().Quantity(1.0, parsed).to_base_units().magnitude)

@@ -59,7 +59,13 @@ Equal = Annotated[
 ]
 Speed = Annotated[float, number("m/s", "Speed of the car [m/s].")]
 OldSpeed = Annotated[float | None, number("m/s", "The name of --speed before.", hidden=True)]
-Roughness = Annotated[float, number("m^3/cycle", "Of the road, kappa [m^3/cycle].")]
+Roughness = Annotated[
+    float,
+    number(
+        "m^3/cycle",
+        "Of the road, kappa [m^3/cycle]: of a two-sided density, half of ISO 8608's G_d(n0) n0^2.",
+    ),
+]
 
 
 def road_asked(speed: float, velocity: float | None, roughness: float) -> Road:

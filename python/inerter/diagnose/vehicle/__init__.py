@@ -22,6 +22,7 @@ import mujoco
 from inerter.diagnose.vehicle.build import read_model
 from inerter.diagnose.vehicle.mapping import MappingError, map_columns, read_options
 from inerter.diagnose.vehicle.outcome import SystemDiagnosis
+from inerter.diagnose.vehicle.sensor_units import unit_of
 from inerter.engine_errors import COMPILE_ERRORS
 from inerter.plugin import load_plugin
 from inerter.records import VehicleRecord, read_records
@@ -107,7 +108,8 @@ def diagnose_model(
     used = list(channels.used)
     runs: list[Any]
     if mapping or not set(used) <= {"road", *VehicleRecord.optional}:
-        runs = list(read_free_form(records, used))
+        units = {each.column: unit_of(user.model, each) for each in channels.outputs}
+        runs = list(read_free_form(records, used, units))
     else:
         runs = list(read_records(records, "vehicle"))
     if not runs:

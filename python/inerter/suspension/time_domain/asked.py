@@ -59,6 +59,27 @@ def _of_two_axles(car: HalfCar | FullCar) -> Asked:
     return Asked(car, car.front.stiffness, 2000.0 * car.sides, 10.0)
 
 
+def refuse_ratio(car: str, device: Path | None) -> None:
+    """A device of a strut that moves by another way than its wheel.
+
+    Raises
+    ------
+    ValueError
+        The values of its file are the strut's, and would be taken for the wheel's.
+    """
+    if device is None or not car.lower().endswith(".toml"):
+        return
+    parts = read_car(car)
+    for name, axle in (("front", parts.front), ("rear", parts.rear)):
+        ratio = axle.strut.motion_ratio if axle else 1.0
+        if ratio != 1.0:
+            raise ValueError(
+                f"{car}: {name}.strut.motion_ratio is {ratio:g}, but a device of --device is taken "
+                f'to move as the wheel does: state device = "{device.name}" under [{name}.strut] '
+                "and take --layout own, or a motion_ratio of 1 and the device as the wheel feels it"
+            )
+
+
 def cases_asked(
     text: str | None, device: Path | None, step: float
 ) -> tuple[tuple[Case, ...], float | None]:

@@ -140,6 +140,7 @@ def evaluate_command(
         given_struts,
         layouts_asked,
         numbers,
+        refuse_ratio,
         tyre_named,
     )
     from inerter.suspension.time_domain.evaluate import evaluate
@@ -171,6 +172,7 @@ def evaluate_command(
     files_of = ("evaluation.json", "evaluation.csv", *(["variations.csv"] if vary else []))
     with refusing(out_dir, *files_of):
         asked = car_named(car)
+        refuse_ratio(car, device)
         settings = RunSettings(step=step, settle=settle or asked.settle, jobs=jobs or 0)
         cases, own = cases_asked(case, device, step)
         plan = Plan(
