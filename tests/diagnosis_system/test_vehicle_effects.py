@@ -11,6 +11,7 @@ from hidden_vehicles import Car, diagnose, records
 from inerter.diagnose.result import StatedValue
 from inerter.records import VehicleRecord
 from inerter.records.quality import check_records
+from inerter.report.text import finding_name
 
 
 def test_stated_value_stands_beside_the_one_found() -> None:
@@ -127,3 +128,18 @@ def test_fits_of_long_runs_begin_on_a_part_and_find_the_same() -> None:
     value = finding.parameters["tyre_damping"]
     assert value.value == pytest.approx(150.0, abs=max(4 * value.stderr, 0.5))
     assert found.extended.rmse < 1.1 * found.noise_floor
+
+
+def test_a_road_of_another_clock_is_one_delay() -> None:
+    """A profile that another logger wrote comes 8 ms early: every channel is late of it."""
+    late = 0.008
+    runs = [
+        replace(run, road=np.interp(run.time + late, run.time, run.road))
+        for run in records(Car(), runs=2)
+    ]
+    found = diagnose(runs)
+    assert [finding.effect for finding in found.findings] == ["sensor_delay"]
+    value = found.findings[0].parameters["every channel.delay"]
+    assert value.value == pytest.approx(late, abs=2e-4)
+    assert "a delay in every channel" in found.verdict
+    assert finding_name(found.findings[0]) == "a delay"

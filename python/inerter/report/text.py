@@ -10,6 +10,7 @@ from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding, ParameterValue, Rival
+from inerter.diagnose.vehicle.wording import finding_in_words
 from inerter.diagnose.wording import effect_in_words, rival_in_words
 from inerter.measured_text import NOTHING, decimals_told
 from inerter.motion_units import TRANSLATION, Kind
@@ -120,6 +121,9 @@ def rival_name(rival: Rival) -> str:
 
 def finding_name(finding: Finding) -> str:
     """An effect in words, with its law; everything that it may be, where data cannot tell."""
+    if any("." in name for name in finding.parameters):
+        # a channel of a vehicle is not one of a bench's two
+        return finding_in_words(finding)
     if finding.effect in EFFECTS:
         return effect_in_words(finding)
     if finding.members:

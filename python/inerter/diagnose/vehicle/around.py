@@ -11,6 +11,7 @@ from inerter.catalogue.scales import Range
 from inerter.diagnose.vehicle.candidate import VehicleCandidate, candidate
 from inerter.diagnose.vehicle.model import TYRES, VehicleModel
 from inerter.diagnose.vehicle.parts import Suspension, Tyre
+from inerter.diagnose.vehicle.sensing import EVERY_CHANNEL
 
 if TYPE_CHECKING:
     from inerter.diagnose.vehicle.effects import Effects
@@ -158,8 +159,17 @@ def _forces(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]
 
 
 def _channels(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    """One channel that is late, or early, of all others, or shows less of what is fast."""
+    """One channel that is late, or early, of all others, or shows less of what is fast.
+
+    All together are late, or early, of a road or a drive that was recorded with another clock.
+    """
     del model
+    if len(effects.columns) > 1:
+        spacing = max(effects.columns.values())
+        yield candidate(
+            "sensor_delay", EVERY_CHANNEL, [{"delay": spacing}, {"delay": -spacing}],
+            {"delay": Range(spacing, -MOST_DELAY, MOST_DELAY)}, ("delay",),
+        )  # fmt: skip
     for column, spacing in effects.columns.items():
         element, most = f"channel:{column}", 0.4 / spacing
         yield candidate(

@@ -21,6 +21,8 @@ from scipy.signal import cont2discrete, lfilter
 from inerter.diagnose.vehicle.inputs import AXES
 
 Array = NDArray[np.float64]
+EVERY_CHANNEL = "channel:every channel"
+"""Element of what all compared channels have in common: the clock of what drives is another one."""
 FLAT = 0.5**0.5
 """Loss of a low-pass of second order without a peak."""
 _FINER = 4  # steps of the filter per sample: what a line between samples leaves out

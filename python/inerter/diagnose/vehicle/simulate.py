@@ -29,7 +29,7 @@ from inerter.diagnose.vehicle.inputs import (
 )
 from inerter.diagnose.vehicle.mapping import Channels
 from inerter.diagnose.vehicle.model import TYRES, VehicleModel
-from inerter.diagnose.vehicle.sensing import leaning, shown
+from inerter.diagnose.vehicle.sensing import EVERY_CHANNEL, leaning, shown
 from inerter.engine_batch import batch
 
 Array = NDArray[np.float64]
@@ -97,6 +97,8 @@ class VehicleSimulator:
             for k, output in enumerate(self.channels.outputs):
                 if np.isfinite(found[i, :, k]).all():
                     channel = model.of(f"channel:{output.column}")
+                    if late := model.of(EVERY_CHANNEL).get("delay", 0.0):
+                        channel["delay"] = channel.get("delay", 0.0) + late
                     found[i, :, k] = shown(drive.time, found[i, :, k], channel)
         return found
 
