@@ -340,7 +340,8 @@ def _less(before: float, after: float) -> str:
     return f", {percent:.0f} % less" if percent >= 0.5 else ""
 
 
-def _seems(finding: Finding) -> str:
+def seems(finding: Finding) -> str:
+    """What stands before the name of the main cause."""
     if finding.looks_like:
         return "looks like"
     return "is perhaps" if is_doubtful(finding) else "is"
@@ -393,7 +394,7 @@ def _verdict(diagnosis: Diagnosis) -> str:
     text = (
         f"The simulation misses the measured {force} by {before.rmse:.3g} {newton} rms "
         f"({_share(before.nrmse)}) on held-out data. The main cause "
-        f"{_seems(first)} {effect_in_words(first)}"
+        f"{seems(first)} {effect_in_words(first)}"
     )
     if others:
         text += "; it also lacks " + ", ".join(others[:-1])

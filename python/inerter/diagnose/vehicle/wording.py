@@ -7,7 +7,7 @@ from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.doubt import descriptions, explained, note, stand_ins, warning
 from inerter.diagnose.result import Finding, Unexplained
 from inerter.diagnose.vehicle.outcome import SystemAccuracy
-from inerter.diagnose.wording import value_in_words
+from inerter.diagnose.wording import how_surely, seems, value_in_words
 
 # the same force between the same bodies: no record of the vehicle can tell these apart
 EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
@@ -83,7 +83,7 @@ def verdict(
     )
     if not findings:
         start = "The simulation is right as far as these records can tell"
-        if before.rmse > 0.1:
+        if before.rmse > 0.1 or remains.significant:
             start = "No effect that was tried explains what the simulation misses"
         text = f"{start}: its error is {error}. {remains.summary}"
     else:
@@ -91,10 +91,11 @@ def verdict(
             zip(findings, places, strict=True), key=lambda pair: explained(pair[0]), reverse=True
         )
         names = [finding_in_words(f) + (f" in {place}" if place else "") for f, place in weighed]
-        others = f"; it also lacks {' and '.join(names[1:])}" if names[1:] else ""
-        seems = "looks like" if weighed[0][0].looks_like else "is"
+        surely = [how_surely(f) for f, _ in weighed]
+        rest = " and ".join(sure + name for sure, name in zip(surely[1:], names[1:], strict=True))
+        others = f"; it also lacks {rest}" if rest else ""
         text = (
-            f"The simulation misses the records by {error}. The main cause {seems} "
+            f"The simulation misses the records by {error}. The main cause {seems(weighed[0][0])} "
             f"{names[0]}{others}. "
             f"With {'these' if names[1:] else 'this'} the error is {100 * after.rmse:.3g} %, "
             f"{100 * (1 - after.rmse / before.rmse):.0f} % less. {remains.summary}"
