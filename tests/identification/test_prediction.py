@@ -223,7 +223,8 @@ def test_so_is_how_a_flywheel_turned_that_soon_follows(
 ) -> None:
     device = Device(inertance=120.0, series_stiffness=4e5, **losses)
     noise = np.random.default_rng(3).standard_normal(TIME.size)
-    for wave in (40.0 * np.exp(root * TIME).real, 40.0 * np.exp(root * TIME).imag):
+    swing = np.asarray(40.0 * np.exp(root * TIME), np.complex128)
+    for wave in (np.real(swing), np.imag(swing)):
         left = without_transient(device, wave, 1e-3, TIME > 3.0)
         assert np.max(np.abs(left)) < 0.1
     left = without_transient(device, noise, 1e-3, TIME > 3.0)
