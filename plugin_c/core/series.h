@@ -87,6 +87,11 @@ typedef struct SeriesExact_ {
 void series_exact_steps(const InerterDevice* p, double h, SeriesExact* steps);
 int series_exact(const InerterDevice* p, SeriesExact* steps, const Way* way, double* z);
 
+// whether friction that was one force and is another is the same all along, to a fiftieth
+static inline int friction_is_even(double before, double after) {
+  return fabs(after - before) <= 0.02 * fabs(before);
+}
+
 // series_sliding.c: the same where friction at the flywheel slides evenly; bristle: its states
 int series_sliding(const InerterDevice* p, SeriesExact* steps, double x, const Way* way,
                    double* bristle, double* z);

@@ -127,9 +127,6 @@ static double frozen(const InerterDevice* p, double x, const Way* way, double h,
   return change(p, &start, &there, step, h) + bends;
 }
 
-// a slide in which friction changes by no more than this share is one with a constant force
-static const double kEven = 0.05;
-
 // one step within the play, in which only the flywheel's own forces change its velocity; 0 and
 // nothing done where the play is used up, or friction turns
 static int loose(const InerterDevice* p, double x, const Way* way, double h, double* z) {
@@ -145,7 +142,7 @@ static int loose(const InerterDevice* p, double x, const Way* way, double h, dou
   double s1 = z[S] + way_travel(way, h) - h * 0.5 * (z[W] + end);
   if (has(p, PART_WHEEL_FRICTION)) {
     double last = rubbing_at(p, x + way_travel(way, h) - s1, end).value;
-    if (!(fabs(first - rubbing) + fabs(last - rubbing) <= kEven * fabs(rubbing))) {
+    if (!friction_is_even(rubbing, first) || !friction_is_even(rubbing, last)) {
       return 0;
     }
   }

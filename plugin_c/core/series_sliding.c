@@ -5,9 +5,9 @@
 //
 // D_0, D_1: force of the friction law (wheel_friction.c) at the start and at the end of the step,
 // whose states see the mean velocity of the flywheel. With that drag a step has a closed form
-// (series_exact.c). Found in two passes; where D changes by more than kEven of itself, turns, or
-// where a pass changes it by more than kSettles of what the drag was changed by, the flywheel does
-// not slide, and the step is left to others.
+// (series_exact.c). Found in two passes; where D is not even, or where a pass changes it by more
+// than kSettles of what the drag was changed by, the flywheel does not slide, and the step is left
+// to others.
 //
 // B, c_w, F_s, w: as in series.c. Why: a flywheel slides nearly always, and then neither its spring
 // nor its bristle has to be resolved. Order: 2. Not modelled: load friction, slip.
@@ -18,8 +18,6 @@
 
 enum { S, W, GAP };  // places in z
 
-// share of itself by which friction changes in a step that is even
-static const double kEven = 0.05;
 // by how much of a change of the drag friction answers that there is a next one
 static const double kSettles = 0.1;
 
@@ -67,7 +65,7 @@ int series_sliding(const InerterDevice* p, SeriesExact* steps, double x, const W
     drag = 0.5 * (first + last);
     changed = drag - changed;
     last = pass(p, steps, x, way, drag, bristle ? states : NULL, next);
-    if (!(fabs(last - first) <= kEven * fabs(first)) ||
+    if (!friction_is_even(first, last) ||
         (i > 0 && fabs(last - before) > kSettles * fabs(changed) + 1e-12 * fabs(first))) {
       return 0;
     }

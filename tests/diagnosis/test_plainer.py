@@ -248,3 +248,21 @@ def test_a_curve_of_the_force_that_is_level_may_be_a_constant_force() -> None:
     assert nodes.keys().isdisjoint(constant.values)
     # one that is stated stays
     assert as_constant_force(Model("none", {**held, **ends, **nodes}, ("inertance",))) == []
+
+
+def test_what_leaks_past_a_flywheel_that_hardly_turns_is_a_damper() -> None:
+    """Of 4000 kg behind 1200 N s/m all but what is slower than 0.05 Hz is the leak's."""
+    values = {"inertance": 4000.0, "leak_corner": 0.05, "viscous": 30.0, "grip_mass": 2.0}
+    leaking = Model("none", values, tuple(values))
+    (damper,) = as_plain_part(leaking, 20.0, 1.0)
+    assert set(damper.free) == {"inertance", "viscous"}
+    assert damper.values["viscous"] == pytest.approx(30.0 + 2 * np.pi * 0.05 * 4000.0)
+    # what was felt before the leak is all the inertance that is left
+    assert damper.values["inertance"] == 2.0
+    both = leaking.adding(None, leak_quadratic_damping=500.0)
+    (damper,) = as_plain_part(both, 20.0, 1.0)
+    assert damper.values["quadratic_damping"] == 500.0
+    # one that turns with the motion is an inertance behind its leak
+    assert as_plain_part(leaking, 20.0, 0.08) == []
+    stated = Model("none", values, ("leak_corner",))
+    assert as_plain_part(stated, 20.0, 1.0) == []

@@ -84,6 +84,26 @@ def test_a_logger_names_time_and_road_its_own_way(tmp_path: Path) -> None:
     assert channels["a_achse"] == pytest.approx(0.980665 * (np.arange(60) % 10))
 
 
+def test_a_road_in_volts_and_a_time_that_is_counted_are_stated(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("laser [V],axle\n" + "".join(f"{0.5 + 0.1 * (i % 9)},{i}\n" for i in range(60)))
+    with reading(["time=every 5 ms", "road=20 mm/V * (laser - 0.5 V)"]):
+        (found,) = read_free_form([path], ["road", "axle"])
+    assert found.time == pytest.approx(0.005 * np.arange(60))
+    assert found.channels()["road"] == pytest.approx(2e-3 * (np.arange(60) % 9))
+
+
+def test_a_delay_of_a_column_is_not_taken_without_a_word(tmp_path: Path) -> None:
+    path = tmp_path / "fahrt.csv"
+    path.write_text(LOGGED)
+    (tmp_path / "records.toml").write_text(
+        '[[files]]\n[files.columns]\ntime = "Zeit [ms]"\n'
+        'road = {column = "Fahrbahn", unit = "mm", delay = "2 ms"}\n'
+    )
+    with pytest.raises(RecordError, match="a delay and a filter of a column are stated of bench"):
+        read_free_form([path], ["road", "a_achse"])
+
+
 @pytest.mark.parametrize("unit", ["mm", "m/s", "kN", "furlong"])
 def test_a_column_has_a_unit_of_what_the_sensor_gives(unit: str, tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"

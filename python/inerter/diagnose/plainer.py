@@ -123,7 +123,9 @@ def _as_dampers(model: Model, frequency: float) -> list[Model]:
         quadratic = "quadratic_damping"
         dampers[quadratic] = model.values.get(quadratic, 0.0) + model.values[bends]
     leak = ("leak_corner", bends, *_SHAFT)
-    return [model.without(leak).holding(inertance=0.0).adding(None, **dampers)]
+    # without a leak a mass before it would be inertance, and all that is left of it
+    mass = model.values.get("grip_mass", 0.0)
+    return [model.without(leak).holding(inertance=mass).adding(None, **dampers)]
 
 
 def as_dampers_that_lag(model: Model) -> list[Model]:

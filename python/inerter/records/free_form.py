@@ -117,10 +117,11 @@ def _wanted(names: set[str], says: Mapping[str, Statement]) -> Callable[[str], b
 
 def _how(table: RawTable, name: str) -> str:
     """How to state which column is meant, of a quantity that has a name of its own."""
-    spare = [text.strip() for text in table.header if text.strip()]
-    if name not in QUANTITIES or not spare:
+    if name not in QUANTITIES or not table.header:
         return ""
-    return f": say which it is, such as --column {name}={spare[0]!r}"
+    # a logger writes the time first
+    likely = table.header[0].strip() if name == "time" else "NAME"
+    return f": say which it is, such as --column {name}={likely!r}"
 
 
 def _names(table: RawTable, says: Mapping[str, Statement]) -> dict[str, int]:
@@ -149,6 +150,11 @@ def _si_values(table: RawTable, index: int, name: str, says: Statement | None, u
     where = f"{table.path}: column {table.header[index].strip()!r}"
     values = numbers_of(table, index)
     if says is not None:
+        if says.delay or says.cutoff is not None:
+            raise RecordError(
+                f"{where}: a delay and a filter of a column are stated of bench records alone; "
+                "leave them out, the diagnosis tries a delay and a low-pass of every channel"
+            )
         return applied(says, name, values, table.header[index], where)[0]
     return values * _factor(table, index, name, unit)
 
