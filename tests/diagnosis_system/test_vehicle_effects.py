@@ -11,7 +11,7 @@ from hidden_vehicles import Car, diagnose, records
 from inerter.diagnose.result import StatedValue
 from inerter.records import VehicleRecord
 from inerter.records.quality import check_records
-from inerter.report.text import finding_name
+from inerter.report.text import effect_notes, finding_name
 
 
 def test_stated_value_stands_beside_the_one_found() -> None:
@@ -142,4 +142,6 @@ def test_a_road_of_another_clock_is_one_delay() -> None:
     value = found.findings[0].parameters["every channel.delay"]
     assert value.value == pytest.approx(late, abs=2e-4)
     assert "a delay in every channel" in found.verdict
-    assert finding_name(found.findings[0]) == "a delay"
+    assert finding_name(found.findings[0]) == "a delay in every channel"
+    # nothing of a force channel, which a vehicle need not have
+    assert "force" not in " ".join(effect_notes(found.findings[0]).values())

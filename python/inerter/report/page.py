@@ -227,7 +227,7 @@ def _budget(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 
 def _notes(finding: Finding) -> dict[str, str]:
-    notes = text.effect_notes(finding.effect)
+    notes = text.effect_notes(finding)
     said = text.finding_name(finding).lower().split()
     # a meaning that only repeats the name is not worth a line
     if all(word in (*said, "level") for word in notes.get("meaning", "").lower().split()):

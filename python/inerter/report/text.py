@@ -10,7 +10,7 @@ from inerter.catalogue.vehicle import KNOWN
 from inerter.core import parameters
 from inerter.diagnose.decision import CRITERIA
 from inerter.diagnose.result import Finding, ParameterValue, Rival
-from inerter.diagnose.vehicle.wording import finding_in_words
+from inerter.diagnose.vehicle.wording import CHANNEL_NOTES, finding_in_words
 from inerter.diagnose.wording import effect_in_words, rival_in_words
 from inerter.measured_text import NOTHING, decimals_told
 from inerter.motion_units import TRANSLATION, Kind
@@ -121,9 +121,8 @@ def rival_name(rival: Rival) -> str:
 
 def finding_name(finding: Finding) -> str:
     """An effect in words, with its law; everything that it may be, where data cannot tell."""
-    if any("." in name for name in finding.parameters):
-        # a channel of a vehicle is not one of a bench's two
-        return finding_in_words(finding)
+    if place := _vehicle_channel(finding):
+        return f"{finding_in_words(finding)} in {place}"
     if finding.effect in EFFECTS:
         return effect_in_words(finding)
     if finding.members:
@@ -132,9 +131,18 @@ def finding_name(finding: Finding) -> str:
     return effect_name(finding.effect) + law
 
 
-def effect_notes(effect: str) -> dict[str, str]:
+def _vehicle_channel(finding: Finding) -> str:
+    """The channel of a vehicle that a finding is in; "" where it is in none, or on a bench."""
+    if finding.members or finding.effect not in CHANNEL_NOTES:
+        return ""
+    return next((name.rpartition(".")[0] for name in finding.parameters), "")
+
+
+def effect_notes(finding: Finding) -> dict[str, str]:
     """What an effect adds, its physical cause, what it is taken for and how to tell."""
-    known = KNOWN.get(effect)
+    if _vehicle_channel(finding):
+        return dict(CHANNEL_NOTES[finding.effect])
+    known = KNOWN.get(finding.effect)
     if known is None:
         return {}
     return {

@@ -14,6 +14,22 @@ EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
 
 _OF_CHANNELS = {"sensor_delay": "a delay", "sensor_filter": "a low-pass filter"}
 """Words that on a bench are those of its force and displacement."""
+CHANNEL_NOTES = {
+    "sensor_delay": {
+        "meaning": "a channel is late of all others by a constant time, early where it is "
+        "negative; every channel: of what drives",
+        "cause": "loggers with a clock each, a filter; a road or a GPS of another clock",
+        "rival": "a low-pass filter, a sensor that swings on its bracket",
+        "experiment": "a blow that both loggers see",
+    },
+    "sensor_filter": {
+        "meaning": "what is fast is smaller in a channel, and late: a low-pass of second order",
+        "cause": "the amplifier or the logger",
+        "rival": "a delay",
+        "experiment": "record once without the filter",
+    },
+}
+"""What a report says of effects whose words on a bench are those of its two channels."""
 _NOTES = {
     "force_offset": "; a sensor whose zero is displaced may look the same: check it at rest",
     "tyre_damping": "; in model.xml its actuator is driven by the rate of the road [m/s]",
