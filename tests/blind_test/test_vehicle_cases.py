@@ -95,6 +95,7 @@ OF = {
     "tyre_enveloping": "tyres", "sensor_filter": "channel:body_acceleration",
     "sensor_compliance": "channel:body_acceleration", "sensor_delay": "channel:body_acceleration",
     "mounting_angle": "channel:wheel_acceleration",
+    "sensor_gain_error": "channel:body_acceleration",
 }  # fmt: skip
 
 

@@ -2,7 +2,8 @@
 
 A quarter-car with the strut's force u at x = zs - zu, v = x':
 
-    u = k x + k3 x^3 + c(v) v + b x''             c: other in rebound (v > 0) than in bump
+    u = k x + k3 x^3 + d(v) + F_c tanh(v / v_t) + b x''
+    d = c(v) v, c: other in rebound (v > 0) than in bump; beyond a knee v_k only its share beta
     F = max(k_t (zr - zu) + c_t (zr' - zu'), -W)  of the tyre on the wheel, from the static load W
 
     m_s zs'' = -u,   m_u zu'' = u + F             solved together, as b couples them
@@ -77,6 +78,9 @@ class Car:
     bump_damping: float | None = None
     tyre_damping: float = 0.0
     static_load: float = np.inf
+    knee: float = np.inf
+    beyond: float = 1.0
+    coulomb_force: float = 0.0
 
     def rates(self, t: float, state: Array, road: Road) -> Array:
         """Of (zs, zu, zs', zu')."""
@@ -88,7 +92,10 @@ class Car:
         damping = self.damping
         if self.rebound_damping is not None and self.bump_damping is not None:
             damping = self.rebound_damping if v > 0 else self.bump_damping
-        u = self.stiffness * x + self.stiffness_cubic * x**3 + damping * v
+        past = max(abs(v) - self.knee, 0.0)
+        bent = np.sign(v) * (abs(v) - (1.0 - self.beyond) * past)
+        u = self.stiffness * x + self.stiffness_cubic * x**3 + damping * bent
+        u += self.coulomb_force * np.tanh(v / 1e-3)
         force = self.tyre_stiffness * (road(t) - state[1])
         if self.tyre_damping:
             force += self.tyre_damping * (road.rate(t) - state[3])

@@ -130,6 +130,25 @@ def test_fits_of_long_runs_begin_on_a_part_and_find_the_same() -> None:
     assert found.extended.rmse < 1.1 * found.noise_floor
 
 
+@pytest.mark.parametrize(
+    ("column", "gain"), [("road", 0.94), ("suspension_travel", 1.08), ("body_acceleration", 0.9)]
+)
+def test_a_wrong_scale_of_a_channel_is_told_from_masses_and_springs(
+    column: str, gain: float
+) -> None:
+    runs = []
+    for run in records(Car(), runs=2):
+        channels: dict[str, Any] = run.channels()
+        channels[column] = gain * channels[column]
+        runs.append(VehicleRecord(name=run.name, time=run.time, **channels))
+    found = diagnose(runs)
+    assert [finding.effect for finding in found.findings] == ["sensor_gain_error"]
+    value = found.findings[0].parameters[f"{column}.gain"]
+    assert value.value == pytest.approx(gain, abs=max(4 * value.stderr, 1e-4))
+    assert f"a wrong scale in {column}" in found.verdict
+    assert found.extended.rmse < 1.1 * found.noise_floor
+
+
 def test_a_road_of_another_clock_is_one_delay() -> None:
     """A profile that another logger wrote comes 8 ms early: every channel is late of it."""
     late = 0.008

@@ -93,6 +93,17 @@ _ALL = (
         rivals=("sensor_compliance",),
     ),
     Effect(
+        name="sensor_gain_error", reported=("gain",),
+        plain="a wrong scale of a channel",
+        meaning="a channel shows its quantity times a gain; the road's: what is recorded of it",
+        cause="a calibration, the range of an amplifier, a sensor on a lever or at another place "
+        "than the model says",
+        taken_for="a mass, a stiffness and damping that are all off",
+        experiment="check the channel alone: a length against a gauge, an accelerometer turned "
+        "over in gravity",
+        rivals=("mounting_angle", "tyre_stiffness_error"),
+    ),
+    Effect(
         name="joint_friction", reported=("joint_friction",),
         plain="dry friction of a joint of the vehicle",
         meaning="f sign(v) between a wheel or body and its guide",

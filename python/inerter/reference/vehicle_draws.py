@@ -54,6 +54,7 @@ class Making:
     others: dict[int, dict[str, Any]] = field(default_factory=dict)
     rider: tuple[float, float, float] | None = None
     late: dict[str, float] = field(default_factory=dict)
+    scales: dict[str, float] = field(default_factory=dict)
     behind: dict[str, tuple[float, float]] = field(default_factory=dict)
     patch: float = 0.0
     lean: float = 0.0
@@ -86,9 +87,10 @@ class Making:
         )  # fmt: skip
 
     def felt(self, name: str, times: Array, values: Array) -> Array:
-        """A channel as its sensor shows it: behind a mount or a low-pass, then late."""
+        """A channel as its sensor shows it: behind a mount or a low-pass, in its scale, late."""
         if (element := self.behind.get(name)) is not None:
             values = _behind(times, values, *element)
+        values = self.scales.get(name, 1.0) * values
         if (late := self.late.get(name, 0.0)) != 0.0:
             values = CubicSpline(times, values)(np.clip(times - late, times[0], times[-1]))
         return values
@@ -383,6 +385,14 @@ def _bush(d: Draw) -> None:
     d.device("viscoelasticity", None, branch_stiffness_1=stiffness, branch_damping_1=damping)
 
 
+@_draws("sensor_gain_error")
+def _scale(d: Draw) -> None:
+    column = str(d.random.choice(d.columns))
+    value = rounded(d.off(0.06, 0.2))
+    d.making.scales[column] = value
+    d.making.tell("sensor_gain_error", column, {"gain": value})
+
+
 VEHICLE_EFFECTS = (*_DRAWS, "hysteretic_friction")
 """Every effect that can be hidden in a vehicle."""
 ACTIVE_EFFECTS = ("actuator_gain_error", "actuator_lag")
@@ -407,7 +417,10 @@ _CLASHES = (
         ("viscous_friction", "damper_asymmetry", "quadratic_damping", "digressive_damping",
          "position_dependent_damping"), 2,
     ),
-    *combinations(("sensor_delay", "sensor_filter", "sensor_compliance", "mounting_angle"), 2),
+    *combinations(
+        ("sensor_delay", "sensor_filter", "sensor_compliance", "mounting_angle",
+         "sensor_gain_error"), 2,
+    ),
     ("viscoelasticity", "hysteretic_friction"),
     # the one is hidden on an arm alone, the other never
     ("mounting_angle", "backlash"),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from inerter.diagnose.vehicle.effects import Effects
 
 _GRAVITY = 9.81
+_GAINS = 0.1, 10.0  # of one channel, which nobody overlooks beyond
 MOST_DELAY = 0.05  # s, of one channel
 
 
@@ -159,9 +160,10 @@ def _forces(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]
 
 
 def _channels(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    """One channel that is late, or early, of all others, or shows less of what is fast.
+    """One channel that is late, or early, of all others, or shows less of what is fast, or of all.
 
-    All together are late, or early, of a road or a drive that was recorded with another clock.
+    The road's may show another size, too. All together are late, or early, of a road or a drive
+    that was recorded with another clock.
     """
     del model
     if len(effects.columns) > 1:
@@ -169,6 +171,11 @@ def _channels(effects: Effects, model: VehicleModel) -> Iterator[VehicleCandidat
         yield candidate(
             "sensor_delay", EVERY_CHANNEL, [{"delay": spacing}, {"delay": -spacing}],
             {"delay": Range(spacing, -MOST_DELAY, MOST_DELAY)}, ("delay",),
+        )  # fmt: skip
+    for column in (*effects.columns, *effects.roads):
+        yield candidate(
+            "sensor_gain_error", f"channel:{column}", [{"gain": 1.05}],
+            {"gain": Range(1.0, *_GAINS)}, ("gain",),
         )  # fmt: skip
     for column, spacing in effects.columns.items():
         element, most = f"channel:{column}", 0.4 / spacing

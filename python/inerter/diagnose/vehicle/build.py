@@ -6,7 +6,8 @@ TYRE.tyre_stiffness         gain of the road's position actuator [N/m]
 TYRE.tyre_damping           a further velocity actuator, whose control is the road's rate [N s/m]
 TYRE.tyre_static_load       force range of the road's actuator: it cannot pull by more [N]
 DEVICE.rebound_damping, DEVICE.bump_damping   the suspension's damper: the smaller one stays
-                            where the user has it, the rest acts in its direction alone [N s/m]
+                            where the user has it, the rest acts in its direction alone [N s/m];
+                            of one that bends both are the device's
 DEVICE.damping_gradient     its damping grows along the stroke by this share per metre [1/m]
 tyres.patch_length, patch_time   no part of a model: what tyres average the road over [m, s]
 joint:NAME.joint_friction, joint_damping   of a wheel's or body's own joint [N, N s/m]
@@ -238,22 +239,29 @@ class UserModel:
             }:
                 coordinates.pop(name, None)
             base = Device(friction=law, **parameters_of(coordinates), **texts)
-        low = self._lower_damping(name, change)
-        if low is not None:
-            base = base.replace(viscous=low)
+        if own_damping := self._damping_by_direction(name, change):
+            base = base.replace(**own_damping)
         return _sloping(base, slope) if slope else base
 
     def has_damping_curve(self, name: str) -> bool:
         """Whether a device states how its damping changes along the stroke."""
         return "curve_lower" in self.device(name).stated(self.model)
 
-    def _lower_damping(self, name: str, change: VehicleModel) -> float | None:
-        """What stays in a device's `viscous` where its damper differs by direction."""
+    def _damping_by_direction(self, name: str, change: VehicleModel) -> dict[str, float]:
+        """A device's own damping where its damper differs by direction.
+
+        One that bends has all of it, with a valve for each direction; else the larger part of one
+        direction is beside it.
+        """
         part = next((p for p in self.parts.suspensions if p.device == name), None)
         split = split_damping(name, change)
-        if split is None or part is None or part.damper is None or part.damper.kind != "device":
-            return None
-        return min(split)
+        if split is None or part is None or part.damper is None:
+            return {}
+        if change.bends(name):
+            rebound, bump = split
+            share = part.direction * (rebound - bump) / ((rebound + bump) or 1.0)
+            return {"viscous": 0.5 * (rebound + bump), "damping_asymmetry": share}
+        return {"viscous": min(split)} if part.damper.kind == "device" else {}
 
     def build(self, change: VehicleModel) -> mujoco.MjSpec:
         """The spec with the changes of a model in it."""
@@ -345,7 +353,7 @@ class UserModel:
                 if name in values:
                     set_first(element, column, values[name], place)
         split = split_damping(part.device, change)
-        if split is None or part.damper is None:
+        if split is None or part.damper is None or change.bends(part.device):
             return
         rebound, bump = split
         link = part.damper

@@ -63,10 +63,11 @@ def candidate(
     friction: str | None = None,
     law: str | None = None,
     telling: tuple[str, ...] = (),
+    displaced: tuple[str, ...] = (),
 ) -> VehicleCandidate:
     names = tuple(sizes)
     return VehicleCandidate(
-        added=Added(effect, element, key(element, names), law),
+        added=Added(effect, element, key(element, names), law, displaced),
         starts=tuple({f"{element}.{n}": v for n, v in start.items()} for start in starts),
         amplitudes=key(element, amplitudes),
         sizes={f"{element}.{n}": size for n, size in sizes.items()},

@@ -32,11 +32,11 @@ from inerter.diagnose.vehicle.search import (
     Step,
     VehicleScored,
     VehicleSearch,
-    standing_of,
 )
 from inerter.diagnose.vehicle.sensor_units import unit_of
 from inerter.diagnose.vehicle.simulate import VehicleSimulator
 from inerter.diagnose.vehicle.split import split_drives
+from inerter.diagnose.vehicle.standing import standing_of, step_of
 from inerter.diagnose.vehicle.values import NAMED, parameter_values
 from inerter.diagnose.wording import doubts_of_records
 from inerter.records.duplicates import repeats_another, without_copies
@@ -199,10 +199,15 @@ class _System:
             )
         return found
 
-    def _of_channels(self) -> tuple[dict[str, float], dict[str, str], bool]:
+    def _of_channels(
+        self,
+    ) -> tuple[dict[str, float], dict[str, str], bool, tuple[str, ...]]:
         channels, spacing = self.channels, float(np.median([d.spacing for d in self.drives]))
         shaken = self.simulator.axes_beside(channels.shaken(self.user.model), self.drives[0])
-        return channels.spaced(spacing), shaken, bool(channels.speed)
+        inputs = list(channels.inputs)
+        roads = self.user.road_inputs(list(channels.inputs.values()))
+        names = tuple(inputs[i] for i in roads)
+        return channels.spaced(spacing), shaken, bool(channels.speed), names
 
     def _loads(self) -> dict[str, float]:
         """Mass on each tyre [kg], the vehicle's shared equally."""
@@ -257,7 +262,7 @@ class _System:
         several = len(self.user.devices) > 1
         found = []
         for i, added in enumerate(final.model.effects):
-            step = next((s for s in search.steps if s.chosen.model.effects[-1:] == (added,)), None)
+            step = step_of(search.steps, added, final)
             confidence, rivals = standing_of(step, added)
             chosen, others = (step.chosen, step.others) if step is not None else (final, [])
             if step is not None and i + 1 < len(final.model.effects) and confidence < SURE:

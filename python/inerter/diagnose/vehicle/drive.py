@@ -93,6 +93,17 @@ class RecordedDrive:
             rate_now=self.rate_now[:steps],
         )
 
+    def scaled(self, gains: Array) -> RecordedDrive:
+        """The drive with every input times a gain of its own."""
+        return replace(
+            self,
+            ahead=self.ahead * gains,
+            now=self.now * gains,
+            rate=self.rate * gains,
+            rate_now=self.rate_now * gains,
+            spline=CubicSpline(self.spline.x, self.spline(self.spline.x) * gains),
+        )
+
     def averaged(
         self, columns: Sequence[int], patch_length: float = 0.0, patch_time: float = 0.0
     ) -> RecordedDrive:

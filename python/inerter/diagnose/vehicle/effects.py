@@ -13,7 +13,8 @@ from inerter.catalogue.scales import Range
 from inerter.diagnose.vehicle.around import around
 from inerter.diagnose.vehicle.build import UserModel
 from inerter.diagnose.vehicle.candidate import Scale, VehicleCandidate, candidate
-from inerter.diagnose.vehicle.model import Added, VehicleModel
+from inerter.diagnose.vehicle.dampers import along, bent, out_of_the_bend
+from inerter.diagnose.vehicle.model import BENT, Added, VehicleModel
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class Effects:
 
     scales: by device; loads: sprung and unsprung mass on each tyre by its element [kg]; columns:
     time between samples [s] by compared column; shaken: those of accelerometers, with the axes that
-    each would show if it leaned; speed: whether the record has that of the vehicle.
+    each would show if it leaned; speed: whether the record has that of the vehicle; roads: columns
+    of the road's height.
     """
 
     user: UserModel
@@ -31,13 +33,15 @@ class Effects:
     columns: Mapping[str, float] = field(default_factory=dict)
     shaken: Mapping[str, str] = field(default_factory=dict)
     speed: bool = False
+    roads: tuple[str, ...] = ()
 
     def candidates(self, model: VehicleModel) -> Iterator[VehicleCandidate]:
         """Every effect that a model does not have yet."""
         done = {(added.effect, added.element, added.law) for added in model.effects}
         for found in self._all(model):
             added = found.added
-            if (added.effect, added.element, added.law) not in done and not self._doubled(added):
+            tried = added.effect != BENT and (added.effect, added.element, added.law) in done
+            if not tried and not self._doubled(added):
                 yield found
 
     def _all(self, model: VehicleModel) -> Iterator[VehicleCandidate]:
@@ -67,14 +71,15 @@ class Effects:
         )
 
     def stated(self, name: str, model: VehicleModel) -> float:
-        """A coordinate as it stands in a model; 0 where nobody states it."""
-        return model.values.get(name, self.user.stated.get(name, 0.0))
+        """A coordinate as it stands in a model; what does nothing where nobody states it."""
+        none = 1.0 if name.endswith(".gain") else 0.0
+        return model.values.get(name, self.user.stated.get(name, none))
 
     def damping(self, device: str, model: VehicleModel) -> float:
         """The damping of a suspension's damper as it stands [N s/m]."""
         part = next(p for p in self.user.parts.suspensions if p.device == device)
         assert part.damper is not None
-        if part.damper.kind == "device":
+        if part.damper.kind == "device" or model.bends(device):
             return self.stated(f"{device}.viscous", model)
         return self.stated(f"{part.damper.element}.damping", model)
 
@@ -122,6 +127,12 @@ def _coulomb(effects: Effects, device: str, model: VehicleModel) -> Iterator[Veh
             {"coulomb_force": level, "transition_velocity": _widths(scale)},
             ("coulomb_force",), "coulomb",
         )  # fmt: skip
+        if starts := out_of_the_bend(effects, device, model, _width(scale)):
+            yield candidate(
+                "coulomb_friction", device, starts,
+                {"coulomb_force": level, "transition_velocity": _widths(scale)},
+                (), "coulomb", telling=("coulomb_force",),
+            )  # fmt: skip
     elif law == "coulomb":
         now = effects.stated(f"{device}.coulomb_force", model)
         yield candidate(
@@ -315,41 +326,6 @@ def _stops(effects: Effects, device: str, model: VehicleModel) -> Iterator[Vehic
         )
 
 
-def _damped(effects: Effects, device: str) -> bool:
-    """Whether a device is the damper between its wheel and its body."""
-    part = next((p for p in effects.user.parts.suspensions if p.device == device), None)
-    return part is not None and part.damper is not None and part.damper.kind == "device"
-
-
-def _bent(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    """Damping that bends with the speed, about what is stated."""
-    stated = effects.user.stated.get(f"{device}.damping_knee", 0.0)
-    if not _damped(effects, device) or stated > 0 or f"{device}.bump_damping" in model.free:
-        return
-    scale, now = effects.scales[device], effects.stated(f"{device}.viscous", model)
-    names = ("viscous", "damping_knee", "damping_beyond")
-    sizes = {name: COORDINATES[name].range(scale.of_data) for name in names}
-    sizes["viscous"] = Range(now or scale.force / scale.v, 0.0)
-    starts = [
-        {"viscous": 1.1 * now, "damping_knee": r * scale.v, "damping_beyond": b}
-        for r in (0.4, 1.0) for b in (0.5, 1.5)
-    ]  # fmt: skip
-    yield candidate("digressive_damping", device, starts, sizes, ())
-
-
-def _along(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
-    """Damping that grows or falls along the stroke."""
-    if not _damped(effects, device) or effects.user.has_damping_curve(device):
-        return
-    scale = effects.scales[device]
-    reach = max(scale.largest, -scale.smallest)
-    most = 0.9 / reach
-    yield candidate(
-        "position_dependent_damping", device, [{"damping_gradient": 0.2 * most}],
-        {"damping_gradient": Range(most, -most, most)}, ("damping_gradient",),
-    )  # fmt: skip
-
-
 def _relaxing(effects: Effects, device: str, model: VehicleModel) -> Iterator[VehicleCandidate]:
     """A spring that relaxes: a rubber bush, a damper on a soft mount."""
     if effects.stated(f"{device}.branch_stiffness_1", model) > 0:
@@ -391,7 +367,7 @@ _DEVICE: tuple[Builder, ...] = (
     _series,
     _gas,
     _stops,
-    _bent,
-    _along,
+    bent,
+    along,
     _relaxing,
 )  # fmt: skip

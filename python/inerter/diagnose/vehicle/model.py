@@ -14,6 +14,7 @@ from inerter.catalogue.coordinates import NUISANCES
 from inerter.catalogue.effects import EFFECTS
 
 _FORMED = ("sensor_filter", "sensor_compliance")
+BENT = EFFECTS["digressive_damping"].name
 TYRES = "tyres"
 """Element of what all tyres have in common."""
 
@@ -22,13 +23,15 @@ TYRES = "tyres"
 class Added:
     """One effect in a model: its contract name, the element it is in, its coordinates.
 
-    law: of hysteretic friction, else None.
+    law: of hysteretic friction, else None. displaced: coordinates of other elements that it says
+    in their place, which are none beside it.
     """
 
     effect: str
     element: str
     coordinates: tuple[str, ...]
     law: str | None = None
+    displaced: tuple[str, ...] = ()
 
     def is_friction_in(self, element: str) -> bool:
         """Whether this is the friction law of a device."""
@@ -36,10 +39,13 @@ class Added:
 
     def replaces(self, other: Added) -> bool:
         """Whether another effect is part of this one."""
+        if self.displaced and {*other.coordinates} <= {*self.displaced}:
+            return True
         if self.element != other.element:
             return False
         friction = self.effect in FRICTION and other.effect in FRICTION
-        return friction or (self.effect, other.effect) == ("backlash", "series_elasticity")
+        pair = self.effect, other.effect
+        return friction or pair == ("backlash", "series_elasticity") or pair == (BENT, BENT)
 
 
 # effects that say which friction law a device has
@@ -92,11 +98,18 @@ class VehicleModel:
     ) -> VehicleModel:
         """The model with one more effect; its coordinates are free."""
         laws = {**self.friction, added.element: friction} if friction else self.friction
-        names = tuple(n for n in added.coordinates if n not in self.free)
+        gone = added.displaced
+        old = tuple(n for n in self.free if n not in gone)
+        names = tuple(n for n in added.coordinates if n not in old)
 
         # friction laws replace one another, a gap has the series element in it; the rest adds up
         kept = tuple(e for e in self.effects if not added.replaces(e))
-        return VehicleModel({**self.values, **values}, laws, self.free + names, (*kept, added))
+        values = {**self.values, **values, **dict.fromkeys(gone, 0.0)}
+        return VehicleModel(values, laws, old + names, (*kept, added))
+
+    def bends(self, device: str) -> bool:
+        """Whether a device's damping has been given a bend."""
+        return f"{device}.damping_knee" in self.values
 
     def of(self, element: str) -> dict[str, float]:
         """Coordinates of one element, without its name."""

@@ -7,7 +7,7 @@ suspension's. What cannot be known is left out, and `Parts.unknown` says why.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import mujoco
@@ -17,6 +17,8 @@ from inerter.device_in_model import DeviceInModel, devices_of
 
 # a body lighter than this share of the other one is a node, not a wheel or a sprung body
 _NODE = 1e-4
+# how far it is looked on whether two lengths go together, with speeds of about 1 m/s [s]
+_FURTHER = 0.02
 _WRAP_SITE = int(mujoco.mjtWrap.mjWRAP_SITE)
 _WRAP_JOINT = int(mujoco.mjtWrap.mjWRAP_JOINT)
 
@@ -60,7 +62,11 @@ class Tyre:
 
 @dataclass(frozen=True, kw_only=True)
 class Suspension:
-    """What lies between one wheel and the body. spring, damper: None where there is none."""
+    """What lies between one wheel and the body. spring, damper: None where there is none.
+
+    direction: +1 where the device grows as the two part, -1 where it shrinks; alike: the damper's
+    length changes by as much as the device's, so that the device may damp in its place.
+    """
 
     device: str
     wheel: int
@@ -68,6 +74,8 @@ class Suspension:
     spring: VehicleLink | None
     damper: VehicleLink | None
     tyre: Tyre | None
+    direction: float = 1.0
+    alike: bool = False
 
 
 @dataclass(frozen=True)
@@ -170,8 +178,16 @@ def _suspension(
     spring = _between(model, wheel, body, nodes, device, "stiffness")
     damper = _between(model, wheel, body, nodes, device, "damping")
     tyre = next((t for t in tyres if t.actuator == driven[wheel]), None)
+    own = VehicleLink("device", device.actuator, device.name)
     return Suspension(
-        device=device.name, wheel=wheel, body=body, spring=spring, damper=damper, tyre=tyre
+        device=device.name,
+        wheel=wheel,
+        body=body,
+        spring=spring,
+        damper=damper,
+        tyre=tyre,
+        direction=_direction(model, own, wheel, body),
+        alike=damper is not None and _alike(model, own, damper),
     )
 
 
@@ -220,24 +236,45 @@ def _between(
     return found[0] if len(found) == 1 else None
 
 
-def _direction(model: mujoco.MjModel, link: VehicleLink, wheel: int, body: int) -> float:
-    """Whether a length grows (+1) or shrinks (-1) as the two bodies move apart."""
+def _rate(model: mujoco.MjModel, data: mujoco.MjData, link: VehicleLink) -> float:
+    """How fast a length changes."""
+    if link.kind == "tendon":
+        return float(data.ten_velocity[link.index])
+    if link.kind == "joint":
+        return float(data.qvel[model.jnt_dofadr[link.index]])
+    return float(data.actuator_velocity[link.index])
+
+
+def _moving(model: mujoco.MjModel) -> Iterator[mujoco.MjData]:
+    """A model that moves, as it may, where it is at the beginning."""
     data = mujoco.MjData(model)
     random = np.random.default_rng(0)
-    product = 0.0
     for _ in range(8):
         data.qvel[:] = random.standard_normal(model.nv)
         mujoco.mj_forward(model, data)
+        yield data
+
+
+def _alike(model: mujoco.MjModel, one: VehicleLink, other: VehicleLink) -> bool:
+    """Whether two lengths change by as much, or against one another, also a little further on."""
+    for data in _moving(model):
+        mujoco.mj_integratePos(model, data.qpos, data.qvel, _FURTHER)
+        mujoco.mj_forward(model, data)
+        rates = abs(_rate(model, data, one)), abs(_rate(model, data, other))
+        if abs(rates[0] - rates[1]) > 1e-6 * rates[0]:
+            return False
+    return True
+
+
+def _direction(model: mujoco.MjModel, link: VehicleLink, wheel: int, body: int) -> float:
+    """Whether a length grows (+1) or shrinks (-1) as the two bodies move apart."""
+    product = 0.0
+    for data in _moving(model):
         apart = data.xipos[body] - data.xipos[wheel]
         velocity = np.zeros((2, 6))
         for row, each in enumerate((wheel, body)):
             mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, each, velocity[row], 0)
-        if link.kind == "tendon":
-            rate = data.ten_velocity[link.index]
-        elif link.kind == "joint":
-            rate = data.qvel[model.jnt_dofadr[link.index]]
-        else:
-            rate = data.actuator_velocity[link.index]
+        rate = _rate(model, data, link)
         product += float(rate * (velocity[1, 3:] - velocity[0, 3:]) @ apart)
     return 1.0 if product >= 0 else -1.0
 

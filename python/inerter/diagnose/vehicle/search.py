@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.catalogue.effects import EFFECTS
 from inerter.catalogue.scales import Range
 from inerter.diagnose.decision import (
     CRITERIA,
@@ -22,14 +23,12 @@ from inerter.diagnose.decision import (
     not_needed,
     plainest,
 )
-from inerter.diagnose.result import Rival
 from inerter.diagnose.statistics import advantage, win_shares
 from inerter.diagnose.vehicle.candidate import VehicleCandidate
 from inerter.diagnose.vehicle.effects import Effects
 from inerter.diagnose.vehicle.judging import block_squares, left_out, stacked_blocks, won
 from inerter.diagnose.vehicle.model import Added, VehicleModel
 from inerter.diagnose.vehicle.problem import DrivenProblem, VehicleFit, fit_all
-from inerter.diagnose.vehicle.wording import EQUIVALENT
 from inerter.estimation.covariance import sandwich
 
 Array = NDArray[np.float64]
@@ -45,6 +44,7 @@ BEGUN = 8.0
 WORTH = 0.005
 # candidates further behind the best after two steps than this are not fitted to the end
 NEAR = 1.5
+PLAIN, FALLING = EFFECTS["coulomb_friction"].name, EFFECTS["stribeck_friction"].name
 # steps of a start's own size that its effect may be scaled by
 _LARGEST_SCALE = 30.0
 
@@ -338,14 +338,40 @@ class VehicleSearch:
         effect = rich.candidate.added.effect
         return better(simple, rich, won(self.problem, simple.rest, rich.rest, effect))
 
+    def _plainer_friction(
+        self,
+        without: tuple[VehicleModel, Mapping[str, Range]],
+        current: VehicleScored,
+        added: Added,
+    ) -> list[tuple[VehicleModel, Mapping[str, Range]]]:
+        """A model with friction that does not fall with the speed in the place of one that does."""
+        level = f"{added.element}.coulomb_force"
+        if added.effect != FALLING or level not in current.model.values:
+            return []
+        model, sizes = without
+        return [
+            (each.model(model, {**start, level: current.model.values[level]}),
+             {**sizes, **each.sizes})
+            for each in self.effects.candidates(model)
+            if each.added.effect == PLAIN and each.added.element == added.element
+            and each.amplitudes
+            for start in each.starts
+        ]  # fmt: skip
+
     def _prune(self, current: VehicleScored) -> VehicleScored:
         """Take away what the others have made unnecessary."""
         while len(current.model.effects) > 1:
             self.progress("checking that every effect is still needed")
-            trials = [self.without(current, i) for i in range(len(current.model.effects))]
+            effects = current.model.effects
+            trials = [self.without(current, i) for i in range(len(effects))]
+            told = [*effects]
+            for i, added in enumerate(effects):
+                plainer = self._plainer_friction(trials[i], current, added)
+                trials += plainer
+                told += [added] * len(plainer)
             simpler = [
                 scored
-                for scored, added in zip(self.refit(trials), current.model.effects, strict=True)
+                for scored, added in zip(self.refit(trials), told, strict=True)
                 if not_needed(
                     scored, current, won(self.problem, scored.rest, current.rest, added.effect, 0.0)
                 )
@@ -392,23 +418,3 @@ def errors(fit: VehicleFit) -> dict[str, float]:
 
 def _as_good(simple: VehicleScored, best: VehicleScored) -> bool:
     return as_good(simple, best, advantage(simple.squares, best.squares))
-
-
-def standing_of(step: Step | None, added: Added) -> tuple[float, list[Rival]]:
-    """Confidence and rivals of an effect, from the step in which it was added."""
-    if step is None:
-        return 0.5, []
-    confidence = float(step.shares[0])
-    rivals = []
-    for other, share in zip(step.others, step.shares[2:], strict=True):
-        assert other.candidate is not None
-        effect = other.candidate.added
-        # another law or start of the same effect is no doubt about the effect
-        if effect.effect == added.effect and effect.element == added.element:
-            confidence += float(share)
-        elif share >= CRITERIA.rival_kept:
-            rivals.append(Rival(effect.effect, float(share), effect.law))
-    twin = EQUIVALENT.get(added.effect)
-    if twin:
-        rivals.append(Rival(twin, min(confidence, 1.0)))
-    return min(confidence, 1.0), sorted(rivals, key=lambda rival: -rival.confidence)

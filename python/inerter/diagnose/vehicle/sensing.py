@@ -1,4 +1,4 @@
-"""What stands between a quantity and the column that shows it: angle, delay, mount, low-pass.
+"""What stands between a quantity and the column that shows it: angle, gain, delay, mount, filter.
 
     s'' + 2 D w s' + w^2 s = w^2 y     y the quantity, s what the sensor shows, w = 2 pi f
 
@@ -38,8 +38,8 @@ def shown(time: Array, values: Array, channel: Mapping[str, float]) -> Array:
     values : ndarray (n,)
         The quantity, finite.
     channel : mapping
-        `delay` [s], `mount_frequency` [Hz] with `mount_loss` [-], `filter_frequency` [Hz]; what is
-        not there does nothing.
+        `gain` [-], `delay` [s], `mount_frequency` [Hz] with `mount_loss` [-], `filter_frequency`
+        [Hz]; what is not there does nothing.
     """
     for frequency, loss in (
         (channel.get("mount_frequency", 0.0), channel.get("mount_loss", FLAT)),
@@ -47,6 +47,7 @@ def shown(time: Array, values: Array, channel: Mapping[str, float]) -> Array:
     ):
         if frequency:
             values = second_order(time, values, frequency, loss)
+    values = channel.get("gain", 1.0) * values
     delay = channel.get("delay", 0.0)
     if delay:
         values = CubicSpline(time, values)(np.clip(time - delay, time[0], time[-1]))

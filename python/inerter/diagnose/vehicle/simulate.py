@@ -103,7 +103,12 @@ class VehicleSimulator:
         return found
 
     def _felt(self, drive: RecordedDrive, model: VehicleModel) -> RecordedDrive:
-        """A drive as a model's tyres feel it."""
+        """A drive as a model's tyres feel it: what was recorded, less what its channel adds."""
+        gains = np.array(
+            [model.of(f"channel:{column}").get("gain", 1.0) for column in self.channels.inputs]
+        )
+        if np.any(gains != 1.0):
+            drive = drive.scaled(1.0 / gains)
         patch = model.of(TYRES)
         if not any(patch.values()):
             return drive

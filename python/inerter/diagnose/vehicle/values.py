@@ -32,6 +32,7 @@ _UNITS = {
     "joint_damping": "N*s/m",
     "actuator_gain": "1",
     "actuator_lag": "s",
+    "gain": "1",
     "delay": "s",
     "filter_frequency": "Hz",
     "mount_frequency": "Hz",

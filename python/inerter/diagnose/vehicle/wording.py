@@ -12,7 +12,11 @@ from inerter.diagnose.wording import how_surely, seems, value_in_words
 # the same force between the same bodies: no record of the vehicle can tell these apart
 EQUIVALENT = {"spring_hardening": "hardening_stiffness"}
 
-_OF_CHANNELS = {"sensor_delay": "a delay", "sensor_filter": "a low-pass filter"}
+_OF_CHANNELS = {
+    "sensor_delay": "a delay",
+    "sensor_filter": "a low-pass filter",
+    "sensor_gain_error": "a wrong scale",
+}
 """Words that on a bench are those of its force and displacement."""
 CHANNEL_NOTES = {
     "sensor_delay": {
@@ -35,6 +39,7 @@ _NOTES = {
     "tyre_damping": "; in model.xml its actuator is driven by the rate of the road [m/s]",
     "tyre_enveloping": "; model.xml has no road: feed it the mean over this length",
     "sensor_compliance": "; what a sensor shows is in no model: correct the record or the bracket",
+    "sensor_gain_error": "; what a channel shows is in no model: correct the record",
     "mounting_angle": "; what a sensor shows is in no model: turn it, or correct the record",
     "sensor_filter": "; what a sensor shows is in no model: state the filter, or record without it",
 }

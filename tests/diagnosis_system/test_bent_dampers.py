@@ -1,0 +1,114 @@
+"""A damper that bends with the speed, where the model's is a straight one of a tendon."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hidden_vehicles import Car, records
+from inerter.diagnose.vehicle.build import UserModel, model_of_text, read_model
+from inerter.diagnose.vehicle.diagnosis import diagnose_system
+from inerter.diagnose.vehicle.mapping import map_columns
+from inerter.diagnose.vehicle.model import Added, VehicleModel
+from inerter.records import VehicleRecord
+
+CAR = Car()
+MODEL = f"""<mujoco><option timestep="0.002" integrator="RK4" gravity="0 0 0"/>
+<extension><plugin plugin="inerter.device"/></extension><worldbody>
+<body name="wheel"><joint name="wheel" type="slide" axis="0 0 1"/>
+  <geom size=".1" mass="{CAR.unsprung_mass}" contype="0" conaffinity="0"/>
+  <site name="lower"/></body>
+<body name="frame" pos="0 0 .5"><joint name="frame" type="slide" axis="0 0 1"/>
+  <geom size=".1" mass="{CAR.sprung_mass}" contype="0" conaffinity="0"/><site name="upper"/></body>
+</worldbody><tendon>
+<spatial name="spring" stiffness="{CAR.stiffness}" damping="DAMPING" springlength=".5">
+  <site site="lower"/><site site="upper"/></spatial>
+<spatial name="line"><site site="lower"/><site site="upper"/></spatial></tendon><actuator>
+<position name="road" joint="wheel" kp="{CAR.tyre_stiffness}"/>
+<plugin name="strut" plugin="inerter.device" tendon="line">
+  <config key="inertance" value="{CAR.inertance}"/><config key="rest_length" value=".5"/>OWN
+</plugin>
+</actuator><sensor><framelinacc name="body_acceleration" objtype="body" objname="frame"/>
+<framelinacc name="wheel_acceleration" objtype="body" objname="wheel"/>
+<tendonpos name="suspension_travel" tendon="line"/></sensor></mujoco>"""
+
+
+def model(folder: Path, damping: float, own: str = "") -> UserModel:
+    path = folder / "model.xml"
+    path.write_text(MODEL.replace("DAMPING", repr(damping)).replace("OWN", own))
+    return read_model(path)
+
+
+def drives(car: Car, **road: float) -> list[VehicleRecord]:
+    """Without the force of the tyre, which few have."""
+    return [
+        VehicleRecord(
+            name=run.name, time=run.time, road=run.road,
+            body_acceleration=run.body_acceleration, wheel_acceleration=run.wheel_acceleration,
+            suspension_travel=run.suspension_travel,
+        )
+        for run in records(car, runs=2, **road)
+    ]  # fmt: skip
+
+
+def test_a_corner_in_the_damping_and_dry_friction_beside_a_straight_damper(tmp_path: Path) -> None:
+    car = Car(damping=3000.0, knee=0.12, beyond=0.4, coulomb_force=60.0)
+    user = model(tmp_path, 3000.0)
+    runs = drives(car, amplitude=0.3)
+    columns = list(runs[0].channels())
+    found = diagnose_system(runs, user, map_columns(user.model, columns, {}, {}))
+    assert {each.effect for each in found.findings} == {"digressive_damping", "coulomb_friction"}
+    true = {"viscous": 3000.0, "damping_knee": 0.12, "damping_beyond": 0.4, "coulomb_force": 60.0}
+    for name, value in true.items():
+        told = found.parameters[name]
+        assert told.value == pytest.approx(value, abs=max(4 * told.stderr, 0.02 * value)), name
+    assert found.extended.rmse < 1.1 * found.noise_floor
+    # what is written is the damper that was found, in the place of the straight one
+    assert found.engines["mujoco"] == pytest.approx(found.extended.rmse, rel=0.01)
+    written = model_of_text(found.model_xml or "", tmp_path / "written.xml")
+    assert written.model.tendon_damping[0] == 0.0
+
+
+@pytest.mark.parametrize("damper", ["the device's", "a tendon's"])
+def test_a_damper_that_bends_may_differ_between_rebound_and_bump(
+    tmp_path: Path, damper: str
+) -> None:
+    own = '<config key="viscous" value="2000"/>' if damper == "the device's" else ""
+    user = model(tmp_path, 0.0 if own else 2000.0, own)
+    user.with_inputs(["road"])
+    (part,) = user.parts.suspensions
+    assert part.alike
+    values = {
+        "strut.damping_knee": 0.1, "strut.damping_beyond": 0.3,
+        "strut.rebound_damping": 2400.0, "strut.bump_damping": 1600.0,
+    }  # fmt: skip
+    displaced = () if own else ("tendon:spring.damping",)
+    bent = Added("digressive_damping", "strut", ("strut.damping_knee",), None, displaced)
+    change = VehicleModel().adding(bent, values)
+    device = user.device_of("strut", change)
+    for velocity, slope in ((0.02, 2400.0), (-0.02, 1600.0)):
+        force = float(device.evaluate(0.0, velocity, 0.0, 0.0)["total"])
+        # a little below: the knee is rounded
+        assert force == pytest.approx(slope * velocity, rel=0.03)
+    built = user.compile(change)
+    assert built.nactuator == user.model.nactuator
+    assert np.all(built.tendon_damping == 0.0)
+    without = VehicleModel(values, free=())
+    assert without.bends("strut")
+
+
+def test_only_a_damper_that_moves_with_the_device_is_displaced(tmp_path: Path) -> None:
+    text = MODEL.replace("DAMPING", "2000.0").replace("OWN", "")
+    beside = text.replace(
+        '<site name="lower"/></body>',
+        '<site name="lower"/><site name="aside" pos=".3 0 0"/></body>',
+    ).replace('springlength=".5">\n  <site site="lower"/>', '>\n  <site site="aside"/>')
+    assert beside != text
+    path = tmp_path / "model.xml"
+    path.write_text(beside)
+    user = read_model(path)
+    user.with_inputs(["road"])
+    (part,) = user.parts.suspensions
+    assert part.damper is not None
+    assert not part.alike
