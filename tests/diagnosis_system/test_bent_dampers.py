@@ -88,7 +88,7 @@ def test_a_damper_that_bends_may_differ_between_rebound_and_bump(
     change = VehicleModel().adding(bent, values)
     device = user.device_of("strut", change)
     for velocity, slope in ((0.02, 2400.0), (-0.02, 1600.0)):
-        force = float(device.evaluate(0.0, velocity, 0.0, 0.0)["total"])
+        force = device.evaluate(0.0, velocity, 0.0, 0.0)["total"].item()
         # a little below: the knee is rounded
         assert force == pytest.approx(slope * velocity, rel=0.03)
     built = user.compile(change)
