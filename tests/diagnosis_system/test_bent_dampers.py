@@ -40,7 +40,7 @@ def model(folder: Path, damping: float, own: str = "") -> UserModel:
     return read_model(path)
 
 
-def drives(car: Car, **road: float) -> list[VehicleRecord]:
+def drives(car: Car, amplitude: float) -> list[VehicleRecord]:
     """Without the force of the tyre, which few have."""
     return [
         VehicleRecord(
@@ -48,7 +48,7 @@ def drives(car: Car, **road: float) -> list[VehicleRecord]:
             body_acceleration=run.body_acceleration, wheel_acceleration=run.wheel_acceleration,
             suspension_travel=run.suspension_travel,
         )
-        for run in records(car, runs=2, **road)
+        for run in records(car, runs=2, amplitude=amplitude)
     ]  # fmt: skip
 
 

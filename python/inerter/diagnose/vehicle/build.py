@@ -232,12 +232,9 @@ class UserModel:
             coordinates = {**stated_coordinates(found, self.model), **values}
             own = FRICTION[law]
             # what another law has is none of this one's
-            for name in {*LAW_COORDINATES} - {
-                *own.coordinates,
-                *own.constants,
-                "friction_backlash",
-            }:
-                coordinates.pop(name, None)
+            kept = {*own.coordinates, *own.constants, "friction_backlash"}
+            for other in {*LAW_COORDINATES} - kept:
+                coordinates.pop(other, None)
             base = Device(friction=law, **parameters_of(coordinates), **texts)
         if own_damping := self._damping_by_direction(name, change):
             base = base.replace(**own_damping)
