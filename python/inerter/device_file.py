@@ -30,7 +30,7 @@ LARGEST_DELAY = 0.05
 """Delay of the force channel [s] beyond which none is sought or held, either way."""
 
 
-def read_device(path: Path) -> Device:
+def read_device(path: Path | str) -> Device:
     """The device in a file.
 
     Raises
@@ -38,6 +38,7 @@ def read_device(path: Path) -> Device:
     DeviceError
         The file cannot be read, or a value in it cannot be used; names the file and the key.
     """
+    path = Path(path)
     content = _content(path)
     table = content.get("device")
     if not isinstance(table, dict):

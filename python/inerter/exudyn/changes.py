@@ -11,11 +11,15 @@ from inerter.exudyn.element import FLYWHEEL, TURNED, Element
 from inerter.exudyn.functions import NUMBERS
 from inerter.exudyn.inerter import Model
 from inerter.exudyn.kinematics import SHORTEST, Span
-from inerter.exudyn.parameters import Parameters, own_names
+from inerter.exudyn.parameters import own_names
 from inerter.exudyn.terminals import terminals
 
 KEPT = "inerter_models"
 """Where in `mbs.variables` the devices of a system are kept."""
+
+
+KEPT_MASS = "inerter_kept_mass"
+"""Where it stands that a run goes on whose mass matrix Exudyn computes once."""
 
 
 def models_of(mbs: Any) -> list[Model]:
@@ -58,23 +62,43 @@ def read_geometry(mbs: Any, model: Model, assembling: bool = False) -> None:
 
     While a system is assembled, a rest length that was not given becomes the distance anew.
     """
-    nodes, kinematics = terminals(mbs, model.places)
+    nodes, kinematics = _terminals_now(mbs, model, assembling)
     if [int(node) for node in nodes] != [int(node) for node in model.nodeNumbers]:
         raise ValueError(
             f'inerter "{model.name}": a terminal has moved to another node, which cannot change '
-            "once the device is made; make the device after that"
+            f"once the device is made; make the device after that{_RENUMBERED}"
         )
     if kinematics != model.element.kinematics:
         element = replace(model.element, kinematics=kinematics)
         if assembling and model.free_length and isinstance(kinematics, Span):
             rest = reference_length(kinematics)
             model.device = model.device.replace(rest_length=rest)
-            old = element.device
-            device = Parameters.of(model.device, old.smooth_play, old.command)
-            element = replace(element, device=device)
+            element = replace(element, device=element.device.with_device(model.device))
         take(mbs, model, element)
     if assembling:
         check_apart(mbs, model.name, model.element, model.nodeNumbers)
+
+
+_RENUMBERED = (
+    " (an item that is deleted gives the later ones other numbers: delete before CreateInerter)"
+)
+
+
+def _terminals_now(mbs: Any, model: Model, assembling: bool) -> tuple[Any, Any]:
+    """Nodes and geometry of the terminals, or one line on what has become of them."""
+    try:
+        here = not assembling or mbs.GetObject(model.objectNumber)["name"] == model.name
+        if here:
+            return terminals(mbs, model.places)
+        why = f"object {int(model.objectNumber)} is another one now"
+    except TypeError:
+        # Exudyn 1.9 cannot tell of an object with a symbolic function
+        return terminals(mbs, model.places)
+    except (ValueError, RuntimeError, IndexError) as error:
+        why = str(error).splitlines()[0]
+    raise ValueError(
+        f'inerter "{model.name}": what it was made with is not where it was{_RENUMBERED}: {why}'
+    )
 
 
 def read_start(mbs: Any, model: Model) -> None:
@@ -121,7 +145,7 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
         )
     device = model.device.replace(**changes)
     old = model.element
-    new = replace(old, device=Parameters.of(device, old.device.smooth_play, old.device.command))
+    new = replace(old, device=old.device.with_device(device))
     told = f'inerter "{model.name}": {", ".join(f"{k}={v!r}" for k, v in changes.items())}'
     if new.device.state_names != old.device.state_names or new.own != old.own:
         raise ValueError(
@@ -134,6 +158,11 @@ def change_parameters(mbs: Any, model: Model, changes: Mapping[str, Any]) -> Non
         raise ValueError(
             f"{told} would make a constant inertance a varying one, or the other way round, which "
             "is frozen once it is made; make it so at the start (a tiny value is enough)"
+        )
+    if mbs.variables.get(KEPT_MASS) and old.constant_mass and _mass(new) != _mass(old):
+        raise ValueError(
+            f"{told} changes a mass that Exudyn keeps through this run; set "
+            "settings.timeIntegration.reuseConstantMassMatrix = False before SolveDynamic"
         )
     if FLYWHEEL in old.own and new.device.rest_length != old.device.rest_length:
         raise ValueError(
@@ -153,7 +182,7 @@ def change_command(mbs: Any, model: Model, command: float) -> None:
     if not math.isfinite(command):
         raise ValueError(f'inerter "{model.name}": command is {command}; give a finite number')
     old = model.element
-    device = Parameters.of(model.device, old.device.smooth_play, float(command))
+    device = old.device.with_device(model.device, float(command))
     if device.aim != old.device.aim:
         take(mbs, model, replace(old, device=device))
 
@@ -162,6 +191,10 @@ def take(mbs: Any, model: Model, element: Element) -> None:
     """Let the object be this element from now on; it has the same coordinates."""
     model.functions.take(mbs, model.objectNumber, element)
     model.take(element)
+
+
+def _mass(element: Element) -> float:
+    return float(element.device.inertance)
 
 
 def _listed(names: Any) -> str:

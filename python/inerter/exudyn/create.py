@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from numbers import Real
@@ -33,6 +34,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     localPosition0: ArrayLike = (0.0, 0.0, 0.0),
     localPosition1: ArrayLike = (0.0, 0.0, 0.0),
     *,
+    device: Device | None = None,
     axis: ArrayLike | None = None,
     useGlobalFrame: bool = True,
     symbolic: bool | None = None,
@@ -65,6 +67,9 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
         trees and superelements get a massless point with a spherical joint, for implicit solvers.
     localPosition0, localPosition1
         Points on the bodies [m], in their frames; on the ground in the global one.
+    device
+        A device that is there already, such as `inerter.read_device("device.toml")` of a diagnosis;
+        parameters that are given beside it take the place of its own.
     axis
         For a torsional device between two rigid bodies: the axis about which their relative angle
         [rad] counts, usually that of their joint; zero at the reference configuration. Inertance is
@@ -129,12 +134,15 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     }
     items = _items(name, itemNumbers, others)
     check_drawing(drawSize, color)
-    wanted = _parameters(parameters)
+    wanted = _parameters(device, parameters)
     device = Device(**{key: value for key, value in wanted.items() if value is not None})
     # what belongs to the device is named after it
     name = name or f"inerter{mbs.systemData.NumberOfObjects()}"
+    _check_name(mbs, name)
+    names = (*device.state_names, *(("dissipated_energy",) if dissipatedEnergy else ()))
+    given = _initial_states(names, initialStates or {})
     places = Terminals(tuple(items), (localPosition0, localPosition1), axis, useGlobalFrame)
-    places, points = _carried(mbs, name, places)
+    places, points = _carried(mbs, name, places, bool(symbolic))
     nodes, kinematics = terminals(mbs, places)
     free = wanted.get("rest_length") is None
     if free and isinstance(kinematics, Span):
@@ -143,13 +151,7 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     straight = isinstance(kinematics, Line) and not element.loaded and element.size <= MOST_SYMBOLIC
     straight = straight and not lags(element.device)
     if symbolic and not straight:
-        raise ValueError(
-            "symbolic: True, but Exudyn can evaluate by itself only devices on 1D coordinates, "
-            "without load friction on a rigid inertance and without control_lag, of at most "
-            f"{MOST_SYMBOLIC} coordinates (here {element.size}); leave it None or set it False"
-        )
-    names = (*device.state_names, *(("dissipated_energy",) if dissipatedEnergy else ()))
-    given = _initial_states(names, initialStates or {})
+        raise ValueError(f"{_SYMBOLIC} (here {element.size}); leave it None or set it False")
     check_apart(mbs, name, element, nodes)
     own = _own_node(mbs, name, element, nodes, given) if element.own else None
     compiled = straight if symbolic is None else bool(symbolic)
@@ -177,6 +179,21 @@ def CreateInerter(  # noqa: N802 - Exudyn's manner
     return Inerter(mbs, model)
 
 
+_SYMBOLIC = (
+    "symbolic: True, but Exudyn can evaluate by itself only devices on 1D coordinates, without "
+    "load friction on a rigid inertance and without control_lag, of at most "
+    f"{MOST_SYMBOLIC} coordinates"
+)
+
+
+def _check_name(mbs: Any, name: str) -> None:
+    """Raise ValueError for a name that Exudyn would refuse halfway."""
+    if re.match(r"(object|node|marker)[0-9]", name):
+        raise ValueError(f"name: {name!r} is how Exudyn numbers its own items; give another one")
+    if int(mbs.GetObjectNumber(name)) >= 0:
+        raise ValueError(f"name: there is an object {name!r} already; give another one")
+
+
 def _items(name: Any, itemNumbers: Any, told: Mapping[str, Any]) -> list[Any]:
     """The two items, under whichever name they were given."""
     if not isinstance(name, str):
@@ -194,9 +211,14 @@ def _items(name: Any, itemNumbers: Any, told: Mapping[str, Any]) -> list[Any]:
     return list(found)
 
 
-def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
+def _parameters(device: Any, given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters under their own names, none of them None but a rest length."""
-    found = own_names(given)
+    if device is not None and not isinstance(device, Device):
+        raise ValueError(
+            f"device: {device!r:.60} is no device; give inerter.Device(...), or "
+            'inerter.read_device("device.toml")'
+        )
+    found = {**(device.given if device is not None else {}), **own_names(given)}
     if not set(found) - {"rest_length"}:
         raise DeviceError(
             "inertance is not given, nor is anything else that acts; give inertance=... [kg], or "
@@ -208,13 +230,22 @@ def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _carried(mbs: Any, name: str, places: Terminals) -> tuple[Terminals, tuple[Carrier, ...]]:
+def _carried(
+    mbs: Any, name: str, places: Terminals, symbolic: bool
+) -> tuple[Terminals, tuple[Carrier, ...]]:
     """The terminals with massless points in place of what has no coordinates of its own."""
     needed = [is_carried(mbs, item) for item in places.items]
     if not any(needed):
         return places, ()
     # nothing is added before the other terminal is known to be right
     check(mbs, places, needed)
+    if places.axis is not None:
+        raise ValueError(
+            "axis: an angle is between two rigid bodies; a cable, a beam, a tree or a superelement "
+            "carries a point alone; leave axis away"
+        )
+    if symbolic:
+        raise ValueError(f"{_SYMBOLIC}; leave it None or set it False")
     items, local, points = list(places.items), list(places.local), []
     for i, is_needed in enumerate(needed):
         if is_needed:

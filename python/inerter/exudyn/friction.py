@@ -208,8 +208,9 @@ REACHED = 1e-12
 
 
 KNEE = 1e-3
-"""Share of its limit over which it begins to slip, where limits may rise: an element is held at a
-limit that rises, between the two rates, and a solver that iterates finds nothing there without."""
+"""Share of its limit over which it begins to slip, where limits may rise, and with solvers that
+iterate: an element is held at a limit that rises, between the two rates, and without a knee an
+iteration finds nothing there, or jumps between the two."""
 
 
 def elements(p: Parameters) -> list[tuple[float, float]]:
@@ -225,7 +226,7 @@ def maxwell_slip(f: Functions, p: Parameters, x: Value, v: Value, z: Any) -> Fri
     F = sum of k_i z_i.
     """
     factor, side = level(f, p, x, v), f.sign(v)
-    rises = varies(p) or loaded_by(p)
+    rises = p.soft_slip or varies(p) or loaded_by(p)
     if loaded_by(p):
         factor = factor + p.load_level / yield_force(p)
     total: Value = 0.0

@@ -34,7 +34,8 @@ class Parameters(SimpleNamespace):
     """Parameters and lists of the device by name, those of `WORDS`, `nstate`, `state_names`.
 
     `smooth_play` is this element's own, see `series.py`; `load_level` [N] what a load adds to the
-    level of a bristle at the moment; `still` that nothing changes at rest, for a static solution.
+    level of a bristle at the moment; `still` that nothing changes at rest, for a static solution;
+    `soft_slip` that elements of maxwell_slip begin to slip over a knee, for a solver that iterates.
     For a control that sets a parameter
     (`control.py`): `command`, `aim` (the same within the bounds), `control_rest`, `static_follows`.
     """
@@ -47,6 +48,7 @@ class Parameters(SimpleNamespace):
         numbers["smooth_play"] = smooth_play
         found = cls(**numbers, **{name: getattr(device, name) for name in names})
         found.command, found.load_level, found.still = command, 0.0, False
+        found.soft_slip = False
         if device.control == "force":
             return found
         found.control_rest = getattr(device, device.control)
@@ -58,4 +60,11 @@ class Parameters(SimpleNamespace):
             setattr(found, device.control, found.aim)
             if device.control == "coulomb_force" and found.static_follows:
                 found.static_force = found.aim
+        return found
+
+    def with_device(self, device: Device, command: float | None = None) -> Parameters:
+        """Those of another device, the rest as it is."""
+        now = self.command if command is None else command
+        found = Parameters.of(device, self.smooth_play, now)
+        found.still, found.soft_slip = self.still, self.soft_slip
         return found

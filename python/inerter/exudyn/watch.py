@@ -20,6 +20,7 @@ from inerter.exudyn import control
 from inerter.exudyn.carriers import follow
 from inerter.exudyn.changes import (
     KEPT,
+    KEPT_MASS,
     change_parameters,
     models_of,
     read_geometry,
@@ -121,12 +122,18 @@ def _careful(original: Callable[..., Any]) -> Callable[..., Any]:
             settings = exudyn().SimulationSettings()
         solver = kwargs.get("solverType") or (args[0] if args else None)
         name = getattr(solver or exudyn().DynamicSolverType.GeneralizedAlpha, "name", "")
+        _refuse_threads(settings, models)
         if name not in IMPLICIT:
             for model in models:
                 _refuse_points(model, name)
             _warn_of_constraints(mbs, models, name)
-            return original(mbs, settings, *args, **kwargs)
-        with _fresh_jacobians(settings, models):
+            with _mass_matrix(mbs, settings, models):
+                return original(mbs, settings, *args, **kwargs)
+        with (
+            _mass_matrix(mbs, settings, models),
+            _fresh_jacobians(settings, models),
+            _soft_slip(mbs, models),
+        ):
             return original(mbs, settings, *args, **kwargs)
 
     return SolveDynamic
@@ -156,6 +163,65 @@ def _goes_on(model: Model) -> bool:
     """Whether a state changes at rest, so that no static solution would end."""
     device = model.element.device
     return device.friction == "rate_state" or control.lags(device)
+
+
+_IN_A_RUN = ("PreStep", "PostStep", "PostNewton", "PreNewtonResidual")
+
+
+@contextmanager
+def _mass_matrix(mbs: Any, settings: Any, models: list[Model]) -> Iterator[None]:
+    """The mass matrix anew for every step, where an inertance may change in the run.
+
+    Exudyn computes one that is constant once, and knows nothing of a parameter that changes; the
+    run's acceleration would be the old one's. May change: what a control or a user function sets.
+    """
+    settings_of = settings.timeIntegration
+    before = settings_of.reuseConstantMassMatrix
+    still = [model for model in models if model.element.constant_mass]
+    changing = any(model.device.control == "inertance" for model in still)
+    if still and before and (changing or _has_user_function(mbs)):
+        settings_of.reuseConstantMassMatrix = False
+    mbs.variables[KEPT_MASS] = bool(settings_of.reuseConstantMassMatrix)
+    try:
+        yield
+    finally:
+        settings_of.reuseConstantMassMatrix = before
+        mbs.variables.pop(KEPT_MASS, None)
+
+
+def _has_user_function(mbs: Any) -> bool:
+    """Whether something of the user's is called in every step."""
+    asked = [getattr(mbs, f"Get{name}UserFunction", None) for name in _IN_A_RUN]
+    # an Exudyn that cannot be asked may have one
+    return any(ask is None or bool(ask()) for ask in asked)
+
+
+@contextmanager
+def _soft_slip(mbs: Any, models: list[Model]) -> Iterator[None]:
+    """Elements of maxwell_slip that begin to slip over a knee, for a solver that iterates."""
+    soft = [model for model in models if model.device.friction == "maxwell_slip"]
+    try:
+        for model in soft:
+            _take_slip(mbs, model, True)
+        yield
+    finally:
+        for model in soft:
+            _take_slip(mbs, model, False)
+
+
+def _take_slip(mbs: Any, model: Model, soft: bool) -> None:
+    device = copy(model.element.device)
+    device.soft_slip = soft
+    take(mbs, model, replace(model.element, device=device))
+
+
+def _refuse_threads(settings: Any, models: list[Model]) -> None:
+    threads = settings.parallel.numberOfThreads
+    if threads > 1:
+        raise ValueError(
+            f'inerter "{models[0].name}": settings.parallel.numberOfThreads is {threads}, and with '
+            "several threads Exudyn hangs in user functions or loses forces of theirs; set it to 1"
+        )
 
 
 @contextmanager

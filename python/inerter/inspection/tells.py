@@ -66,7 +66,8 @@ def tells(motion: Motion, facts: MotionFacts, warned: Collection[str] = ()) -> l
         return [
             Tell(
                 name=name, value=0.0, stderr=math.inf, unit=in_words(motion.motion, unit),
-                verdict="not told", reason="most of the force is clipped or spikes",
+                verdict="not told",
+                reason="what is clipped or a spike reaches most of the force through the low-pass",
                 motion="a sensor of a wider range, or a weaker motion",
             )
             for name, (_, unit) in columns.items()
